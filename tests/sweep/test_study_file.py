@@ -94,9 +94,12 @@ def test_faults_name_place_and_remedy(
         assert part in text, text
 
 
-def test_all_faults_of_a_study_are_told_together(study_of: Make) -> None:
-    text = refusal(study_of, ("title:", "titel:"), ("[0.20, 0.30]", "[0.2]"), ("[0.5, 1.0]", "[]"))
+def test_all_faults_of_keys_are_told_together_then_those_between_keys(study_of: Make) -> None:
+    unequal, twice = ("[0.20, 0.30]", "[0.2]"), ("scale:", "hazzard: 1\nscale:")
+    text = refusal(study_of, ("title:", "titel:"), unequal, ("[0.5, 1.0]", "[]"), twice)
     assert len(text.splitlines()) == 3
+    text = refusal(study_of, unequal, ("curvature_ratio:", "curvature_ration:"))
+    assert len(text.splitlines()) == 2
 
 
 def test_a_study_needs_a_record_from_somewhere(study_of: Make) -> None:

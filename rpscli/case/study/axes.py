@@ -4,22 +4,19 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path as Folder
 from typing import Any
 
-from pydantic import TypeAdapter, ValidationError
+from pydantic import ValidationError
 
-from rpscli.case.study.schema import Axes, RecordPattern, Source
+from rpscli.case.study.schema import RecordPattern
 from rpscli.case.text.document import Document, Fault, Path, Place, dotted
 from rpscli.errors import RecordError
 from rpscli.records.loading import expanded, repeated
 
 Values = tuple[Any, ...]
-
-_AXES: TypeAdapter[tuple[dict[str, Values], ...]] = TypeAdapter(Axes)
-_SOURCE: TypeAdapter[str | RecordPattern] = TypeAdapter(Source)
 
 MOST_SOURCES = 100_000
 """Ground motions that the options of one pattern may stand for."""
@@ -39,43 +36,42 @@ class Axis:
         return places[row] if len(places) == len(self.rows) else places[0]
 
 
-def axes_of(document: Document) -> tuple[list[Axis], list[Fault]]:
-    """Axes under the key `vary` of a study as far as they can be read, and what is unequal."""
-    try:
-        read = _AXES.validate_python(document.content.get("vary", []))
-    except ValidationError:
-        return [], []  # told key by key
-    axes: list[Axis] = []
-    faults: list[Fault] = []
-    for index, values in enumerate(read):
-        path: Path = ("vary", index)
-        first, *others = values
-        faults += [
-            Fault(
-                (*path, key),
-                f"{key} has {len(values[key])} values, but"
-                f" {first}{document.where((*path, first))} has {len(values[first])}: the keys of"
-                " one axis go together; give equally many, or begin another axis with `-`",
-                at_key=True,
-            )
-            for key in others
-            if len(values[key]) != len(values[first])
-        ]
-        if len({len(column) for column in values.values()}) == 1:
-            axes.append(_axis(document, path, values))
-    return axes, faults
+Vary = Sequence[Mapping[str, Values]]
+"""Columns of values by their keys, axis by axis."""
 
 
-def _axis(document: Document, path: Path, values: Mapping[str, Values]) -> Axis:
-    def places(key: str, count: int) -> tuple[Place, ...]:
-        if isinstance(document.at((*path, key)), dict):
-            return (document.value_place((*path, key)),)
-        return tuple(document.value_place((*path, key, row)) for row in range(count))
+def unequal(document: Document, vary: Vary) -> list[Fault]:
+    """Keys of one axis that have not equally many values."""
+    return [
+        Fault(
+            ("vary", index, key),
+            f"{key} has {len(columns[key])} values, but"
+            f" {first}{document.where(('vary', index, first))} has {len(columns[first])}: the keys"
+            " of one axis go together; give equally many, or begin another axis with `-`",
+            at_key=True,
+        )
+        for index, columns in enumerate(vary)
+        for first in [next(iter(columns))]
+        for key in columns
+        if len(columns[key]) != len(columns[first])
+    ]
 
-    return Axis(
-        keys=tuple(values),
-        rows=tuple(zip(*values.values(), strict=True)),
-        places=tuple(places(key, len(column)) for key, column in values.items()),
+
+def axes_of(document: Document, vary: Vary) -> tuple[Axis, ...]:
+    """Axes of a study whose columns are equally long."""
+
+    def places(path: Path, count: int) -> tuple[Place, ...]:
+        if isinstance(document.at(path), dict):
+            return (document.value_place(path),)
+        return tuple(document.value_place((*path, row)) for row in range(count))
+
+    return tuple(
+        Axis(
+            keys=tuple(columns),
+            rows=tuple(zip(*columns.values(), strict=True)),
+            places=tuple(places(("vary", i, key), len(of)) for key, of in columns.items()),
+        )
+        for i, columns in enumerate(vary)
     )
 
 
@@ -83,18 +79,18 @@ def sources_of(
     document: Document, folder: Folder
 ) -> tuple[tuple[str, ...], list[Fault], list[str]]:
     """Single sources of the list `records`, in order, each once; what is wrong, and notes."""
-    written = document.content.get("records")
+    records = document.content.get("records")
     sources: list[str] = []
     faults: list[Fault] = []
     notes: list[str] = []
-    for index, item in enumerate(written if isinstance(written, list) else ()):
+    for index, item in enumerate(records if isinstance(records, list) else ()):
         path: Path = ("records", index)
         try:
-            read = _SOURCE.validate_python(item)
-            patterns = [read] if isinstance(read, str) else _product(read, path)
-            single, told = expanded(patterns, folder=folder)
-            sources += single
-            notes += [f"records: {text}" for text in told]
+            single = isinstance(item, str) and item.strip()
+            patterns = [item] if single else _product(RecordPattern.model_validate(item), path)
+            expansion = expanded(patterns, folder=folder)
+            sources += expansion.sources
+            notes += [f"records: {text}" for text in expansion.notes]
         except ValidationError:
             continue  # told key by key
         except (RecordError, ValueError) as error:

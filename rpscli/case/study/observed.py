@@ -6,7 +6,7 @@ import csv
 import io
 import math
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path as Folder
 from typing import NamedTuple
@@ -22,13 +22,10 @@ from rpscli.units import KINDS, in_si, si_value
 RECORD, OVERTURNED = "record", "overturned"
 PATH: Path = ("observed",)
 
-_UNITS = {quantity.name: quantity.unit for quantity in LIMITED}
+_UNITS = {OVERTURNED: "-"} | {quantity.name: quantity.unit for quantity in LIMITED}
+"""SI units of what may be observed."""
 _YES = {"1": 1.0, "true": 1.0, "yes": 1.0, "0": 0.0, "false": 0.0, "no": 0.0}
 _TITLE = re.compile(r"\s*([^\s\[]+)\s*(?:\[\s*([^\]]*?)\s*\])?\s*")
-_UNITLESS = {"", "-", "1"}
-
-Title = tuple[str, str]
-"""Name and unit of a column."""
 
 
 class Observation(NamedTuple):
@@ -54,6 +51,35 @@ class Observed:
     rows: tuple[Observation, ...]
 
 
+class _Column(NamedTuple):
+    """A title: name and unit, which is empty for SI and plain numbers."""
+
+    name: str
+    unit: str
+
+    @property
+    def si_unit(self) -> str:
+        return _UNITS.get(self.name) or key_unit(self.name)
+
+    def value(self, cell: str) -> float:
+        """What was observed, in SI units; NaN for an empty cell."""
+        if not cell:
+            return math.nan
+        if self.name == OVERTURNED:
+            if cell.lower() not in _YES:
+                raise ValueError("must be 1 or 0, true or false, yes or no; empty: not seen")
+            return _YES[cell.lower()]
+        try:
+            value = float(cell)
+        except ValueError:
+            value = math.nan
+        if not (math.isfinite(value) and value >= 0.0):
+            raise ValueError(
+                "must be a number >= 0: the largest value without its sign; empty: not measured"
+            )
+        return value * si_value(f"1 {self.unit}", self.si_unit) if self.unit else value
+
+
 def comparable(key: str, value: object) -> str:
     """A value of a varied key as text that is the same for the same value."""
     found = in_si(value, key_unit(key))
@@ -63,128 +89,91 @@ def comparable(key: str, value: object) -> str:
         return str(found).strip()
 
 
-def observed_of(
-    document: Document, folder: Folder, axes: Sequence[Axis]
-) -> tuple[Observed | None, list[Fault]]:
-    """The observations that a study names, and what is wrong with them."""
-    written = document.content.get("observed")
-    if not isinstance(written, str):
-        return None, []  # absent, or told with the other keys
+def read_observed(
+    name: str | None, folder: Folder, axes: Sequence[Axis], document: Document
+) -> Observed | None:
+    """The observations that a study names; the document refuses what is wrong with them."""
+    if name is None:
+        return None
     try:
-        text = read_text(folder / written)
-    except CaseError as error:
-        return None, [Fault(PATH, f"observed: {error}")]
-    lines = csv.reader(io.StringIO(text), skipinitialspace=True)
-    try:
+        lines = csv.reader(io.StringIO(read_text(folder / name)), skipinitialspace=True)
         rows = [(lines.line_num, row) for row in lines if any(cell.strip() for cell in row)]
+    except CaseError as error:
+        document.refuse([Fault(PATH, f"observed: {error}")])
     except csv.Error as error:
-        return None, [_fault(written, lines.line_num, f"is not CSV: {error}")]
+        document.refuse([_fault(name, lines.line_num, f"is not CSV: {error}")])
     if len(rows) < 2:
-        return None, [Fault(PATH, f"observed: {written} must have a line of titles and more lines")]
+        text = f"observed: {name} must have a line of titles and more lines"
+        document.refuse([Fault(PATH, text)])
     (first, heads), *rest = rows
-    found = [(_TITLE.fullmatch(head), head.strip()) for head in heads]
-    titles = [(match[1], match[2] or "") if match else (head, "") for match, head in found]
+    found = ((_TITLE.fullmatch(head), head.strip()) for head in heads)
+    columns = [
+        _Column(*((match[1], match[2] or "") if match else (head, ""))) for match, head in found
+    ]
+    columns = [c._replace(unit="") if c.unit in {"-", "1"} else c for c in columns]
     known = [RECORD, "scale", *(key for axis in axes for key in axis.keys)]
-    faults = list(_title_faults(written, first, titles, known))
-    if not faults:
-        observations = [_observation(written, line, titles, row) for line, row in rest]
-        faults = [item for item in observations if isinstance(item, Fault)]
-        seen = [item for item in observations if isinstance(item, Observation)]
-        faults += _twice(written, seen)
-    if faults:
-        return None, faults
-    names = [name for name, _ in titles]
-    quantities = tuple(name for name in names if name in {OVERTURNED, *_UNITS})
-    keys = tuple(name for name in names if name not in {RECORD, *quantities})
-    return Observed(written, keys, quantities, tuple(seen)), []
+    document.refuse(_fault(name, first, text) for text in _title_faults(columns, known))
+    faults, seen = [], []
+    for line, row in rest:
+        try:
+            seen.append(_observation(line, columns, row))
+        except ValueError as error:
+            faults.append(_fault(name, line, str(error)))
+    document.refuse([*faults, *_twice(name, seen)])
+    names = [column.name for column in columns]
+    quantities = tuple(each for each in names if each in _UNITS)
+    keys = tuple(each for each in names if each not in {RECORD, *quantities})
+    return Observed(name, keys, quantities, tuple(seen))
 
 
 def _fault(name: str, line: int, text: str) -> Fault:
     return Fault(PATH, text, place=Place(name, line, 1, rank=1))
 
 
-def _title_faults(
-    name: str, line: int, titles: Sequence[Title], known: Sequence[str]
-) -> Iterator[Fault]:
+def _title_faults(columns: Sequence[_Column], known: Sequence[str]) -> Iterator[str]:
     """Columns that are missing, unknown or twice there, and units of another kind."""
-    names = [name for name, _ in titles]
-    results = [OVERTURNED, *_UNITS]
+    names = [column.name for column in columns]
     if RECORD not in names:
-        yield _fault(name, line, "has no column `record`, which names the ground motion; add it")
+        yield "has no column `record`, which names the ground motion; add it"
         return  # another file than was meant, of which nothing is told
-    if not set(names) & set(results):
-        yield _fault(
-            name, line, f"has no column of what was observed; add one of {listed(results)}"
-        )
-    for place, (column, unit) in enumerate(titles):
-        if column in names[:place]:
-            yield _fault(name, line, f"the column {shown(column)} appears twice; remove one")
-        if column not in (*known, *results):
+    if not _UNITS.keys() & {*names}:
+        yield f"has no column of what was observed; add one of {listed(_UNITS)}"
+    for place, column in enumerate(columns):
+        if column.name in names[:place]:
+            yield f"the column {shown(column.name)} appears twice; remove one"
+        if column.name not in (*known, *_UNITS):
             varied = f"the study varies {listed(known, 'and')}"
-            suggestion = hint(column, (*known, *results), varied)
-            yield _fault(
-                name, line,
-                f"the column {shown(column)} is neither a varied key nor a result; {suggestion}",
-            )  # fmt: skip
-        elif (reason := _wrong_unit(column, unit)) is not None:
-            yield _fault(name, line, f"{shown(column)} [{unit}] {reason}")
+            suggestion = hint(column.name, (*known, *_UNITS), varied)
+            text = "is neither a varied key nor a result"
+            yield f"the column {shown(column.name)} {text}; {suggestion}"
+        elif column.unit:
+            try:
+                if column.si_unit not in KINDS:
+                    raise ValueError("must have no unit; remove it")  # noqa: TRY301
+                si_value(f"1 {column.unit}", column.si_unit)
+            except ValueError as error:
+                yield f"{shown(column.name)} [{column.unit}] {error}"
 
 
-def _unit(column: str) -> str:
-    """SI unit of a column."""
-    return _UNITS[column] if column in _UNITS else key_unit(column)
-
-
-def _wrong_unit(column: str, unit: str) -> str | None:
-    if unit in _UNITLESS:
-        return None
-    si = _unit(column)
-    if si not in KINDS:
-        return "must have no unit; remove it"
-    try:
-        si_value(f"1 {unit}", si)
-    except ValueError as error:
-        return str(error)
-    return None
-
-
-def _observation(
-    name: str, line: int, titles: Sequence[Title], row: Sequence[str]
-) -> Observation | Fault:
-    """A line, or what is wrong with it."""
-    if len(row) != len(titles):
-        return _fault(name, line, f"has {len(row)} cells and {len(titles)} titles; make them equal")
+def _observation(line: int, columns: Sequence[_Column], row: Sequence[str]) -> Observation:
+    """A line; raises ValueError with what is wrong with it."""
+    if len(row) != len(columns):
+        raise ValueError(f"has {len(row)} cells and {len(columns)} titles; make them equal")
     record, system, values = "", [], []
-    for (column, unit), cell in zip(titles, map(str.strip, row), strict=True):
-        if column == RECORD:
+    for column, cell in zip(columns, map(str.strip, row), strict=True):
+        if column.name == RECORD:
             record = cell
-        elif column == OVERTURNED or column in _UNITS:
-            value = _value(column, unit, cell)
-            if isinstance(value, str):
-                return _fault(name, line, f"{column} = {shown(cell)} {value}")
-            values.append(value)
+        elif column.name in _UNITS:
+            try:
+                values.append(column.value(cell))
+            except ValueError as error:
+                raise ValueError(f"{column.name} = {shown(cell)} {error}") from None
         else:
-            written = cell if unit in _UNITLESS else f"{cell} {unit}"
-            system.append(comparable(column, written))
+            system.append(comparable(column.name, f"{cell} {column.unit}".strip()))
     return Observation(line, record, tuple(system), tuple(values))
 
 
-def _value(column: str, unit: str, cell: str) -> float | str:
-    """A value in SI units, NaN for an empty cell; else what is wrong with it."""
-    if not cell:
-        return math.nan
-    if column == OVERTURNED:
-        return _YES.get(cell.lower(), "must be 1 or 0, true or false, yes or no; empty: not seen")
-    try:
-        value = float(cell)
-    except ValueError:
-        value = math.nan
-    if not (math.isfinite(value) and value >= 0.0):
-        return "must be a number >= 0: the largest value without its sign; empty: not measured"
-    return value if unit in _UNITLESS else value * si_value(f"1 {unit}", _unit(column))
-
-
-def _twice(name: str, rows: Sequence[Observation]) -> Iterator[Fault]:
+def _twice(name: str, rows: Iterable[Observation]) -> Iterator[Fault]:
     """Lines of the same record and system."""
     seen: dict[tuple[object, ...], int] = {}
     for row in rows:

@@ -107,38 +107,36 @@ def format_with(kinds: ReportKinds) -> type[StudyFile]:
 
 def kinds_in(document: Document, known: Registry[Any]) -> ReportKinds:
     """The kinds by which a study is read: those of other packages only if it names others."""
-    written = document.content.get("reports")
-    items = written if isinstance(written, list) else []
     return known.among(
-        name for each in items for name in (each if isinstance(each, dict) else [each])
+        name for each in _written(document) for name in (each if isinstance(each, dict) else [each])
     )
+
+
+def _written(document: Document) -> list[Any]:
+    written = document.content.get("reports")
+    return written if isinstance(written, list) else []
 
 
 def written_out(document: Document, kinds: ReportKinds) -> Document:
     """A study in which reports that are named alone, or with nothing behind them, have options."""
+    reports = _written(document)
 
     def whole(item: Any) -> Any:
-        if isinstance(item, str) and item in kinds:
-            return {item: {}}
-        alone = isinstance(item, dict) and len(item) == 1 and [*item.values()] == [None]
-        return {kind: {} for kind in item} if alone else item
+        item = {item: None} if isinstance(item, str) and item in kinds else item
+        if isinstance(item, dict) and [*item.values()] == [None]:
+            return {kind: {} for kind in item}
+        return item
 
-    written = document.content.get("reports")
-    if not isinstance(written, list):
+    if not reports:
         return document
-    return replace(document, content={**document.content, "reports": [*map(whole, written)]})
+    return replace(document, content={**document.content, "reports": [*map(whole, reports)]})
 
 
-def requests_of(document: Document, kinds: ReportKinds) -> tuple[ReportRequest, ...]:
-    """Reports of a study that is written out, as far as they can be read."""
+def requests_of(document: Document, file: StudyFile) -> tuple[ReportRequest, ...]:
+    """Reports of a study that is written out."""
     requests: list[ReportRequest] = []
-    written = document.content.get("reports")
-    for index, item in enumerate(written if isinstance(written, list) else ()):
-        try:
-            ((kind, given),) = item.items()
-            options = kinds[kind].options.model_validate(given)
-        except (AttributeError, KeyError, ValueError):
-            continue  # told key by key
+    for index, (item, options) in enumerate(zip(_written(document), file.reports, strict=True)):
+        (kind,) = item
         taken = {*OF_THE_STUDY, *(request.stem for request in requests)}
         stem = _stem(options.name or kind, taken)
         requests.append(ReportRequest(kind, stem, options, ("reports", index)))

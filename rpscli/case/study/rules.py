@@ -16,22 +16,17 @@ from rpscli.errors import listed
 OF_HISTORIES = ("records", "scale", "perturb", "observed", "hazard")
 """Keys of a study that only time histories have."""
 
-RELIABILITY = ("annual_rate", "probability_in_50_years")
-"""Limits on all intensities at once."""
-
 OF_POINTS = ("record", "scale")
 """Axes of the product that are no case keys; reports may name them."""
 
 
 def _varied(document: Document) -> Iterator[tuple[str, Path]]:
     """Every key that varies or is sampled, and where it stands."""
-    axes = document.content.get("vary")
-    for index, axis in enumerate(axes if isinstance(axes, list) else ()):
-        yield from ((key, ("vary", index, key)) for key in (axis if isinstance(axis, dict) else ()))
-    for owner in (("sample", "ranges"), ("variables",), ("linked",)):  # the latter of a design
+    vary = document.content.get("vary")
+    axes: list[Path] = [("vary", i) for i in range(len(vary) if isinstance(vary, list) else 0)]
+    for owner in (*axes, ("sample", "ranges"), ("variables",), ("linked",)):  # of designs as well
         written = document.at(owner)
-        keys = written if isinstance(written, dict) else ()
-        yield from ((key, (*owner, key)) for key in keys)
+        yield from ((key, (*owner, key)) for key in (written if isinstance(written, dict) else ()))
 
 
 def varied_paths(document: Document) -> dict[str, Path]:
@@ -75,21 +70,20 @@ def fixed_faults(document: Document, overrides: Sequence[str]) -> Iterator[Fault
 
 
 def analysis_rules(
-    document: Document, requests: tuple[ReportRequest, ...], kinds: ReportKinds
+    file: StudyFile, requests: tuple[ReportRequest, ...], kinds: ReportKinds
 ) -> Iterator[Fault]:
     """What has no meaning with a modal or pushover analysis."""
-    analysis = document.content.get("analysis", "timehistory")
-    if analysis not in ("modal", "pushover"):
+    if file.analysis == "timehistory":
         return
     for key in OF_HISTORIES:
-        if document.has((key,)):
-            text = f"{key} has no meaning with analysis: {analysis}; remove it"
+        if key in file.model_fields_set:
+            text = f"{key} has no meaning with analysis: {file.analysis}; remove it"
             yield Fault((key,), text, at_key=True)
-    suitable = listed(name for name, kind in kinds.items() if analysis in kind.analyses)
+    suitable = listed(name for name, kind in kinds.items() if file.analysis in kind.analyses)
     for request in requests:
-        if analysis not in (needed := kinds[request.kind].analyses):
+        if file.analysis not in (needed := kinds[request.kind].analyses):
             text = f"the report {request.kind} needs analysis: {listed(needed)}"
-            yield Fault(request.path, f"{text}; {suitable} suits {analysis}")
+            yield Fault(request.path, f"{text}; {suitable} suits {file.analysis}")
 
 
 def record_rules(document: Document) -> Iterator[Fault]:
@@ -108,14 +102,18 @@ def record_rules(document: Document) -> Iterator[Fault]:
 
 def reliability_rules(document: Document) -> Iterator[Fault]:
     """A limit on a rate needs to know how often motions come."""
-    for key in RELIABILITY:
+    for key in ("annual_rate", "probability_in_50_years"):
         if document.has(("limits", key)) and not document.has(("hazard",)):
             text = f"limits.{key} needs a hazard curve; add `hazard: {{file: FILE, measure: PGV}}`"
             yield Fault(("limits", key), text, at_key=True)
 
 
 def report_rules(
-    document: Document, axes: list[Axis], requests: tuple[ReportRequest, ...], kinds: ReportKinds
+    document: Document,
+    file: StudyFile,
+    axes: Sequence[Axis],
+    requests: tuple[ReportRequest, ...],
+    kinds: ReportKinds,
 ) -> Iterator[Fault]:
     """Keys that reports name must vary; each kind has rules of its own."""
     known = [*(key for axis in axes for key in axis.keys), *OF_POINTS]
@@ -129,7 +127,7 @@ def report_rules(
             for option, key in varied_keys(request.options)
             if key not in known
         ]
-        if not faults and document.content.get("analysis", "timehistory") in kind.analyses:
+        if not faults and file.analysis in kind.analyses:
             faults.extend(kind.check(document, axes, request))
         yield from faults
 

@@ -11,11 +11,11 @@ from typing import Any
 from pydantic import ValidationError
 
 from rpscli.case.overrides import apply_overrides
-from rpscli.case.schema.check import schema_check
+from rpscli.case.schema.check import checked
 from rpscli.case.schema.keys import fields_of
 from rpscli.case.schema.scale_to import ScaleToSection
-from rpscli.case.study.axes import Axis, axes_of, sources_of
-from rpscli.case.study.observed import Observed, observed_of
+from rpscli.case.study.axes import Axis, axes_of, sources_of, unequal
+from rpscli.case.study.observed import Observed, read_observed
 from rpscli.case.study.reports import (
     ReportRequest,
     format_with,
@@ -124,21 +124,16 @@ def study_of(
     """A study from its document, as `parse_study` says."""
     asked = kinds_in(document, kinds)
     whole = written_out(document, asked)
-    check = schema_check(format_with(asked), whole)
-    axes, axis_faults = axes_of(document)
-    sources, source_faults, notes = sources_of(document, folder)
-    reports = requests_of(whole, asked)
-    faults = [*check.faults, *axis_faults, *source_faults]
-    faults += [*unknown_keys(document), *twice(document), *record_rules(document)]
-    faults += [*reliability_rules(document), *analysis_rules(document, reports, asked)]
-    observed = None
-    if not axis_faults and (axes or not document.content.get("vary")):
-        observed, observed_faults = observed_of(document, folder, axes)
-        faults += [*observed_faults, *report_rules(document, axes, reports, asked)]
+    file = checked(format_with(asked), whole)
+    reports = requests_of(whole, file)
+    sources, faults, notes = sources_of(document, folder)
+    faults += [*unequal(document, file.vary), *unknown_keys(document), *twice(document)]
+    faults += [*record_rules(document), *reliability_rules(document)]
+    faults += [*analysis_rules(file, reports, asked), *fixed_faults(document, base_overrides)]
     document.refuse(faults)
-    file = check.read
-    assert file is not None, "without faults the file is read"
-    document.refuse(fixed_faults(document, base_overrides))
+    axes = axes_of(document, file.vary)
+    observed = read_observed(file.observed, folder, axes, document)
+    document.refuse(report_rules(document, file, axes, reports, asked))
     document.refuse(size_faults(file, axes, sources))
     base, base_file = _base(document, folder)
     return Study(
@@ -151,7 +146,7 @@ def study_of(
         base_file=base_file,
         base_folder=base_file.parent if base_file else folder,
         base_overrides=tuple(base_overrides),
-        axes=tuple(axes),
+        axes=axes,
         sources=sources,
         observed=observed,
         reports=reports,
