@@ -20,13 +20,7 @@ from rpscli.case.build import (
     time_history_settings,
 )
 from rpscli.case.overrides import Overrides, apply_overrides
-from rpscli.case.rules.consistency import (
-    CONTACT,
-    PODIUM,
-    faults_between_keys,
-    faults_of_motion,
-    faults_of_shape,
-)
+from rpscli.case.rules.consistency import Consistency
 from rpscli.case.rules.plausibility import Doubt, doubts_of_structure, doubts_of_text
 from rpscli.case.schema.case_file import CaseFile, RecordSection
 from rpscli.case.schema.check import checked
@@ -182,7 +176,6 @@ def case_from_mapping(
     document = mapping if isinstance(mapping, Document) else Document(name, dict(mapping))
     document = apply_overrides(document, overrides, label=label)
     file = checked(CaseFile, document)
-    document.refuse(faults_between_keys(file, document))
     structure = _structure(file, document)
     return Case(
         stem_of(Path(name.strip("<>"))) or "case",
@@ -196,17 +189,20 @@ def case_from_mapping(
 
 
 def _structure(file: CaseFile, document: Document) -> PodiumStructure:
-    """What complete sections describe, if the model takes it."""
+    """What valid sections describe, if they are consistent and the model takes it."""
+    rules = Consistency(file, document)
+    document.refuse(rules.faults())
     shape = shape_of(file.podium.bearing)
-    document.refuse(faults_of_shape(shape, file, document))
+    document.refuse(rules.faults_of_shape(shape))
     try:
         bearing, law = bearing_of(file.podium.bearing, shape), impact_law_of(file.podium)
         masses = masses_of(file)
-        document.refuse(faults_of_motion(bearing, law, masses, file))
+        document.refuse(rules.faults_of_motion(bearing, law, masses))
         structure = structure_of(bearing, law, masses, file)
         if structure.bed is not None:
             structure.bed.refuse_start(file.analysis.initial_rotation)
     except ValueError as error:
-        owner = CONTACT if document.has(CONTACT) else PODIUM
+        contact = ("podium", "contact")
+        owner = contact if document.has(contact) else ("podium",)
         raise CaseError(f"{document.key_place(owner)}: {dotted(owner)}: {error}") from None
     return structure

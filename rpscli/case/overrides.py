@@ -11,7 +11,7 @@ from pydantic import BaseModel
 
 from rpscli.case.schema.case_file import CaseFile
 from rpscli.case.schema.keys import field_at, section_at, unknown_key
-from rpscli.case.text.document import Document, Fault, Path, Place, dotted, shown
+from rpscli.case.text.document import Document, Fault, Path, Place, dotted, path_of, shown
 from rpscli.case.text.yaml_text import read_value
 from rpscli.errors import CaseError
 
@@ -43,17 +43,12 @@ def apply_overrides(
     )
     faults = []
     for override in _parsed(overrides, label):
-        try:
-            _put(changed, override, model)
-        except _CannotBeSet as error:
-            path, text = error.args
+        path = path_of(override.key)
+        text = _unknown(path, model) or _put(changed, path, override)
+        if text:
             faults.append(Fault(path, text, place=override.place))
     changed.refuse(faults)
     return changed
-
-
-class _CannotBeSet(ValueError):
-    """A path, and why nothing can be put there."""
 
 
 def _parsed(overrides: Overrides, label: str) -> Iterator[Override]:
@@ -82,46 +77,58 @@ def _plain(value: Any) -> Any:
     return [_plain(item) for item in value] if isinstance(value, list | tuple) else value
 
 
-def _put(document: Document, override: Override, model: type[BaseModel]) -> None:
-    """Put one value in place."""
-    path = tuple(int(part) if part.isdecimal() else part for part in override.key.split("."))
-    _require_known(tuple(part for part in path if isinstance(part, str)), model)
+def _unknown(path: Path, model: type[BaseModel]) -> str:
+    """Of a path, the first part that the format does not know; empty if it knows all."""
+    named = tuple(part for part in path if isinstance(part, str))
+    if not named:
+        return "an index alone is not a key of the format"
+    for length in range(1, len(named) + 1):
+        known, section = field_at(model, named[:length]), section_at(model, named[: length - 1])
+        if known is None and section is None:
+            whole = dotted(named[: length - 1])
+            return f"{whole} can be set as a whole only, not {dotted(named)}"
+        if known is None:
+            return unknown_key(model, named[:length])[0].text
+    return ""
+
+
+def _put(document: Document, path: Path, override: Override) -> str:
+    """Put one value in place; what keeps it from being put there, or nothing."""
     owner: Any = document.content
-    *parents, key = path
+    value, (*parents, key) = override.value, path
     for depth, part in enumerate(parents):
-        _require_place(owner, path[:depth], part)
+        if text := _obstacle(owner, path[:depth], part):
+            return text
         if isinstance(owner, dict) and part not in owner:
-            if override.value is None:
-                return  # nothing there to take out
+            if value is None:
+                return ""  # nothing there to take out
             owner[part] = {}
             _settle(document, path[: depth + 1], override.place)
         owner = owner[part]
-    _require_place(owner, tuple(parents), key)
-    if override.value is None and isinstance(owner, list):
-        text = f"{dotted(path)} cannot be taken out of its list; set the whole list"
-        raise _CannotBeSet(path, text)
+    if text := _obstacle(owner, tuple(parents), key):
+        return text
+    if value is None and isinstance(owner, list):
+        return f"{dotted(path)} cannot be taken out of its list; set the whole list"
     _settle(document, path, override.place)
-    if override.value is None:
+    if value is None:
         owner.pop(key, None)
     else:
-        owner[key] = override.value
+        owner[key] = value
+    return ""
 
 
-def _require_place(owner: object, path: Path, part: str | int) -> None:
-    """Refuse what keeps `part` from being a key or an index of the value at a path."""
+def _obstacle(owner: object, path: Path, part: str | int) -> str:
+    """What keeps `part` from being a key or an index of the value at a path."""
     if isinstance(owner, list) and isinstance(part, int):
-        if part < len(owner):
-            return
-        text = f"{dotted(path)} has {len(owner)} values, counted from 0; there is no {part}"
-    elif isinstance(owner, list):
-        text = f"{dotted(path)} is a list, without a key {part}"
-    elif not isinstance(owner, dict):
-        text = f"{dotted(path)} = {shown(owner)} is a single value; set it as a whole"
-    elif isinstance(part, int):
-        text = f"{dotted(path) or 'the case'} is not a list; {part} is not a key of it"
-    else:
-        return
-    raise _CannotBeSet(path, text)
+        lacks = f"{dotted(path)} has {len(owner)} values, counted from 0; there is no {part}"
+        return lacks if part >= len(owner) else ""
+    if isinstance(owner, list):
+        return f"{dotted(path)} is a list, without a key {part}"
+    if not isinstance(owner, dict):
+        return f"{dotted(path)} = {shown(owner)} is a single value; set it as a whole"
+    if isinstance(part, int):
+        return f"{dotted(path) or 'the case'} is not a list; {part} is not a key of it"
+    return ""
 
 
 def _settle(document: Document, path: Path, place: Place) -> None:
@@ -130,16 +137,3 @@ def _settle(document: Document, path: Path, place: Place) -> None:
         for old in [old for old in places if old[: len(path)] == path]:
             del places[old]
         places[path] = place
-
-
-def _require_known(named: tuple[str, ...], model: type[BaseModel]) -> None:
-    """Name the first part of a key that the format does not know."""
-    if not named:
-        raise _CannotBeSet((), "an index alone is not a key of the format")
-    for length in range(1, len(named) + 1):
-        path = named[:length]
-        if field_at(model, path) is None:
-            if section_at(model, path[:-1]) is None:
-                text = f"{dotted(path[:-1])} can be set as a whole only, not {dotted(named)}"
-                raise _CannotBeSet(path, text)
-            raise _CannotBeSet(path, unknown_key(model, path)[0].text)

@@ -82,8 +82,8 @@ def command(
     if place is not None:
         if not values:
             raise UsageError(f"-o {place}: nothing was identified that has a key in a case")
-        from rpscli.case.text.edit import edited
         from rpscli.case.text.files import read_text
+        from rpscli.case.text.yaml_text import edited
 
         changes = (f"{key}={value}" for key, value in values.items())
         read_case(CaseRequest(request.source, (*request.overrides, *changes)), terminal)

@@ -42,6 +42,20 @@ podium:
   columns: 4
 """
 
+COLUMNS = "  column_mass: 5 t\n  columns: 4\n"
+EQUIPPED = BUILDING.replace("  cap_beam_mass_ratio: 10\n", COLUMNS).replace(
+    "record",
+    """\
+  devices:
+    - {kind: viscous, coefficient: 2 MN s/m, exponent: 0.5}
+    - {kind: friction, force: 400 kN}
+    - {kind: stop, gap: 200 mm, stiffness: 50 kN/mm, damping: 100 kN s/m}
+    - {kind: tendon, prestress: 100 kN, stiffness: 20 kN/mm, yield_force: 300 kN}
+    - {kind: rolling_resistance, lever: 2 mm}
+record""",
+    1,
+)
+
 Faults = Callable[..., str]
 
 

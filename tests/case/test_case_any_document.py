@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from rpscli.case.case import case_from_mapping
@@ -32,7 +32,6 @@ VALUES = st.one_of(
     text=st.sampled_from([BUILDING, FRAME]),
     changes=st.dictionaries(st.sampled_from(KEYS), VALUES, max_size=4),
 )
-@settings(deadline=None)
 def test_any_values(text: str, changes: dict[str, Any]) -> None:
     document = read_yaml(text, "c.yaml")
     lines: list[str] = []
@@ -46,7 +45,6 @@ def test_any_values(text: str, changes: dict[str, Any]) -> None:
 
 
 @given(st.dictionaries(st.sampled_from(["rps", "podium", "superstructure", "x"]), VALUES))
-@settings(deadline=None)
 def test_any_sections(content: dict[str, Any]) -> None:
     lines: list[str] = []
     try:
@@ -58,7 +56,6 @@ def test_any_sections(content: dict[str, Any]) -> None:
 
 
 @given(st.dictionaries(st.sampled_from(KEYS), NUMBERS, max_size=3))
-@settings(deadline=None)
 def test_overrides_leave_the_document_alone(changes: dict[str, Any]) -> None:
     document = read_yaml(BUILDING, "c.yaml")
     reason = ""

@@ -16,7 +16,7 @@ from rpscli.analyses.pushover import pushover
 from rpscli.case.case import Case, parse_case
 from rpscli.cli import program
 from rpscli.commands.report_case import ends
-from rpscli.errors import CaseError, UsageError
+from rpscli.errors import UsageError
 from rpscli.model.podium import PodiumStructure
 from rpscli.records.ground_motion import GroundMotion, MotionComponents
 from rpscli.report.figures.bearing import draw_end
@@ -36,50 +36,6 @@ def case_of(building: str, *overrides: str) -> Case:
 
 def structure_of(building: str, *overrides: str) -> PodiumStructure:
     return case_of(building, *overrides).structure
-
-
-REFUSED = [
-    ((PLANE, "podium.devices=[{kind: tendon, prestress: 1 kN, stiffness: 1 kN/mm}]"), "tendons"),
-    ((EDGES, "podium.devices=[{kind: rolling_resistance, lever: 1 mm}]"), "rolling resistance"),
-    ((PLANE, "podium.devices=[{kind: stop, gap: 0, stiffness: 1 kN/mm}]"), "gap above"),
-    ((PLANE, "podium.impact.law=rigid"), "floors would jump"),
-    ((EDGES, "podium.impact={law: value, restitution: 0.9}"), "floors would jump"),
-    ((PLANE, "analysis.recontact_tolerance=1e-8"), "recontact_tolerance has no effect"),
-    (
-        (
-            "podium.contact={kind: plane, settlement: 0.05 mm}",
-            "podium.bearing.wedge_slenderness=0.3", "podium.bearing.curvature_ratio=0.5",
-        ),
-        "curved ends bear on more than a settlement describes",
-    ),
-    (("podium.contact={period_ratio: 1.2}",), "does not tell whether ends are `plane` or `edges`"),
-    (("podium.contact={kind: plane}",), "takes one of period_ratio, stiffness, settlement; 0"),
-    (("podium.contact={kind: plane, period_ratio: 1.2, stiffness: 1 kN/mm}",), "2 are given"),
-    (("podium.contact={kind: rigid, settlement: 1 mm}",), "rigid contact takes no"),
-    (("podium.contact={kind: plane, period_ratio: 1}",), "must be > 1 (r = T/T_1)"),
-    (("podium.contact={kind: plane, settlement: 12 mm}",), "does not hold the weight upright"),
-    (("podium.contact={kind: soft, period_ratio: 1.2}",), "rigid, plane or edges"),
-    (("podium.contact={kind: plane, period_ratio: 1.2, dampin: 0.1}",), "contact.damping?"),
-    (
-        (
-            "superstructure={storeys: 0}",
-            ("podium={bearing: {semi_diagonal: 1, slenderness: 0.2, curvature_ratio: 0},"
-            " cap_beam_mass: 9 t, column_mass: 1 t, columns: 4,"
-            " contact: {kind: plane, period_ratio: 1.2}}"),
-        ),
-        "without one give stiffness or settlement",
-    ),
-]  # fmt: skip
-
-
-@pytest.mark.parametrize(("overrides", "reason"), REFUSED)
-def test_what_is_refused(building: str, overrides: tuple[str, ...], reason: str) -> None:
-    assert structure_of(building, PLANE).bed is not None  # nothing else is wrong
-    with pytest.raises(CaseError) as refused:
-        structure_of(building, *overrides)
-    message = str(refused.value)
-    assert reason in message
-    assert "podium.contact" in message or "podium.devices" in message or "analysis." in message
 
 
 def test_both_components_are_refused(building: str) -> None:

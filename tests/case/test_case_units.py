@@ -6,7 +6,7 @@ import math
 import re
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from rpscli.case.case import parse_case
@@ -15,92 +15,64 @@ from rpscli.units import FOOT, INCH, KINDS, POUND, POUND_FORCE, si_factor, si_va
 
 # A factor of a unit is exact but for the rounding of one product.
 ROUNDING = 1e-14
+KIP = 1e3 * POUND_FORCE
 
 FACTORS: dict[str, dict[str, float]] = {
     "m": {"m": 1.0, "dm": 0.1, "cm": 0.01, "mm": 1e-3, "km": 1e3, "ft": FOOT, "in": INCH},
     "kg": {"kg": 1.0, "t": 1e3, "Mg": 1e3, "lb": POUND},
     "s": {"s": 1.0, "ms": 1e-3, "min": 60.0},
     "N/m": {
-        "N/m": 1.0,
-        "kN/m": 1e3,
-        "MN/m": 1e6,
-        "GN/m": 1e9,
-        "N/cm": 1e2,
-        "kN/cm": 1e5,
-        "MN/cm": 1e8,
-        "N/mm": 1e3,
-        "kN/mm": 1e6,
-        "MN/mm": 1e9,
-        "lbf/in": POUND_FORCE / INCH,
-        "lbf/ft": POUND_FORCE / FOOT,
-        "kip/in": 1e3 * POUND_FORCE / INCH,
-        "kip/ft": 1e3 * POUND_FORCE / FOOT,
+        "N/m": 1.0, "kN/m": 1e3, "MN/m": 1e6, "GN/m": 1e9, "N/cm": 1e2, "kN/cm": 1e5, "MN/cm": 1e8,
+        "N/mm": 1e3, "kN/mm": 1e6, "MN/mm": 1e9, "lbf/in": POUND_FORCE / INCH,
+        "lbf/ft": POUND_FORCE / FOOT, "kip/in": KIP / INCH, "kip/ft": KIP / FOOT,
     },
     "N s/m": {"N s/m": 1.0, "kN s/m": 1e3, "MN s/m": 1e6, "kN s/mm": 1e6},
     "m/s2": {
-        "g": STANDARD_GRAVITY,
-        "m/s2": 1.0,
-        "cm/s2": 0.01,
-        "mm/s2": 1e-3,
-        "ft/s2": FOOT,
+        "g": STANDARD_GRAVITY, "m/s2": 1.0, "cm/s2": 0.01, "mm/s2": 1e-3, "ft/s2": FOOT,
         "in/s2": INCH,
     },
     "m/s": {"m/s": 1.0, "cm/s": 0.01, "mm/s": 1e-3, "ft/s": FOOT, "in/s": INCH},
-    "N": {"N": 1.0, "kN": 1e3, "MN": 1e6, "lbf": POUND_FORCE, "kip": 1e3 * POUND_FORCE},
+    "N": {"N": 1.0, "kN": 1e3, "MN": 1e6, "lbf": POUND_FORCE, "kip": KIP},
     "rad": {"rad": 1.0, "mrad": 1e-3, "deg": math.pi / 180.0},
     "deg": {"deg": 1.0, "rad": 180.0 / math.pi},
-}
+}  # fmt: skip
 
-UNUSUAL = [
-    ("µm", "m", 1e-06),
-    ("kilometres", "m", 1000.0),
-    ("inches", "m", 0.0254),
-    ("feet", "m", 0.30479999999999996),
-    ("yards", "m", 0.9144),
-    ("millimeter", "m", 0.001),
-    ("mg", "kg", 1e-06),
-    ("g", "kg", 0.001),
-    ("kilograms", "kg", 1.0),
-    ("pounds", "kg", 0.4535923700000001),
-    ("lbs", "kg", 0.4535923700000001),
-    ("slugs", "kg", 14.59390293720637),
-    ("oz", "kg", 0.028349523125000005),
-    ("kN s2/m", "kg", 1000.0),
-    ("us", "s", 1e-06),
-    ("milliseconds", "s", 0.001),
-    ("hours", "s", 3600.0),
-    ("kgf/mm", "N/m", 9806.65),
-    ("tf/cm", "N/m", 980665.0),
-    ("kips/inch", "N/m", 175126.83524647643),
-    ("psi ft", "N/m", 2101.522022957717),
-    ("MPa*mm", "N/m", 1000.0),
-    ("kJ/m^2", "N/m", 1000.0),
-    ("t/s**2", "N/m", 1000.0),
-    ("kN*m^-1", "N/m", 1000.0),
-    ("kN · m-1", "N/m", 1000.0),
-    ("kip s/in", "N s/m", 175126.83524647643),
-    ("lbf s/ft", "N s/m", 14.59390293720637),
-    ("MN*ms/mm", "N s/m", 1000000.0),
-    ("kN/m s", "N s/m", 1000.0),
-    ("kg/s", "N s/m", 1.0),
-    ("m/s/s", "m/s2", 1.0),
-    ("cm/sec^2", "m/s2", 0.01),
-    ("Gal", "m/s2", 0.01),
-    ("mGal", "m/s2", 1e-05),
-    ("N/kg", "m/s2", 1.0),
-    ("mph", "m/s", 0.44704),
-    ("knots", "m/s", 0.5144444444444445),
-    ("km / h", "m/s", 0.2777777777777778),
-    ("kilonewtons", "N", 1000.0),
-    ("lbf", "N", 4.4482216152605),
-    ("kgf", "N", 9.80665),
-    ("dyn", "N", 1e-05),
-    ("kg m/s2", "N", 1.0),
-    ("degrees", "rad", 0.017453292519943295),
-    ("arcmin", "rad", 0.00029088820866572163),
-    ("gon", "rad", 0.015707963267948967),
-    ("mm/m", "rad", 0.001),
-]
+UNUSUAL: dict[str, dict[str, float]] = {
+    "m": {
+        "µm": 1e-06, "kilometres": 1000.0, "inches": 0.0254, "feet": 0.30479999999999996,
+        "yards": 0.9144, "millimeter": 0.001,
+    },
+    "kg": {
+        "mg": 1e-06, "g": 0.001, "kilograms": 1.0, "pounds": 0.4535923700000001,
+        "lbs": 0.4535923700000001, "slugs": 14.59390293720637, "oz": 0.028349523125000005,
+        "kN s2/m": 1000.0,
+    },
+    "s": {
+        "us": 1e-06, "milliseconds": 0.001, "hours": 3600.0,
+    },
+    "N/m": {
+        "kgf/mm": 9806.65, "tf/cm": 980665.0, "kips/inch": 175126.83524647643,
+        "psi ft": 2101.522022957717, "MPa*mm": 1000.0, "kJ/m^2": 1000.0, "t/s**2": 1000.0,
+        "kN*m^-1": 1000.0, "kN · m-1": 1000.0,
+    },
+    "N s/m": {
+        "kip s/in": 175126.83524647643, "lbf s/ft": 14.59390293720637, "MN*ms/mm": 1000000.0,
+        "kN/m s": 1000.0, "kg/s": 1.0,
+    },
+    "m/s2": {
+        "m/s/s": 1.0, "cm/sec^2": 0.01, "Gal": 0.01, "mGal": 1e-05, "N/kg": 1.0,
+    },
+    "m/s": {
+        "mph": 0.44704, "knots": 0.5144444444444445, "km / h": 0.2777777777777778,
+    },
+    "N": {
+        "kilonewtons": 1000.0, "lbf": 4.4482216152605, "kgf": 9.80665, "dyn": 1e-05, "kg m/s2": 1.0,
+    },
+    "rad": {
+        "degrees": 0.017453292519943295, "arcmin": 0.00029088820866572163,
+        "gon": 0.015707963267948967, "mm/m": 0.001,
+    },
+}  # fmt: skip
 """What pint 0.25 makes of them."""
 
 
@@ -158,7 +130,6 @@ def test_refusals_name_the_dimension(text: str, unit: str, parts: list[str]) -> 
 
 
 @given(st.from_regex(r"[0-9.]{1,3} ?[a-zA-Zµ0-9*/^() %.-]{0,12}", fullmatch=True))
-@settings(deadline=None)
 def test_any_text_is_a_number_or_refused(text: str) -> None:
     reason = ""
     try:
@@ -166,12 +137,6 @@ def test_any_text_is_a_number_or_refused(text: str) -> None:
     except ValueError as error:
         reason = str(error)
     assert "length" in reason or "unit" in reason or not reason
-
-
-def test_the_place_is_that_of_the_text(building: str, faults: object) -> None:
-    assert callable(faults)
-    message = faults(building, "200 t", "200 kN")
-    assert message.startswith("c.yaml:4:16: superstructure.storey_mass = '200 kN' is a force")
 
 
 def test_units_make_the_same_case(building: str) -> None:
@@ -186,9 +151,10 @@ def test_factors_are_those_of_the_definitions(unit: str, written: dict[str, floa
         assert si_factor(name, unit) == factor, name
 
 
-@pytest.mark.parametrize(("written", "unit", "factor"), UNUSUAL)
-def test_unusual_units_are_those_of_pint(written: str, unit: str, factor: float) -> None:
-    assert si_factor(written, unit) == pytest.approx(factor, rel=ROUNDING)
+@pytest.mark.parametrize(("unit", "written"), UNUSUAL.items())
+def test_unusual_units_are_those_of_pint(unit: str, written: dict[str, float]) -> None:
+    for name, factor in written.items():
+        assert si_factor(name, unit) == pytest.approx(factor, rel=ROUNDING), name
 
 
 @pytest.mark.parametrize("unit", KINDS)

@@ -7,9 +7,6 @@ import pytest
 from rpscli.analyses.result_quantities import LIMITED
 from rpscli.case.case import parse_case
 from rpscli.case.conditions import Condition, condition_text, conditions_of
-from rpscli.errors import CaseError
-
-from .conftest import Faults
 
 
 def limited(building: str, text: str) -> tuple[Condition, ...]:
@@ -54,19 +51,6 @@ def with_columns(building: str) -> str:
     return building.replace("  impact: {law: rigid}\n", "  plan: {length: 12 m}\n")
 
 
-def test_the_force_of_a_column_is_no_limit_without_what_governs_it(
-    building: str, faults: Faults
-) -> None:
-    limits = "limits: {rotation_ratio: 0.5}"
-    found = faults(building, limits, "limits: {max_column_force: 100 kN}")
-    assert "without the overturning moment and the shock of impacts" in found
-    assert "podium.plan and superstructure.vertical_period" in found
-    found = faults(with_columns(building), "storey_height: 3.0", "profile: sine")
-    assert "podium.plan needs superstructure.storey_height" in found
-    found = faults(with_columns(building), "{length: 12 m}", "{length: 12 m, rows: [0, 4]}")
-    assert "not both" in found
-
-
 def test_a_least_force_is_limited_from_below(building: str) -> None:
     building = with_columns(building)
     found = limited(building, "{min_column_force: {at_least: 100 kN, share: 0.1}}")
@@ -82,22 +66,3 @@ def test_a_least_force_is_limited_from_below(building: str) -> None:
 def test_every_result_of_the_list_may_be_limited(building: str, name: str) -> None:
     ((found),) = limited(with_columns(building), f"{{{name}: 3}}")
     assert (found.name, found.limit) == (name, 3.0)
-
-
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
-        ("{rotation_ratio: {at_most: 0.5, share: 0.1, fractile: 0.5}}", "a share or a fractile"),
-        ("{rotation_ratio: {at_most: 0.5, share: 1}}", "share = 1 must be >= 0 and < 1; 10 % is"),
-        ("{rotation_ratio: {share: 0.1}}", "rotation_ratio.at_most is missing"),
-        ("{rotation_ratio: -1}", "rotation_ratio = -1 must be > 0"),
-        ("{max_base_shear: 2 m}", "is a length, but must be a force"),
-        ("{min_column_force: {at_most: 1 kN}}", "at_least is missing"),
-        ("{max_column_force: {at_least: 1 kN}}", "at_most is missing"),
-        ("{overturning: 2}", "overturning = 2 must be >= 0 and < 1"),
-    ],
-)
-def test_a_limit_that_makes_no_sense_is_refused(building: str, text: str, message: str) -> None:
-    with pytest.raises(CaseError) as refused:
-        limited(building, text)
-    assert message in str(refused.value)

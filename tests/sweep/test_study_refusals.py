@@ -90,7 +90,6 @@ def sampled(distribution: str) -> tuple[str, str]:
                 ".hidden",
                 "x" * 101,
                 '"two\\nlines"',
-                r'"\ud800"',
             )
         ),
         (

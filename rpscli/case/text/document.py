@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import copy
 import json
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import PurePath
 from typing import Any
 
@@ -40,18 +39,22 @@ class Place:
 
 @dataclass(frozen=True)
 class Fault:
-    """What is wrong at a path, told there unless a word taken for one of `needs` is the fault."""
+    """What is wrong at a path, and where that is said if not at its key or value."""
 
     path: Path
     text: str
     at_key: bool = False
-    needs: tuple[Path, ...] = ()
     place: Place | None = None
 
 
 def dotted(path: Path) -> str:
     """A path as the user writes it, long keys cut."""
     return ".".join(part if len(part) <= 60 else f"{part[:57]}..." for part in map(str, path))
+
+
+def path_of(key: str) -> Path:
+    """The path of a dotted key, whose numbers are indices."""
+    return tuple(int(part) if part.isdecimal() else part for part in key.split("."))
 
 
 def shown(value: object, width: int = 60) -> str:
@@ -88,10 +91,8 @@ class Document:
         """The value at a path, or MISSING."""
         value: Any = self.content
         for part in path:
-            inside = (isinstance(value, dict) and part in value) or (
-                isinstance(value, list) and isinstance(part, int) and -1 < part < len(value)
-            )
-            if not inside:
+            is_index = isinstance(value, list) and isinstance(part, int) and -1 < part < len(value)
+            if not is_index and not (isinstance(value, dict) and part in value):
                 return MISSING
             value = value[part]
         return value
@@ -126,30 +127,9 @@ class Document:
         def below(places: Mapping[Path, Place]) -> dict[Path, Place]:
             return {p[depth:]: place for p, place in places.items() if p[:depth] == path}
 
-        faults = tuple(
-            Fault(f.path[depth:], f.text, f.at_key, f.needs, f.place)
-            for f in self.faults
-            if f.path[:depth] == path
-        )
+        inside = [fault for fault in self.faults if fault.path[:depth] == path]
+        faults = tuple(replace(fault, path=fault.path[depth:]) for fault in inside)
         return Document(self.name, self.at(path), below(self.keys), below(self.values), faults)
-
-    def pruned(self, paths: Iterable[Path], *, elements: bool = False) -> dict[str, Any]:
-        """The content without values at some paths; a faulty element takes its list with it."""
-        content = copy.deepcopy(self.content)
-        for path in paths:
-            owner: Any = content
-            key = None
-            for depth, part in enumerate(path, start=1):
-                if elements and isinstance(owner, list) and depth < len(path):
-                    owner = owner[int(part)]
-                    continue
-                if not isinstance(owner, dict) or part not in owner:
-                    break
-                holder, key = owner, part
-                owner = owner[part]
-            if key is not None:
-                del holder[key]
-        return content
 
     def refuse(self, faults: Iterable[Fault]) -> None:
         """Raise all faults together, one a line, in the order of their places."""

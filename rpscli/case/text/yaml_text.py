@@ -1,17 +1,20 @@
-"""Strict YAML: text -> Document. Core-schema scalars, no duplicate keys, positions kept."""
+"""Strict YAML: text -> Document. Core-schema scalars, no duplicate keys, positions kept.
+
+And values put into a text, all the rest of which stays.
+"""
 
 from __future__ import annotations
 
 import itertools
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 import yaml
 from yaml.nodes import MappingNode, Node, ScalarNode, SequenceNode
 
-from rpscli.case.text.document import Document, Fault, Path, Place, dotted, shown
+from rpscli.case.text.document import Document, Fault, Path, Place, dotted, path_of, shown
 from rpscli.errors import CaseError
 
 REMEDIES = {
@@ -70,20 +73,18 @@ DEEPEST = 40
 LARGEST = 20_000
 """Values in a document, aliases counted each time they are used."""
 
-
-Scalar = None | bool | int | float | str
-
 TAG = "tag:yaml.org,2002:"
-
-NULL = re.compile(r"(?:null|Null|NULL|~|)\Z")
-BOOL = re.compile(r"(?:true|True|TRUE|false|False|FALSE)\Z")
-INT = re.compile(r"(?:[-+]?[0-9]+|0o[0-7]+|0x[0-9a-fA-F]+)\Z")
-FLOAT = re.compile(
-    r"(?:[-+]?(?:\.[0-9]+|[0-9]+(?:\.[0-9]*)?)(?:[eE][-+]?[0-9]+)?"
-    r"|[-+]?\.(?:inf|Inf|INF)|\.(?:nan|NaN|NAN))\Z"
-)
-PATTERNS = {"null": NULL, "bool": BOOL, "int": INT, "float": FLOAT}
-"""Tried in this order; what matches none of them is text."""
+SCALARS = {
+    "null": re.compile(r"(?:null|Null|NULL|~|)\Z"),
+    "bool": re.compile(r"(?:true|True|TRUE|false|False|FALSE)\Z"),
+    "int": re.compile(r"(?:[-+]?[0-9]+|0o[0-7]+|0x[0-9a-fA-F]+)\Z"),
+    "float": re.compile(
+        r"(?:[-+]?(?:\.[0-9]+|[0-9]+(?:\.[0-9]*)?)(?:[eE][-+]?[0-9]+)?"
+        r"|[-+]?\.(?:inf|Inf|INF)|\.(?:nan|NaN|NAN))\Z"
+    ),
+    "str": re.compile(""),
+}
+"""What plain scalars are in YAML 1.2, tried in this order."""
 
 
 class CoreLoader(yaml.SafeLoader):
@@ -109,7 +110,7 @@ class CoreLoader(yaml.SafeLoader):
         return node
 
 
-for _tag, _pattern in PATTERNS.items():
+for _tag, _pattern in SCALARS.items():
     CoreLoader.add_implicit_resolver(TAG + _tag, _pattern, None)
 
 
@@ -178,28 +179,21 @@ class _Reader:
         if any(node is other for other in self.open_nodes):
             raise CaseError(f"{place}: the anchor holds an alias of itself; write the value out")
         self.open_nodes.append(node)
-        try:
-            return self._value(node, path)
-        finally:
-            self.open_nodes.pop()
-
-    def _value(self, node: Node, path: Path) -> Any:
-        if isinstance(node, MappingNode) and node.tag == TAG + "map":
-            return {key: self.value(item, (*path, key)) for key, item in self.pairs(node, path)}
-        if isinstance(node, SequenceNode) and node.tag == TAG + "seq":
-            return [self.value(item, (*path, i)) for i, item in enumerate(node.value)]
+        value: Any = None
         tag = node.tag.removeprefix(TAG)
-        if isinstance(node, ScalarNode) and tag in {*PATTERNS, "str"}:
-            return self.scalar(node, tag, path)
-        self.fault(path, node, f"the YAML tag {node.tag} is not used here; remove it")
-        return None
-
-    def scalar(self, node: ScalarNode, tag: str, path: Path) -> Any:
-        try:
-            return _scalar(tag, node.value)
-        except ValueError as error:
-            self.fault(path, node, f"{dotted(path)}: {error}")
-            return None
+        if isinstance(node, MappingNode) and tag == "map":
+            value = {key: self.value(item, (*path, key)) for key, item in self.pairs(node, path)}
+        elif isinstance(node, SequenceNode) and tag == "seq":
+            value = [self.value(item, (*path, i)) for i, item in enumerate(node.value)]
+        elif isinstance(node, ScalarNode) and tag in SCALARS:
+            try:
+                value = _scalar(tag, node.value)
+            except ValueError as error:
+                self.fault(path, node, f"{dotted(path)}: {error}")
+        else:
+            self.fault(path, node, f"the YAML tag {node.tag} is not used here; remove it")
+        self.open_nodes.pop()
+        return value
 
     def pairs(self, node: MappingNode, path: Path) -> Iterator[tuple[str, Node]]:
         """Keys with their nodes, each key once."""
@@ -207,9 +201,10 @@ class _Reader:
         for key_node, value_node in node.value:
             if any(key_node is fraction for fraction in commas.values()):
                 continue
-            key = self.key(key_node, path)
-            if key is None:
+            if text := _no_key(key_node):
+                self.fault(path, key_node, text)
                 continue
+            key = str(key_node.value)
             here = (*path, key)
             if here in self.keys:
                 first = f"first at line {self.keys[here].line}, column {self.keys[here].column}"
@@ -219,28 +214,24 @@ class _Reader:
             self.keys[here] = self.place(key_node)
             if fraction := commas.get(id(value_node)):
                 text = f"{value_node.value},{fraction.value}"
-                self.fault(
-                    here,
-                    value_node,
-                    f"{dotted(here)} = {text} has a decimal comma; write {text.replace(',', '.')}",
-                )
+                text += f" has a decimal comma; write {text.replace(',', '.')}"
+                self.fault(here, value_node, f"{dotted(here)} = {text}")
                 value_node = ScalarNode(TAG + "null", "", value_node.start_mark)  # noqa: PLW2901
             yield key, value_node
 
-    def key(self, node: Node, path: Path) -> str | None:
-        if isinstance(node, ScalarNode) and node.value == "<<" and node.style is None:
-            text = "`<<` (merging a mapping) is not YAML 1.2; write the keys out"
-        elif not isinstance(node, ScalarNode):
-            text = "a key must be a word, not a list or a mapping; check braces and brackets"
-        elif node.tag != TAG + "str":
-            text = f"the key {node.value or 'null'} must be text, as in `storeys: 6`"
-        else:
-            return str(node.value)
-        self.fault(path, node, text)
-        return None
-
     def fault(self, path: Path, node: Node, text: str) -> None:
         self.faults.append(Fault(path, text, place=self.place(node)))
+
+
+def _no_key(node: Node) -> str:
+    """Why a node is no key; empty if it is one."""
+    if not isinstance(node, ScalarNode):
+        return "a key must be a word, not a list or a mapping; check braces and brackets"
+    if node.value == "<<" and node.style is None:
+        return "`<<` (merging a mapping) is not YAML 1.2; write the keys out"
+    if node.tag != TAG + "str":
+        return f"the key {node.value or 'null'} must be text, as in `storeys: 6`"
+    return ""
 
 
 def _decimal_commas(node: MappingNode) -> dict[int, ScalarNode]:
@@ -248,10 +239,9 @@ def _decimal_commas(node: MappingNode) -> dict[int, ScalarNode]:
     # YAML reads a second key, a number without a value. By the identity of the number before.
     if not node.flow_style:
         return {}
-    items = node.value
     return {
         id(value): fraction
-        for (_, value), (fraction, nothing) in itertools.pairwise(items)
+        for (_, value), (fraction, nothing) in itertools.pairwise(node.value)
         if isinstance(fraction, ScalarNode)
         and isinstance(value, ScalarNode)
         and value.tag == fraction.tag == TAG + "int"
@@ -260,18 +250,66 @@ def _decimal_commas(node: MappingNode) -> dict[int, ScalarNode]:
     }
 
 
-def _scalar(tag: str, text: str) -> Scalar:
+def _scalar(tag: str, text: str) -> bool | int | float | str | None:
     """Value of a scalar whose tag (``int``, ``float``, ...) is known."""
-    if tag == "str":
-        return text
-    if not PATTERNS[tag].match(text):
+    if not SCALARS[tag].match(text):
         raise ValueError(f"{text!r} is not a YAML {tag}")
-    if tag == "null":
-        return None
-    if tag == "bool":
-        return text.lower() == "true"
+    if tag == "str":
+        try:  # JSON writes some letters as two halves
+            return text.encode("utf-16", "surrogatepass").decode("utf-16")
+        except UnicodeDecodeError:
+            half = f"{text[:60]!r} holds half a letter, which no file can hold"
+            raise ValueError(f"{half}; write the letter itself") from None
+    if tag in {"null", "bool"}:
+        return None if tag == "null" else text.lower() == "true"
     if tag == "float":
         return float(text.lower().replace(".inf", "inf").replace(".nan", "nan"))
     if len(text) > 400:  # far outside every quantity, and slow to convert
         raise ValueError(f"a whole number of {len(text)} digits is too long")
     return int(text, {"0o": 8, "0x": 16}.get(text[:2], 10))
+
+
+_PLAIN = re.compile(r"""'[^']*'|"[^"]*"|[^\s,}\]#][^,}\]#]*?(?=\s*(?:[,}\]]|\s#|$))""")
+"""A scalar on one line."""
+
+
+def edited(text: str, name: str, values: Mapping[str, str]) -> str:
+    """The text of a file with values at dotted keys, as YAML would say them on one line.
+
+    Comments, order and units of everything else stay as they are.
+
+    Raises
+    ------
+    CaseError
+        Where a key stands in a way that is not understood, such as over several lines.
+    """
+    for key, value in values.items():
+        path, document = path_of(key), read_yaml(text, name)
+        lines = text.splitlines(keepends=True)
+        place = document.values.get(path)
+        if place is None or isinstance(document.at(path), dict | list):
+            _insert(lines, document, path, value)
+        else:
+            line, at = lines[place.line - 1], place.column - 1
+            old = _PLAIN.search(line, at)
+            lines[place.line - 1] = line[:at] + value + line[old.end() if old else at :]
+        text = "".join(lines)
+        if read_yaml(text, name).at(path) != read_value(value, name):
+            raise CaseError(f"{name}: {key} cannot be written there; enter it by hand: {value}")
+    return text
+
+
+def _insert(lines: list[str], document: Document, path: Path, value: str) -> None:
+    """Put a key that is not there into the nearest mapping that is."""
+    depth = next(d for d in range(len(path), -1, -1) if d == 0 or document.has(path[:d]))
+    parent = document.at(path[:depth])
+    if not isinstance(parent, dict) or depth == len(path) or not parent:
+        raise CaseError(
+            f"{document.name}: {dotted(path)} cannot be written; put in {value} by hand"
+        )
+    for key in reversed(path[depth + 1 :]):
+        value = f"{{{key}: {value}}}"
+    first = document.keys[(*path[:depth], next(iter(parent)))]
+    line, at = lines[first.line - 1], first.column - 1
+    after = ", " if "{" in line[:at] else f"\n{line[:at]}"
+    lines[first.line - 1] = f"{line[:at]}{path[depth]}: {value}{after}{line[at:]}"

@@ -1,8 +1,11 @@
-"""The strict loader: positions, and a place and a remedy for whatever is not one mapping."""
+"""The strict text layer: positions, scalars of YAML 1.2, a place and a remedy for what is wrong."""
 
 from __future__ import annotations
 
+import difflib
+import math
 import re
+from typing import Any
 
 import pytest
 from hypothesis import given, settings
@@ -10,7 +13,7 @@ from hypothesis import strategies as st
 
 from rpscli.case.case import parse_case
 from rpscli.case.text.document import MISSING
-from rpscli.case.text.yaml_text import read_value, read_yaml
+from rpscli.case.text.yaml_text import edited, read_value, read_yaml
 from rpscli.errors import CaseError
 
 
@@ -114,7 +117,7 @@ def test_an_alias_bomb_ends_in_a_message() -> None:
 
 
 @given(st.text(alphabet=" \n\t-:[]{},&*!|>'\"%@`#?abc01.", max_size=40))
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 def test_any_text_is_read_or_refused_with_the_name(text: str) -> None:
     message = ""
     try:
@@ -128,3 +131,90 @@ def test_a_single_value_is_read_alike() -> None:
     assert read_value("[1, 1e-6, no]", "--set x") == [1, 1e-6, "no"]
     with pytest.raises(CaseError, match="--set x: a is written twice"):
         read_value("{a: 1, a: 2}", "--set x")
+
+
+def plain(text: str) -> Any:
+    """What an unquoted scalar is read as."""
+    return read_yaml(f"key: {text}", "c.yaml").content["key"]
+
+
+SCALARS: dict[str, object] = {
+    "1e-6": 1e-6, "1.0e-6": 1e-6, ".5": 0.5, "3.": 3.0, "+2": 2, "012": 12, "0o17": 15, "0x1F": 31,
+    "-.inf": -math.inf, "1_000": "1_000", "12:30:45": "12:30:45", "2024-01-31": "2024-01-31",
+    "0b11": "0b11", "no": "no", "on": "on", "Yes": "Yes", "y": "y", ".": ".", "1e": "1e",
+    "inf": "inf", "=": "=", "true": True, "FALSE": False, "null": None, "~": None, "": None,
+    '"\\ud83c\\udfd7"': "\U0001f3d7",  # as JSON writes it
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("text", "value"), SCALARS.items())
+def test_core_schema(text: str, value: object) -> None:
+    found = plain(text)
+    assert found == value
+    assert type(found) is type(value)
+
+
+def test_not_a_number_is_a_number_to_yaml() -> None:
+    assert math.isnan(plain(".NaN"))
+
+
+@given(st.floats(allow_nan=False, allow_infinity=False))
+def test_real_numbers_come_back_exactly(number: float) -> None:
+    assert plain(repr(number)) == number
+
+
+@given(st.text(alphabet=st.characters(exclude_categories=["C", "Z"]), max_size=20))
+def test_quoted_text_stays_text(text: str) -> None:
+    quoted = text.replace("'", "''")
+    assert read_yaml(f"key: '{quoted}'", "c.yaml").content == {"key": text}
+
+
+@given(st.from_regex(r"[a-zA-Z][a-zA-Z0-9_]{0,12}", fullmatch=True))
+def test_words_are_text_but_for_three(word: str) -> None:
+    special = {"true": True, "false": False, "null": None}
+    is_special = word in {word.lower(), word.upper(), word.capitalize()}
+    assert plain(word) == (special.get(word.lower(), word) if is_special else word)
+
+
+TEXT = """\
+# a building
+podium:
+  impact: {law: flexible, loss: 1.0}   # measured?
+  bearing:
+    slenderness: 0.15  # tan(alpha)
+    title: 'a # b'
+  devices:
+    - {kind: viscous, coefficient: 100 kN s/m}
+    - kind: rolling_resistance
+      lever: 2 mm   # guessed
+"""
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "line"),
+    [
+        ("podium.impact.loss", "0.62", "  impact: {law: flexible, loss: 0.62}   # measured?"),
+        ("podium.impact.x", "1", "  impact: {x: 1, law: flexible, loss: 1.0}   # measured?"),
+        ("podium.bearing.slenderness", "0.2", "    slenderness: 0.2  # tan(alpha)"),
+        ("podium.bearing.title", "b", "    title: b"),
+        ("podium.devices.0.coefficient", "5", "    - {kind: viscous, coefficient: 5}"),
+        ("podium.devices.1.lever", "0.0013", "      lever: 0.0013   # guessed"),
+        ("podium.friction", "0.5", "  friction: 0.5"),
+        ("podium.contact.period_ratio", "1.2", "  contact: {period_ratio: 1.2}"),
+        ("rps", "1", "rps: 1"),
+    ],
+)  # fmt: skip
+def test_one_line_changes(key: str, value: str, line: str) -> None:
+    changed = edited(TEXT, "case.yaml", {key: value})
+    new = [each[2:] for each in difflib.ndiff(TEXT.splitlines(), changed.splitlines())
+           if each.startswith("+ ")]  # fmt: skip
+    assert new == [line]
+    before, after = (read_yaml(text, "case.yaml").content for text in (TEXT, changed))
+    assert after != before
+    assert list(after["podium"]["bearing"]) == list(before["podium"]["bearing"])
+
+
+@pytest.mark.parametrize("key", ["podium.devices.7.lever", "podium.impact", "podium.devices"])
+def test_what_cannot_be_written_says_so(key: str) -> None:
+    with pytest.raises(CaseError, match="by hand"):
+        edited(TEXT, "case.yaml", {key: "3"})
