@@ -22,6 +22,8 @@ from rpscli.records.ground_motion import GroundMotion, MotionComponents
 from rpscli.report.figures.bearing import draw_end
 from rpscli.report.figures.structure import draw_mode
 
+from .conftest import BUILDING
+
 FLAT = (
     "podium.bearing.wedge_slenderness=0.15", "podium.bearing.curvature_ratio=0",
     "podium.impact.law=flexible", "podium.columns=4",
@@ -30,44 +32,44 @@ PLANE = "podium.contact={kind: plane, period_ratio: 1.2}"
 EDGES = "podium.contact={kind: edges, period_ratio: 1.2}"
 
 
-def case_of(building: str, *overrides: str) -> Case:
-    return parse_case(building, name="c.yaml", overrides=[*FLAT, *overrides])
+def case_of(*overrides: str) -> Case:
+    return parse_case(BUILDING, name="c.yaml", overrides=[*FLAT, *overrides])
 
 
-def structure_of(building: str, *overrides: str) -> PodiumStructure:
-    return case_of(building, *overrides).structure
+def structure_of(*overrides: str) -> PodiumStructure:
+    return case_of(*overrides).structure
 
 
-def test_both_components_are_refused(building: str) -> None:
+def test_both_components_are_refused() -> None:
     x = GroundMotion([0.0, 0.1, 0.0], 0.01, "made", "made", "made")  # type: ignore[arg-type]
     pair = MotionComponents(x, y=x)
     with pytest.raises((ValueError, UsageError), match="compliant ends are followed under one"):
-        demands([Request(structure_of(building, PLANE), pair)])
+        demands([Request(structure_of(PLANE), pair)])
 
 
-def test_keys_and_their_defaults(building: str) -> None:
+def test_keys_and_their_defaults() -> None:
     """The three sizes describe the same joint; without the key ends are rigid."""
-    assert structure_of(building).bed is None
-    first = structure_of(building, PLANE)
+    assert structure_of().bed is None
+    first = structure_of(PLANE)
     bed = first.bed
     assert bed is not None
     assert (first.contact.damping, first.impact_law.loss) == (0.03, 0.3)
-    assert structure_of(building, EDGES).impact_law.loss == 1.0
-    assert structure_of(building, PLANE, "podium.impact.loss=0.8").impact_law.loss == 0.8
+    assert structure_of(EDGES).impact_law.loss == 1.0
+    assert structure_of(PLANE, "podium.impact.loss=0.8").impact_law.loss == 0.8
     for given in (f"stiffness: {bed.stiffness!r}", f"settlement: {bed.settlement!r}"):
-        other = structure_of(building, f"podium.contact={{kind: plane, {given}}}").bed
+        other = structure_of(f"podium.contact={{kind: plane, {given}}}").bed
         assert other is not None
         assert other.period_ratio == pytest.approx(1.2, rel=1e-9)
-    units = structure_of(building, "podium.contact={kind: edges, stiffness: 60 MN/m}")
+    units = structure_of("podium.contact={kind: edges, stiffness: 60 MN/m}")
     assert units.contact.stiffness == 6e7
-    written = case_of(building, PLANE, "analysis.recontact_tolerance=1e-6")
+    written = case_of(PLANE, "analysis.recontact_tolerance=1e-6")
     assert written.structure.bed is not None  # the default, as in a case that was written out whole
 
 
-def printed(building: str, command: str, contact: str, folder: Path) -> str:
+def printed(command: str, contact: str, folder: Path) -> str:
     """What a command prints, blanks as one."""
     case = folder / "c.yaml"
-    case.write_text(building.replace("record: {source: motion.at2}\n", ""), encoding="utf-8")
+    case.write_text(BUILDING.replace("record: {source: motion.at2}\n", ""), encoding="utf-8")
     words = [word for each in (*FLAT, contact) for word in ("--set", each)]
     if command != "check":
         words += ["-o", str(folder / f"{command} {contact}")]
@@ -82,12 +84,12 @@ def _no_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.usefixtures("_no_pictures")
-def test_what_commands_print(building: str, tmp_path: Path) -> None:
+def test_what_commands_print(tmp_path: Path) -> None:
     """Each number from W, R, alpha and the law of one end, to the digits that are printed."""
-    check = printed(building, "check", PLANE, tmp_path)
+    check = printed("check", PLANE, tmp_path)
     assert "period in full contact over T1 r 1.200" in check
     assert "first period in full contact T 0.3600 s" in check
-    structure = structure_of(building, PLANE)
+    structure = structure_of(PLANE)
     alpha, W = math.atan(0.15), structure.weight
     # To first order phi_u = tan(alpha)/(3 (1 + 2 H K_s/W)).
     K = float(check.split(" K_s ")[1].split()[0]) * 1e3
@@ -98,31 +100,31 @@ def test_what_commands_print(building: str, tmp_path: Path) -> None:
     assert settled == pytest.approx(phi_u * 1.5 * math.sin(alpha), rel=1e-3)
     length = float(check.split("contact length at 0.1 alpha ")[1].split()[0])
     assert length == pytest.approx(math.sqrt(10.0 * phi_u / alpha), rel=1e-3)
-    edges = printed(building, "check", EDGES, tmp_path)
+    edges = printed("check", EDGES, tmp_path)
     assert float(edges.split(" phi_u ")[1].split()[0]) == pytest.approx(3.0 * told, rel=2e-3)
     assert "contact length" not in edges
 
-    modes = printed(building, "modal", PLANE, tmp_path)
+    modes = printed("modal", PLANE, tmp_path)
     assert "full contact rad/s T s xi %" in modes
     assert "1.200 without damping" in modes
 
-    push = printed(building, "pushover", PLANE, tmp_path)
+    push = printed("pushover", PLANE, tmp_path)
     uplift = push.split("uplift force ")[1].split()
     force = float(uplift[0]) * {"MN": 1e6, "kN": 1e3}[uplift[1]]
     # Where edges lift m = 1/3, and flat ends have B = sin(alpha - x), C = cos(alpha - x).
     arm = math.sin(alpha - told) - 2.0 / 3.0 * math.sin(alpha)
     assert force == pytest.approx(W * arm / math.cos(alpha - told), rel=3e-4)
     assert "stiffness in full contact" in push
-    assert "stiffness after uplift" in printed(building, "pushover", "title=stiff", tmp_path)
+    assert "stiffness after uplift" in printed("pushover", "title=stiff", tmp_path)
 
 
-def test_the_drawing_has_the_length_in_contact(building: str) -> None:
+def test_the_drawing_has_the_length_in_contact() -> None:
     def drawn(contact: str) -> list[str]:
-        axes, structure = Figure().subplots(), structure_of(building, contact)
+        axes, structure = Figure().subplots(), structure_of(contact)
         draw_end(axes, structure.bearing, structure.bed)
         return [text for each in axes.texts if "contact" in (text := each.get_text())]
 
-    bed = structure_of(building, PLANE).bed
+    bed = structure_of(PLANE).bed
     assert bed is not None
     alpha = math.atan(0.15)
     length = 3000.0 * math.sin(alpha) * math.sqrt(10.0 * bed.uplift_rotation / alpha)
@@ -130,12 +132,12 @@ def test_the_drawing_has_the_length_in_contact(building: str) -> None:
     assert drawn(EDGES) == drawn("title=rigid") == []
 
 
-def test_moments_of_plane_joints_end_before_the_critical_rotation(building: str) -> None:
+def test_moments_of_plane_joints_end_before_the_critical_rotation() -> None:
     """Which stays that of rigid ends: alpha [1 - (2/3) sqrt(phi_u/alpha)] of slender columns."""
-    structure = structure_of(building, PLANE)
+    structure = structure_of(PLANE)
     result, bed = pushover(structure), structure.bed
     assert bed is not None
-    assert result.critical_rotation == structure_of(building).critical_rotation
+    assert result.critical_rotation == structure_of().critical_rotation
     curve = result.curve
     last = curve.rotation[curve.force > 0.0].max() / math.atan(0.15)
     end = 1.0 - 2.0 / 3.0 * math.sqrt(bed.uplift_rotation / math.atan(0.15))
@@ -144,14 +146,14 @@ def test_moments_of_plane_joints_end_before_the_critical_rotation(building: str)
     assert curve.force[-1] < 0.0
 
 
-def test_headings_of_reports_name_the_kind(building: str) -> None:
-    assert ends(case_of(building, PLANE)) == ", plane contact"
-    assert ends(case_of(building, EDGES)) == ", edges contact"
-    assert ends(case_of(building)) == ""
+def test_headings_of_reports_name_the_kind() -> None:
+    assert ends(case_of(PLANE)) == ", plane contact"
+    assert ends(case_of(EDGES)) == ", edges contact"
+    assert ends(case_of()) == ""
 
 
-def test_the_picture_of_modes_has_the_cap_beam_that_moves_in_full_contact(building: str) -> None:
-    result, figure = modal(structure_of(building, PLANE)), Figure()
+def test_the_picture_of_modes_has_the_cap_beam_that_moves_in_full_contact() -> None:
+    result, figure = modal(structure_of(PLANE)), Figure()
     draw_mode(figure.subplots(), result, "rocking", 1)
     dashed = next(line for line in figure.axes[0].lines if line.get_label() == "full contact")
     assert result.full_contact is not None

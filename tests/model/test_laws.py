@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import inspect
-from dataclasses import dataclass, fields, replace
+from dataclasses import fields, replace
 from typing import get_args
 
 import numpy as np
@@ -101,16 +100,7 @@ def test_bounds_cover_the_stiffness_at_rest(device: Device) -> None:
 @pytest.mark.parametrize("name", DEVICES)
 def test_a_law_can_be_written_and_drawn(name: str) -> None:
     assert DRAWN.keys() == set(DEVICES.values())
-    assert set(get_args(DeviceSection.model_fields["kind"].annotation)) == set(DEVICES)
+    assert get_args(DeviceSection.model_fields["kind"].annotation) == tuple(DEVICES)
     needed, optional = DEVICE_KEYS[name]
     assert {*needed, *optional} == {field.name for field in fields(DEVICES[name])}
     assert {*needed, *optional} <= set(DeviceSection.model_fields)
-
-
-def test_a_law_that_is_left_out_of_the_drawings_is_found() -> None:
-    @dataclass(frozen=True)
-    class Spring(Stop):
-        """A made-up law."""
-
-    assert not inspect.isabstract(Spring)
-    assert Spring not in DRAWN

@@ -7,8 +7,10 @@ that bounds, unit and meaning stand once, beside the field.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+import operator
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from numbers import Integral, Real
 from typing import Annotated, Any, Literal, NoReturn, Self, TypeGuard
 
@@ -63,6 +65,15 @@ def is_finite(value: object) -> TypeGuard[float]:
         return False
 
 
+BOUNDS: dict[str, tuple[str, Callable[[float, float], bool], str]] = {
+    "above": (">", operator.gt, "exclusiveMinimum"),
+    "at_least": (">=", operator.ge, "minimum"),
+    "below": ("<", operator.lt, "exclusiveMaximum"),
+    "at_most": ("<=", operator.le, "maximum"),
+}
+"""Sign, comparison, and key in JSON schemas."""
+
+
 @dataclass(frozen=True)
 class Quantity:
     """A number in SI, or text with a unit."""
@@ -77,14 +88,19 @@ class Quantity:
     words: tuple[str, ...] = ()
     per_storey: bool = False
 
+    @cached_property
+    def _bounds(self) -> dict[str, float]:
+        bounds = {name: getattr(self, name) for name in BOUNDS}
+        return {name: bound for name, bound in bounds.items() if bound is not None}
+
     @property
     def rule(self) -> str:
         """The bounds in words, such as ``> 0 and <= 1``."""
-        bounds = {">": self.above, ">=": self.at_least, "<": self.below, "<=": self.at_most}
-        return " and ".join(f"{sign} {b:g}" for sign, b in bounds.items() if b is not None)
+        return " and ".join(f"{BOUNDS[name][0]} {b:g}" for name, b in self._bounds.items())
 
     def number(self, value: object) -> float | str:
         """The SI value, or the word; raises pydantic's error if it is neither."""
+        unit = "" if self.unit == PLAIN else f" {self.unit}"
         if isinstance(value, str):
             if value in self.words:
                 return value
@@ -94,17 +110,13 @@ class Quantity:
         if not is_finite(value):
             refuse("must be a finite number")
         x = float(value)
-        if not self._within(x):
+        if not all(BOUNDS[name][1](x, bound) for name, bound in self._bounds.items()):
             symbol = f" ({self.symbol})" if self.symbol else ""
             remedy = f"; {self.remedy}" if self.remedy else ""
-            refuse(f"must be {self.rule}{self._unit_text}{symbol}{remedy}")
+            refuse(f"must be {self.rule}{unit}{symbol}{remedy}")
         if x and not SMALLEST <= abs(x) <= LARGEST:
-            refuse(f"is outside {SMALLEST:g} ... {LARGEST:g}{self._unit_text}; check the unit")
+            refuse(f"is outside {SMALLEST:g} ... {LARGEST:g}{unit}; check the unit")
         return x
-
-    @property
-    def _unit_text(self) -> str:
-        return "" if self.unit == PLAIN else f" {self.unit}"
 
     @property
     def _not_a_number(self) -> str:
@@ -113,8 +125,7 @@ class Quantity:
         return f"must be {kind}{words}"
 
     def _with_unit(self, text: str) -> float:
-        suggestion = nearest(text, self.words)
-        if suggestion:
+        if suggestion := nearest(text, self.words):
             refuse(f"{self._not_a_number}; did you mean {suggestion}?")
         if self.unit == PLAIN:
             share = ", as 0.05 for 5 %" * ("%" in text)
@@ -123,14 +134,6 @@ class Quantity:
             return si_value(text, self.unit)
         except ValueError as error:
             refuse(str(error))
-
-    def _within(self, x: float) -> bool:
-        return (
-            (self.above is None or x > self.above)
-            and (self.at_least is None or x >= self.at_least)
-            and (self.below is None or x < self.below)
-            and (self.at_most is None or x <= self.at_most)
-        )
 
     def __get_pydantic_core_schema__(self, *_: object) -> CoreSchema:
         """The check, for pydantic."""
@@ -145,24 +148,19 @@ class Quantity:
 
     def __get_pydantic_json_schema__(self, *_: object) -> dict[str, Any]:
         """The JSON schema; its ``unit`` is the SI unit of a bare number."""
-        names = ("exclusiveMinimum", "minimum", "exclusiveMaximum", "maximum")
-        bounds = zip(names, (self.above, self.at_least, self.below, self.at_most), strict=True)
-        one: dict[str, Any] = {"type": "number"}
-        one |= {name: bound for name, bound in bounds if bound is not None}
-        others: list[dict[str, Any]] = []
+        bounds = {BOUNDS[name][2]: bound for name, bound in self._bounds.items()}
+        forms: list[dict[str, Any]] = [{"type": "number"} | bounds]
         if self.unit != PLAIN:
             pattern = r"^\s*[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?\s*[^\d\s].*$"
-            units = listed(KINDS[self.unit][1])
-            others.append(
-                {"type": "string", "pattern": pattern, "description": f"with unit: {units}"}
-            )
+            units = f"with unit: {listed(KINDS[self.unit][1])}"
+            forms.append({"type": "string", "pattern": pattern, "description": units})
         if self.words:
-            others.append({"enum": list(self.words)})
+            forms.append({"enum": list(self.words)})
         if self.per_storey:
-            items = {"anyOf": [one, *others]} if others else one
-            others.append({"type": "array", "items": items, "minItems": 1})
+            items = {"anyOf": [*forms]} if len(forms) > 1 else forms[0]
+            forms.append({"type": "array", "items": items, "minItems": 1})
         extra = {"symbol": self.symbol} if self.symbol else {}
-        return ({"anyOf": [one, *others]} if others else one) | {"unit": self.unit} | extra
+        return ({"anyOf": forms} if len(forms) > 1 else forms[0]) | {"unit": self.unit} | extra
 
 
 @dataclass(frozen=True)
@@ -281,27 +279,26 @@ class Several:
     spaced: bool = True
     least: int = 1
 
-    def _form(self, value: object) -> str:
-        if isinstance(value, list | tuple):
-            return "a list"
-        return "a range" if self.spaced and isinstance(value, dict) else "a value"
-
     def __get_pydantic_core_schema__(self, _: object, handler: GetCoreSchemaHandler) -> CoreSchema:
         """The check, for pydantic."""
         item = handler.generate_schema(self.item)
+        after = core_schema.no_info_after_validator_function
         each = core_schema.tuple_schema([item], variadic_item_index=0, min_length=self.least)
-        one = core_schema.no_info_after_validator_function(lambda value: (value,), item)
-        spaced = core_schema.no_info_after_validator_function(
-            lambda section: section.values, handler.generate_schema(ValueRange)
-        )
         forms: dict[Any, CoreSchema] = {"a list": each}
         if self.alone:
-            forms["a value"] = one
+            forms["a value"] = after(lambda value: (value,), item)
         if self.spaced:
+            spaced = after(lambda section: section.values, handler.generate_schema(ValueRange))
             forms["a range"] = core_schema.chain_schema([spaced, each])
+
+        def form(value: object) -> str:
+            if isinstance(value, list | tuple):
+                return "a list"
+            return "a range" if self.spaced and isinstance(value, dict) else "a value"
+
         return core_schema.tagged_union_schema(
             forms,
-            discriminator=self._form,
+            discriminator=form,
             custom_error_type="rps",
             custom_error_message="must be a list of values, or {low, high, count}",
         )
@@ -313,26 +310,25 @@ class NameOf:
 
     registry: Registry[Any]
 
-    def __get_pydantic_core_schema__(self, _: object, handler: GetCoreSchemaHandler) -> CoreSchema:
-        """The check, for pydantic."""
-        del handler
-
-        def checked(value: object) -> str:
-            if isinstance(value, str) and (value in self.registry or value in self.names):
-                return value
-            meant = nearest(str(value), self.names)
-            refuse(f"must be {listed(self.names)}" + (f"; did you mean {meant}?" if meant else ""))
-
-        return core_schema.no_info_plain_validator_function(checked)
-
-    def __get_pydantic_json_schema__(self, *_: object) -> dict[str, Any]:
-        """The JSON schema."""
-        return {"enum": self.names, "type": "string"}
-
     @property
     def names(self) -> list[str]:
         """All of them."""
         return self.registry.names()
+
+    def name(self, value: object) -> str:
+        """The value; raises pydantic's error if it is none of them."""
+        if isinstance(value, str) and (value in self.registry or value in self.names):
+            return value
+        meant = nearest(str(value), self.names)
+        refuse(f"must be {listed(self.names)}" + (f"; did you mean {meant}?" if meant else ""))
+
+    def __get_pydantic_core_schema__(self, *_: object) -> CoreSchema:
+        """The check, for pydantic."""
+        return core_schema.no_info_plain_validator_function(self.name)
+
+    def __get_pydantic_json_schema__(self, *_: object) -> dict[str, Any]:
+        """The JSON schema."""
+        return {"enum": self.names, "type": "string"}
 
 
 @dataclass(frozen=True)
