@@ -38,7 +38,8 @@ def frame(
     devices: tuple[Device, ...] = (),
 ) -> PodiumStructure:
     """R 1.5 m, equal floors on uniform storeys, 5 % in modes 1 and 2, the flexible law."""
-    bearing = Bearing(1.5, tan_alpha, max(tan_wedge, tan_alpha), rho, inertia_ratio_axial=axial)
+    given = {} if np.isnan(axial) else {"inertia_ratio_axial": axial}
+    bearing = Bearing(1.5, tan_alpha, max(tan_wedge, tan_alpha), rho, **given)
 
     def building(seconds: float) -> Superstructure:
         masses = np.full(storeys, COLUMNS_MASS * gamma * eta / storeys)

@@ -70,11 +70,10 @@ class Bearing:
     wedge_slenderness: float
     curvature_ratio: float
     inertia_ratio: float = 4.0 / 3.0
-    inertia_ratio_axial: float = math.nan
+    inertia_ratio_axial: float = None  # type: ignore[assignment]  # completed below
 
     def __post_init__(self) -> None:
         """Refuse a shape that cannot be built."""
-        self._complete_inertia()
         for name in ("semi_diagonal", "inertia_ratio"):
             if not 0.0 < (value := getattr(self, name)) < math.inf:
                 raise ValueError(f"{name} = {value} must be > 0 and finite")
@@ -90,25 +89,20 @@ class Bearing:
                 f" must be > 0.5 and wedge_slenderness = {self.wedge_slenderness} > 0: an arc whose"
                 " radius is not above half the height does not hold the column upright"
             )
-        if self.is_flat:
-            return
-        if not self.slenderness <= self.wedge_slenderness < math.inf:
+        if not self.is_flat and not self.slenderness <= self.wedge_slenderness < math.inf:
             raise ValueError(
                 f"wedge_slenderness = {self.wedge_slenderness} must be >= slenderness"
                 f" = {self.slenderness}: the arcs lie outside the flat part"
             )
-        if self._sin_beta > 1.0:
+        if not self.is_flat and self._sin_beta > 1.0:
             raise ValueError(
                 f"curvature_ratio = {self.curvature_ratio} must be >="
                 f" {0.5 * (self.wedge_slenderness - self.slenderness):.6g} ="
                 " (tan alpha' - tan alpha)/2: a smaller arc does not reach the wedge's edge"
             )
-
-    def _complete_inertia(self) -> None:
-        axial = self.inertia_ratio_axial
-        if math.isnan(axial):
-            width = self.slenderness if self.is_flat else self.wedge_slenderness
-            solid = 0.5 * (math.cos(self.alpha) * width) ** 2
+        axial: float | None = vars(self)["inertia_ratio_axial"]
+        if axial is None:
+            solid = 0.5 * (math.cos(self.alpha) * self._wedge) ** 2
             object.__setattr__(self, "inertia_ratio_axial", solid)
         elif not 0.0 < axial < math.inf:
             raise ValueError(f"inertia_ratio_axial = {axial} must be > 0 and finite")
@@ -129,9 +123,14 @@ class Bearing:
         return math.atan(self.slenderness)
 
     @property
+    def _wedge(self) -> float:
+        """tan(alpha'); tan(alpha) for flat ends."""
+        return self.slenderness if self.is_flat else self.wedge_slenderness
+
+    @property
     def alpha_wedge(self) -> float:
         """alpha': slenderness angle of the curved part's edge [rad]; alpha for flat ends."""
-        return self.alpha if self.is_flat else math.atan(self.wedge_slenderness)
+        return math.atan(self._wedge)
 
     @property
     def _sin_beta(self) -> float:
@@ -220,14 +219,13 @@ class Bearing:
         """theta_cr by Eq. 1 of the paper [rad]; its branches jump by about 2 % at its rho_cr."""
         if self.curvature_ratio <= self.critical_curvature_ratio_of_paper:
             return math.atan2(self.slenderness, 1.0 - 2.0 * self.curvature_ratio)
-        wedge = math.tan(self.alpha_wedge)
         lowered = 1.0 - 2.0 * self.curvature_ratio * (1.0 - math.cos(self.beta))
-        return math.atan2(wedge, lowered)
+        return math.atan2(self._wedge, lowered)
 
     @property
     def critical_curvature_ratio_of_paper(self) -> float:
         """rho_cr to first order, as the paper has it (Theory (1.15))."""
-        return first_order_critical_curvature_ratio(self.slenderness, math.tan(self.alpha_wedge))
+        return first_order_critical_curvature_ratio(self.slenderness, self._wedge)
 
     @cached_property
     def critical_curvature_ratio(self) -> float:
@@ -235,7 +233,7 @@ class Bearing:
 
         Solves tan alpha/(1 - 2 rho) = tan beta(rho), Theory (1.14). 0 for flat ends.
         """
-        rise = math.tan(self.alpha_wedge) - self.slenderness
+        rise = self._wedge - self.slenderness
         if rise <= 0.0 or self.is_spherical:
             return 0.5 if self.is_spherical else 0.0
         # With t = 2 rho the condition squares to t^2 - rise^2 = (rise (1 - t)/tan(alpha))^2, a

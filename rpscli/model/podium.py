@@ -93,6 +93,8 @@ class PodiumStructure(Shown):
     rows: tuple[float, ...] = ()
     superstructure_y: Superstructure | None = None
     contact: Contact = field(default_factory=Contact)
+    bed: Bed | None = field(init=False)
+    """Compliant full contact; None on rigid ends."""
 
     def __post_init__(self) -> None:
         """Refuse masses and restitutions outside the model."""
@@ -128,7 +130,7 @@ class PodiumStructure(Shown):
                 " (a smaller tan alpha), with the law `flexible` a lighter building over the cap"
                 " beam, a smaller loss (0.5), or give a measured value"
             )
-        self.bed  # noqa: B018 -- raises what it asks for and does not have
+        object.__setattr__(self, "bed", bed_of(self))  # raises what it does not have
 
     def _refuse_buildings(self) -> None:
         x, y = self.superstructure, self.superstructure_y
@@ -306,11 +308,6 @@ class PodiumStructure(Shown):
         carried = self.gamma_total
         ratio = (1.0 + 2.0 * carried) / (self.bearing.inertia_ratio + 4.0 * carried)
         return math.sqrt(self.gravity / self.bearing.semi_diagonal * ratio)
-
-    @cached_property
-    def bed(self) -> Bed | None:
-        """Compliant full contact; None on rigid ends."""
-        return bed_of(self)
 
     def path(self, rotation: Array) -> tuple[Array, ...]:
         """Restoring force F, cap beam displacement u_b and lift v_b at |theta| [rad].

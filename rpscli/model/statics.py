@@ -128,19 +128,17 @@ def recentres(structure: PodiumStructure, rotation: float) -> bool:
 
 def returns(structure: PodiumStructure) -> list[Return]:
     """Whether the storey re-centres from some rotations; empty without friction."""
-    rotations = np.array(PARTS) * structure.critical_rotation
-    _, path, _ = structure.path(rotations)
-    held = [float(np.max(friction_force(structure, np.linspace(0.0, x, 50)))) for x in rotations]
+    rotations = [part * structure.critical_rotation for part in PARTS]
     return [
         Return(
-            float(x),
-            float(displacement),
-            largest_recentring_friction(structure, float(x)),
+            x,
+            float(structure.path(np.array([x]))[1][0]),
+            largest_recentring_friction(structure, x),
             friction,
-            recentres(structure, float(x)),
+            recentres(structure, x),
         )
-        for x, displacement, friction in zip(rotations, path, held, strict=True)
-        if friction > 0.0
+        for x in rotations
+        if (friction := float(np.max(friction_force(structure, np.linspace(0.0, x, 50))))) > 0.0
     ]
 
 
