@@ -68,9 +68,6 @@ _HOMES = {
     "rpscli.studies": ("Study", "StudyResult", "load_study"),
 }
 
-_RENAMED: dict[str, str] = {}
-"""Old names that are understood for one version, and the new ones."""
-
 __all__ = [
     "Bearing",
     "Case",
@@ -114,9 +111,6 @@ def __getattr__(name: str) -> Any:
         return import_module("rpscli.version").VERSION
     if name == "figures":
         return import_module("rpscli.figures")
-    if name in _RENAMED:
-        import_module("rpscli.errors").renamed(f"rpscli.{name}", f"rpscli.{_RENAMED[name]}")
-        name = _RENAMED[name]
     for module, names in _HOMES.items():
         if name in names:
             return getattr(import_module(module), name)

@@ -1,4 +1,4 @@
-"""What can go wrong, one class for each exit code of the command line.
+"""Errors: one class for each exit code of the command line.
 
 A message names the place, the value found, the rule that it breaks and a remedy. Nothing here
 knows about terminals: the command line turns these into text and an exit status.
@@ -72,19 +72,11 @@ class LimitExceeded(RpsError):
 
 
 class PluginError(RpsError):
-    """What another package adds cannot be used; the text names the package."""
+    """An addition of another package cannot be used; the text names the package."""
 
 
 class OutputError(RpsError):
     """A result cannot be written: no permission, a full disk, a file where a folder should be."""
-
-
-def renamed(old: str, new: str) -> None:
-    """Tell the caller's caller that a Python name is an old one; the one way to do so."""
-    import warnings  # needed by those who use one only
-
-    text = f"{old} is the old name of {new}; version 2 knows only the new one"
-    warnings.warn(text, DeprecationWarning, stacklevel=3)
 
 
 def nearest(word: str, known: Iterable[str], likeness: float = 0.7) -> str | None:
@@ -103,7 +95,7 @@ def nearest(word: str, known: Iterable[str], likeness: float = 0.7) -> str | Non
 
 
 def hint(word: str, known: Iterable[str], otherwise: str, likeness: float = 0.7) -> str:
-    """What to say of a word that is not known, and `otherwise` if none is like it.
+    """A remedy for a word that is not known: the nearest known one, or `otherwise`.
 
     >>> hint("slendernes", ["slenderness"], "")
     'did you mean slenderness?'
@@ -115,7 +107,7 @@ def hint(word: str, known: Iterable[str], otherwise: str, likeness: float = 0.7)
 def all_made(
     make: Callable[[Item], Made], items: Iterable[Item], fault: type[RpsError]
 ) -> list[Made]:
-    """What is made of each item; faults of this kind are raised together, a line for each."""
+    """Results of `make` for all items; its faults are raised together, a line for each."""
     made, complaints = [], []
     for item in items:
         try:
@@ -152,7 +144,7 @@ def visible(text: str) -> str:
 
 
 def beginning(line: str) -> str:
-    """What may be told of a line: the file may be another than was meant, and a secret one.
+    """The part of a line that may be shown: the file may be another one, and a secret.
 
     >>> beginning("a line of a file that holds other things")
     "'a line of a file tha'..."

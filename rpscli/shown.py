@@ -13,7 +13,7 @@ Value = TypeVar("Value")
 
 
 def frozen(value: Value) -> Value:
-    """The same value, its arrays read-only, those inside tuples and mappings too.
+    """The value with its arrays read-only, those inside tuples and mappings too.
 
     >>> frozen(np.zeros(2)).flags.writeable
     False
@@ -51,7 +51,7 @@ class Shown(Frozen):
     """Base of dataclasses that hold too many numbers to be printed whole."""
 
     def facts(self) -> Mapping[str, Any]:
-        """What tells it from others of its kind, the most important first; fields by default."""
+        """Properties that tell it from others, the most important first; fields by default."""
         return {each.name: getattr(self, each.name) for each in fields(self)}  # type: ignore[arg-type]
 
     def __repr__(self) -> str:
@@ -60,7 +60,7 @@ class Shown(Frozen):
         return f"{type(self).__name__}({', '.join([*inside, *['...'] * (len(facts) > IN_A_LINE)])})"
 
     def _repr_html_(self) -> str:
-        """What notebooks show."""
+        """A table for notebooks."""
         cells = [(escape(str(name)), escape(fact_text(of))) for name, of in self.facts().items()]
         rows = "".join(f"<tr><th>{name}</th><td>{of}</td></tr>" for name, of in cells)
         return f"<table><caption>{type(self).__name__}</caption>{rows}</table>"

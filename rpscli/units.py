@@ -28,7 +28,7 @@ KINDS = {
     "rad": ("an angle", ("rad", "mrad", "deg")),
     "deg": ("a direction", ("deg", "rad")),
 }
-"""What each SI unit of the formats measures, and units it is usually written in."""
+"""Quantity that each SI unit of the formats measures, and units it is usually written in."""
 
 OTHER_KINDS = {"Pa": "a pressure", "Hz": "a frequency"}
 
@@ -73,64 +73,36 @@ class Unit(NamedTuple):
 
 
 METRIC = {
-    "m meter metre": Unit(1.0, 0, LENGTH),
-    "g gram": Unit(1.0, -3, MASS),
-    "t tonne": Unit(1.0, 3, MASS),
-    "s sec second": Unit(1.0, 0, TIME),
-    "N newton": Unit(1.0, 0, FORCE),
-    "lbf": Unit(POUND_FORCE, 0, FORCE),
-    "pond": Unit(STANDARD_GRAVITY, -3, FORCE),
-    "Pa pascal": Unit(1.0, 0, PRESSURE),
-    "bar": Unit(1.0, 5, PRESSURE),
-    "J joule": Unit(1.0, 0, ENERGY),
-    "W watt": Unit(1.0, 0, POWER),
-    "rad radian": Unit(1.0, 0, ANGLE),
-    "Hz hertz": Unit(1.0, 0, FREQUENCY),
+    "m meter metre": Unit(1.0, 0, LENGTH), "g gram": Unit(1.0, -3, MASS),
+    "t tonne": Unit(1.0, 3, MASS), "s sec second": Unit(1.0, 0, TIME),
+    "N newton": Unit(1.0, 0, FORCE), "lbf": Unit(POUND_FORCE, 0, FORCE),
+    "pond": Unit(STANDARD_GRAVITY, -3, FORCE), "Pa pascal": Unit(1.0, 0, PRESSURE),
+    "bar": Unit(1.0, 5, PRESSURE), "J joule": Unit(1.0, 0, ENERGY), "W watt": Unit(1.0, 0, POWER),
+    "rad radian": Unit(1.0, 0, ANGLE), "Hz hertz": Unit(1.0, 0, FREQUENCY),
     "Gal gal": Unit(1.0, -2, ACCELERATION),
-}
+}  # fmt: skip
 """Units that take a prefix."""
 
 OTHERS = {
-    "ft foot feet": Unit(FOOT, 0, LENGTH),
-    "in inch inches": Unit(INCH, 0, LENGTH),
-    "yd yard": Unit(3.0 * FOOT, 0, LENGTH),
-    "mi mile": Unit(5280.0 * FOOT, 0, LENGTH),
-    "lb pound": Unit(POUND, 0, MASS),
-    "oz ounce": Unit(POUND / 16.0, 0, MASS),
-    "slug": Unit(POUND_FORCE / FOOT, 0, MASS),
-    "min minute": Unit(60.0, 0, TIME),
-    "h hr hour": Unit(3600.0, 0, TIME),
-    "d day": Unit(86400.0, 0, TIME),
-    "kip": Unit(1e3 * POUND_FORCE, 0, FORCE),
-    "kgf": Unit(STANDARD_GRAVITY, 0, FORCE),
-    "tf": Unit(STANDARD_GRAVITY, 3, FORCE),
-    "dyn dyne": Unit(1.0, -5, FORCE),
-    "psi": Unit(PSI, 0, PRESSURE),
-    "ksi": Unit(PSI, 3, PRESSURE),
-    "atm": Unit(101325.0, 0, PRESSURE),
-    "deg degree": Unit(DEGREE, 0, ANGLE),
-    "arcmin": Unit(DEGREE / 60.0, 0, ANGLE),
-    "gon grad": Unit(math.pi / 200.0, 0, ANGLE),
-    "turn": Unit(2.0 * math.pi, 0, ANGLE),
-    "rpm": Unit(math.pi / 30.0, 0, FREQUENCY),
-    "kph": Unit(1.0 / 3.6, 0, VELOCITY),
-    "mph": Unit(5280.0 * FOOT / 3600.0, 0, VELOCITY),
+    "ft foot feet": Unit(FOOT, 0, LENGTH), "in inch inches": Unit(INCH, 0, LENGTH),
+    "yd yard": Unit(3.0 * FOOT, 0, LENGTH), "mi mile": Unit(5280.0 * FOOT, 0, LENGTH),
+    "lb pound": Unit(POUND, 0, MASS), "oz ounce": Unit(POUND / 16.0, 0, MASS),
+    "slug": Unit(POUND_FORCE / FOOT, 0, MASS), "min minute": Unit(60.0, 0, TIME),
+    "h hr hour": Unit(3600.0, 0, TIME), "d day": Unit(86400.0, 0, TIME),
+    "kip": Unit(1e3 * POUND_FORCE, 0, FORCE), "kgf": Unit(STANDARD_GRAVITY, 0, FORCE),
+    "tf": Unit(STANDARD_GRAVITY, 3, FORCE), "dyn dyne": Unit(1.0, -5, FORCE),
+    "psi": Unit(PSI, 0, PRESSURE), "ksi": Unit(PSI, 3, PRESSURE),
+    "atm": Unit(101325.0, 0, PRESSURE), "deg degree": Unit(DEGREE, 0, ANGLE),
+    "arcmin": Unit(DEGREE / 60.0, 0, ANGLE), "gon grad": Unit(math.pi / 200.0, 0, ANGLE),
+    "turn": Unit(2.0 * math.pi, 0, ANGLE), "rpm": Unit(math.pi / 30.0, 0, FREQUENCY),
+    "kph": Unit(1.0 / 3.6, 0, VELOCITY), "mph": Unit(5280.0 * FOOT / 3600.0, 0, VELOCITY),
     "kt knot": Unit(1852.0 / 3600.0, 0, VELOCITY),
-}
+}  # fmt: skip
 
 PREFIXES = {
-    "n nano": -9,
-    "u µ micro": -6,
-    "m milli": -3,
-    "c centi": -2,
-    "d deci": -1,
-    "da deca": 1,
-    "h hecto": 2,
-    "k kilo": 3,
-    "M mega": 6,
-    "G giga": 9,
-    "T tera": 12,
-}
+    "n nano": -9, "u µ micro": -6, "m milli": -3, "c centi": -2, "d deci": -1, "da deca": 1,
+    "h hecto": 2, "k kilo": 3, "M mega": 6, "G giga": 9, "T tera": 12,
+}  # fmt: skip
 """Powers of ten."""
 
 _WORDS = {
@@ -202,7 +174,7 @@ def bare_or_si(text: str, unit: str) -> float:
 
 
 def si_factor(written: str, unit: str) -> float:
-    """What a value in the unit `written` is multiplied by to be in the SI unit `unit`."""
+    """Factor from the unit `written` to the SI unit `unit`."""
     if written == "g" and unit == "m/s2":  # elsewhere a gram
         return STANDARD_GRAVITY
     kind, units = KINDS[unit]
@@ -252,7 +224,7 @@ def as_written(value: float, unit: str) -> str:
 
 
 def _kind(dimension: tuple[int, ...]) -> str:
-    """What a unit measures, in words."""
+    """Kind of a quantity of these dimensions, in words."""
     for unit, kind in ({unit: kind for unit, (kind, _) in KINDS.items()} | OTHER_KINDS).items():
         if (known := unit_of_text(unit)) and known.dimension == dimension:
             return kind

@@ -163,7 +163,7 @@ def each_storey(value: float | tuple[float, ...] | None, storeys: int) -> list[f
 
 
 def overturning_limit(section: AnalysisSection, bearing: Bearing) -> float:
-    """What counts as overturned, over theta_cr: the lesser of what the case names."""
+    """Rotation that counts as overturned, over theta_cr: the lesser of what the case names."""
     if (displacement := section.overturning_displacement) is None:
         return section.overturning_limit
     rotation = bearing.rotation_at(displacement)

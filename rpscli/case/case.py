@@ -67,7 +67,7 @@ class Case(Shown):
     written: Mapping[str, Any] = field(default_factory=dict)
 
     def facts(self) -> dict[str, Any]:
-        """What it is about."""
+        """Title, source, record and structure."""
         return {
             "title": self.title,
             "source": self.source,
@@ -97,12 +97,12 @@ class Case(Shown):
 
     @cached_property
     def doubts(self) -> tuple[Doubt, ...]:
-        """What is possible, but unusual."""
+        """Possible, but unusual properties."""
         return (*self.doubts_of_text, *doubts_of_structure(self.structure))
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What the user should know although it is no fault."""
+        """Doubts in words: no faults, but something the user should know."""
         return tuple(map(str, self.doubts))
 
     @cached_property
@@ -189,7 +189,7 @@ def case_from_mapping(
 
 
 def _structure(file: CaseFile, document: Document) -> PodiumStructure:
-    """What valid sections describe, if they are consistent and the model takes it."""
+    """The structure of valid sections, if they are consistent and the model takes it."""
     rules = Consistency(file, document)
     document.refuse(rules.faults())
     shape = shape_of(file.podium.bearing)

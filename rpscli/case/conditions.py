@@ -25,7 +25,7 @@ RATE = "annual_rate"
 """Condition on how often a year the structure overturns [1/year], over all intensities."""
 
 NOT_SHOWN = "not-shown"
-"""Of `--fail-on`: no limit, but that limits which are met and not shown to be kept count too."""
+"""Word of `--fail-on`: limits which are met and not shown to be kept count too."""
 
 LIMITS = {quantity.name: quantity for quantity in LIMITED}
 """Results that conditions may limit, in SI units."""
@@ -52,7 +52,7 @@ class Condition:
 
     @property
     def sign(self) -> float:
-        """By which larger values are the worse ones."""
+        """Factor by which larger values are the worse ones."""
         return -1.0 if self.from_below else 1.0
 
     @property
@@ -128,7 +128,7 @@ def with_friction(
 
 
 def condition_text(condition: Condition) -> str:
-    """What a condition asks for."""
+    """A condition in words."""
     if condition.name == RATE:
         return f"at most {condition.limit:.3g} a year"
     if condition.fractile is not None:

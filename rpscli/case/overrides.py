@@ -78,7 +78,7 @@ def _plain(value: Any) -> Any:
 
 
 def _unknown(path: Path, model: type[BaseModel]) -> str:
-    """Of a path, the first part that the format does not know; empty if it knows all."""
+    """The first part of a path that the format does not know, in words; empty if it knows all."""
     named = tuple(part for part in path if isinstance(part, str))
     if not named:
         return "an index alone is not a key of the format"
@@ -93,7 +93,7 @@ def _unknown(path: Path, model: type[BaseModel]) -> str:
 
 
 def _put(document: Document, path: Path, override: Override) -> str:
-    """Put one value in place; what keeps it from being put there, or nothing."""
+    """Put one value in place; the reason if it cannot be put there."""
     owner: Any = document.content
     value, (*parents, key) = override.value, path
     for depth, part in enumerate(parents):
@@ -118,7 +118,7 @@ def _put(document: Document, path: Path, override: Override) -> str:
 
 
 def _obstacle(owner: object, path: Path, part: str | int) -> str:
-    """What keeps `part` from being a key or an index of the value at a path."""
+    """The reason why `part` is no key or index of the value at a path; empty if it is one."""
     if isinstance(owner, list) and isinstance(part, int):
         lacks = f"{dotted(path)} has {len(owner)} values, counted from 0; there is no {part}"
         return lacks if part >= len(owner) else ""

@@ -45,7 +45,7 @@ LEADING = (
 )
 """What is asked of every case, and stands first."""
 RECORD = ("name", "source", "format", "description", "npts", "dt", "duration", "pga")
-"""What the document says of a ground motion."""
+"""Properties of a ground motion in the document."""
 
 
 @click.command("check")

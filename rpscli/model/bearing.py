@@ -198,7 +198,7 @@ class Bearing:
 
     @cached_property
     def largest_rotation(self) -> float:
-        """Where the model ends [rad]: the cap beam is farthest from its place, C = 0.
+        """Rotation where the model ends [rad]: the cap beam is farthest from its place, C = 0.
 
         pi/2 + alpha for flat ends; at most pi, up to where `formulae.trigonometry` holds.
 
@@ -244,7 +244,7 @@ class Bearing:
         return 0.5 * float(min(admissible)) if admissible else math.nan
 
     def tendon_elongation(self, rotation: NDArray[np.float64]) -> NDArray[np.float64]:
-        """How much a tendon in the axis is longer at |theta| [m] (Theory (11.9))."""
+        """Elongation of a tendon in the axis at |theta| [m] (Theory (11.9))."""
         across, upwards, _ = self._end_displacement(rotation)
         return 2.0 * np.hypot(across, upwards)
 
@@ -264,7 +264,7 @@ class Bearing:
         return across / some, np.where(distance > 0.0, upwards / some, 1.0)
 
     def _end_displacement(self, rotation: NDArray[np.float64]) -> tuple[NDArray[np.float64], ...]:
-        """How far the middle of an end moves across and upwards, and the contact from there [m]."""
+        """Ways of the middle of an end across and upwards, and the contact from there [m]."""
         x = np.abs(np.asarray(rotation, dtype=float))
         y = np.minimum(x, self.beta)
         return geometry.end_displacement(

@@ -1,4 +1,4 @@
-"""What the ends of the columns bear on: rigid, or a plane or two compliant edges."""
+"""Supports of the columns' ends: rigid, a compliant plane, or two compliant edges."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ USUAL_LOSS = {"rigid": 1.0, "plane": 0.3, "edges": 1.0}
 
 @dataclass(frozen=True)
 class Contact:
-    """How the ends of the columns bear in full contact and as they lift.
+    """Support of the columns' ends in full contact and as they lift.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ Standing: TypeAlias = Any
 
 
 class BedPath(NamedTuple):
-    """What enters moments, inertia and displacements along |theta|, arrays of its shape.
+    """Arms, height, displacements and potential along |theta|, arrays of its shape.
 
     Parameters
     ----------
@@ -177,7 +177,7 @@ class Bed(NamedTuple):
 
     @property
     def joint_stiffness(self) -> float | None:
-        """Of one joint of all columns, pressed evenly by the permanent load: W/D_0 [N/m]."""
+        """W/D_0 of one joint of all columns, pressed evenly by the permanent load [N/m]."""
         return self.settlement and float(self.structure.weight) / self.settlement
 
     @property

@@ -214,7 +214,7 @@ class Tendon(Device):
         return AtRest(structure.columns * tension * lever / arm)
 
     def permanent(self, structure: PodiumStructure, farthest: float) -> float:
-        """What it keeps of its elongation after it was drawn to a rotation [m].
+        """Elongation that it keeps after it was drawn to a rotation [m].
 
         Parameters
         ----------
@@ -334,7 +334,7 @@ def _require_none_below_zero(**values: float) -> None:
 
 
 def _force_growth(bearing: Bearing, moment: float, growth: float) -> float:
-    """What a moment M + M' x adds to dF/du_b at u_b = 0+ [N/m], exact.
+    """Part of dF/du_b at u_b = 0+ that a moment M + M' x adds [N/m], exact.
 
     With the arm 2 R C = 2 H + 2 B x it is the force M/2H + (M' - M B/H) x/2H, and du_b = 2 H dx.
     """

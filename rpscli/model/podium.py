@@ -171,7 +171,7 @@ class PodiumStructure(Shown):
         return ""
 
     def left_out_of_columns(self, *, both: bool, axial: bool = True) -> tuple[str, ...]:
-        """What forces of single columns do not hold, and what would give it.
+        """Parts that forces of single columns leave out, and the keys that would give them.
 
         Parameters
         ----------
@@ -347,7 +347,7 @@ class AtRest(NamedTuple):
 
 
 class Linear(NamedTuple):
-    """What a device adds to small motions 2 R theta on one side (Theory, sections 6, 11)."""
+    """Terms that a device adds to small motions 2 R theta on one side (Theory, sections 6, 11)."""
 
     stiffness: float = 0.0
     """[N/m]."""
@@ -410,7 +410,7 @@ class Device(ABC):
 
     @abstractmethod
     def constants(self, structure: PodiumStructure) -> tuple[float, ...]:
-        """Of its law, as the kernels read them."""
+        """Numbers of its law, as the kernels read them."""
 
     @abstractmethod
     def at_rest(self, structure: PodiumStructure, rotation: Array, farthest: float) -> AtRest:
@@ -418,11 +418,11 @@ class Device(ABC):
 
     @abstractmethod
     def stiffness_after_uplift(self, structure: PodiumStructure) -> float:
-        """What it adds to dF/du_b at u_b = 0+, on the way out [N/m], exact."""
+        """Its part of dF/du_b at u_b = 0+, on the way out [N/m], exact."""
 
     @abstractmethod
     def linear(self, structure: PodiumStructure, state: UpliftedState) -> Linear:
-        """What modes hold of it."""
+        """Its linear part, which modes hold."""
 
     @abstractmethod
     def bounds(self, structure: PodiumStructure) -> tuple[float, float]:
@@ -430,11 +430,11 @@ class Device(ABC):
 
     @abstractmethod
     def consequences(self, structure: PodiumStructure) -> Iterator[Consequence]:
-        """What follows from it before any analysis."""
+        """Numbers that follow from it before any analysis."""
 
     @abstractmethod
     def stroke(self, structure: PodiumStructure, rotation: Array) -> Array:
-        """How far it moves [m]."""
+        """Its displacement or elongation [m]."""
 
     @abstractmethod
     def beam_forces(
@@ -444,7 +444,7 @@ class Device(ABC):
 
     @abstractmethod
     def remaining_prestress(self, permanent: float) -> float | None:
-        """Of one, upright, after a permanent elongation [m]; None without [N]."""
+        """Prestress of one, upright, after a permanent elongation [m]; None without [N]."""
 
     def reached_at(self, structure: PodiumStructure, length: float) -> float | None:
         """The |theta| at which its stroke reaches a length; None beyond 2 theta_cr [rad]."""

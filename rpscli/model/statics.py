@@ -10,7 +10,7 @@ import numpy as np
 from rpscli.model.podium import Array, PodiumStructure
 
 PARTS = (0.25, 0.5, 0.75)
-"""Of the critical rotation, from which it is asked whether the structure comes back."""
+"""Parts of the critical rotation from which the structure may come back."""
 
 POINTS = 400
 """Rotations that are looked at; the curve has no more than a few bends."""
@@ -24,9 +24,9 @@ class Return(NamedTuple):
     displacement: float
     """u_b there [m]."""
     largest_friction: float
-    """What friction may hold at most for it to come back, a force at the cap beam [N]."""
+    """Largest friction against which it comes back, a force at the cap beam [N]."""
     friction: float
-    """What friction holds at most on the way [N]."""
+    """Largest friction on the way [N]."""
     recentres: bool
     """Whether it comes back to full contact."""
 

@@ -75,7 +75,7 @@ class RayleighDamping:
 
 @dataclass(frozen=True)
 class ModalDamping:
-    """The same damping ratio in every fixed-base mode."""
+    """One damping ratio in every fixed-base mode."""
 
     ratio: float
 

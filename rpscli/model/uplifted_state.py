@@ -1,4 +1,4 @@
-"""Where an uplifted state begins: the constants of its linear equations (Theory (6.1) to (6.3))."""
+"""Start of an uplifted state: the constants of its linear equations (Theory (6.1) to (6.3))."""
 
 from __future__ import annotations
 

@@ -16,13 +16,6 @@ def test_every_public_name_exists(name: str) -> None:
     assert name in dir(rpscli)
 
 
-def test_old_names_are_told_for_one_version(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(rpscli, "_RENAMED", {"push": "pushover"})
-    with pytest.warns(DeprecationWarning, match=r"rpscli\.push is the old name of") as told:
-        assert rpscli.push is rpscli.pushover
-    assert told[0].filename == __file__  # the line of the caller, not one of ours
-
-
 def test_samples_as_a_table(monkeypatch: pytest.MonkeyPatch) -> None:
     case = rpscli.load_case(Path(__file__).parents[2] / "cases" / "six_storey.yaml")
     motion = rpscli.load_record("pulse:sine?amplitude=0.3g&period=0.5")

@@ -58,7 +58,7 @@ class Consistency:
     document: Document
 
     def faults(self) -> Iterator[Fault]:
-        """What is missing, said twice, or cannot be true together, whatever the shape."""
+        """Keys that are missing, said twice, or cannot be true together, whatever the shape."""
         building = self.file.superstructure
         if building.storeys:
             yield from self._building(building)

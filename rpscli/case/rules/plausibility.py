@@ -1,4 +1,4 @@
-"""What is possible in a case and yet hardly meant: each with its number and what is usual.
+"""Doubts about a case, possible and yet hardly meant: the number, and what is usual.
 
 Mostly slips of units: millimetres for metres, kilograms for tonnes. The systems of a study are
 looked at as a single case is; what is doubted in many of them is told once, with the range.
@@ -28,7 +28,7 @@ class Doubt(NamedTuple):
     detail: str = ""
 
     def __str__(self) -> str:
-        """As a warning."""
+        """The sentence of a warning."""
         number = "" if self.value is None else f"{self.value:.4g}"
         return self.sentence.format(number, self.detail)
 
@@ -166,7 +166,7 @@ def doubts_of_contact(bed: Bed) -> Iterator[Doubt]:
 
 
 def doubts_of_directions(structure: PodiumStructure, *, both: bool) -> Iterator[Doubt]:
-    """What both horizontal components bring in, or one alone leaves out."""
+    """Effects that both horizontal components bring in, or one alone leaves out."""
     if not both:
         if structure.superstructure_y is not None:
             yield Doubt("superstructure.y has an effect only where both components act (`?both`)")

@@ -40,7 +40,7 @@ DEVICE_KEYS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
 
 
 def _device_schema(schema: dict[str, Any]) -> None:
-    """Which keys go with which kind, for editors."""
+    """Say which keys go with which kind, for editors."""
     names = set(schema["properties"]) - {"kind"}
     schema["allOf"] = [
         {

@@ -17,7 +17,7 @@ from rpscli.errors import listed, nearest
 Model = TypeVar("Model", bound=BaseModel)
 
 KEYS_SHOWN = 12
-"""Of a section in a message; `rps explain` has all."""
+"""Keys of a section in a message; `rps explain` has all."""
 
 
 class SchemaCheck(NamedTuple, Generic[Model]):
@@ -72,7 +72,7 @@ class _Faults:
         return [fault for fault in self._all if fault not in instead]
 
     def add(self, error: ErrorDetails, path: Path) -> None:
-        """What pydantic says of the value at a path."""
+        """Add what pydantic says of the value at a path."""
         value, kind = self._document.at(path), error["type"]
         if kind == "extra_forbidden":
             self._add_unknown(path)
@@ -86,7 +86,7 @@ class _Faults:
             self._all.append(Fault(path, text))
 
     def add_empty(self, path: Path) -> None:
-        """A key with nothing behind it; its name may be wrong besides."""
+        """Add a key with nothing behind it; its name may be wrong besides."""
         named = tuple(part for part in path if isinstance(part, str))
         known = [annotation_at(self._model, named[: n + 1]) is not None for n in range(len(named))]
         if all(known):
@@ -137,7 +137,7 @@ def _holds_null(value: object) -> bool:
 
 
 def _path(error: ErrorDetails, document: Document) -> Path:
-    """Where in the document: pydantic's location without its names for branches of a union."""
+    """Path in the document: pydantic's location without its names for branches of a union."""
     missing = error["type"] == "missing"
     path: Path = ()
     for part in error["loc"][:-1] if missing else error["loc"]:

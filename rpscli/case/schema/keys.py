@@ -16,7 +16,7 @@ from rpscli.errors import listed, nearest
 
 
 def fields_of(section: type[BaseModel]) -> dict[str, FieldInfo]:
-    """What the format says of each key of a section."""
+    """Fields of a section by the names of their keys."""
     return {field.alias or name: field for name, field in section.model_fields.items()}
 
 
@@ -48,7 +48,7 @@ def section_of(annotation: Any) -> type[BaseModel] | None:
 
 
 def _chosen_by_user(annotation: Any) -> Any:
-    """What stands at keys that the user chooses, if the annotation holds such a mapping."""
+    """Annotation of values at keys that the user chooses, if it holds such a mapping."""
     for part in _inside(annotation):
         if get_origin(part) is dict:
             return get_args(part)[1]
@@ -58,7 +58,7 @@ def _chosen_by_user(annotation: Any) -> Any:
 
 
 def annotation_at(model: type[BaseModel], path: Path) -> Any:
-    """What the format says of the value at a path, or None; an index stands for any element."""
+    """Annotation of the value at a path, or None; an index stands for any element."""
     below: Any = model
     for part in path:
         if not isinstance(part, int):
@@ -81,7 +81,7 @@ def section_at(model: type[BaseModel], path: Path) -> type[BaseModel] | None:
 
 
 def field_at(model: type[BaseModel], path: Path) -> FieldInfo | None:
-    """What the format says of the key at a path, or None if it does not know the key."""
+    """Field of the key at a path, or None if the format does not know the key."""
     return _keys_in(annotation_at(model, path[:-1])).get(str(path[-1])) if path else None
 
 
@@ -166,32 +166,15 @@ def _marks_of(key: str) -> list[object]:
 
 
 SECTIONS = {
-    "superstructure": "7",
-    "superstructure.damping": "6, 7",
-    "podium": "2",
-    "podium.bearing": "1, 5",
-    "podium.bearing.inertia_ratio": "2",
-    "podium.impact": "4",
-    "podium.friction": "8",
-    "podium.contact": "12",
-    "podium.devices": "11",
-    "podium.plan": "8",
-    "superstructure.vertical_period": "8",
-    "record": "2",
-    "record.vertical": "2, 8",
-    "podium.bearing.inertia_ratio_axial": "13",
-    "podium.impact.contact_time": "13",
-    "superstructure.y": "13",
-    "record.x": "13",
-    "record.y": "13",
-    "record.rotation": "13",
-    "analysis": "10",
-    "analysis.recontact_tolerance": "3, 10",
-    "analysis.initial_rotation": "3",
-    "analysis.overturning_limit": "3",
-    "analysis.gravity": "2",
-    "limits": "8",
-}
+    "superstructure": "7", "superstructure.damping": "6, 7", "superstructure.vertical_period": "8",
+    "superstructure.y": "13", "podium": "2", "podium.bearing": "1, 5",
+    "podium.bearing.inertia_ratio": "2", "podium.bearing.inertia_ratio_axial": "13",
+    "podium.impact": "4", "podium.impact.contact_time": "13", "podium.friction": "8",
+    "podium.contact": "12", "podium.devices": "11", "podium.plan": "8", "record": "2",
+    "record.vertical": "2, 8", "record.x": "13", "record.y": "13", "record.rotation": "13",
+    "analysis": "10", "analysis.recontact_tolerance": "3, 10", "analysis.initial_rotation": "3",
+    "analysis.overturning_limit": "3", "analysis.gravity": "2", "limits": "8",
+}  # fmt: skip
 """Sections of THEORY.md in which keys enter; a key without a line has those of its parent."""
 
 

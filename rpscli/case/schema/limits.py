@@ -59,7 +59,7 @@ def _limit_of(unit: str, zero: bool, key: str) -> Any:  # noqa: FBT001 -- whethe
 
 
 def described(quantity: ResultQuantity) -> str:
-    """What a limit limits, for schemas."""
+    """Description of a limit, for schemas."""
     side = ", which must be at least this large" * quantity.from_below
     return f"{quantity.label}{f': {quantity.meaning}' * bool(quantity.meaning)}{side}"
 
@@ -69,7 +69,7 @@ _FIELDS: Any = {
     for quantity in LIMITED
 }
 _WITHOUT_SOURCE = {"use_attribute_docstrings": False}
-"""Of models that no class statement defines: looking for it takes long."""
+"""Option of models that no class statement defines: looking for their source takes long."""
 
 
 class LimitsSection(

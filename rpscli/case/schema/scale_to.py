@@ -1,4 +1,4 @@
-"""What a record is scaled to: a value of an intensity measure."""
+"""Targets that records are scaled to: values of intensity measures."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ class ScaleToSection(Section):
 
 
 def scale_to_of(text: str) -> ScaleToSection:
-    """What a text such as ``PGA=0.4g``, ``Sa(0.6 s)=1 g`` or ``PGV(rotd100)=0.5`` asks for."""
+    """The target that a text asks for: ``PGA=0.4g``, ``Sa(0.6 s)=1 g``, ``PGV(rotd100)=0.5``."""
     found = _TARGET.fullmatch(text)
     if found is None:
         raise ValueError("write MEASURE=VALUE, as in PGA=0.4g, or Sa(0.6 s)=1g")

@@ -1,4 +1,4 @@
-"""What a study multiplies: its axes of case keys, and its record sources."""
+"""Factors of the product that a study is: axes of case keys, and record sources."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Axis:
     places: tuple[tuple[Place, ...], ...]
 
     def place(self, key: int, row: int) -> Place:
-        """Where a value was written."""
+        """Position of a value in the file."""
         places = self.places[key]
         return places[row] if len(places) == len(self.rows) else places[0]
 

@@ -1,4 +1,4 @@
-"""What was observed in tests or after earthquakes: the CSV file that a study may name."""
+"""Observations in tests or after earthquakes: the CSV file that a study may name."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ class _Column(NamedTuple):
         return _UNITS.get(self.name) or key_unit(self.name)
 
     def value(self, cell: str) -> float:
-        """What was observed, in SI units; NaN for an empty cell."""
+        """The observed value, in SI units; NaN for an empty cell."""
         if not cell:
             return math.nan
         if self.name == OVERTURNED:

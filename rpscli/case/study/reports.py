@@ -1,4 +1,4 @@
-"""Which reports a study asks for, and what the study file must know of each kind."""
+"""Reports that a study asks for, and what the study file must know of each kind."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ Options = TypeVar("Options", bound=ReportOptions)
 
 @dataclass(frozen=True)
 class ReportKind(Generic[Options]):
-    """What the study file must know of a kind of report.
+    """Options of a kind of report, and what else the study file must know of it.
 
     `check` holds rules that join the options with the rest of the study; `analyses` are those
     whose results it shows.

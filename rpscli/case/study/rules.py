@@ -72,7 +72,7 @@ def fixed_faults(document: Document, overrides: Sequence[str]) -> Iterator[Fault
 def analysis_rules(
     file: StudyFile, requests: tuple[ReportRequest, ...], kinds: ReportKinds
 ) -> Iterator[Fault]:
-    """What has no meaning with a modal or pushover analysis."""
+    """Keys and reports without a meaning with a modal or pushover analysis."""
     if file.analysis == "timehistory":
         return
     for key in OF_HISTORIES:

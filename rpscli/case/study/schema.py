@@ -76,16 +76,16 @@ Key = Annotated[str, PlainValidator(_key), WithJsonSchema({"type": "string"})]
 Keys = Annotated[tuple[str, ...], Several(Key, spaced=False)]
 """One key or several."""
 AnyKeys = Annotated[tuple[str, ...], Several(Key, spaced=False, least=0)]
-"""The same, or none."""
+"""One key, several, or none."""
 
 Numbers = Annotated[tuple[float, ...], Several(Number)]
 """One number, several, or a range of them."""
 
 PositiveNumbers = Annotated[tuple[float, ...], Several(PositiveNumber)]
-"""The same, each above zero."""
+"""Numbers above zero: one, several, or a range of them."""
 
 MeasuredValues = Annotated[tuple[float, ...], Several(MeasuredValue), BeforeValidator(_ends_in_si)]
-"""The same, of an intensity measure, with or without a unit."""
+"""Values of an intensity measure, with or without a unit: one, several, or a range."""
 
 Axes = Annotated[
     tuple[

@@ -63,7 +63,7 @@ class Study:
 
     @property
     def scale(self) -> MeasureScale | tuple[float, ...] | None:
-        """What the study scales records by or to, else what the case at its base scales them to."""
+        """Factors or targets of the records, else the target of the case at the base."""
         if self.file.scale is not None or self.file.analysis != "timehistory":
             return self.file.scale
         return _scale_of_base(self.base)
@@ -75,7 +75,7 @@ class Study:
 
 
 def _scale_of_base(base: Document) -> MeasureScale | None:
-    """What the case at the base scales its record to, as a study says it."""
+    """The target of the record of the case at the base, as a study says it."""
     record = base.content.get("record")
     target = record.get("scale_to") if isinstance(record, dict) else None
     if target is None:

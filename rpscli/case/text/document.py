@@ -11,7 +11,7 @@ from typing import Any
 from rpscli.errors import CaseError
 
 Path = tuple[str | int, ...]
-"""Where a value stands inside a document: keys, and indices of lists counted from 0."""
+"""Keys on the way to a value of a document, and indices of lists counted from 0."""
 
 
 def _cut(override: str) -> str:
@@ -21,7 +21,7 @@ def _cut(override: str) -> str:
 
 @dataclass(frozen=True)
 class Place:
-    """Where a key or a value was written; files have rank 0, overrides follow in their order."""
+    """Position of a key or a value; files have rank 0, overrides follow in their order."""
 
     source: str
     line: int = 0
@@ -39,7 +39,7 @@ class Place:
 
 @dataclass(frozen=True)
 class Fault:
-    """What is wrong at a path, and where that is said if not at its key or value."""
+    """A sentence on what is wrong at a path; `place` if not that of its key or value."""
 
     path: Path
     text: str
@@ -102,11 +102,11 @@ class Document:
         return self.at(path) is not MISSING
 
     def key_place(self, path: Path) -> Place:
-        """Where the key of a path stands; its nearest parent's, if it has none itself."""
+        """Position of the key of a path; its nearest parent's, if it has none itself."""
         return self._place(path, self.keys)
 
     def value_place(self, path: Path) -> Place:
-        """Where the value of a path stands; its nearest parent's, if it has none itself."""
+        """Position of the value of a path; its nearest parent's, if it has none itself."""
         return self._place(path, self.values)
 
     def _place(self, path: Path, places: Mapping[Path, Place]) -> Place:

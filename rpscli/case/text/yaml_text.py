@@ -33,7 +33,7 @@ REMEDIES = {
     "nested over": "a case is five levels deep: close brackets, or remove indentation",
     "nodes": "no case or study has so many values",
 }
-"""What to do, by a part of PyYAML's message; the first that fits counts."""
+"""Remedies by a part of PyYAML's message; the first that fits counts."""
 
 
 def syntax_error(error: yaml.YAMLError, text: str, name: str) -> str:
@@ -51,7 +51,7 @@ def syntax_error(error: yaml.YAMLError, text: str, name: str) -> str:
 
 
 def _opened(error: yaml.MarkedYAMLError) -> str:
-    """Where the bracket or the quotation mark stands that is not closed."""
+    """Position of the bracket or the quotation mark that is not closed."""
     start = error.context_mark
     if start is None or not any(word in (error.context or "") for word in ("flow", "quoted")):
         return ""
@@ -84,7 +84,7 @@ SCALARS = {
     ),
     "str": re.compile(""),
 }
-"""What plain scalars are in YAML 1.2, tried in this order."""
+"""Plain scalars of YAML 1.2, tried in this order."""
 
 
 class CoreLoader(yaml.SafeLoader):
