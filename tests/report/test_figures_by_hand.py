@@ -18,7 +18,6 @@ from scipy.stats import beta
 
 from report.small_results import curve, legend
 from report.test_figures_of_studies import ALPHA, RHO, labelled, panels, same
-from rpscli.analyses.result_quantities import DEMANDS
 from rpscli.case.conditions import Condition
 from rpscli.case.design import Term
 from rpscli.case.study.observed import OVERTURNED
@@ -29,15 +28,7 @@ from rpscli.records.target import TargetSpectrum
 from rpscli.report.design import front_figure, region_figure, requirements_figure
 from rpscli.report.figures.motions import selection_figure
 from rpscli.report.figures.style import kept_figure
-from rpscli.report.study import directions
-from rpscli.report.study.comparison import comparison_figure
-from rpscli.report.study.comparison_numbers import (
-    Compared,
-    Comparison,
-    ComparisonOptions,
-    Curve,
-    Outcomes,
-)
+from rpscli.report.study.comparison import Compared, Outcomes, comparison_figure
 from rpscli.report.study.fragility import Fragilities, Fragility, LimitState, Observed
 from rpscli.report.study.risk import Risk, risk_figure
 from rpscli.sweep.design.answer import Answer, Judged, Requirement
@@ -46,7 +37,6 @@ from rpscli.sweep.intensities import Intensity
 from rpscli.sweep.statistics.fractiles import share
 from rpscli.sweep.statistics.grouping import Grouping
 from rpscli.sweep.statistics.observations import Agreement, maxima
-from rpscli.sweep.study_results import StudyResults
 from rpscli.sweep.table import Indices
 
 Array = NDArray[np.float64]
@@ -75,58 +65,6 @@ def has_edges(axes: Axes, place: int, x: object, *edges: object) -> None:
     for edge in edges:
         points = np.column_stack([np.asarray(x, float), np.asarray(edge, float)])
         assert np.abs(corners[:, None] - points).sum(axis=2).min(axis=0).max() < 1e-9
-
-
-def test_results_over_the_direction() -> None:
-    way, shear = (
-        next(quantity for quantity in DEMANDS if quantity.name == name)
-        for name in ("max_cap_beam_displacement", "max_base_shear")
-    )
-    angles = np.array([0.0, 45.0, 90.0, 135.0])
-
-    def pair(values: Sequence[float], worst: float, angle: float) -> directions.Curve:
-        results = {
-            shear: directions.Worst(7.0, 0.0, 7.0, NAN),
-            way: directions.Worst(worst, angle, 0.2, 0.5),
-        }
-        return directions.Curve("pair", angles, np.array(values), results, 0, 0)
-
-    def spread(worst: float, rotd50: float, both: float) -> dict[Any, tuple[Array, ...]]:
-        medians = ((shear, 7.0, 7.0, NAN), (way, worst, rotd50, both))
-        return {q: tuple(np.array([0.5 * of, of, INF]) for of in each) for q, *each in medians}
-
-    one, two = pair([0.1, 0.4, 0.2, 0.3], 0.4, 45.0), pair([0.5, 0.5, INF, 0.6], INF, 90.0)
-    shown = (
-        directions.Panel((0.5,), [one, two], spread(0.4, 0.25, 0.5)),
-        directions.Panel((0,), [two], spread(INF, 0.55, NAN)),
-    )
-    figure = drawn(directions.directions_figure, (RHO,), way, shown)
-    labelled(figure, "angle from the first component [deg]", "cap beam displacement [m]")
-    first, second = (panels(figure)[name] for name in ("ρ = 0.5", "flat ends"))
-    wanted = (0.1, 0.4, 0.2, 0.3), (0.5, 0.5, NAN, 0.6)
-    pairs = [line for line in first.lines if line.get_label() == "pairs"]
-    for line, values in zip(pairs, wanted, strict=True):
-        same(line.get_data(), (angles, values))
-    same(curve(second, "pairs"), (angles, wanted[1]))
-    top = 1.08 * 0.6
-    for axes in (first, second):
-        same(curve(axes, "overturned"), ([90.0], [top]))
-        same([*axes.get_xlim(), *axes.get_ylim()], (-4.0, 199.0, 0.0, top))
-        assert "16 to 84 % of pairs" in figure.get_suptitle()
-    lines = (np.array(line.get_data()) for line in first.lines)
-    bands = [each for each in lines if each.shape == (2, 2) and np.ptp(each[0]) == 0.0]
-    for (x, y), at, low in zip(bands, (184.0, 189.0, 194.0), (0.2, 0.125, 0.25), strict=True):
-        same((x, y), ([at, at], [low, 2.0 * top]))
-    same(curve(first, "worst direction"), ([45.0], [0.4]))
-    levels = [f"{of}, median of pairs" for of in ("worst direction", "RotD50", "both components")]
-    is_level(first, levels[0], 0.4)
-    is_level(first, levels[1], 0.25)
-    is_level(first, levels[2], 0.5)
-    is_level(second, levels[1], 0.55)
-    shown_there = {line.get_label() for line in second.lines}
-    assert not {"worst direction", levels[0], levels[2]} & shown_there
-    assert set(legend(figure)) == {"pairs", "overturned", "worst direction", *levels}
-    assert "no median where half of the pairs overturned" in figure.get_suptitle()
 
 
 def fit_of(probabilities: Array) -> Lognormal:
@@ -200,16 +138,11 @@ def test_what_a_rate_comes_from() -> None:
 @pytest.fixture
 def compared() -> dict[str, Axes]:
     """A fragility and maxima beside what was observed, by the first line of their titles."""
-    grid = np.array([1.0, 2.0, 4.0])
     binned = [
         Observed(np.array(levels), [share(number, 4) for number in numbers])
         for levels, numbers in (((2.0, 5.0), (0, 4)), ((3.0, 8.0), (1, 3)))
     ]
-    curves = [
-        Curve(fit_of(np.array(probabilities)), each, grid)
-        for probabilities, each in zip(((0.2, 0.4, 0.8), (0.3, 0.5, 0.6)), binned, strict=True)
-    ]
-    outcomes = Outcomes(Agreement(1, 2, 1, 0, share(1, 4)), (), *curves)
+    outcomes = Outcomes(Agreement(1, 2, 1, 0, share(1, 4)), *binned)
     observed = np.array([[1.0, 1.0, 0.0, 0.0, NAN], [0.01, 0.02, 0.04, NAN, 0.03]])
     computed = np.array([[1.0, 0.0, 1.0, 1.0, NAN], [0.02, 0.01, INF, NAN, 0.03]])
     pairs = np.array([0, 1, 2, 3]), np.array([0, 1, 2, 4])
@@ -220,34 +153,20 @@ def compared() -> dict[str, Axes]:
         places = pairs[quantity]
         return 4 - places, observed[quantity, places], computed[quantity, places], 0
 
-    report = Comparison(cast("StudyResults", None), ComparisonOptions(confidence=0.9))
-    vars(report).update(
-        intensity=Intensity("PGA", "m/s2", None, np.array([1.0, 2.0, 3.0, 5.0, 8.0])),
-        systems=Grouping((ALPHA,), (), (), ()),
-        chosen_keys=(RHO,),
-        compared=[
-            Compared((0.1,), (0.5,), "fitted", OVERTURNED, outcomes, *of(0)),
-            Compared((0.1,), (0.5,), "held out", OVERTURNED, outcomes, *of(0)),
-            Compared((0.2,), (0,), "held out", "max_rotation", rotations, *of(1)),
-        ],
-    )
-    figure = drawn(comparison_figure, report)
-    assert "records: held out   |   bands: 90 %" in figure.get_suptitle()
-    return panels(figure)
+    intensity = Intensity("PGA", "m/s2", None, np.array([1.0, 2.0, 3.0, 5.0, 8.0]))
+    shown = [
+        Compared((0.1, 0.5), OVERTURNED, outcomes, *of(0)),
+        Compared((0.2, 0), "max_rotation", rotations, *of(1)),
+    ]
+    return panels(drawn(comparison_figure, (ALPHA, RHO), shown, intensity))
 
 
 def test_overturning_beside_what_was_observed(compared: dict[str, Axes]) -> None:
     title = "tan α = 0.1, ρ = 0.5\n25.0 % of 4 agree; overturned 3, observed 2"
     axes = compared[title]
-    assert (axes.get_xlabel(), axes.get_ylabel()) == ("PGA [m/s²]", "probability of overturning")
-    grid = (1.0, 2.0, 4.0)
-    for place, (label, wanted) in enumerate(
-        {"observed": np.array([0.2, 0.4, 0.8]), "computed": np.array([0.3, 0.5, 0.6])}.items()
-    ):
-        same(curve(axes, label), (grid, wanted))
-        has_edges(axes, place, grid, wanted - 0.1, wanted + 0.1)
-    same(axes.lines[1].get_data(), ((2.0, 5.0), (0.0, 1.0)))
-    same(axes.lines[3].get_data(), ((3.0, 8.0), (0.25, 0.75)))
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("PGA [m/s²]", "share that overturned")
+    same(curve(axes, "observed"), ((2.0, 5.0), (0.0, 1.0)))
+    same(curve(axes, "computed"), ((3.0, 8.0), (0.25, 0.75)))
     # The pairs are those of the last points first.
     same(curve(axes, "above: computed only (2)"), ((3.0, 2.0), (1.05, 1.05)))
     same(curve(axes, "below: observed only (1)"), ([5.0], [-0.05]))

@@ -37,7 +37,6 @@ HISTORIES = (
 reports:
   - overturning: {{title: overturning}}
   - rotation: {{title: rotation, panels: [{ALPHA}]}}
-  - contrast: {{title: contrast, reference: 0, panels: [{ALPHA}], rows: [record], columns: [scale]}}
   - demand: {{title: demand, panels: [{ALPHA}], series: [{RHO}]}}
   - storey_shear: {{title: storey_shear, panels: [{ALPHA}, {RHO}]}}
   - ida: {{title: ida}}
@@ -233,28 +232,6 @@ def test_rotations_against_the_reference(histories: Open) -> None:
     assert np.isnan(numbers(table, reference)).any()
     assert legend(figure) == [NAMES["critical"], NAMES["0.5"]]
     assert "open markers: overturned" in figure.get_suptitle()
-
-
-@needs_compiled_kernels
-def test_maps_of_changes(histories: Open) -> None:
-    figure, table = histories("contrast")
-    maps = [axes for axes in figure.axes if axes.images]
-    assert len(maps) == 3 * 2  # rotation, base shear and overturning; two slendernesses
-    ratios = ["ratio of rotation_ratio; median", "ratio of base_shear_ratio; median"]
-    for line, name in enumerate([*ratios, ""]):
-        for place, slenderness in enumerate(("0.1", "0.15")):
-            cells = [row for row in table if row[ALPHA] == slenderness]
-            if name:
-                wanted = numbers(cells, name)
-            else:
-                wanted = 1.0 + numbers(cells, "overturned_share")
-                wanted -= numbers(cells, "reference_overturned_share")
-            array = maps[2 * line + place].images[0].get_array()
-            assert array is not None
-            change: NDArray[np.float64] = np.ma.filled(array, np.nan)
-            same(1.0 + np.ravel(change) / 100.0, wanted)
-    assert len({row["record"] for row in table}) * len(SCALES) * 2 == len(table)
-    assert "0.5 over 0" in figure.get_suptitle() or "critical over 0" in figure.get_suptitle()
 
 
 @needs_compiled_kernels

@@ -8,17 +8,13 @@ import warnings
 from pathlib import Path
 
 import pytest
-from cycler import cycler
-from matplotlib.colors import to_hex, to_rgba_array
 from matplotlib.figure import Figure
 from PIL import Image
 
 from report.small_results import KINDS
 from rpscli.errors import UsageError
 from rpscli.report.figures import style
-from rpscli.report.figures.animation import history_film
-from rpscli.report.figures.film import FilmRequest
-from rpscli.report.figures.history import energy_figure, moment_figure, rotation_figure
+from rpscli.report.figures.history import rotation_figure
 from rpscli.report.figures.look import Look, figure_files, put_in_force, read_style
 
 
@@ -70,38 +66,6 @@ def test_a_style_file_goes_over_ours(tmp_path: Path, monkeypatch: pytest.MonkeyP
     assert 3.0 in {line.get_linewidth() for line in axes.lines}
 
 
-def test_colours_and_widths_of_a_style_file_take_the_place_of_ours(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    kept: list[Figure] = []
-    monkeypatch.setattr(Figure, "savefig", lambda figure, *_, **__: kept.append(figure))
-    file = tmp_path / "grey.mplstyle"
-    greys = ["#101010", "#808080"]
-    bare = [grey[1:] for grey in greys]
-    file.write_text(f"lines.linewidth: 2.2\naxes.prop_cycle: cycler(color={bare})\n")
-    result = KINDS["rolls"]()
-    for draw in (rotation_figure, energy_figure, moment_figure):
-        kept.clear()
-        for look in (Look(), Look(style=read_style(file))):
-            with put_in_force(look, "png"):
-                draw(result, "")
-        ours, theirs = kept
-        for before, after in zip(ours.axes, theirs.axes, strict=True):
-            for one, other in zip(before.lines, after.lines, strict=True):
-                assert other.get_linewidth() == pytest.approx(2.0 * one.get_linewidth())
-                known = str(one.get_color()) in style.PALETTE
-                wanted = one.get_color()
-                if known:
-                    wanted = greys[style.PALETTE.index(str(one.get_color())) % 2]
-                assert to_hex(other.get_color()) == to_hex(wanted)
-            for area, shown in zip(before.collections, after.collections, strict=True):
-                colour, found = (
-                    to_hex(to_rgba_array(of.get_facecolor())[0]) for of in (area, shown)
-                )
-                assert (colour.upper() in style.PALETTE) == (found in greys)
-                assert shown.get_alpha() == area.get_alpha()
-
-
 def test_text_of_svg_is_text_with_fonts_to_fall_back_on() -> None:
     found = drawn_as("svg", title="Six storeys").decode()
     assert ">Six storeys   |   " in found
@@ -146,6 +110,7 @@ def test_a_style_says_nothing_of_windows_and_little_of_other_files(tmp_path: Pat
         ("font.size: large as life\n", "font.size"),
         (None, "No such file"),
         (b"\xff\xfe\x00", "is not a text"),
+        ("axes.prop_cycle: cycler(color=['101010'])\n", "prop_cycle is gone: .* rpscli.figures"),
     ],
 )
 def test_a_style_file_that_says_nonsense_is_refused(
@@ -164,15 +129,3 @@ def test_letters_that_the_font_lacks_make_no_noise(capfd: pytest.CaptureFixture[
         warnings.simplefilter("error")
         assert drawn_as("png", title="地震 \x07 six storeys")
     assert capfd.readouterr() == ("", "")
-
-
-def test_films_have_the_colours_of_the_file_too() -> None:
-    look = Look(style={"axes.prop_cycle": cycler(color=["#AA0000", "#00AA00"])})
-    request = FilmRequest(Path("a.gif"), size=200, speed=4.0)
-    with (
-        put_in_force(look, "gif"),
-        Image.open(io.BytesIO(history_film(KINDS["rolls"](), "", request))) as film,
-    ):
-        shown = {colour for _, colour in film.convert("RGB").getcolors(1 << 16) or ()}
-    assert (0xAA, 0, 0) in shown
-    assert (0x00, 0x72, 0xB2) not in shown

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import runpy
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -383,3 +384,28 @@ def test_the_package_of_studies_has_the_public_names() -> None:
     assert rpscli.sweep.load_study is rpscli.load_study
     with pytest.raises(AttributeError, match="no attribute 'lode_study'"):
         _ = rpscli.sweep.lode_study
+
+
+def test_changes_of_the_impact_law_are_mapped(tmp_path: Path) -> None:
+    """By a script beside the study: the median of what stood twice, and who overturned."""
+    variables = runpy.run_path(str(ROOT / "cases/studies/impact_law/changes.py"))
+    heads = [variables[name] for name in ("ENDS", "STOREYS", "PERIOD", "SLENDERNESS", "MASSES")]
+    heads += [variables["LAW"], "outcome [-]", *variables["RESULTS"]]
+    rows = [
+        ["0.5", "3", "0.3", "0.1", "3", law, outcome, str(rotation), "2"]
+        for law, rotations in {"flexible": (1.0, 2.0, 4.0), "rigid": (1.5, 4.0, 4.0)}.items()
+        for rotation, outcome in zip(
+            rotations, ("survived", "survived", f"{law} stood"), strict=True
+        )
+    ]
+    rows[-1][6] = "overturned_rocking"
+    (tmp_path / "points.csv").write_text("\n".join(",".join(row) for row in [heads, *rows]) + "\n")
+    variables["main"](tmp_path)
+    assert (tmp_path / "changes.png").is_file()
+    pairs = [
+        ((row[6].startswith("over"), {n: float(row[7 + i]) for i, n in enumerate(heads[7:])}))
+        for row in rows
+    ]
+    assert variables["changes"](list(zip(pairs[:3], pairs[3:], strict=True))) == [
+        75.0, 0.0, pytest.approx(100.0 / 3.0)
+    ]  # fmt: skip

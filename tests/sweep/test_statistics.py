@@ -9,9 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
-from scipy.stats import beta
 
-from rpscli.report.study.against import ContrastOptions, RotationOptions, contrast, rotation
+from rpscli.report.study.against import RotationOptions, rotation
 from rpscli.report.study.heights import StoreyShearOptions, storey_shear, unlike_buildings
 from rpscli.report.study.ida import IdaOptions, ida
 from rpscli.report.study.lines import LinesOptions, lines
@@ -188,56 +187,6 @@ def test_rotations_are_paired_point_by_point(study_of: Make) -> None:
     assert math.isinf(found["reference_rotation_over_alpha"][-1])
     other = cells(rotation(results, RotationOptions(reference=0.5, panels=(ALPHA,))))
     assert set(other[RHO]) == {"critical", 0}
-
-
-def test_contrasts_are_medians_over_the_motions(study_of: Make) -> None:
-    """Cells of the flat ends over rho = 0.5: what stood on both sides, the rest as shares."""
-    layout = lay_out(study_of())
-
-    def answer(number: int) -> Stored:
-        at = place(layout, number)
-        flat = at[RHO] == 0
-        if flat and at["record"] == 3 and at["scale"] == 1.0:
-            return stored("overturned_rocking", max_rotation=9.0)
-        if at["record"] == 2 and at["scale"] == 0.5 and at[ALPHA] == 0.10:
-            return Stored("failed", "why", {})
-        size = (2.0 + float(str(at["record"]))) if flat else 2.0
-        return stored("survived", rotation_ratio=size, base_shear_ratio=3.0 if flat else 4.0)
-
-    options = ContrastOptions(
-        key=RHO, reference=0.5, value=0, panels=(ALPHA,), rows=(ALPHA,), columns=("scale",)
-    )
-    results = results_of(table_of(study_of, answer))
-    found = cells(contrast(results, options))
-    assert found["pairs"] == [2, 3, 3, 3]
-    assert found["failed"] == [1, 0, 0, 0]
-    assert found["ratio of rotation_ratio; pairs"] == [2, 2, 3, 2]
-    # 3, 4 and 5 over 2; of two the median is the first, as in all statistics.
-    assert found["ratio of rotation_ratio; median"] == [1.5, 1.5, 2.0, 1.5]
-    assert found["ratio of base_shear_ratio; median"] == [0.75] * 4
-    assert found["overturned"] == [0, 1, 0, 1]
-    assert found["overturned_share"] == [0.0, 1 / 3, 0.0, 1 / 3]
-    low, high = (found[f"overturned_{end}"][1] for end in ("low", "high"))
-    assert (low, high) == pytest.approx((beta.ppf(0.025, 1, 3), beta.ppf(0.975, 2, 2)))
-    assert found["reference_overturned"] == [0] * 4
-    assert "2 of 11 pairs have none" in contrast(results, options).notes[0]
-
-
-def test_contrasts_keep_intensities_apart(study_of: Make) -> None:
-    """Pooled, half of the flat ends would overturn where none and all do."""
-    layout = lay_out(study_of())
-
-    def answer(number: int) -> Stored:
-        at = place(layout, number)
-        falls = at[RHO] == 0.5 and at["scale"] == 1.0
-        return stored("overturned_rocking" if falls else "survived", rotation_ratio=1.0)
-
-    results = results_of(table_of(study_of, answer))
-    found = cells(contrast(results, ContrastOptions(rows=(ALPHA,), columns=(RHO,), key=RHO)))
-    assert found["scale"] == [0.5, 0.5, 1.0, 1.0]
-    assert found["overturned_share"] == [0.0, 0.0, 1.0, 1.0]
-    pooled = contrast(results, ContrastOptions(rows=(ALPHA,), columns=("record",), panels=()))
-    assert "pools 2 intensities" in pooled.notes[0]
 
 
 def test_demand_takes_what_lifted_off_and_stood(study_of: Make) -> None:

@@ -97,7 +97,20 @@ def sampled(distribution: str) -> tuple[str, str]:
             f"reports: [xyzzy]\n{SCALE}",
             ("'xyzzy' is not a report", "known are", "fragility"),
         ),
-        (SCALE, f"reports: [demand_sample]\n{SCALE}", ("demand_sample' is gone: points.csv has",)),
+        *(
+            (SCALE, f"reports: [{name}]\n{SCALE}", (f"{name}' is gone: ", use))
+            for name, use in {
+                "demand_sample": "points.csv has",
+                "directions": "?both act together",
+                "contrast": "table: {rows: ..., columns: ..., statistic: median}",
+                "efficiency": "`fragility: {measure: ...}` for each measure",
+            }.items()
+        ),
+        (
+            SCALE,
+            f"reports: [comparison: {{fit: {{share: 0.5}}}}]\n{SCALE}",
+            ("reports.0.comparison.fit is gone: ", "choose one by them", "remove the key"),
+        ),
         (SCALE, f"reports: [{'x' * 5000}]\n{SCALE}", ("= 'xxx", "... is not a report; known are")),
         (
             SCALE,

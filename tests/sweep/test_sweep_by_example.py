@@ -10,14 +10,7 @@ from rpscli.sweep.points.layout import yaml_scalar
 from rpscli.sweep.points_csv import _cell, array
 from rpscli.sweep.statistics.fractiles import clustered, fractiles, share, shown_by
 from rpscli.sweep.statistics.grouping import statistic_words
-from rpscli.sweep.statistics.observations import (
-    Worth,
-    agreement,
-    best_place,
-    maxima,
-    outcome_worth,
-    threshold,
-)
+from rpscli.sweep.statistics.observations import agreement, maxima
 
 
 def test_evaluation_results() -> None:
@@ -78,14 +71,9 @@ def test_statistics_grouping() -> None:
 
 
 def test_statistics_observations() -> None:
-    assert (
-        best_place([Worth(0.10, 0.06, 0.03), Worth(0.12, 0.01, 0.03), Worth(0.15, 0.0, 0.03)]) == 1
-    )
     assert agreement(np.array([True, True, False]), np.array([True, False, False]), np.arange(3))[
         :4
     ] == (1, 1, 0, 1)
-    im = np.array([1.0, 2.0, 4.0, 8.0])
-    assert round(threshold(im, np.array([False, False, True, True])), 3) == 2.828
     found = maxima(np.array([2.0, 8.0, np.inf]), np.array([1.0, 1.0, 1.0]))
     assert (found.counted, found.overturned, round(found.median, 6), found.distance) == (
         2,
@@ -93,9 +81,6 @@ def test_statistics_observations() -> None:
         2.0,
         1.0,
     )
-    even = np.array([True, True, False, False])
-    worth = outcome_worth(even, np.array([True, False, False, False]))
-    assert worth == Worth(misfit=0.25, count_off=0.25, error=0.21650635094610965)
 
 
 def test_points_csv_columns() -> None:

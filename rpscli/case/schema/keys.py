@@ -118,13 +118,16 @@ REMOVED = {
     " (was: limit); remove the key",
     "analysis.overturning_rotation": "use overturning_displacement, where the cap beam is at this"
     " rotation, or from theta_cr on overturning_limit, the rotation over theta_cr",
+    "reports.comparison.fit": "the report counts outcomes of every system; choose one by them, and"
+    " judge it by a study of other records; remove the key",
 }
 """Keys of earlier versions, and what to do without them."""
 
 
 def unknown_key(model: type[BaseModel], path: Path) -> tuple[Fault, Path | None]:
     """The fault of an unknown key, and the known key it was taken for."""
-    if now := REMOVED.get(dotted(path)):
+    named = dotted(tuple(part for part in path if isinstance(part, str)))
+    if now := REMOVED.get(named):
         return Fault(path, f"{dotted(path)} is gone: {now}", at_key=True), None
     suggestion = suggestion_for(model, path)
     siblings = fields_of(section_at(model, path[:-1]) or model)

@@ -307,6 +307,12 @@ class StudyFile(StudyParts):
 
 
 GONE = {
+    "contrast": "`table: {rows: ..., columns: ..., statistic: median}` has the medians of each"
+    " system, and points.csv every history; use these",
+    "directions": "pairs with ?both act together, and points.csv has every angle; remove the"
+    " report",
+    "efficiency": "the beta of a fragility is the scatter by its measure; use `fragility:"
+    " {measure: ...}` for each measure",
     "demand_sample": "points.csv has the demands of every history; remove the report",
 }
 """Reports of earlier versions, and what to use in their place."""

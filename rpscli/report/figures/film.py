@@ -104,7 +104,6 @@ def film(
         canvas: Any = FigureCanvasAgg(figure)
         motion = draw(figure)
         motion.show(0)
-        style.restyle(figure)
         frames = _frames(canvas, motion, progress)
         return _mp4(frames, wanted.rate) if wanted.ending == ".mp4" else _gif(frames, wanted.rate)
 
@@ -145,7 +144,7 @@ def _palette() -> Image:
     from matplotlib.colors import to_rgb
     from PIL import Image as Pillow
 
-    inks = np.array([to_rgb(ink) for ink in (style.BLACK, *style.own_colours()[:2])])
+    inks = np.array([to_rgb(ink) for ink in (style.BLACK, style.BLUE, style.RED)])
     steps = np.linspace(0.0, 1.0, 32)[:, None, None]
     colours = np.rint(255.0 * (inks + steps * (1.0 - inks))).astype(int)
     image = Pillow.new("P", (1, 1))

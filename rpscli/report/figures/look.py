@@ -156,6 +156,11 @@ def read_style(path: Path) -> dict[str, Any]:
         first = re.sub(rf"{tail}(?<=^Bad key .{{20}}).*(?= in file)", "", texts[0])
         more = f" (and {len(texts) - 1} more)" if len(texts) > 1 else ""
         raise UsageError(f"--style {path}: {first[:200]}{more}")
+    if "axes.prop_cycle" in found:
+        raise UsageError(
+            f"--style {path}: axes.prop_cycle is gone: colours are the program's own, and stand for"
+            " things; remove the line, or draw into axes of yours with rpscli.figures"
+        )
     # Which window figures are shown in is no matter of style: matplotlib would say so each time.
     return {key: value for key, value in found.items() if key not in NO_STYLE}
 

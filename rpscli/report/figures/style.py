@@ -9,7 +9,6 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
-from itertools import cycle, islice
 from pathlib import Path
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias, TypeVar, cast
@@ -38,8 +37,6 @@ ORANGE = "#E69F00"
 SKY = "#56B4E9"
 PINK = "#CC79A7"
 GREY = "#7F7F7F"
-PALETTE = (BLUE, RED, GREEN, ORANGE, PINK, SKY)
-"""What colours of a style file take the place of, in this order."""
 
 ROLLING_SHADE = "#DCEBF7"
 ROCKING_SHADE = "#FBE3D0"
@@ -104,7 +101,6 @@ def picture(
         if kept is not None:
             kept.target = figure
             return b""
-        restyle(figure)
         if (engine := figure.get_layout_engine()) is not None:
             # Once, and no more: matplotlib would do it in a trial drawing, and again in the real
             # one, which takes twice as long.
@@ -215,61 +211,8 @@ def in_style() -> Iterator[None]:
     import matplotlib.style
 
     # "default" first: a user's own matplotlibrc must not change what a report looks like.
-    # Widths of lines keep their relations: they follow the user's once all is drawn.
-    widths = {"lines.linewidth": STYLE["lines.linewidth"]}
-    with matplotlib.style.context(["default", STYLE, in_force().look.settings, widths]):
+    with matplotlib.style.context(["default", STYLE, in_force().look.settings]):
         yield
-
-
-PARTS = ("color", "facecolor", "edgecolor", "markerfacecolor", "markeredgecolor")
-
-
-def own_colours() -> list[str]:
-    """Ours, or those of the style file in their place, one by one, and so again."""
-    cycler = in_force().look.style.get("axes.prop_cycle")
-    theirs = cycler.by_key().get("color") if cycler else None
-    return list(islice(cycle(theirs or PALETTE), len(PALETTE)))
-
-
-def restyle(figure: Figure) -> None:
-    """Put colours and widths of the style file in the place of ours."""
-    from matplotlib.colors import to_rgba, to_rgba_array
-
-    # Lines keep their widths relative to each other.
-    ours, settings = STYLE["lines.linewidth"], in_force().look.style
-    wider = float(settings.get("lines.linewidth", ours)) / ours
-    pairs = zip(PALETTE, own_colours(), strict=True)
-    swap = {to_rgba(our)[:3]: to_rgba(own) for our, own in pairs if our != own}
-    if not swap and wider == 1.0:
-        return
-    for artist in _artists(figure):
-        for part in PARTS if swap else ():
-            if not hasattr(artist, f"set_{part}") or not hasattr(artist, f"get_{part}"):
-                continue
-            rows = to_rgba_array(getattr(artist, f"get_{part}")())
-            new = [(*swap.get(tuple(row[:3]), tuple(row))[:3], row[3]) for row in rows.tolist()]
-            if new != [tuple(row) for row in rows.tolist()]:
-                getattr(artist, f"set_{part}")(new if len(new) > 1 else new[0])
-        if hasattr(artist, "set_linewidth"):
-            artist.set_linewidth(_times(wider, artist.get_linewidth()))
-
-
-def _artists(figure: Figure) -> Iterator[Any]:
-    """What shows data, and its legends."""
-    from matplotlib.axes import Axes
-    from matplotlib.legend import Legend
-
-    for axes in figure.findobj(Axes):
-        assert isinstance(axes, Axes)
-        yield from (*axes.lines, *axes.patches, *axes.collections, *axes.texts)
-    for legend in figure.findobj(Legend):
-        assert isinstance(legend, Legend)
-        yield from legend.legend_handles
-
-
-def _times(factor: float, widths: Any) -> Any:
-    """One width or several, times a factor."""
-    return factor * widths if isinstance(widths, float | int) else [factor * w for w in widths]
 
 
 @contextmanager

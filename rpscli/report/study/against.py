@@ -1,38 +1,26 @@
-"""Systems against a reference that differs in one key alone, record by record.
-
-`rotation` draws every pair (paper, Figure 7); `contrast` maps the ratios of results.
-"""
+"""Largest rotations of systems against those of a reference, record by record (paper, Figure 7)."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import Any, Literal, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from pydantic import Field
 
-from rpscli.analyses.result_quantities import DEMANDS
 from rpscli.case.study.axes import Axis
 from rpscli.case.study.reports import ReportOptions, ReportRequest, VariedKey, VariedKeys
 from rpscli.case.text.document import Document, Fault, Path, dotted, shown
 from rpscli.errors import listed
 from rpscli.report.figures import style
-from rpscli.report.study.labels import Values, axis_label, keyed, label, labels, plain
+from rpscli.report.study.labels import keyed, label
 from rpscli.report.study.panels import colour, in_panels, marker, noted
-from rpscli.report.study.report import DemandName, Found, Report, without_uplift
-from rpscli.report.study.statistics import share_columns
+from rpscli.report.study.report import Found, Report, without_uplift
 from rpscli.report.table import Column
 from rpscli.sweep.points.layout import described
-from rpscli.sweep.statistics.fractiles import Share, fractiles
 from rpscli.sweep.statistics.grouping import INTENSITY, Histories, grouping, own_keys
 from rpscli.sweep.study_results import StudyResults
 from rpscli.sweep.table import Array, Group, Indices, Table, groups, leading_keys
-
-FRACTILES = {"16 %": 0.16, "median": 0.50, "84 %": 0.84}
-SCALES = (2.0, 5.0, 10.0, 20.0, 30.0)
-"""Changes at which the colours may end [%]."""
-FEW_COLUMNS, LONG_NAME, MOST_LETTERS = 4, 10, 14
-"""Columns of a map, whose names have room side by side; letters that have none, and the most."""
 
 
 class RotationOptions(ReportOptions):
@@ -43,17 +31,6 @@ class RotationOptions(ReportOptions):
     reference: Any = Field(None, description="its value on the horizontal axis; the last one")
     panels: VariedKeys | None = None
     """varied keys, one panel for each value; each intensity by default"""
-
-
-class ContrastOptions(RotationOptions):
-    """How far results change with one key: median over the motions, in a map of other keys."""
-
-    reference: Any = Field(None, description="the key's value that is compared with; the first one")
-    value: Any = Field(None, description="the key's value that is compared; the first other one")
-    rows: VariedKeys = Field(description="varied keys down each map")
-    columns: VariedKeys = Field(description="varied keys across each map")
-    results: tuple[DemandName, ...] = ("rotation_ratio", "base_shear_ratio")
-    """results of which ratios are formed"""
 
 
 class Pairs(NamedTuple):
@@ -156,150 +133,10 @@ def _pair_columns(
     return keyed(names, dict.fromkeys(heads, "-"), rows)
 
 
-def contrast(study: StudyResults, options: ContrastOptions) -> Found:
-    """Ratios of results record by record, where both stood, and shares of what overturned."""
-    table, layout = study.table, study.table.layout
-    key = options.key or leading_keys(layout)[-1]
-    systems = groups(layout, [key])
-    values = [system.values[0] for system in systems]
-    reference = systems[0 if options.reference is None else values.index(options.reference)]
-    system = next(
-        each
-        for each in systems
-        if (each is not reference if options.value is None else each.values[0] == options.value)
-    )
-    inner = (*options.rows, *options.columns)
-    panels = options.panels
-    if panels is None:
-        panels = own_keys(layout, (*leading_keys(layout), *inner))
-    found = grouping(table, (*panels, *inner), (key,), reference.points)
-    cells = [
-        _cell(options, group, pairs_of(table, reference, system, group.every))
-        for group in found.groups
-    ]
-    columns = keyed(
-        found.keys, {"pairs": "-", "failed": "-"},
-        [(cell.values, cell.pairs, cell.failed) for cell in cells],
-    )  # fmt: skip
-    for place, name in enumerate(options.results):
-        for row, fractile in enumerate(FRACTILES):
-            ratios = [float(cell.ratios[place, row]) for cell in cells]
-            columns.append(Column(f"ratio of {name}; {fractile}", "-", ratios))
-        behind = [cell.behind[place] for cell in cells]
-        columns.append(Column(f"ratio of {name}; pairs", "-", behind))
-    for place, name in enumerate(("overturned", "reference_overturned")):
-        columns += share_columns(name, [cell.overturned[place] for cell in cells])
-    about = f"{plain(system.values[0])} over {plain(reference.values[0])}, median over the motions"
-    counts = sorted({cell.pairs for cell in cells})
-    counted = f"{' to '.join(map(str, dict.fromkeys((counts[0], counts[-1]))))} pairs in each cell"
-    note = noted(found, failed=sum(cell.failed for cell in cells))
-    return Found(
-        {"": columns},
-        lambda title: _maps(options, found.keys, cells, [title, about, counted, note]),
-        [*found.notes, *_left_out_of_ratios(cells)],
-    )
-
-
-class Contrast(NamedTuple):
-    """One cell of the map: pairs that were computed, and how many were not.
-
-    `ratios` (results, 3) are fractiles of the result over that of the reference, of the `behind`
-    (results,) pairs of which both stood; NaN without any. `overturned` are the shares of both.
-    """
-
-    values: tuple[object, ...]
-    pairs: int
-    failed: int
-    ratios: Array
-    behind: list[int]
-    overturned: tuple[Share, Share]
-
-
-def _cell(options: ContrastOptions, group: Histories, pairs: Pairs) -> Contrast:
-    """Of points of the reference, each with that of the system that is compared."""
-    table, theirs, ours = group.table, pairs.points, pairs.references
-    stood = ~(table.overturned[ours] | table.overturned[theirs])
-    ratios, behind = [], []
-    for name in options.results:
-        ours_, theirs_ = (table.columns[name][side[stood]] for side in (ours, theirs))
-        ratio = ours_[theirs_ > 0.0] / theirs_[theirs_ > 0.0]
-        ratios.append(fractiles(ratio, list(FRACTILES.values())))
-        behind.append(int((~np.isnan(ratio)).sum()))
-    both = Histories(table, (), ours).overturned, Histories(table, (), theirs).overturned
-    return Contrast(group.values, len(ours), pairs.failed, np.array(ratios), behind, both)
-
-
-def _left_out_of_ratios(cells: Sequence[Contrast]) -> Iterator[str]:
-    """Pairs without a ratio: a history overturned, or that of the reference has nothing."""
-    pairs = sum(cell.pairs for cell in cells)
-    without = pairs - sum(min(cell.behind, default=cell.pairs) for cell in cells)
-    if without:
-        yield (
-            "ratios are those of pairs in which both stood and the reference is not 0:"
-            f" {without} of {pairs} pairs have none; the shares that overturned are of all pairs"
-        )
-
-
-def _maps(
-    options: ContrastOptions, keys: Sequence[str], cells: Sequence[Contrast], words: Sequence[str]
-) -> bytes:
-    """One map a result and group of systems; the last row of maps is overturning."""
-    down = len(keys) - len(options.columns)
-    ahead = down - len(options.rows)
-    panels, rows, columns = (
-        list(dict.fromkeys(cell.values[part] for cell in cells))
-        for part in (slice(ahead), slice(ahead, down), slice(down, None))
-    )
-    named = {quantity.name: quantity.label for quantity in DEMANDS}
-    names = [*(named[name] for name in options.results), "overturned, of 100"]
-    changes = np.full((len(names), len(panels), len(rows), len(columns)), np.nan)
-    for cell in cells:
-        at = cell.values
-        place = panels.index(at[:ahead]), rows.index(at[ahead:down]), columns.index(at[down:])
-        overturned, reference = (share.fraction or 0.0 for share in cell.overturned)
-        fallen = overturned - reference if cell.pairs else np.nan
-        changes[:, *place] = 100.0 * np.append(cell.ratios[:, 1] - 1.0, fallen)
-    largest = np.nanmax(np.abs(changes), initial=0.0)
-    strongest = next((end for end in SCALES if end >= largest), SCALES[-1])
-    ends: Literal["both", "neither"] = "both" if largest > strongest else "neither"
-
-    def draw(figure: style.Figure) -> None:
-        style.heading(figure, *words)
-        grid = figure.subplots(len(names), len(panels), squeeze=False, sharex=True, sharey=True)
-        for (line, place), axes in np.ndenumerate(grid):
-            image = axes.imshow(
-                changes[line, place], cmap="RdBu_r", vmin=-strongest, vmax=strongest, aspect="auto"
-            )
-            axes.grid(visible=False)
-            axes.tick_params(length=0)
-            if line == 0:
-                axes.set_title(labels(keys[:ahead], panels[place]))
-            if place == 0:
-                axes.set_ylabel(f"{names[line]}\n{', '.join(map(axis_label, keys[ahead:down]))}")
-        small = style.small()
-        ticks = list(map(_ticked, columns))
-        longest = max(map(len, ticks))
-        turned = 90 if len(columns) > FEW_COLUMNS or longest > LONG_NAME else 0
-        for axes in grid[:, 0]:
-            axes.set_yticks(range(len(rows)), list(map(_ticked, rows)), fontsize=small)
-        for axes in grid[-1]:
-            axes.set_xticks(range(len(columns)), ticks, fontsize=small, rotation=turned)
-            axes.set_xlabel(", ".join(map(axis_label, keys[down:])))
-        figure.colorbar(image, ax=grid, label="change [%]", shrink=0.6, extend=ends)
-
-    return style.picture(draw, 1.0 + len(names) * max(1.4, 0.12 * len(rows)))
-
-
-def _ticked(values: Values) -> str:
-    """Values beside a map; of long names, such as those of records, the end, where they differ."""
-    text = ", ".join(plain(value) for value in values)
-    return text if len(text) <= MOST_LETTERS else f"…{text[-MOST_LETTERS:]}"
-
-
 def unknown_reference(
     _document: Document, axes: Sequence[Axis], request: ReportRequest
 ) -> Iterator[Fault]:
-    """A reference or a value that its key does not take, or no key at all."""
+    """A reference that its key does not take, or no key at all."""
     options = request.options
     assert isinstance(options, RotationOptions), "requests have the options of their kind"
     axis = axes[-1] if axes else None
@@ -318,14 +155,10 @@ def unknown_reference(
             f"the report {request.kind} compares systems, but {axis.keys[place]} has one value;"
             " give it another one, or the report another `key`",
         )
-    for option in ("reference", "value"):
-        if (given := getattr(options, option, None)) is not None and given not in values:
-            path: Path = (*request.path, request.kind, option)
-            text = f"{dotted(path)} = {shown(given)} is not a value of {axis.keys[place]}"
-            yield Fault(path, f"{text}, which takes {listed(map(shown, values), 'and')}")
+    if options.reference is not None and options.reference not in values:
+        path: Path = (*request.path, request.kind, "reference")
+        text = f"{dotted(path)} = {shown(options.reference)} is not a value of {axis.keys[place]}"
+        yield Fault(path, f"{text}, which takes {listed(map(shown, values), 'and')}")
 
 
-ROTATION = Report(RotationOptions, rotation, check=unknown_reference, requires=without_uplift)
-CONTRAST = Report(
-    ContrastOptions, contrast, check=unknown_reference, results=lambda options: options.results
-)
+REPORT = Report(RotationOptions, rotation, check=unknown_reference, requires=without_uplift)

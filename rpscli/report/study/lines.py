@@ -299,7 +299,7 @@ def unknown_results(
     for option, name in named:
         if quantity(analysis, name) is None:
             path: Path = (*request.path, request.kind, option)
-            meant = hint(name, KNOWN[analysis], "`rps schema results` has all names")
+            meant = hint(name, KNOWN[analysis], f"`rps {analysis} CASE --json` has all names")
             text = f"{dotted(path)} = {name} is not a result of {analysis}"
             yield Fault(path, f"{text}{' and does not vary' * (option == 'x')}; {meant}")
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import PurePath
 from typing import NamedTuple
@@ -137,46 +137,11 @@ class Maxima:
     distance: float
 
 
-class Worth(NamedTuple):
-    """What a fit makes small: the misfit with its standard error, then what is off in the count."""
-
-    misfit: float
-    count_off: float
-    error: float
-
-
-def outcome_worth(computed: Flags, observed: Flags) -> Worth:
-    """Worth of computed outcomes beside observed ones."""
-    misfit = float(np.mean(computed != observed))
-    error = math.sqrt(misfit * (1.0 - misfit) / len(observed))
-    return Worth(misfit, abs(float(computed.mean() - observed.mean())), error)
-
-
-def best_place(worths: Sequence[Worth]) -> int:
-    """Which worth a fit takes: the best count among those the misfit does not tell apart."""
-    # Up to one standard error above the least (Breiman et al., Classification and Regression Trees,
-    # 1984): the least alone follows chance. Of equals the middle, which more data moves least.
-    least = min(worths)
-    near = [worth for worth in worths if worth.misfit <= least.misfit + least.error]
-    best = min(near, key=lambda worth: (worth.count_off, worth.misfit))
-    places = [place for place, worth in enumerate(worths) if worth == best]
-    return places[(len(places) - 1) // 2]
-
-
 def agreement(computed: Flags, observed: Flags, cluster: Indices) -> Agreement:
     """Count the four pairs of outcomes, of clusters as `clustered` takes them."""
     cells = (computed & observed, computed & ~observed, ~computed & observed, ~computed & ~observed)
     a, b, c, d = (int(cell.sum()) for cell in cells)
     return Agreement(a, b, c, d, clustered(computed == observed, cluster))
-
-
-def threshold(intensity: Array, observed: Flags) -> float:
-    """The intensity beyond which all is taken to overturn, chosen as `best_place` says."""
-    # It lies midway (geometrically) between two data, or is the least or twice the largest of them.
-    levels = np.unique(intensity)
-    cuts = np.array([levels[0], *np.sqrt(levels[1:] * levels[:-1]), 2.0 * levels[-1]])
-    worths = [outcome_worth(intensity >= cut, observed) for cut in cuts]
-    return float(cuts[best_place(worths)])
 
 
 def maxima(computed: Array, observed: Array) -> Maxima:
