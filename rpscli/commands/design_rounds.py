@@ -13,10 +13,11 @@ from rpscli.case.overrides import apply_overrides
 from rpscli.case.rules.plausibility import RESTITUTION
 from rpscli.case.study.study import Study as CheckedStudy
 from rpscli.commands.shell.terminal import Terminal
-from rpscli.commands.study import SweepChoices, compute, of_first_system
+from rpscli.commands.study import SweepChoices, compute
 from rpscli.errors import LimitExceeded, RpsError, StudyIncomplete
 from rpscli.report.design import requirement_label
 from rpscli.report.study.labels import axis_label, label, symbol
+from rpscli.report.study.shown import of_first_system
 from rpscli.report.study.statistics import VERDICT, verdict_lines, verdict_texts
 from rpscli.report.table import Heading, Part, Table, large, measured, shown
 from rpscli.studies import Study

@@ -14,11 +14,8 @@ from rpscli.commands.shell.options import CaseRequest, OutputRequest
 from rpscli.commands.shell.terminal import Terminal, concluded
 from rpscli.commands.study import (
     SweepChoices,
-    of_first_system,
     stored_study,
     study_heading,
-    summary_tables,
-    verdict_table,
 )
 from rpscli.errors import RecordError
 from rpscli.records.ground_motion import GroundMotion
@@ -34,6 +31,7 @@ from rpscli.report.html.case_page import (
 )
 from rpscli.report.html.page import Block, Picture, Section, page_look, pictures
 from rpscli.report.study.labels import label
+from rpscli.report.study.shown import cut, of_first_system, summary_tables, verdict_table
 from rpscli.report.table import Heading, Table
 from rpscli.studies import Study
 from rpscli.study_run import Collected, StudyRun
@@ -89,7 +87,8 @@ def _sections(
     results = [Section("Figures", drawn)]
     if run.summary:
         statistics = Section(
-            "Statistics", [*summary_tables(run.summary), of_first_system(run.layout), *found.parts]
+            "Statistics",
+            [*cut([*summary_tables(run.summary), of_first_system(run.layout), *found.parts])],
         )
         results = [motions_section(*motions_of(study), study.title, look), statistics, *results]
     which = []
@@ -120,7 +119,7 @@ def _in_short(run: StudyRun, found: Collected, notes: Sequence[str]) -> Iterator
     if run.summary is not None and run.verdicts:
         what = f"{len(run.verdicts)} limits of a system at an intensity"
         yield verdicts_in_short(run.verdicts, what)
-        yield verdict_table(run.summary, run.verdicts)
+        yield from cut([verdict_table(run.summary, run.verdicts)])
     elif run.summary is not None:
         yield "No limits were set."
     texts = [*notes, *(str(error) for error in found.broken)]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -23,16 +23,13 @@ from rpscli.commands.shell.waiting import (
 from rpscli.errors import Refused, UsageError
 from rpscli.report.documents import failure_document, heading
 from rpscli.report.figures.look import Look
-from rpscli.report.table import Heading, Part, Table, headed, large, shown
+from rpscli.report.table import Heading, Part, Table
 
 if TYPE_CHECKING:
     from rpscli.studies import Study
     from rpscli.study_run import Collected, StudyRun
     from rpscli.sweep.points.layout import StudyPoints
     from rpscli.sweep.run.runner import Finish
-    from rpscli.sweep.statistics.fractiles import Spread
-    from rpscli.sweep.statistics.summary import Summary
-    from rpscli.sweep.statistics.verdicts import Verdict
 
 
 POINTS_SHOWN = 3
@@ -214,89 +211,3 @@ def _dry_run_tables(document: dict[str, Any], points: Iterable[dict[str, Any]]) 
         varied = (label(key, value) for key, value in point.items() if key != "point")
         rows.append((f"point {point['point']}", ", ".join(varied)))
     yield Table.listing(rows)
-
-
-MOST_ROWS = 40
-"""The CSV files have them all."""
-DIGITS = 3
-A_TABLE = 3
-"""Quantities side by side in a table that fits a page."""
-
-
-def summary_tables(summary: Summary) -> Iterator[Part]:
-    """Outcomes; then median, 84 % fractile and largest value of the main demands."""
-    rows = summary.rows[:MOST_ROWS]
-    systems = [row.values for row in rows]
-    outcomes = []
-    behind = [row.overturned.by for row in rows if row.overturned.behind][:1]
-    for row in rows:
-        over = row.overturned
-        counts = [over.of, *[over.recordings] * len(behind), row.failed, over.number]
-        outcomes.append([*map(str, counts), over.interval])
-    heads = ["counted", *behind, "failed", "overturned", "95 % interval"]
-    yield _of_systems(summary, systems, heads, outcomes)
-    main = [place for place, quantity in enumerate(summary.quantities) if quantity.demand]
-    for first in range(0, len(main), A_TABLE):
-        places = main[first : first + A_TABLE]
-        quantities = [summary.quantities[place] for place in places]
-        named = [headed(quantity.label, quantity.unit) for quantity in quantities]
-        spreads = [
-            [_spread(row.spreads[place], summary.quantities[place].unit) for place in places]
-            for row in rows
-        ]
-        yield _of_systems(summary, systems, named, spreads)
-    yield (
-        "demands: median / 84 % fractile / largest; an overturned history is larger than any"
-        " demand (inf)"
-    )
-    if summary.pooled:
-        yield f"each row is over all records and {' and '.join(summary.pooled)}"
-    if len(summary.rows) > len(rows):
-        yield f"the first {len(rows)} of {len(summary.rows)} rows; all are in statistics.csv"
-
-
-def of_first_system(layout: StudyPoints) -> str:
-    """Overturning and restitution of the first system, others differ; limits that do not count."""
-    from rpscli.report.tables.timehistory import overturned_text, restitution_text
-
-    first = layout.system(0)
-    text = overturned_text(first.structure, first.settings)
-    text = f"{text}; {restitution_text(first.structure)}"
-    text += " (the first system)" * (len(layout.combinations) > 1)
-    of_base = layout.plan.base.get("limits") if layout.study.file.limits else None
-    replaced = "" if not of_base else f"; own limits replace all of the base: {', '.join(of_base)}"
-    return text + replaced
-
-
-def _of_systems(
-    summary: Summary,
-    systems: Iterable[tuple[object, ...]],
-    heads: Sequence[str],
-    cells: Iterable[Sequence[str]],
-    *,
-    words: int = 0,
-    keys: int = 0,
-) -> Table:
-    """A table whose rows begin with a system and an intensity."""
-    from rpscli.report.study.labels import key_cells, key_columns, symbol
-
-    columns = key_columns(summary.keys, list(systems))
-    named = [key_cells(column, symbol(column.name)) for column in columns]
-    rows = [[*(texts[place] for _, texts in named), *others] for place, others in enumerate(cells)]
-    own = [head for head, _ in named]
-    return Table.of_texts([*own, *heads], rows, words=len(own) + words, keys=len(own) + keys)
-
-
-def _spread(spread: Spread, unit: str) -> str:
-    values = [large(value, unit)[0] for value in spread[:3]]  # the mean is in JSON
-    return " / ".join(shown(value, DIGITS) for value in values)
-
-
-def verdict_table(summary: Summary, verdicts: Sequence[Verdict]) -> Table:
-    """Every limit of each system and intensity; those that are exceeded first."""
-    from rpscli.report.study.statistics import VERDICT, verdict_texts
-
-    ordered = sorted(verdicts, key=lambda verdict: (not verdict.exceeded, verdict.shown))
-    ordered = ordered[:MOST_ROWS]
-    systems = [verdict.values for verdict in ordered]
-    return _of_systems(summary, systems, VERDICT, map(verdict_texts, ordered), words=4, keys=1)

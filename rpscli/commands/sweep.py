@@ -19,19 +19,17 @@ from rpscli.commands.shell.options import (
     result_options,
     run_options,
 )
-from rpscli.commands.shell.terminal import Terminal, concluded, leave
+from rpscli.commands.shell.terminal import Terminal, concluded, leave, rendered
 from rpscli.commands.shell.waiting import passing_time
 from rpscli.commands.study import (
     SweepChoices,
     begin,
     compute,
-    of_first_system,
     read,
     show_dry_run,
     study_heading,
-    summary_tables,
-    verdict_table,
 )
+from rpscli.errors import LimitExceeded
 from rpscli.report.documents import direction_note, heading
 from rpscli.report.figures.look import Look
 from rpscli.report.table import Heading, Part, Table
@@ -42,6 +40,9 @@ if TYPE_CHECKING:
 
 OF_A_REPORT = 12
 """Warnings that are shown at most."""
+MOST_LINES = 60
+MOST_ROWS = 40
+"""Of a table, where there are few of them."""
 
 
 @click.command("sweep")
@@ -58,6 +59,12 @@ OF_A_REPORT = 12
     " study and case count as well."
 )
 @click.option("--report-only", is_flag=True, help="Draw the reports again from the stored points.")
+@click.option(
+    "--all",
+    "whole",
+    is_flag=True,
+    help=f"Print statistics of all demands, and all rows; at most {MOST_LINES} lines without it.",
+)
 @result_options
 def command(
     study: str,
@@ -66,6 +73,8 @@ def command(
     terminal: Terminal,
     conditions: list[Condition],
     look: Look,
+    *,
+    whole: bool,
     **choices: Any,
 ) -> None:
     """Compute all points of STUDY, and draw its reports.
@@ -80,6 +89,7 @@ def command(
         show_dry_run(given, chosen, terminal)
         return
     from rpscli.report.study.folder import study_folder
+    from rpscli.report.study.statistics import verdicts_in_short
     from rpscli.sweep.store import Store
 
     place = output.place or RESULTS / given.layout.study.name / "sweep"
@@ -121,11 +131,30 @@ def command(
         "warnings": notes,
         "files": [str(store.path), *folder.files],
     }
-    terminal.result(concluded(document, error), _tables(run, found))
+    terminal.result(concluded(document, error), _shown(run, found, whole=whole))
+    if isinstance(error, LimitExceeded) and not (terminal.as_json or terminal.quiet):
+        # The table has them one by one.
+        error = LimitExceeded(verdicts_in_short(run.verdicts, f"{len(run.verdicts)} limits"))
     leave(error)
 
 
-def _tables(run: StudyRun, found: Collected) -> Iterator[Part]:
+def _shown(run: StudyRun, found: Collected, *, whole: bool) -> list[Part]:
+    """All, or as many rows of each table as fit into some lines."""
+    from rpscli.report.study.shown import asked, cut
+
+    if whole:
+        return list(_tables(run, found, None))
+    parts, rows = list(_tables(run, found, asked(run.layout))), MOST_ROWS
+    while True:
+        few = list(cut(parts, rows, "; --all prints them"))
+        if rows == 1 or rendered(few).count("\n") <= MOST_LINES:
+            return few
+        rows = max(1, min(rows - 1, 3 * rows // 4))
+
+
+def _tables(run: StudyRun, found: Collected, wanted: set[str] | None) -> Iterator[Part]:
+    from rpscli.report.study.shown import of_first_system, summary_tables, verdict_table
+
     yield Heading(run.layout.study.title)
     counts = {"points": len(run.table), **run.outcomes}
     listing = [(name, str(count)) for name, count in counts.items()]
@@ -133,14 +162,19 @@ def _tables(run: StudyRun, found: Collected) -> Iterator[Part]:
         listing.append(("records scaled to", aim))
     yield Table.listing(listing)
     if run.summary is not None:
-        yield from summary_tables(run.summary)
+        yield from summary_tables(run.summary, wanted)
         yield of_first_system(run.layout)
         if run.verdicts:
             yield verdict_table(run.summary, run.verdicts)
     for stem, lines in found.findings.items():
         yield Heading(stem)
         yield Table.listing(lines)
-    yield from found.parts
+    told: set[Part] = set()
+    for part in found.parts:
+        # What several reports remark is said once.
+        if isinstance(part, Table | Heading) or part not in told:
+            yield part
+        told |= set() if isinstance(part, Table) else {part}
     if note := _note(run):
         yield note
 

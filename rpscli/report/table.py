@@ -10,7 +10,7 @@ import json
 import math
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import islice
 from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
@@ -120,6 +120,14 @@ class Table:
     def heads(self) -> list[str]:
         """What stands above the columns."""
         return [column.label for column in self.columns]
+
+    def __len__(self) -> int:
+        return len(list(self.columns[0].values))
+
+    def first(self, rows: int) -> Table:
+        """The table with so many of its rows."""
+        few = [each._replace(values=list(each.values)[:rows]) for each in self.columns]
+        return replace(self, columns=few)
 
     @property
     def rows(self) -> list[tuple[str, ...]]:

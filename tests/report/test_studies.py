@@ -409,3 +409,32 @@ def test_changes_of_the_impact_law_are_mapped(tmp_path: Path) -> None:
     assert variables["changes"](list(zip(pairs[:3], pairs[3:], strict=True))) == [
         75.0, 0.0, pytest.approx(100.0 / 3.0)
     ]  # fmt: skip
+
+
+def test_a_study_of_many_systems_prints_few_lines(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What limits and reports ask for, verdicts once; the rest with `--all`."""
+    monkeypatch.chdir(tmp_path)
+    alphas = [0.10, 0.12, 0.15]
+    vary = [{"podium.bearing.slenderness": alphas}, {"podium.bearing.curvature_ratio": [0.4, 0.5]}]
+    vary.append({"superstructure.period": [0.4, 0.5, 0.6]})
+    study = SMALL | {
+        "vary": vary,
+        "scale": [0.5, 0.6, 0.7, 0.8],
+        "limits": {"rotation_ratio": 1e-3},
+    }
+    study |= {
+        "records": ["synthetic:?pga=0.5g&duration=2&dt=0.02&seed=1"],
+        "reports": ["overturning"],
+    }
+    (tmp_path / "many.yaml").write_text(json.dumps(study), encoding="utf-8")
+    words = ["sweep", "many.yaml", "--figures", "none"]
+    short, whole = (CliRunner().invoke(program, [*words, *more]) for more in ([], ["--all"]))
+    assert short.exit_code == whole.exit_code == 10, short.stderr
+    assert short.stdout.count("\n") <= 60 < whole.stdout.count("\n")
+    assert whole.stdout.count("EXCEEDED") == 72 > short.stdout.count("EXCEEDED") > 3
+    assert "rows; all are in the CSV files; --all prints them" in short.stdout
+    assert "base shear" in whole.stdout
+    assert "base shear" not in short.stdout  # nothing asks for it
+    assert short.stderr.splitlines()[-1] == "error: 72 of 72 limits exceeded."

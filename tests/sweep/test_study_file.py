@@ -66,7 +66,7 @@ def test_a_study_reads_its_case_axes_and_records(study_of: Make) -> None:
         ("scale:", "reports: [demand: {panels: x}]\nscale:", ("does not vary", "slenderness")),
         ("scale:", "reports: [rotation: {reference: 7}]\nscale:", ("7", "takes", "critical")),
         ("scale:", "reports: [lines: {x: scale, y: max_rotatio}]\nscale:", ("max_rotation?",)),
-        ("scale:", "reports: [lines: {x: scale, y: zzz}]\nscale:", ("rps timehistory CASE --json",)),
+        ("scale:", "reports: [lines: {x: scale, y: zzz}]\nscale:", ("`rps timehistory CASE",)),
         ("scale:", "limits: {zzz: 1}\nscale:", ("more (rps explain limits)",)),
         ("scale: [0.5, 1.0]", "reports: [ida]", ("several intensities",)),
         (

@@ -14,7 +14,7 @@ from click.testing import Result
 from scipy.stats import beta, binom
 
 from rpscli.case.conditions import Condition
-from rpscli.commands.study import summary_tables
+from rpscli.report.study.shown import summary_tables
 from rpscli.report.study.statistics import summary_columns, summary_document
 from rpscli.report.table import Table as ShownTable
 from rpscli.sweep.points.layout import lay_out

@@ -14,8 +14,8 @@ from rpscli.case.schema.keys import unit
 from rpscli.commands.shell import waiting as sweep_progress
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.commands.shell.waiting import announce_compilation, progress_line, progress_report
-from rpscli.commands.study import of_first_system
 from rpscli.report.study.labels import labels
+from rpscli.report.study.shown import of_first_system
 from rpscli.studies import load_study
 from rpscli.sweep.run.runner import Progress
 

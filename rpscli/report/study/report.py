@@ -34,9 +34,6 @@ StatisticOrShare = Annotated[
 ]
 """The same, or the share that overturned."""
 
-MOST_ROWS = 40
-"""Of a table in a terminal or on a page."""
-
 ENDS = ("_low", "_high")
 """Of names of columns that hold the ends of a band."""
 
@@ -67,8 +64,6 @@ class Found:
         """What a terminal and a page show of its tables."""
         for suffix, labels in self.shown.items():
             yield _readable(self.tables[suffix], labels)
-            if (count := len(list(self.tables[suffix][0].values))) > MOST_ROWS:
-                yield f"the first {MOST_ROWS} of {count} rows; all are in the CSV file"
         if self.remark:
             yield self.remark
 
@@ -123,8 +118,7 @@ def _readable(columns: Sequence[Column], labels: Mapping[str, str]) -> Table:
             cells.append(["-" if math.isnan(value) else percent(value, 1.0) for value in values])
         else:
             cells.append([shown(value, 3) for value in values])
-    shown_rows = list(zip(*cells, strict=True))[:MOST_ROWS]
-    return Table.of_texts(heads, shown_rows, words=words, keys=words)
+    return Table.of_texts(heads, zip(*cells, strict=True), words=words, keys=words)
 
 
 @dataclass(frozen=True)
