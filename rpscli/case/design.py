@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import math
-import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -13,15 +12,7 @@ from typing import Annotated, NamedTuple, Self, TypeGuard
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import (
-    BeforeValidator,
-    Discriminator,
-    Field,
-    PlainValidator,
-    Tag,
-    WithJsonSchema,
-    model_validator,
-)
+from pydantic import BeforeValidator, Field, PlainValidator, WithJsonSchema, model_validator
 
 from rpscli.analyses.result_quantities import DEMANDS, SAMPLED
 from rpscli.case.overrides import apply_overrides
@@ -31,10 +22,9 @@ from rpscli.case.schema.keys import is_whole, unit
 from rpscli.case.schema.limits import Fractile
 from rpscli.case.study.axes import Axis, sources_of
 from rpscli.case.study.rules import fixed_faults, record_rules, twice, unknown_keys, varied_paths
-from rpscli.case.study.schema import Seed, Share, Sources, StudyParts
+from rpscli.case.study.schema import Seed, Sources, StudyParts
 from rpscli.case.study.study import Study, shared_out, study_of
 from rpscli.case.text.document import Document, Fault, is_case, is_design
-from rpscli.case.text.document import Path as KeyPath
 from rpscli.case.text.files import read_text
 from rpscli.case.text.yaml_text import read_yaml
 from rpscli.errors import CaseError, hint, listed
@@ -46,8 +36,15 @@ PLUS = "plus"
 """What is added to a linear sum."""
 
 
-OLD_WORDS = {"find": "variables", "ties": "linked", "least": "minimise", "confirm": "validate"}
-"""Keys of designs that had other names; understood, with a note, in this version only."""
+GONE = {
+    "find": "write `variables`",
+    "ties": "write `linked`",
+    "least": "write `minimise`",
+    "confirm": "write `validate`",
+    "tolerance": "every design is judged by itself; `perturb` varies motions and impacts, and a"
+    " study over values near the answer shows what differences in building do",
+}
+"""Keys of designs of earlier versions, and what to use in their place."""
 
 Array = NDArray[np.float64]
 
@@ -55,8 +52,6 @@ DIGITS = 6
 """Of what is linked to the values of a design: nobody builds more, and files stay readable."""
 STEPS = 3
 """Decimals of a range, or of its least end, to which values are rounded, judged and printed."""
-TOLERANCE = 0.01
-"""Of what is built, as a share of each value."""
 
 
 class Term(Section):
@@ -73,14 +68,15 @@ class Term(Section):
         return value if isinstance(value, dict | Term) else {"times": value}
 
 
-Objective = dict[str, Term]
-"""A linear sum of results and keys, by their names."""
-
-
 def _sum(value: object) -> object:
     """A name alone, or a sum."""
     if isinstance(value, str) and value.strip():
         return {value: {}}
+    if isinstance(value, list | tuple):
+        refuse(
+            "must be one objective: lists of two, for a Pareto front, are gone; write a sum, or"
+            " minimise one and set a limit on the other"
+        )
     if not isinstance(value, dict) or not value:
         refuse(
             "must be a key or a result, or a sum such as"
@@ -89,25 +85,20 @@ def _sum(value: object) -> object:
     return value
 
 
-def _one_or_two(value: object) -> object:
-    several = value if isinstance(value, list | tuple) else [value]
-    if not 1 <= len(several) <= 2:
-        refuse("must be one objective, or a list of two")
-    return several
-
-
-_SUM = {"type": "object", "minProperties": 1}
-_ONE = {
-    "anyOf": [
-        {"type": "string", "minLength": 1},
-        _SUM | {"additionalProperties": {"anyOf": [{"type": "number"}, Term.model_json_schema()]}},
-    ]
-}
-Objectives = Annotated[
-    tuple[Annotated[Objective, BeforeValidator(_sum)], ...],
-    BeforeValidator(_one_or_two),
-    WithJsonSchema({"anyOf": [*_ONE["anyOf"], {"type": "array", "items": _ONE, "maxItems": 2}]}),
+_TERM = {"anyOf": [{"type": "number"}, Term.model_json_schema()]}
+Objective = Annotated[
+    dict[str, Term],
+    BeforeValidator(_sum),
+    WithJsonSchema(
+        {
+            "anyOf": [
+                {"type": "string", "minLength": 1},
+                {"type": "object", "minProperties": 1, "additionalProperties": _TERM},
+            ]
+        }
+    ),
 ]
+"""A linear sum of results and keys, by their names."""
 
 
 class Unknown(NamedTuple):
@@ -181,13 +172,6 @@ class SearchSection(Section):
     """of the sample and the bootstrap"""
 
 
-Tolerance = Annotated[
-    Annotated[dict[str, Share], Tag("each")] | Annotated[Share, Tag("all")],
-    Discriminator(lambda value: "each" if isinstance(value, dict) else "all"),
-]
-"""One share of the values, or one of each key."""
-
-
 class ValidateSection(Section):
     """Motions that the search does not see."""
 
@@ -213,25 +197,23 @@ class DesignFile(StudyParts):
     linked: Sums = Field(
         {}, description="further keys as linear sums of these, {key: factor, plus: constant}"
     )
-    minimise: Objectives
-    """what is minimised: a result, a key, or a sum of them; two for their front"""
+    minimise: Objective
+    """what is minimised: a result, a key, or a sum of them"""
     # pydantic's models have a method validate.
     validation: ValidateSection | None = Field(
         None, alias="validate", description="motions to validate the design with"
     )
-    tolerance: Tolerance = TOLERANCE
-    """by how much what is built may differ, as a share of the values, or {key: share}: 1 %"""
     search: SearchSection = SearchSection()
     """how many designs are looked at"""
 
 
 @dataclass(frozen=True, eq=False)
 class DesignTask:
-    """What is looked for."""
+    """A study without values of its axis, which are looked for; `unseen` records validate them."""
 
     study: Study
     file: DesignFile
-    confirming: tuple[str, ...]
+    unseen: tuple[str, ...]
 
     @property
     def unknowns(self) -> tuple[Unknown, ...]:
@@ -259,15 +241,6 @@ class DesignTask:
                 found[key] = np.round(total)
         return np.column_stack(list(found.values()))
 
-    def tolerances(self, places: Array) -> Array:
-        """(designs, unknowns) tolerances of places in the unit cube."""
-        given, keys = self.file.tolerance, [unknown.key for unknown in self.unknowns]
-        each = given if isinstance(given, dict) else dict.fromkeys(keys, given)
-        of = [each.get(key, TOLERANCE) for key in keys]
-        low = np.array([unknown.low for unknown in self.unknowns])
-        wide = np.array([unknown.high for unknown in self.unknowns]) - low
-        return np.asarray(np.array(of) * np.abs(low + wide * places) / wide)
-
     def rows(self, values: Array) -> tuple[tuple[float | int, ...], ...]:
         """The values of each design as a case takes them."""
         whole = [is_whole(key) for key in self.keys]
@@ -285,14 +258,11 @@ class DesignTask:
 
     def study_of(self, values: Array, sources: tuple[str, ...] | None = None) -> Study:
         """The study of some designs, (designs, keys), under the design's records or others."""
-        places = tuple((self.study.document.value_place(self.path(key)),) for key in self.keys)
+        owner = {key: "linked" if key in self.file.linked else "variables" for key in self.keys}
+        places = tuple((self.study.document.value_place((owner[k], k)),) for k in self.keys)
         axis = Axis(self.keys, self.rows(values), places)
         own = self.study.sources if sources is None else sources
         return replace(self.study, axes=(axis,), sources=own)
-
-    def path(self, key: str) -> tuple[str, str]:
-        """Where a key stands in the file."""
-        return "linked" if key in self.file.linked else "variables", key
 
 
 def _rounded(unknown: Unknown, values: Array) -> Array:
@@ -321,13 +291,16 @@ def parse_design(
             f"{name}: this is a {kind} without `variables`, but a design is needed here: a base"
             " case, variables, records, limits and minimise; see `rps explain variables`"
         )
-    document, notes = _in_new_words(document)
-    overrides, more = _overrides_in_new_words(overrides)
+    document.refuse(
+        Fault((word,), f"{word} is gone: {now}", at_key=True)
+        for word, now in GONE.items()
+        if word in document.content
+    )
     of_design, of_base = shared_out(overrides, DesignFile)
     document = apply_overrides(document, of_design, model=DesignFile)
     check = schema_check(DesignFile, document)
-    confirming, source_faults = _confirming(document, folder)
-    faults = [*check.faults, *source_faults, *sources_of(document, folder)[1]]
+    unseen, unreadable = _unseen(document, folder)
+    faults = [*check.faults, *unreadable, *sources_of(document, folder)[1]]
     faults += [*_fixed_properties(document), *unknown_keys(document), *twice(document)]
     faults += record_rules(document)
     document.refuse([*faults, *fixed_faults(document, of_base)])
@@ -342,76 +315,34 @@ def parse_design(
         folder=folder,
         digest=hashlib.sha256(text.encode()).hexdigest(),
     )
-    used, held_out = _used_and_held_out(document, file, study, confirming)
-    study = replace(study, document=document, sources=used, notes=(*notes, *more, *study.notes))
-    return DesignTask(study, file, held_out)
+    used, unseen = _used_and_unseen(document, file, study, unseen)
+    return DesignTask(replace(study, document=document, sources=used), file, unseen)
 
 
-def _in_new_words(document: Document) -> tuple[Document, list[str]]:
-    """The document with the keys of today, and what to say of older ones."""
-    old = [word for word in OLD_WORDS if word in document.content]
-    document.refuse(
-        Fault(
-            (word,),
-            f"{word} is the old word for {OLD_WORDS[word]}, which is given here as well"
-            f"{document.where((OLD_WORDS[word],))}; remove one of them",
-            at_key=True,
-        )
-        for word in old
-        if OLD_WORDS[word] in document.content
-    )
-
-    def path(old: KeyPath) -> KeyPath:
-        return (OLD_WORDS.get(str(old[0]), old[0]), *old[1:]) if old else old
-
-    notes = [f"{document.key_place((word,))}: {_note(word)}" for word in old]
-    renamed = replace(
-        document,
-        content={OLD_WORDS.get(key, key): value for key, value in document.content.items()},
-        keys={path(old): place for old, place in document.keys.items()},
-        values={path(old): place for old, place in document.values.items()},
-        faults=tuple(replace(fault, path=path(fault.path)) for fault in document.faults),
-    )
-    return renamed, notes
-
-
-def _overrides_in_new_words(overrides: Sequence[str]) -> tuple[list[str], list[str]]:
-    renamed, notes = [], []
-    for text in overrides:
-        word, rest = re.split(r"(?=[.=])|$", text.strip(), maxsplit=1)
-        if word in OLD_WORDS:
-            notes.append(f"--set {text}: {_note(word)}")
-        renamed.append(OLD_WORDS.get(word, word) + rest)
-    return renamed, notes
-
-
-def _note(word: str) -> str:
-    return f"{word} is an old word; write {OLD_WORDS[word]}, version 2 knows only that"
-
-
-def _used_and_held_out(
-    document: Document, file: DesignFile, study: Study, confirming: Sequence[str]
+def _used_and_unseen(
+    document: Document, file: DesignFile, study: Study, unseen: tuple[str, ...]
 ) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Records of the search, and those that the design is validated on."""
-    sources, folder = study.sources, study.folder
-    used, held_out, section = sources, tuple(confirming), file.validation
-    if section is not None and section.share is not None:
-        cluster = clusters(used, folder, file.independent)
-        used, held_out = _shared(used, cluster, section.share, section.seed)
-    else:
-        cluster = clusters((*used, *held_out), folder, file.independent)
-        known = set(cluster[: len(used)])
-        others = zip(held_out, cluster[len(used) :], strict=True)
-        if both := [source for source, number in others if number in known]:
-            text = (
-                f"validate.records has {listed(both[:3], 'and')}, whose {file.independent[:-1]} the"
-                " search uses already; name other motions"
-            )
-            document.refuse([Fault(("validate", "records"), text)])
-    if section is not None and not (used and held_out):
-        text = f"validate.share = {section.share} of {len(sources)} records leaves none"
+    """Records of the search, and those that the answer is validated on: others, or a part."""
+    numbers = clusters((*study.sources, *unseen), study.folder, file.independent)
+    own, section = dict(zip(study.sources, numbers, strict=False)), file.validation
+    others = zip(unseen, numbers[len(own) :], strict=True)
+    if both := [source for source, number in others if number in own.values()]:
+        text = (
+            f"validate.records has {listed(both[:3], 'and')}, whose {file.independent[:-1]} the"
+            " search uses already; name other motions"
+        )
+        document.refuse([Fault(("validate", "records"), text)])
+    if section is None or section.share is None:
+        return study.sources, unseen
+    names = max(numbers, default=-1) + 1  # of whole recordings or events
+    drawn = np.random.default_rng(section.seed).permutation(names)
+    held_out = set(drawn[: round(section.share * names)].tolist())
+    used = tuple(source for source, number in own.items() if number not in held_out)
+    unseen = tuple(source for source, number in own.items() if number in held_out)
+    if not (used and unseen):
+        text = f"validate.share = {section.share} of {len(own)} records leaves none"
         document.refuse([Fault(("validate",), f"{text} on one side; give more records")])
-    return used, held_out
+    return used, unseen
 
 
 def _fixed_properties(document: Document) -> Iterator[Fault]:
@@ -425,31 +356,26 @@ def _fixed_properties(document: Document) -> Iterator[Fault]:
 def _name_faults(file: DesignFile) -> Iterator[Fault]:
     """Names that are not keys that change, or in what is minimised not results either."""
     known, keys = [*file.variables, PLUS], [*file.variables, *file.linked]
-    for name in file.tolerance if isinstance(file.tolerance, dict) else ():
-        if name not in file.variables:
-            text = f"tolerance.{name} is not under variables; use {listed([*file.variables])}"
-            yield Fault(("tolerance", name), text, at_key=True)
     for key, sums in file.linked.items():
         for name in (name for name in sums if name not in known):
             text = f"linked.{key} needs {name}, which is not under variables"
             yield Fault(("linked", key), f"{text}; use {listed(known)}")
     sampled = {quantity.name for quantity in SAMPLED}
     results = {quantity.name for quantity in DEMANDS}
-    terms = [term for objective in file.minimise for term in objective.items()]
-    for name in dict.fromkeys(name for name, _ in terms):
+    for name, term in file.minimise.items():
         if name in sampled and not file.whole_histories:
             text = f"{name} needs `whole_histories: true`; add it"
         elif name not in keys and name not in results:
             suggestion = hint(name, [*keys, *results], f"use {listed(keys)}, or a result")
             text = f"{name} is neither a result nor a key that `variables` changes; {suggestion}"
-        elif name in keys and any(n == name and "fractile" in t.model_fields_set for n, t in terms):
+        elif name in keys and "fractile" in term.model_fields_set:
             text = f"{name} is a key, without fractiles; remove it"
         else:
             continue
         yield Fault(("minimise",), f"minimise: {text}")
 
 
-def _confirming(document: Document, folder: Path) -> tuple[tuple[str, ...], list[Fault]]:
+def _unseen(document: Document, folder: Path) -> tuple[tuple[str, ...], list[Fault]]:
     """Sources under `validate.records`, and what is wrong with them."""
     if not isinstance(document.content.get("validate"), dict):
         return (), []
@@ -457,14 +383,3 @@ def _confirming(document: Document, folder: Path) -> tuple[tuple[str, ...], list
     return sources, [
         Fault(("validate", *fault.path), f"validate.{fault.text}", fault.at_key) for fault in faults
     ]
-
-
-def _shared(
-    sources: tuple[str, ...], cluster: Sequence[int], share: float, seed: int
-) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Sources for the search, and those that are held out: whole recordings or events."""
-    names = max(cluster, default=-1) + 1
-    drawn = set(np.random.default_rng(seed).permutation(names)[: round(share * names)].tolist())
-    numbered = [*zip(sources, cluster, strict=True)]
-    used = tuple(source for source, number in numbered if number not in drawn)
-    return used, tuple(source for source, number in numbered if number in drawn)

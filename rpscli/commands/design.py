@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
@@ -16,16 +15,22 @@ from rpscli.commands.shell.options import (
     run_options,
 )
 from rpscli.commands.shell.terminal import Terminal, concluded, leave
-from rpscli.commands.study import SweepChoices, show_dry_run, study_heading
+from rpscli.commands.study import (
+    SweepChoices,
+    compute,
+    of_first_system,
+    show_dry_run,
+    study_heading,
+)
 from rpscli.report.documents import direction_note, heading
 from rpscli.report.figures.look import Look
 from rpscli.report.files import OutputFolder
-from rpscli.report.table import Part, csv_text
+from rpscli.report.table import Heading, Part, Table
 
 if TYPE_CHECKING:
+    from rpscli.designs import Design
     from rpscli.errors import RpsError
-    from rpscli.studies import Study
-    from rpscli.sweep.design.answer import Answer
+    from rpscli.study_run import StudyRun
 
 
 @click.command("design")
@@ -44,12 +49,12 @@ def command(
     """Find the values of DESIGN that meet its limits and minimise its objective.
 
     The file has a base case, `variables`, records and `limits` as a study, and `minimise`. The
-    search starts from an even sample and continues where the verdict changes. The recommended
-    design is the best one of a region in which all designs examined pass, within their tolerances.
-    The answer also has the least design that passes, what governs, and the effect of the records.
+    search starts from an even sample and continues where the verdict changes. The answer is the
+    best design that passes in 90 % of the resamples of the records, if any does, and is validated
+    on records that the search did not see.
 
     Every point is stored at once: after an interruption the same command continues. The exit
-    code is 10 if no design passes, or if the recommended one fails the limits in its validation.
+    code is 10 if no design passes, or if the best one fails the limits in its validation.
     """
     done = designed(design, overrides, SweepChoices(**choices), output, look, terminal)
     if done is None:
@@ -60,13 +65,12 @@ def command(
 
 
 class Designed(NamedTuple):
-    """A design that was searched for: its answer, all its designs as a study, what to show."""
+    """A design that was searched for, its folder, and what to show."""
 
-    answer: Answer
-    study: Study
+    design: Design
     folder: OutputFolder
     document: dict[str, Any]
-    tables: Sequence[Part]
+    tables: list[Part]
     error: RpsError | None
 
 
@@ -82,69 +86,48 @@ def designed(
 ) -> Designed | None:
     """Search, and write the results unless only the points are kept; None after a dry run."""
     from rpscli.case.design import read_design
-    from rpscli.commands.design_rounds import (
-        Rounds,
-        answer_tables,
-        headline_of,
-        keeps_limits,
-        nothing_passes,
-        unconfirmed,
-    )
-    from rpscli.report.design import answer_document, design_columns, figures
-    from rpscli.report.figures.look import figure_files
+    from rpscli.designs import find_design
     from rpscli.report.study.folder import study_folder
-    from rpscli.report.study.statistics import verdict_columns, verdict_document
-    from rpscli.sweep.design.search import Search
+    from rpscli.studies import Study
+    from rpscli.study_run import require_results
+    from rpscli.sweep.design import Search
+    from rpscli.sweep.evaluation.context import StudyContext
     from rpscli.sweep.store import Store
 
     search = Search(read_design(design, overrides))
-    rounds = Rounds(search, overrides, chosen, terminal)
-    first = rounds.first()
+    first = search.layout
+    require_results(first, ())
     if chosen.dry_run:
         terminal.note(f"the first of at most {search.most} designs:")
-        show_dry_run(first, chosen, terminal)
+        show_dry_run(Study(first, StudyContext(first.plan), overrides), chosen, terminal)
         return None
-    place = output.place or RESULTS / first.layout.study.name / "design"
-    folder = study_folder(first.layout, place, overrides, "design", force=output.force)
+    place = output.place or RESULTS / first.study.name / "design"
+    folder = study_folder(first, place, overrides, "design", force=output.force)
+
+    def told(words: str, run: StudyRun) -> None:
+        if words:
+            terminal.note(words)
+        compute("design", run, terminal)
+
     with Store(place, fresh=chosen.fresh) as store:
-        answer = rounds.run(first, store)
-        confirmations = dict(rounds.confirm(answer, store))
-        softer = rounds.with_other_loss(answer, store)
-        study, run = rounds.everything(answer, first, store)
-        found = run.collect(place, look)
-        folder.add_all(found.files.items())
-        folder.add("designs.csv", csv_text(design_columns(answer, range(len(answer.places)))))
-        if len(answer.front):
-            folder.add("front.csv", csv_text(design_columns(answer, answer.front)))
-        if confirmations:
-            verdicts = [verdict for each in confirmations.values() for verdict in each.verdicts]
-            columns = verdict_columns(confirmations["best"].keys_of_rows, verdicts)
-            folder.add("confirmation.csv", csv_text(columns))
-        drawn = figures(answer, run.layout.study.title)
-        folder.add_all(figure_files(drawn, look).items())
-        # Designs that exceed limits are what was looked for, not what went wrong.
-        error = run.error(found, limits=False) or nothing_passes(answer)
-        error = error or unconfirmed(confirmations)
+        done = find_design(search, overrides, store, told, **chosen.of_run)
+        found = done.run.collect(place, look)
+        folder.add_all(done.files(found, look))
         store.require()
         if written:
             write(folder, terminal)
-    notes = [*rounds.notes(answer, confirmations), *study.warnings, *found.notes]
-    judged = headline_of(confirmations)
+    layout, error = done.run.layout, done.error(found)
     document = {
         **heading("design"),
-        "study": study_heading(run.layout),
-        "note": direction_note(run.layout.pairs) or None,
-        "points": {"total": len(run.table), "failed": len(found.failures)},
-        **answer_document(answer),
-        "confirmed": keeps_limits(confirmations[judged]) if judged else None,
-        "confirmation": {
-            name: [verdict_document(each.keys_of_rows, verdict) for verdict in each.verdicts]
-            for name, each in confirmations.items()
-        },
-        "other_loss": softer
-        and [verdict_document(softer.keys_of_rows, verdict) for verdict in softer.verdicts],
-        "warnings": notes,
+        "study": study_heading(layout),
+        "note": direction_note(layout.pairs) or None,
+        "points": {"total": len(done.run.table), "failed": len(found.failures)},
+        **done.document(),
+        "warnings": done.notes(found),
         "files": [str(store.path), *folder.files],
     }
-    tables = [*answer_tables(document, answer, confirmations, softer)]
-    return Designed(answer, study, folder, concluded(document, error), tables, error)
+    counts = [(name.replace("_", " "), str(n)) for name, n in document["designs"].items()]
+    counts.append(("records scaled to", layout.scaled_to))
+    tables = [Heading(layout.study.title), Table.listing(counts), *done.tables()]
+    tables += [of_first_system(done.judged.layout), *filter(None, [document["note"]])]
+    return Designed(done, folder, concluded(document, error), tables, error)

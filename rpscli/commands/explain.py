@@ -136,9 +136,6 @@ def _formats() -> list[KeyReference]:
 
 def _keys(word: str) -> Iterator[Entry]:
     """Keys that are called so: in full, else by their end, else by their symbol."""
-    from rpscli.case.design import OLD_WORDS
-
-    word = OLD_WORDS.get(word, word)
     hits: list[KeyReference] = []
     for called in (
         lambda key: key.key == word,

@@ -36,7 +36,6 @@ from rpscli.report.table import Heading, Table
 from rpscli.studies import Study
 from rpscli.study_run import Collected, StudyRun
 from rpscli.sweep.evaluation.context import resolved
-from rpscli.sweep.points.layout import lay_out
 
 FAILURES_SHOWN = 20
 
@@ -179,9 +178,9 @@ def design_page(
         request.source, request.overrides, SweepChoices(), output, look, terminal, written=False
     )
     assert done is not None, "it is no dry run"
-    answer, study, notes = done.answer, done.study, done.document["warnings"]
+    answer, study, notes = done.design.answer, done.design.study, done.document["warnings"]
     terminal.warn(notes)
-    at = lay_out(answer.task.study_of(answer.values[[answer.headline]]))
+    at = done.design.judged.layout
     case = resolved(at.plan, at[0].values)
     named = {path.name: content for path, content in done.folder.contents.items()}
     drawn = [
@@ -194,7 +193,7 @@ def design_page(
     results = [motions_section(*motions_of(study), study.title, look), Section("Figures", drawn)]
     words = subject_words(source, overrides)
     stored = f"Every point is stored in {done.folder.folder}."
-    title = "the recommended design" if done.document["robust"] else "the design shown"
+    title = "the best design" if done.document["best"] else "the least violated design"
     sections = page_sections(
         case,
         study.title,

@@ -304,17 +304,10 @@ def test_a_design_has_a_page(rps: Invoke) -> None:
     text = text_of("out.html")
     assert f"Design: {document['designs']['looked_at']} examined" in text
     assert "rps design design.yaml --set podium.impact.factor=0.5" in text
-    found = document["robust"] or document["best"]
-    value = f"{found['values']['podium.bearing.semi_diagonal']:.10g}"
+    value = f"{document['best']['values']['podium.bearing.semi_diagonal']:.10g}"
     assert f"podium.bearing.semi_diagonal {value} {value} m" in text
-    assert "the same design with podium.impact.loss 0.5" in text
-    options = (*SOFT, f"--set=podium.bearing.semi_diagonal={value}", "--set=podium.impact.loss=0.5")
-    seeds = (f"--record=synthetic:?pga=0.5g&duration=4&dt=0.02&seed={n}" for n in (1, 2, 3, 4))
-    alone = json.loads(rps("timehistory", "small.yaml", *options, *seeds, "--json").stdout)
-    ratios = [each["rotation_ratio"] for each in alone["histories"]]
-    (verdict,) = document["other_loss"]
+    (verdict,) = document["requirements"]
     assert verdict["counted"] == 3  # one is held back
-    assert verdict["value"] in ratios
     done = rps("design", "design.yaml", "--figures", "none", *SOFT)
     assert done.exit_code == result.exit_code
     again = rps("report", "results/design/design", "-o", "again.html")

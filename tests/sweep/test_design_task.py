@@ -14,19 +14,15 @@ import pytest
 from click.testing import CliRunner, Result
 from paper_structures import needs_compiled_kernels
 
-from rpscli.case.design import OLD_WORDS, parse_design
+from rpscli.case.design import parse_design
 from rpscli.case.text.files import read_text
 from rpscli.case.text.yaml_text import read_yaml
 from rpscli.cli import program
-from rpscli.errors import CaseError
-from rpscli.sweep.design.answer import interval_of, weights_of
-from rpscli.sweep.design.regions import neighbours
-from rpscli.sweep.design.search import Search, first_places, next_places
+from rpscli.sweep.design import Search, weights_of
 from rpscli.sweep.evaluation.batch import run_batch
 from rpscli.sweep.evaluation.context import StudyContext
 from rpscli.sweep.points.layout import lay_out
 from rpscli.sweep.run.schedule import LARGEST_BATCH
-from rpscli.sweep.table import Array
 from sweep.small_studies import BASE, ROOT
 from sweep.test_interruption import ended
 
@@ -79,15 +75,15 @@ limits:
   rotation_ratio: {{at_most: 0.5, share: 0.3}}
   drift_ratio: {{at_most: 0.004, fractile: 0.6}}
   base_shear_ratio: 3.0
-minimise: [max_base_shear, max_cap_beam_displacement: {{fractile: 0.84}}]
+minimise: max_base_shear
 search: {{first: 8, most: 20, resamples: 50}}
 """
 
-StudyPoints = Callable[..., Result]
+Design = Callable[..., Result]
 
 
 @pytest.fixture
-def design(workplace: Path, no_figures: None) -> StudyPoints:
+def design(workplace: Path, no_figures: None) -> Design:
     """Run `rps design` on a text in this process."""
 
     def invoke(text: str, *arguments: str) -> Result:
@@ -98,7 +94,7 @@ def design(workplace: Path, no_figures: None) -> StudyPoints:
 
 
 @pytest.fixture
-def design_json(design: StudyPoints) -> Callable[..., dict[str, Any]]:
+def design_json(design: Design) -> Callable[..., dict[str, Any]]:
     """The JSON document of `rps design`."""
 
     def invoke(text: str, *arguments: str, exit_code: int = 0) -> dict[str, Any]:
@@ -121,51 +117,38 @@ def rows_of(file: Path) -> list[dict[str, str]]:
 @pytest.mark.evidence("design", "exact")
 def test_one_unknown_against_the_exact_answer(design_json: DesignJson, workplace: Path) -> None:
     # 30 % of seven are two: the third largest peak must not lift the frame.
-    found = design_json(FRAME, "-o", "out")
-    exact = sorted(PEAKS)[-3]
-    below, above = found["bracket"]
+    found = design_json(FRAME, "--set", "search.resamples=0")
+    exact, close = sorted(PEAKS)[-3], 1.01 * 0.001 * 0.3
     best = found["best"]["values"][SLENDERNESS]
-    assert above is None
-    assert below < exact <= best
-    assert best - below < 1.01 * 0.001 * 0.3
+    assert exact <= best < exact + close
     assert found["best"]["values"][WEDGE] == pytest.approx(2.0 * best + 0.1, rel=1e-5)
     # The same order statistic of each resample is known, and closed in upon as well.
-    weights = weights_of(range(len(PEAKS)), 400, 1).rows[1:401]
-    answers = [np.sort(np.repeat(PEAKS, row.astype(int)))[-3] for row in weights]
-    low, high = interval_of(np.array(answers))
+    found = design_json(FRAME, "-o", "out")
+    weights = weights_of(range(len(PEAKS)), 400, 1)[1:]
+    answers = np.sort([np.sort(np.repeat(PEAKS, row.astype(int)))[-3] for row in weights])
     interval = found["records"]["intervals"][SLENDERNESS]
-    assert interval == pytest.approx([low, high], abs=0.3 * 0.01)
-    assert low < exact < high
-    # What is recommended holds in 90 % of the resamples, and all larger ones do; built within 1 %.
-    fine = np.linspace(0.2, 0.35, 3001)
-    built = fine[:, None] * (1.0 + 0.01 * np.linspace(-1.0, 1.0, 5))
-    lifted = (np.array(PEAKS)[None, :, None] > built[:, None]).mean(axis=2)
-    holds = ((weights @ lifted.T) / len(PEAKS) <= 0.3).mean(axis=0) >= 0.9
-    least = fine[np.flatnonzero(~holds)[-1] + 1]
-    assert 0.0 <= found["robust"]["values"][SLENDERNESS] - least < 1.01 * 0.001 * 0.3
-    assert found["robust"]["passing_share"] >= 0.9
-    # Without the largest record the next one decides, without a smaller one nothing changes.
-    without = [each["best"]["values"][SLENDERNESS] for each in found["records"]["without_one"]]
-    left = [np.sort(np.delete(PEAKS, place))[-2] for place in range(len(PEAKS))]
-    assert without == pytest.approx(left, abs=0.3 * 0.01)
+    assert interval == pytest.approx([answers[9], answers[389]], abs=0.3 * 0.01)
+    assert interval[0] < exact < interval[1]
+    # What holds passes in 90 % of the resamples: 360 of the answers are not above it.
+    assert 0.0 <= found["best"]["values"][SLENDERNESS] - answers[359] < close
+    assert found["best"]["passing_share"] >= 0.9
     files = {Path(name).name for name in found["files"]}
     assert {"designs.csv", "points.csv", "verdicts.csv", "requirements.png"} <= files
     rows = rows_of(workplace / "out/designs.csv")
-    assert len(rows) == found["designs"]["looked_at"] <= 64 + found["designs"]["within_tolerances"]
+    assert len(rows) == found["designs"]["looked_at"] <= 64
 
 
 @pytest.mark.evidence("design", "exact")
 def test_two_unknowns_against_the_exact_answer(design_json: DesignJson) -> None:
-    found = design_json(TWO, "--set", "search.most=128", "--set", "search.resolution=0.01")
+    settings = ("search.most=128", "search.resolution=0.01", "search.resamples=0")
+    found = design_json(TWO, *(word for text in settings for word in ("--set", text)))
     values = found["best"]["values"]
     # Size does not matter for uplift: the least one, and the least slenderness that stands.
     assert values[SIZE] == 0.8
     assert 0.0 <= values[SLENDERNESS] - sorted(PEAKS)[-3] < 0.3 * 0.02
     assert found["at_bounds"] == [{"key": SIZE, "end": "least"}]
     assert any("wider" in warning for warning in found["warnings"])
-    (requirement,) = found["requirements"]
-    assert requirement["binds"]
-    assert requirement["aim_without_it"] == pytest.approx(10 * 0.05 + 0.8)
+    assert [requirement["binds"] for requirement in found["requirements"]] == [True]
 
 
 def test_a_number_of_columns_stays_whole(design_json: DesignJson, workplace: Path) -> None:
@@ -180,7 +163,7 @@ def test_a_number_of_columns_stays_whole(design_json: DesignJson, workplace: Pat
     assert {row["podium.columns [-]"] for row in rows} <= {str(n) for n in range(4, 10)}
 
 
-def test_nothing_passes(design: StudyPoints, design_json: DesignJson) -> None:
+def test_nothing_passes(design: Design, design_json: DesignJson) -> None:
     found = design_json(FRAME.replace("0.35]", "0.2]"), exit_code=10)
     assert found["best"] is None
     assert found["passed"] is False
@@ -204,21 +187,14 @@ def test_verdicts_are_those_of_a_study(design_json: DesignJson, workplace: Path)
     exceeded = [row["exceeded [-]"] == "true" for row in verdicts]
     assert 0 < sum(exceeded) < len(exceeded)
     by_design = np.array(exceeded).reshape(len(designs), -1)
-    passes = [row["passes [-]"] == "true" for row in designs]
-    assert passes == (~by_design.any(axis=1)).tolist()
-    assert any(passes)
-    best = found["best"]["aims"]
-    aim = next(iter(best))
-    least = [float(row[f"least {aim.replace(',', '')} [N]"]) for row in designs]
-    assert best[aim] == pytest.approx(min(np.array(least)[passes]))
-    front = rows_of(workplace / "out/front.csv")
-    assert int(front[0]["design [-]"]) == found["best"]["design"]
-    heads = [head for head in designs[0] if head.startswith("least ")]
-    aims = np.array([[float(row[head]) for head in heads] for row in designs])[passes]
-    numbers = [int(row["design [-]"]) for row in designs if row["passes [-]"] == "true"]
-    bettered = [((aims <= own).all(axis=1) & (aims < own).any(axis=1)).any() for own in aims]
-    undominated = {n for n, worse in zip(numbers, bettered, strict=True) if not worse}
-    assert {int(row["design [-]"]) for row in front} == undominated
+    passes = np.array([row["passes [-]"] == "true" for row in designs])
+    assert passes.any()
+    assert passes.tolist() == (~by_design.any(axis=1)).tolist()
+    ((aim, best),) = found["best"]["aims"].items()
+    least = np.array([float(row[f"least {aim.replace(',', '')} [N]"]) for row in designs])
+    share = np.array([float(row["passing_share [-]"]) for row in designs])
+    surely = passes & (share >= 0.9)
+    assert best == pytest.approx(least[surely if surely.any() else passes].min())
 
 
 HAZARD = "PGV [m/s],rate [1/year]\n0.1,1e-2\n0.3,2e-3\n0.8,3e-4\n2,2e-5\n"
@@ -263,8 +239,8 @@ def test_a_limit_on_the_annual_rate(design_json: DesignJson, workplace: Path) ->
     assert not requirement["shown"]  # five records cannot
     low, high = requirement["interval"]
     assert low <= requirement["value"] < 1e-4 < high
-    (verdict,) = found["confirmation"]["robust"]
-    assert verdict["exceeded"] == (verdict["value"] > 1e-4) == (found["confirmed"] is False)
+    (verdict,) = found["validation"]
+    assert verdict["exceeded"] == (verdict["value"] > 1e-4) == (found["validated"] is False)
     life = RATE.replace("annual_rate: 1e-4", f"probability_in_50_years: {-np.expm1(-50.0 * 1e-4)}")
     assert design_json(life)["requirements"][0]["limit"] == pytest.approx(1e-4, rel=1e-12)
 
@@ -273,7 +249,7 @@ def test_a_limit_on_the_annual_rate(design_json: DesignJson, workplace: Path) ->
 def test_perturbed_histories_are_parts_of_their_records(
     design_json: DesignJson, workplace: Path
 ) -> None:
-    found = design_json(f"{BUILDING}perturb: {{members: 2}}\ntolerance: 0\n", "-o", "out")
+    design_json(f"{BUILDING}perturb: {{members: 2}}\n", "-o", "out")
     points = rows_of(workplace / "out/points.csv")
     designs = rows_of(workplace / "out/designs.csv")
     assert len(points) == len(designs) * 5 * 2 * 2
@@ -283,71 +259,60 @@ def test_perturbed_histories_are_parts_of_their_records(
             fallen = [p["outcome [-]"].startswith("over") for p in own][2 * (scale != "1") :]
             share = np.mean([each for n, each in enumerate(fallen) if n % 4 < 2])
             assert float(row[f"overturning at scale = {scale} [-]"]) == pytest.approx(share)
-    assert found["robust"]["within_tolerances"]
 
 
-def test_values_are_printed_as_they_were_judged(design: StudyPoints, workplace: Path) -> None:
+def test_values_are_printed_as_they_were_judged(design: Design, workplace: Path) -> None:
     """One unknown and a linked key: all of it is in the table of the terminal."""
     result = design(FRAME, "-o", "out")
     assert result.exit_code == 0, result.stderr
     text = " ".join(result.stdout.split())
     found = json.loads(design(FRAME, "-o", "out", "--json", "--force").stdout)
     for key in (SLENDERNESS, WEDGE):
-        recommended, best = (f"{found[of]['values'][key]:.10g}" for of in ("robust", "best"))
-        assert f" {recommended} {best} " in text
-        assert len(recommended) <= 8
-    assert "nearest designs that fail" in text
+        best = f"{found['best']['values'][key]:.10g}"
+        assert f" {best} " in text
+        assert len(best) <= 8
 
 
 @needs_compiled_kernels
-def test_one_thread_or_two_give_the_same_bytes(design: StudyPoints, workplace: Path) -> None:
-    for jobs in ("1", "2"):
-        assert design(BUILDING, "--jobs", jobs, "-o", jobs).exit_code == 0
-    for name in ("designs.csv", "points.csv", "front.csv"):
-        assert (workplace / "1" / name).read_bytes() == (workplace / "2" / name).read_bytes()
-
-
-@needs_compiled_kernels
-def test_interrupted_and_resumed_ends_in_the_same_bytes(workplace: Path) -> None:
-    (workplace / "design.yaml").write_text(BUILDING, encoding="utf-8")
+def test_interrupted_and_resumed_or_in_two_threads_it_ends_in_the_same_bytes(
+    design: Design, workplace: Path
+) -> None:
+    assert design(BUILDING, "--jobs", "2", "-o", "calm").exit_code == 0
     interrupting = str(Path(__file__).with_name("interrupted.py"))
     words = ("design", "design.yaml", "--jobs", "1", "--json", "--figures", "none")
     code, out, _ = ended("SIGINT", *words, folder=workplace, program=interrupting)
     assert code == 130
     assert json.loads(out)["points"]["stored"] > 0
     assert not (workplace / "results/design/design/designs.csv").exists()
-    for extra in ((), ("-o", "calm")):
-        code, out, err = ended(*words, *extra, folder=workplace)
-        assert code == 0, err
+    code, out, err = ended(*words, folder=workplace)
+    assert code == 0, err
     for name in ("designs.csv", "points.csv"):
         resumed = workplace / "results/design/design" / name
         assert resumed.read_bytes() == (workplace / "calm" / name).read_bytes()
 
 
-def test_confirmation(design: StudyPoints, design_json: DesignJson, workplace: Path) -> None:
+def test_validation(design: Design, design_json: DesignJson, workplace: Path) -> None:
     unseen = 'validate: {records: [{source: "pulse:half_sine?period=0.4", amplitude: [%s]}]}\n'
     found = design_json(FRAME + unseen % "0.1 g, 0.2 g")
-    assert found["confirmed"] is True
+    assert found["validated"] is True
     found = design_json(FRAME + unseen % "0.1 g, 0.4 g", exit_code=10)
-    assert found["confirmed"] is False
+    assert found["validated"] is False
     assert found["passed"] is False
-    (verdict,) = found["confirmation"]["best"]
-    assert verdict["beyond"]["share"] == 0.5
-    assert any("recommended design does not keep" in warning for warning in found["warnings"])
+    (verdict,) = found["validation"]
+    assert (verdict["beyond"]["count"], verdict["beyond"]["share"]) == (1, 0.5)
+    assert any("best design does not keep" in warning for warning in found["warnings"])
     # Of two records none may be beyond 30 %: 51 % of designs at the limit are refused.
     said = " ".join(design(FRAME + unseen % "0.1 g, 0.4 g").stdout.split())
     assert "0 of 2 may be beyond; a design with exactly 30 % beyond fails here in 51 %" in said
     assert "one with 78 % passes in 5 %" in said
-    (verdict,) = found["confirmation"]["robust"]
-    assert verdict["beyond"]["count"] == 1
     (workplace / "broken.at2").write_text("no record")
     found = design_json(FRAME + "validate: {records: [broken.at2]}\n", exit_code=5)
-    assert found["confirmed"] is False
+    assert found["validated"] is False
     assert "broken.at2" in found["error"]["message"]
     task = parse_design(FRAME + "validate: {share: 0.3}\n", "design.yaml")
     assert len(task.study.sources) == 5
-    assert len(task.confirming) == 2
-    assert not set(task.confirming) & set(task.study.sources)
+    assert len(task.unseen) == 2
+    assert not set(task.unseen) & set(task.study.sources)
 
 
 def test_invalid_designs_count_as_failing(design_json: DesignJson) -> None:
@@ -404,8 +369,15 @@ def test_a_dry_run_computes_nothing(design_json: DesignJson, workplace: Path) ->
         ("limits: {uplift: 0.3}\n", "", "", "limits is missing"),
         (MINIMISED, "", "", "minimise is missing"),
         ("limits: {", "limits: {annual_rate: 1e-4, ", "18:", "needs a hazard curve"),
-        ("search:", "tolerance: {a: 0.1}\nsearch:", "20:", "tolerance.a is not under variables"),
-        ("search:", "tolerance: 5\nsearch:", "20:", "1 % is 0.01"),
+        ("search:", "tolerance: 0.02\nsearch:", "20:1", "tolerance is gone: every design"),
+        ("variables:", "find:", "11:1", "find is gone: write `variables`"),
+        ("search:", "confirm: {}\nsearch:", "20:1", "confirm is gone: write `validate`"),
+        (
+            MINIMISED,
+            f"minimise: [{SLENDERNESS}, max_rotation]",
+            "19:11",
+            "for a Pareto front, are gone; write a sum",
+        ),
         ("search: {first: 8", "search: {first: 2", "20:", "must be a whole number from 4 to"),
         ("search:", "validate: {}\nsearch:", "20:", "must have records or a share"),
         ("search:", "validate: {share: 0.01}\nsearch:", "20:", "leaves none"),
@@ -419,7 +391,7 @@ def test_a_dry_run_computes_nothing(design_json: DesignJson, workplace: Path) ->
         (f"{WEDGE}: {{", f"{SLENDERNESS}: {{", "14:", "varies"),
     ],
 )
-def test_refusals(design: StudyPoints, old: str, new: str, place: str, said: str) -> None:
+def test_refusals(design: Design, old: str, new: str, place: str, said: str) -> None:
     assert old in FRAME
     result = design(FRAME.replace(old, new, 1), "--dry-run")
     assert result.exit_code == 3, result.stderr
@@ -427,30 +399,9 @@ def test_refusals(design: StudyPoints, old: str, new: str, place: str, said: str
     assert said in result.stderr
 
 
-def test_old_words_are_understood_and_noted(design: StudyPoints) -> None:
-    new = f"{FRAME}validate: {{share: 0.3}}\n"
-    old = new
-    for word, today in OLD_WORDS.items():
-        old = old.replace(f"\n{today}:", f"\n{word}:")
-    task, of_old = parse_design(new, "d.yaml"), parse_design(old, "d.yaml")
-    assert task.file == of_old.file
-    assert task.study.sources == of_old.study.sources
-    assert task.study.notes == ()
-    assert len(of_old.study.notes) == len(OLD_WORDS)
-    assert "d.yaml:11:1: find is an old word; write variables" in of_old.study.notes[0]
-    changed = parse_design(new, "d.yaml", overrides=["confirm.share=0.5", "scale=[2]"])
-    assert changed.file.validation is not None
-    assert changed.file.validation.share == 0.5
-    (note,) = changed.study.notes
-    assert note.startswith("--set confirm.share=0.5: confirm is an old word; write validate")
-    assert "find is an old word" in design(old, "--dry-run").stderr
-    faults = design(f"{new}find: {{}}\n", "--dry-run")
-    assert faults.exit_code == 3
-    assert "find is the old word for variables, which is given here as well" in faults.stderr
-
-
-def test_cases_studies_and_designs_are_told_apart(design: StudyPoints, workplace: Path) -> None:
+def test_cases_studies_and_designs_are_told_apart(design: Design, workplace: Path) -> None:
     assert "is a case without `variables`" in design(BASE).stderr
+    assert "is a file without `variables`" in design("rps: 1").stderr
     (workplace / "task.yaml").write_text(FRAME, encoding="utf-8")
     for command, said in (("sweep", "is a design"), ("timehistory", "`rps design task.yaml`")):
         result = CliRunner().invoke(program, [command, "task.yaml"])
@@ -471,38 +422,18 @@ def test_shipped_designs_keep_the_schema() -> None:
         jsonschema.validate(wrong, schema)
 
 
-def test_the_next_designs_halve_where_the_verdict_changes() -> None:
-    places = np.array([[0.0], [0.25], [0.5], [1.0]])
-    passes = np.array([[False, False, True, True]])
-    first, second = neighbours(places)
-    assert list(zip(first.tolist(), second.tolist(), strict=True)) == [(0, 1), (1, 2), (2, 3)]
-    found = next_places(places, passes, places[:, 0], 2, 0.01, 8)
-    assert found[:2, 0].tolist() == [0.375, 0.75]
-    assert not len(next_places(places, passes, places[:, 0], 2, 0.6, 8))
-
-
-def test_the_first_designs_are_even() -> None:
-    assert first_places(1, 5, 1)[:, 0].tolist() == [0.0, 0.25, 0.5, 0.75, 1.0]
-    square = first_places(2, 64, 1)
-    assert square[:4].tolist() == [[0, 0], [0, 1], [1, 0], [1, 1]]
-    _, counts = np.unique((4.0 * square[4:]).astype(int), axis=0, return_counts=True)
-    assert counts.tolist() == [4] * 16
-    with pytest.raises(CaseError):
-        parse_design("rps: 1", "empty.yaml")
-
-
 @pytest.mark.evidence("design", "exact")
 @pytest.mark.long
 @needs_compiled_kernels
 def test_the_shipped_design_against_a_grid(workplace: Path, no_figures: None) -> None:
     """The best design of a fine grid is hardly better than that of the search.
 
-    Near the boundary verdicts are ragged: single designs pass among failing ones, of which grid and
-    search find others. Their base shears are within 5 % (seeds 1 to 3: 0 to 4 %).
+    Near the boundary verdicts are ragged: single designs hold among failing ones, of which grid and
+    search find others. Their base shears are within 2 % (seeds 1 to 3: 0 to 0.2 %).
     """
     file = str(ROOT / "cases/designs/column_width.yaml")
     result = CliRunner().invoke(program, ["design", file, "--json", "-o", "out"])
-    assert result.exit_code == 10, result.stderr  # two of the 14 other motions overturn the best
+    assert result.exit_code == 10, result.stderr  # two of the 14 other motions overturn it
     found = json.loads(result.stdout)
     text, axis = read_text(file), np.linspace(0.0, 1.0, 31)
     task = parse_design(text, file)
@@ -516,14 +447,13 @@ def test_the_shipped_design_against_a_grid(workplace: Path, no_figures: None) ->
     outcomes = np.concatenate([found.outcomes for found in results])
     fallen = np.char.startswith(outcomes, "overturned").reshape(-1, 22)
 
-    def fractile(name: str, share: float) -> Array:
-        reached = np.concatenate([found.columns[name] for found in results]).reshape(-1, 22)
-        reached[fallen] = np.inf
-        return np.asarray(np.quantile(reached, share, axis=1, method="inverted_cdf"))
-
-    shear = fractile("max_base_shear", 0.5)
-    passes = (fallen.sum(axis=1) <= 1) & (fractile("drift_ratio", 0.84) <= 0.006)
-    least = shear[passes].min()
-    best = next(iter(found["best"]["aims"].values()))
-    assert best < 1.05 * least
+    shear = np.concatenate([found.columns["max_base_shear"] for found in results]).reshape(-1, 22)
+    drift = np.concatenate([found.columns["drift_ratio"] for found in results]).reshape(-1, 22)
+    shear = np.quantile(np.where(fallen, np.inf, shear), 0.5, axis=1, method="inverted_cdf")
+    # Of 22 one may overturn, and three may drift more than 84 % are to.
+    weights = weights_of(range(22), 500, 1)
+    passes = (weights @ fallen.T <= 1) & (weights @ (fallen | (drift > 0.006)).T <= 3)
+    least = shear[passes[0] & (passes[1:].mean(axis=0) >= 0.9)].min()
+    (best,) = found["best"]["aims"].values()
+    assert best < 1.02 * least
     assert found["designs"]["looked_at"] < 0.6 * len(values)
