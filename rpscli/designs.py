@@ -14,9 +14,9 @@ from rpscli.report.design import (
     design_columns,
     figures,
     nothing_passes,
-    validation_text,
 )
 from rpscli.report.figures.look import Look, figure_files
+from rpscli.report.files import OutputFolder
 from rpscli.report.study.statistics import (
     VERDICT,
     verdict_columns,
@@ -25,7 +25,6 @@ from rpscli.report.study.statistics import (
     verdict_texts,
 )
 from rpscli.report.table import Heading, Part, Table, csv_text
-from rpscli.studies import Study
 from rpscli.study_run import Collected, StudyRun
 from rpscli.sweep.design import Answer, Search
 from rpscli.sweep.evaluation.context import StudyContext
@@ -35,45 +34,33 @@ from rpscli.sweep.store import Store
 
 @dataclass(frozen=True)
 class Design:
-    """A design that was searched for, and the studies that it rests on, in one store.
+    """A design that was searched for, the studies that it rests on, and its files.
 
-    `run` has all valid designs, `judged` the best or least violated one under the records of the
-    search, `validated` the best one under those that the search did not see.
+    `run` has all valid designs, of which `found` tells; `judged` has the best or least violated one
+    under the records of the search, `validated` the best one under others.
     """
 
     search: Search
     answer: Answer
     run: StudyRun
+    found: Collected
     judged: StudyRun
     validated: StudyRun | None
-    overrides: tuple[str, ...]
+    folder: OutputFolder
 
     @property
-    def study(self) -> Study:
-        """All valid designs as a study."""
-        return Study(self.run.layout, self.run.context, self.overrides)
-
-    @property
-    def confirmed(self) -> bool | None:
-        """Whether the best design keeps its limits in the validation; None without one."""
+    def keeps_limits(self) -> bool | None:
+        """Whether the best design does so in the validation; None without one."""
         if self.validated is None:
             return None
         verdicts = self.validated.verdicts
         return bool(verdicts) and not any(verdict.exceeded for verdict in verdicts)
 
-    def files(self, found: Collected, look: Look) -> Iterator[tuple[str, str | bytes]]:
-        """Those of the study `found` of all designs, and those of the search."""
-        yield from found.files.items()
-        yield "designs.csv", csv_text(design_columns(self.answer))
-        if self.validated is not None:
-            columns = verdict_columns(self.validated.keys_of_rows, self.validated.verdicts)
-            yield "validation.csv", csv_text(columns)
-        yield from figure_files(figures(self.answer, self.study.title), look).items()
-
-    def error(self, found: Collected) -> RpsError | None:
+    @property
+    def error(self) -> RpsError | None:
         """Points that failed, no design that passes, or a validation that failed."""
         # Designs that exceed limits are what was looked for, not what went wrong.
-        if error := self.run.error(found, limits=False):
+        if error := self.run.error(self.found, limits=False):
             return error
         if self.answer.best is None:
             return LimitExceeded(nothing_passes(self.answer))
@@ -84,21 +71,24 @@ class Design:
         lines = verdict_lines(self.validated.keys_of_rows, self.validated.verdicts, "validation: ")
         return LimitExceeded("\n".join(lines)) if lines else None
 
-    def notes(self, found: Collected) -> list[str]:
+    @property
+    def notes(self) -> Iterator[str]:
         """What the user should know about the answer."""
-        notes = [*answer_notes(self.answer, self.search.faults), *self.study.warnings]
-        if self.confirmed is False:
-            notes.append("the best design does not keep its limits under the records of `validate`")
-        return [*notes, *found.notes]
+        yield from answer_notes(self.answer, self.search.faults)
+        if self.keeps_limits is False:
+            yield "the best design does not keep its limits under the records of `validate`"
+        yield from self.found.notes
 
+    @property
     def document(self) -> dict[str, Any]:
         """The answer in JSON."""
         found = answer_document(self.answer, self.judged.verdicts)
-        found |= {"validated": self.confirmed, "validation": []}
+        found |= {"validated": self.keeps_limits, "validation": []}
         if (run := self.validated) is not None:
             found["validation"] = [verdict_document(run.keys_of_rows, v) for v in run.verdicts]
         return found
 
+    @property
     def tables(self) -> Iterator[Part]:
         """The answer, then its validation."""
         yield from answer_tables(self.answer, self.judged.verdicts)
@@ -106,41 +96,54 @@ class Design:
             unseen = len(self.answer.task.unseen)
             yield Heading(f"validation with {unseen} records that were not used")
             yield Table.of_texts(VERDICT, map(verdict_texts, self.validated.verdicts), words=4)
-            yield from validation_text(self.validated.verdicts, unseen)
 
 
 def find_design(
     search: Search,
-    overrides: tuple[str, ...],
-    store: Store,
+    folder: OutputFolder,
+    look: Look,
     compute: Callable[[str, StudyRun], object],
+    *,
+    fresh: bool = False,
     **choices: Any,
 ) -> Design:
-    """Search, with all histories in a store, and judge what is best.
+    """Search, judge what is best, and collect all files, with the points in a store of the folder.
 
     `compute` computes what a run lacks, and may say so in the words that it gets; `choices` are
     those of a `StudyRun`.
     """
-    task, counts = search.task, []
-    context = StudyContext(search.layout.plan, search.layout.examined)
+    task, rounds, validated = search.task, 0, None
+    records = StudyContext(search.layout.plan).records  # read once
 
-    def computed(words: str, layout: StudyPoints) -> StudyRun:
-        of_these = StudyContext(layout.plan, layout.examined)
-        of_these.records = context.records  # read once
-        run = StudyRun(layout, of_these, store, **choices)
-        compute(words, run)
-        _ = run.verdicts  # which need the store as long as it is open
-        return run
+    with Store(folder.folder, fresh=fresh) as store:
 
-    def evaluated(layout: StudyPoints) -> Any:
-        counts.append(len(layout.combinations))
-        return computed(f"round {len(counts)}: {counts[-1]} designs", layout).table
+        def computed(words: str, layout: StudyPoints) -> StudyRun:
+            context = StudyContext(layout.plan, layout.examined)
+            context.records = records
+            run = StudyRun(layout, context, store, **choices)
+            compute(words, run)
+            _ = run.verdicts  # which need the store as long as it is open
+            return run
 
-    answer = search.run(evaluated)
-    best, validated = answer.values[[answer.closest]], None
-    if task.unseen and answer.best is not None:
-        unseen = lay_out(task.study_of(best, task.unseen))
-        validated = computed("validation of the best design", unseen)
-    judged = computed("", lay_out(task.study_of(best)))
-    run = computed("", lay_out(task.study_of(answer.values[answer.valid])))
-    return Design(search, answer, run, judged, validated, overrides)
+        def evaluated(layout: StudyPoints) -> Any:
+            nonlocal rounds
+            rounds += 1
+            return computed(f"round {rounds}: {len(layout.combinations)} designs", layout).table
+
+        answer = search.run(evaluated)
+        best = answer.values[[answer.closest]]
+        if task.unseen and answer.best is not None:
+            unseen = lay_out(task.study_of(best, task.unseen))
+            validated = computed("validation of the best design", unseen)
+        judged = computed("", lay_out(task.study_of(best)))
+        run = computed("", lay_out(task.study_of(answer.values[answer.valid])))
+        found = run.collect(folder.folder, look)
+        folder.add_all(found.files.items())
+        folder.add("designs.csv", csv_text(design_columns(answer)))
+        if validated is not None:
+            columns = verdict_columns(validated.keys_of_rows, validated.verdicts)
+            folder.add("validation.csv", csv_text(columns))
+        title = task.study.title
+        folder.add_all(figure_files(figures(answer, title), look).items())
+        store.require()
+    return Design(search, answer, run, found, judged, validated, folder)

@@ -111,6 +111,8 @@ class Unknown(NamedTuple):
     @property
     def digits(self) -> int:
         """Decimals of its values, which tell the ends of the range and a thousandth of it."""
+        if is_whole(self.key):
+            return 0
         sizes = [size for size in (abs(self.low), abs(self.high), self.high - self.low) if size]
         return STEPS - math.floor(math.log10(min(sizes)))
 
@@ -227,12 +229,10 @@ class DesignTask:
 
     def values(self, places: Array) -> Array:
         """(designs, keys) values in SI units."""
-        low = np.array([unknown.low for unknown in self.unknowns])
-        high = np.array([unknown.high for unknown in self.unknowns])
-        found = {
-            unknown.key: _rounded(unknown, column)
-            for unknown, column in zip(self.unknowns, (low + (high - low) * places).T, strict=True)
-        }
+        found = {}
+        for (key, low, high), of, at in zip(self.unknowns, self.unknowns, places.T, strict=True):
+            values = low + (high - low) * at
+            found[key] = np.array([round(value, of.digits) for value in values.tolist()])
         for key, terms in self.file.linked.items():
             sums = (terms[name] * found[name] for name in terms if name != PLUS)
             total = sum(sums, np.full(len(places), terms.get(PLUS, 0.0)))
@@ -263,11 +263,6 @@ class DesignTask:
         axis = Axis(self.keys, self.rows(values), places)
         own = self.study.sources if sources is None else sources
         return replace(self.study, axes=(axis,), sources=own)
-
-
-def _rounded(unknown: Unknown, values: Array) -> Array:
-    digits = 0 if is_whole(unknown.key) else unknown.digits
-    return np.array([round(value, digits) for value in values.tolist()])
 
 
 def read_design(source: str, overrides: Sequence[str] = ()) -> DesignTask:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -24,12 +25,11 @@ from rpscli.commands.study import (
 )
 from rpscli.report.documents import direction_note, heading
 from rpscli.report.figures.look import Look
-from rpscli.report.files import OutputFolder
 from rpscli.report.table import Heading, Part, Table
 
 if TYPE_CHECKING:
     from rpscli.designs import Design
-    from rpscli.errors import RpsError
+    from rpscli.studies import Study
     from rpscli.study_run import StudyRun
 
 
@@ -59,19 +59,11 @@ def command(
     done = designed(design, overrides, SweepChoices(**choices), output, look, terminal)
     if done is None:
         return
-    terminal.warn_first(done.document["warnings"], "with --json")
-    terminal.result(done.document, done.tables)
+    write(done.folder, terminal)
+    document = document_of(done, overrides)
+    terminal.warn_first(document["warnings"], "with --json")
+    terminal.result(document, tables_of(done))
     leave(done.error)
-
-
-class Designed(NamedTuple):
-    """A design that was searched for, its folder, and what to show."""
-
-    design: Design
-    folder: OutputFolder
-    document: dict[str, Any]
-    tables: list[Part]
-    error: RpsError | None
 
 
 def designed(
@@ -81,10 +73,8 @@ def designed(
     output: OutputRequest,
     look: Look,
     terminal: Terminal,
-    *,
-    written: bool = True,
-) -> Designed | None:
-    """Search, and write the results unless only the points are kept; None after a dry run."""
+) -> Design | None:
+    """Search, and collect the files; None after a dry run."""
     from rpscli.case.design import read_design
     from rpscli.designs import find_design
     from rpscli.report.study.folder import study_folder
@@ -92,7 +82,6 @@ def designed(
     from rpscli.study_run import require_results
     from rpscli.sweep.design import Search
     from rpscli.sweep.evaluation.context import StudyContext
-    from rpscli.sweep.store import Store
 
     search = Search(read_design(design, overrides))
     first = search.layout
@@ -109,25 +98,37 @@ def designed(
             terminal.note(words)
         compute("design", run, terminal)
 
-    with Store(place, fresh=chosen.fresh) as store:
-        done = find_design(search, overrides, store, told, **chosen.of_run)
-        found = done.run.collect(place, look)
-        folder.add_all(done.files(found, look))
-        store.require()
-        if written:
-            write(folder, terminal)
-    layout, error = done.run.layout, done.error(found)
+    return find_design(search, folder, look, told, fresh=chosen.fresh, **chosen.of_run)
+
+
+def all_designs(done: Design, overrides: tuple[str, ...]) -> Study:
+    """All valid designs as a study."""
+    from rpscli.studies import Study
+
+    return Study(done.run.layout, done.run.context, overrides)
+
+
+def document_of(done: Design, overrides: tuple[str, ...]) -> dict[str, Any]:
+    """The answer in JSON."""
+    layout = done.run.layout
     document = {
         **heading("design"),
         "study": study_heading(layout),
         "note": direction_note(layout.pairs) or None,
-        "points": {"total": len(done.run.table), "failed": len(found.failures)},
-        **done.document(),
-        "warnings": done.notes(found),
-        "files": [str(store.path), *folder.files],
+        "points": {"total": len(done.run.table), "failed": len(done.found.failures)},
+        **done.document,
+        "warnings": [*done.notes, *all_designs(done, overrides).warnings],
+        "files": [str(done.run.store.path), *done.folder.files],
     }
+    return concluded(document, done.error)
+
+
+def tables_of(done: Design) -> Iterator[Part]:
+    """The answer for readers."""
+    layout, document = done.run.layout, done.document
+    yield Heading(layout.study.title)
     counts = [(name.replace("_", " "), str(n)) for name, n in document["designs"].items()]
-    counts.append(("records scaled to", layout.scaled_to))
-    tables = [Heading(layout.study.title), Table.listing(counts), *done.tables()]
-    tables += [of_first_system(done.judged.layout), *filter(None, [document["note"]])]
-    return Designed(done, folder, concluded(document, error), tables, error)
+    yield Table.listing([*counts, ("records scaled to", layout.scaled_to)])
+    yield from done.tables
+    yield of_first_system(done.judged.layout)
+    yield from filter(None, [direction_note(layout.pairs)])

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from rpscli.case.case import Case
 from rpscli.case.conditions import Condition
-from rpscli.commands.design import designed
+from rpscli.commands.design import all_designs, designed, document_of, tables_of
 from rpscli.commands.inputs import RESULTS
 from rpscli.commands.report_case import Earlier, PageDone, ends, subject_words
 from rpscli.commands.shell.options import CaseRequest, OutputRequest
@@ -174,13 +174,11 @@ def design_page(
     request = CaseRequest(source, overrides) if earlier is None else earlier.subject
     folder = None if earlier is None else earlier.folder
     output, look = OutputRequest(folder, force=folder is not None), page_look(look)
-    done = designed(
-        request.source, request.overrides, SweepChoices(), output, look, terminal, written=False
-    )
+    done = designed(request.source, request.overrides, SweepChoices(), output, look, terminal)
     assert done is not None, "it is no dry run"
-    answer, study, notes = done.design.answer, done.design.study, done.document["warnings"]
-    terminal.warn(notes)
-    at = done.design.judged.layout
+    document, study = document_of(done, request.overrides), all_designs(done, request.overrides)
+    terminal.warn(notes := document["warnings"])
+    at = done.judged.layout
     case = resolved(at.plan, at[0].values)
     named = {path.name: content for path, content in done.folder.contents.items()}
     drawn = [
@@ -188,12 +186,12 @@ def design_page(
         for stem, each in pictures(named.items())
     ]
     short = [
-        part for part in done.tables if not (isinstance(part, Heading) and part == study.title)
+        part for part in tables_of(done) if not (isinstance(part, Heading) and part == study.title)
     ]
     results = [motions_section(*motions_of(study), study.title, look), Section("Figures", drawn)]
     words = subject_words(source, overrides)
     stored = f"Every point is stored in {done.folder.folder}."
-    title = "the best design" if done.document["best"] else "the least violated design"
+    title = "the best design" if document["best"] else "the least violated design"
     sections = page_sections(
         case,
         study.title,
@@ -204,6 +202,6 @@ def design_page(
         [*repeated(["rps", "design", *words], ["rps", "report", *words]), stored],
         [f"Of {title}."],
     )
-    subtitle = f"Design: {len(answer.places)} examined{ends(case)}"
-    signed = answer.task.file.document
-    return PageDone(study.title, subtitle, sections, done.document, done.error, signed)
+    subtitle = f"Design: {len(done.answer.places)} examined{ends(case)}"
+    signed = done.search.task.file.document
+    return PageDone(study.title, subtitle, sections, document, done.error, signed)

@@ -27,7 +27,7 @@ from rpscli.report.study.statistics import (
 from rpscli.report.table import Column, Part, Table, large, shown
 from rpscli.sweep.design import ROBUST, Answer, Requirement
 from rpscli.sweep.intensities import unit_of
-from rpscli.sweep.statistics.fractiles import CONFIDENCE, ROUNDING
+from rpscli.sweep.statistics.fractiles import CONFIDENCE
 from rpscli.sweep.statistics.verdicts import Verdict
 from rpscli.sweep.table import Array
 
@@ -70,11 +70,8 @@ def requirement_rows(
     answer: Answer, verdicts: Sequence[Verdict]
 ) -> Iterator[tuple[int, Requirement, Verdict]]:
     """Each requirement with its number, and the verdict of the best design's own study on it."""
-    for row, requirement in enumerate(answer.requirements):
-        alike = (v for v in verdicts if v.condition == requirement.condition)
-        level = requirement.level
-        if found := next((v for v in alike if level is None or v.values[-1] == level), None):
-            yield row, requirement, found
+    if len(verdicts) == len(answer.requirements):  # not where all histories at one level failed
+        yield from zip(itertools.count(), answer.requirements, verdicts, strict=False)
 
 
 def answer_document(answer: Answer, verdicts: Sequence[Verdict]) -> dict[str, Any]:
@@ -157,25 +154,6 @@ def answer_tables(answer: Answer, verdicts: Sequence[Verdict]) -> Iterator[Part]
 
 def _interval(interval: Iterable[float]) -> str:
     return " to ".join(shown(end, 3) for end in interval if not math.isnan(end)) or "-"
-
-
-def validation_text(verdicts: Sequence[Verdict], n: int) -> Iterator[str]:
-    """What so many records can tell of limits that a share of them may exceed."""
-    from scipy.special import betainc, betaincinv
-
-    for condition in dict.fromkeys(verdict.condition for verdict in verdicts):
-        if not condition.admissible:
-            continue
-        behind = next((v.beyond.behind for v in verdicts), "")
-        if_so = f", if these{behind} were independent" if behind else ""
-        may = math.floor(condition.admissible * n + ROUNDING)
-        fails = 1.0 - float(betainc(n - may, may + 1, 1.0 - condition.admissible))
-        seen = float(betaincinv(may + 1, n - may, CONFIDENCE))
-        yield (
-            f"{condition.name}: {may} of {n} may be beyond; a design with exactly"
-            f" {100.0 * condition.admissible:g} % beyond fails here in {100.0 * fails:.0f} %, one"
-            f" with {100.0 * seen:.0f} % passes in {100.0 * (1.0 - CONFIDENCE):.0f} %{if_so}"
-        )
 
 
 def answer_notes(answer: Answer, faults: Iterable[str]) -> Iterator[str]:
@@ -304,57 +282,49 @@ def requirements_figure(answer: Answer, title: str) -> bytes:
 def region_figure(answer: Answer, title: str) -> bytes:
     """Several unknowns: designs that pass and fail, for each pair of unknowns.
 
-    With two of them the colour of a design is the share of the resamples in which it passes.
+    The colour of a design is the share of the resamples in which it passes; nothing is said of
+    those between.
     """
     pairs = list(itertools.combinations(range(len(answer.task.unknowns)), 2))
-    shown, by_share = pairs[:MOST_PAIRS], len(pairs) == 1 and bool(answer.resamples)
+    shown = pairs[:MOST_PAIRS]
     narrow = style.narrow()
     columns = 1 if narrow else min(3, len(shown))
     rows = math.ceil(len(shown) / columns)
-    look: dict[str, Any] = {"ms": 3.2, "ls": "", "clip_on": False}
-    if by_share:
-        look |= {"mfc": "none", "mew": 0.5, "ms": 4.6, "color": style.BLACK}
-    became = np.where(answer.passes[0], "passes", np.where(answer.valid, "fails", MARKS[0][0]))
+    of = {"passes": answer.passes[0], "fails": answer.valid & ~answer.passes[0]}
+    of["no valid case"] = ~answer.valid
 
     def draw(figure: style.Figure) -> None:
+        from matplotlib import colormaps, rcParams
+        from matplotlib.cm import ScalarMappable
+        from matplotlib.colors import BoundaryNorm
+
         more = f"{MOST_PAIRS} of {len(pairs)} pairs" if len(pairs) > MOST_PAIRS else ""
         style.heading(figure, title, _counts(answer), more)
         grid = figure.subplots(rows, columns, squeeze=False)
+        colours = colormaps[rcParams["image.cmap"]]
+        norm = BoundaryNorm(SHARES, colours.N)
+        look: dict[str, Any] = {"s": 18.0, "linewidths": 0.5, "clip_on": False}
         for axes in grid.flat[len(shown) :]:
             axes.set_axis_off()
-        for axes, pair in zip(grid.flat, shown, strict=False):
+        for axes, (x, y) in zip(grid.flat, shown, strict=False):
             axes.locator_params(nbins=MOST_TICKS)
-            if by_share:
-                _draw_shares(figure, axes, answer)
-            at = answer.values[:, pair]
             for name, marker, colour in MARKS:
-                if (of := became == name).any():
-                    axes.plot(*at[of].T, **{"color": colour, **look, "marker": marker,
-                                            "label": name})  # fmt: skip
+                at, share = answer.values[of[name]].T, answer.passing_share[of[name]]
+                kind: dict[str, Any] = {"color": colour}
+                if answer.resamples and name != "no valid case":
+                    kind = {"c": share, "cmap": colours, "norm": norm, "edgecolors": style.BLACK}
+                if len(share):
+                    axes.scatter(at[x], at[y], marker=marker, label=name, **look, **kind)
             if answer.best is not None:
-                axes.plot(*at[answer.best], **BEST)
-            x, y = (axis_label(answer.task.keys[of]) for of in pair)
-            axes.set(xlabel=x, ylabel=y)
+                axes.plot(answer.values[answer.best, x], answer.values[answer.best, y], **BEST)
+            axes.set(xlabel=axis_label(answer.task.keys[x]), ylabel=axis_label(answer.task.keys[y]))
+        if answer.resamples:
+            words = "share of resamples of the records that pass"
+            figure.colorbar(ScalarMappable(norm, colours), ax=grid, label=words)
         handles = grid[0][0].get_legend_handles_labels()
         figure.legend(*handles, loc="outside lower center", ncols=2 if narrow else 5)
 
     return style.picture(draw, 1.1 + (4.2 if len(pairs) == 1 else 2.6) * rows)
-
-
-def _draw_shares(figure: style.Figure, axes: style.Axes, answer: Answer) -> None:
-    """The share of the resamples in which each design passes; nothing is said of those between."""
-    from matplotlib import colormaps, rcParams
-    from matplotlib.colors import BoundaryNorm
-
-    colours = colormaps[rcParams["image.cmap"]]
-    for name, marker, _ in MARKS[1:]:
-        chosen = answer.valid & (answer.passes[0] == (name == "passes"))
-        x, y = answer.values[chosen, :2].T  # linked keys stand behind the two
-        filled = axes.scatter(
-            x, y, c=answer.passing_share[chosen], marker=marker, s=18.0,
-            cmap=colours, norm=BoundaryNorm(SHARES, colours.N), lw=0.0, clip_on=False,
-        )  # fmt: skip
-    figure.colorbar(filled, ax=axes, label="share of resamples of the records that pass")
 
 
 def _counts(answer: Answer) -> str:
