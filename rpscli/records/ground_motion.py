@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import hashlib
+import re
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +17,6 @@ from rpscli.shown import Frozen, Shown, frozen, with_unit
 
 if TYPE_CHECKING:
     from rpscli.records.measures import Measure, Of
-from typing import NamedTuple
 
 
 class Recording(NamedTuple):
@@ -25,8 +25,8 @@ class Recording(NamedTuple):
     `event` is the earthquake with its year, `number` that of the record in the NGA-West databases
     of PEER, `distance` the closest one to the rupture [m], `vs30` [m/s] that of the ground,
     `usable_period` the longest that the filters of the record leave [s], `pulse` whether it was
-    found to have a velocity pulse, `origin` the time of the earthquake and `direction` that of the
-    component, as the source states them.
+    found to have a velocity pulse, `origin` the time of the earthquake, `direction` that of the
+    component, and `start` that of its first sample, as the source states them.
     """
 
     event: str = ""
@@ -39,7 +39,15 @@ class Recording(NamedTuple):
     pulse: bool | None = None
     origin: str = ""
     direction: str = ""
+    start: str = ""
 
+    @property
+    def is_vertical(self) -> bool:
+        """Whether the component is stated to be a vertical one."""
+        return _VERTICAL.fullmatch(self.direction) is not None
+
+
+_VERTICAL = re.compile(r"U-?D|UP|DOWN|DWN|VERT\w*|V|[A-Z]*Z\d*", re.IGNORECASE)
 
 UNKNOWN = Recording()
 

@@ -260,7 +260,7 @@ def _expand(text: str, folder: Path | None, notes: list[str]) -> list[Source]:
 
 def _files(of: Source, folder: Path | None, notes: list[str]) -> list[Source]:
     """Records of a folder or a glob, or the file itself."""
-    from rpscli.records.formats import kind_of
+    from rpscli.records.formats import contents
 
     place, path = of.place, _located(of.place, folder)
     if path.is_dir():
@@ -277,7 +277,11 @@ def _files(of: Source, folder: Path | None, notes: list[str]) -> list[Source]:
         _require_file(path, of.text)
         of.require_two()
         return [of]
-    kinds = {name: kind for name, file in files.items() if (kind := kind_of(file))}
+    kinds = {
+        name: "vertical" if all(c.recording.is_vertical for c in held) else "record"
+        for name, file in files.items()
+        if (held := contents(file))
+    }
     if not kinds:
         raise RecordError(f"{of.text}: no record file there that can be read")
     upright = verticals_beside(kinds)

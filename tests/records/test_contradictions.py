@@ -98,7 +98,10 @@ def test_a_row_that_is_not_full_is_refused(tmp_path: Path) -> None:
         (COLUMN.replace("units: g", "units: g, units: gal"), "different units: g, gal"),
         (COLUMN.replace("dt: 0.02", "dt: 0.02, dt: 0.01"), "dt = 0.01 contradicts dt = 0.02"),
         (COLUMN.replace("units", "npts: 4\nnpts: 5\nunits"), "npts = 5 contradicts npts = 4"),
-        (esm().replace("STREAM", "NDATA: 11\nSTREAM"), "NDATA: 11 contradicts line 6"),
+        (
+            esm().replace("STREAM", "NDATA: 11\nSTREAM"),
+            "NDATA = 11 contradicts NDATA = 12 of line 6",
+        ),
         (esm().replace("STREAM", "DURATION_S: 0.48\nSTREAM"), "12 values 0.02 s apart last"),
         (geonet().replace("Duration 0.22", "Duration 0.44"), "Duration = 0.44 s, but 12 values"),
         (cosmos().replace("approx    0", "approx   60"), "approx = 60 s, but 12 values"),

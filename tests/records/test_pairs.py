@@ -10,7 +10,8 @@ import pytest
 
 from rpscli.errors import RecordError
 from rpscli.records.clusters import clusters, pairs
-from rpscli.records.ground_motion import GroundMotion
+from rpscli.records.formats import Contents
+from rpscli.records.ground_motion import UNKNOWN, GroundMotion
 from rpscli.records.loading import expand_sources, load_components, load_record
 from rpscli.records.pair import rotated
 from rpscli.records.source import Source
@@ -180,7 +181,7 @@ NAMES = (
 def test_names_tell_both_components_of_a_folder(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("rpscli.records.formats.kind_of", lambda _: "record")
+    monkeypatch.setattr("rpscli.records.formats.contents", lambda _: (Contents("", UNKNOWN),))
     folder = tmp_path / "all"
     folder.mkdir()
     for name in (*(name for pair in NAMES for name in pair), "RSN953_A_MUL-UP.AT2", "MULV.at2"):

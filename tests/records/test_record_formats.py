@@ -10,7 +10,7 @@ import pytest
 from small_records import VALUES, cosmos, csmip, esm, geonet, knet, smc, write
 
 from rpscli.errors import RecordError
-from rpscli.records.formats import FORMATS, is_record
+from rpscli.records.formats import FORMATS, contents
 from rpscli.records.formats.record_text import read_text
 from rpscli.records.loading import load_record
 
@@ -35,7 +35,7 @@ def test_reads(
     assert made.dt == pytest.approx(0.02, rel=1e-12)
     np.testing.assert_allclose(made.acceleration * 100.0, VALUES, atol=resolution, rtol=1e-4)
     assert made.warnings == ()
-    assert is_record(Path(path))
+    assert contents(Path(path))
 
 
 def test_knet_is_centred_and_says_so(tmp_path: Path) -> None:

@@ -79,7 +79,7 @@ def test_units_steps_counts_and_columns(tmp_path: Path, text: str, options: str)
         (f"Period [s],Spectral Acceleration [g]\n{rows(TIMES + 0.02, VALUES)}", "", "a spectrum"),
         (f"time,displacement\n{TIMED}", "?units=g", "this is a displacement record"),
         (f"time;velocity\n{rows(TIMES, VALUES, between=' ')}", "?units=g", "a velocity record"),
-        (f"{HEAD}   N-S   E-W   U-D\n{THREE}", "", r"3 channels; .*\?channel=0.*0: N-S; 1: E-W"),
+        (f"{HEAD}   N-S   E-W   U-D\n{THREE}", "", r"3 channels; .*\?channel=1.*1: N-S; 2: E-W"),
         (f"{HEAD}{THREE}", "", "as many as there are rows of 3 numbers"),
         (f"{HEAD}   N-S   E-W   U-D\n{THREE}", "?channel=north", "there is no channel north"),
         (f"199 0.0050\n{ALONE}", "?units=g", "look like the number of values and their step"),

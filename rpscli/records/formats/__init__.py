@@ -2,29 +2,20 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from pathlib import Path
-from typing import Literal
+from typing import NamedTuple
 
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import PluginError, RecordError
-from rpscli.records.formats.at2 import read_at2, recognises_at2
+from rpscli.records.formats.agencies import LAYOUTS, Layout
+from rpscli.records.formats.at2 import FORMAT, read_at2, recognises_at2, recording_of_at2
 from rpscli.records.formats.columns import read_columns, recognises_columns
-from rpscli.records.formats.cosmos import (
-    read_cosmos,
-    read_csmip,
-    recognises_cosmos,
-    recognises_csmip,
-)
-from rpscli.records.formats.esm import read_esm, recognises_esm
-from rpscli.records.formats.geonet import read_geonet, recognises_geonet
-from rpscli.records.formats.knet import read_knet, recognises_knet
 from rpscli.records.formats.record_text import RecordText, read_text
-from rpscli.records.formats.smc import read_smc, recognises_smc
-from rpscli.records.ground_motion import GroundMotion
+from rpscli.records.ground_motion import UNKNOWN, GroundMotion, Recording
 from rpscli.registry import Registry
 
 
@@ -38,19 +29,10 @@ class RecordFormat:
     read: Callable[[RecordText], GroundMotion]
 
 
+_LAYOUTS: dict[str, Layout] = {layout.name: layout for layout in LAYOUTS}
 _OURS = (
-    RecordFormat("PEER AT2", (".at2",), recognises_at2, read_at2),
-    RecordFormat("COSMOS v1", (".v1", ".v1c", ".v2c"), recognises_cosmos, read_cosmos),
-    RecordFormat("CSMIP volume 2", (".v2",), recognises_csmip, read_csmip),
-    RecordFormat("GeoNet volume 2", (".v2a",), recognises_geonet, read_geonet),
-    RecordFormat(
-        "K-NET ASCII",
-        (".ns", ".ew", ".ud", ".ns1", ".ew1", ".ud1", ".ns2", ".ew2", ".ud2"),
-        recognises_knet,
-        read_knet,
-    ),
-    RecordFormat("ESM ASCII", (".asc",), recognises_esm, read_esm),
-    RecordFormat("SMC", (".smc",), recognises_smc, read_smc),
+    RecordFormat(FORMAT, (".at2",), recognises_at2, read_at2),
+    *(RecordFormat(of.name, of.extensions, of.recognises, of.read) for of in LAYOUTS),
 )
 _PLAIN = RecordFormat("columns", (".txt", ".dat", ".csv", ".tsv"), recognises_columns, read_columns)
 """Accepts most, so it comes last."""
@@ -82,7 +64,10 @@ def read_record(
     text = read_text(path, source, dt=dt, units=units, channel=channel)
     form = _by_content(text)
     try:
-        motion = (form or _by_extension(text)).read(text)
+        # By its extension, the format of that name says what is missing.
+        extension = path.suffix.lower()
+        named = (form for form in _in_order() if extension in form.extensions)
+        motion = (form or next(named, _PLAIN)).read(text)
     except RecordError as error:
         unusable = [] if form in _OURS else [o.fault for o in FORMATS.offers() if o.fault]
         raise RecordError("\n".join([str(error), *unusable])) from error
@@ -94,34 +79,44 @@ def read_record(
     return replace(motion, warnings=(*motion.warnings, *_implausible(motion)))
 
 
-_VERTICAL = re.compile(
-    r"^(?:Dir\.\s+(?:U-?D|[36])|STREAM:\s*\w*Z|(?:[^,]*,){3}\s*(?:UP|DOWN|DWN|VERT?\w*|UD|V|Z))\s*$"
-    r"|\bChan\s*\d+:\s*(?:Up|Down|Vert)",
-    re.IGNORECASE | re.MULTILINE,
-)
-"""How headers of K-NET and KiK-net, ESM, AT2, COSMOS and CSMIP state a vertical component."""
+class Contents(NamedTuple):
+    """One channel of a file, by its number if there are several, and what its header states."""
 
-_HEADER = 60  # lines
+    channel: str
+    recording: Recording
 
 
-def is_record(path: Path) -> bool:
-    """Whether a file's content is recognised as a record; what else lies in a folder is not."""
-    return kind_of(path) != ""
-
-
-def kind_of(path: Path) -> Literal["", "record", "vertical"]:
-    """What a file is by its content: nothing known, a record, or one that states to be vertical."""
+def contents(path: Path) -> tuple[Contents, ...]:
+    """The channels of a file that is recognised as a record; empty for others."""
     if path.suffix.lower() in _OTHER_QUANTITIES:
-        return ""
+        return ()
+    try:
+        state = path.stat()
+    except OSError:
+        return ()
+    return _contents(path, state.st_mtime_ns, state.st_size)
+
+
+@lru_cache(maxsize=4096)
+def _contents(path: Path, _changed: int, _size: int) -> tuple[Contents, ...]:
     try:
         text = read_text(path, str(path))
-        form = _by_content(text)
     except RecordError:
-        return ""
-    if form is None:
-        return ""
-    stated = form is not _PLAIN and _VERTICAL.search("\n".join(text.heads[:_HEADER]))
-    return "vertical" if stated else "record"
+        return ()
+    if (form := _by_content(text)) is None:
+        return ()
+    layout = _LAYOUTS.get(form.name)
+    if layout is None:
+        of = recording_of_at2(text) if form.name == FORMAT else UNKNOWN
+        return (Contents("", of),)
+    try:
+        channels = layout.channels(text)
+        found = [(f"{each.number}", layout.stated(text, each)[0].recording) for each in channels]
+    except RecordError:
+        return (Contents("", UNKNOWN),)  # told where it is read
+    if len(found) < 2:
+        return (Contents("", found[0][1] if found else UNKNOWN),)
+    return tuple(Contents(number, of) for number, of in found)
 
 
 def _in_order() -> Iterator[RecordFormat]:
@@ -136,12 +131,6 @@ def _by_content(text: RecordText) -> RecordFormat | None:
             if form.recognises(text):
                 return form
     return None
-
-
-def _by_extension(text: RecordText) -> RecordFormat:
-    # The format of that name then says what is missing.
-    extension = text.path.suffix.lower()
-    return next((form for form in _in_order() if extension in form.extensions), _PLAIN)
 
 
 def _implausible(motion: GroundMotion) -> tuple[str, ...]:

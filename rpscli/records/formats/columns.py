@@ -1,37 +1,37 @@
 """Plain columns of numbers: time and acceleration, acceleration alone, or several by titles.
 
 Read are, in any line before the first number, `dt: 0.005` or `sampling interval = 5 ms`,
-`units: g`, `npts: 4000`, and titles of columns such as `Time (s), Acceleration (m/s2)`. What they
-leave out (units; without times also the sampling interval) the user has to give. Of several
-quantities the only acceleration is taken, of several accelerations that which `?channel=` names.
+`units: g`, `npts: 4000`, and titles of columns such as `Time (s), Acceleration (m/s2)`, units also
+in a row of their own. What they leave out (units; without times also the sampling interval) the
+user has to give. Of several quantities the only acceleration is taken, of several accelerations
+that which `?channel=` names.
 """
 
 from __future__ import annotations
 
 import re
 from array import array
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.records.formats.record_text import RecordText, printed_resolution, uniform_step
-from rpscli.records.formats.statements import (
+from rpscli.records.formats.record_text import (
     STEP_PATTERN,
+    Array,
     Channel,
+    RecordText,
+    Stated,
     Statement,
-    agreed,
-    chosen_channel,
-    found_steps,
-    stated_count,
-    stated_step,
-    time_factor,
+    printed_resolution,
+    steps_in,
+    uniform_step,
 )
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.quantities import (
     KNOWN_UNITS,
+    NUMBER_PATTERN,
     UNIT_PATTERN,
     canonical_unit,
     numbers_in,
@@ -50,6 +50,11 @@ _COUNT = re.compile(
 _UNITS_KEY = re.compile(
     r"(?<![?&])\bunits?\b\s*(?:[=:]|(?:of|in|are|is)\b)\s*([^,;]+)", re.IGNORECASE
 )
+_PEAK = re.compile(
+    rf"\b(?:peak|max\w*)\s*(?:ground\s*)?acc\w*\s*[\[(]\s*({UNIT_PATTERN})\s*[\])]"
+    rf"\s*[=:]\s*({NUMBER_PATTERN})(?=\s*$)",
+    re.IGNORECASE,
+)
 _CELL = re.compile(r"([^\[(]*?)[\s_]*(?:[\[(]([^\])]*)[\])]|\bin\s+(\S.*))?", re.IGNORECASE)
 _TIME = re.compile(r"time|t|seconds?|sec", re.IGNORECASE)
 _ACCELERATION = re.compile(
@@ -58,6 +63,11 @@ _ACCELERATION = re.compile(
 _SPECTRUM = re.compile(r"period|freq|spectr|\bp?sa\b", re.IGNORECASE)
 _OTHER = re.compile(r"\b(?:(vel\w*)|disp\w*)\b", re.IGNORECASE)
 _OTHER_UNIT = re.compile(r"(?:[cm]?m|in|ft)\s*(?:/\s*s(?:ec)?)?", re.IGNORECASE)
+_ANY_UNIT = re.compile(rf"{UNIT_PATTERN}|{_OTHER_UNIT.pattern}|m?s(?:ec)?|-", re.IGNORECASE)
+_NO_UNIT = re.compile(
+    r"(?:[NSEWUDXYZHV]\W?){1,3}\d?|\d+(?:\s*deg)?|\w*(?:corr|filt|proc|ground)\w*", re.IGNORECASE
+)
+"""What stands in brackets behind a name and is a direction, or a remark."""
 
 
 class _Title(NamedTuple):
@@ -82,9 +92,17 @@ class _Title(NamedTuple):
 @dataclass(frozen=True)
 class _Table:
     header: tuple[Statement, ...]  # lines of text before the first number
-    values: NDArray[np.float64]  # (numbers,) of all rows, one after the other
+    values: Array  # (numbers,) of all rows, one after the other
     widths: NDArray[np.int64]  # (rows,) numbers of each
     lines: NDArray[np.int64]  # (rows,) of the file
+
+    def found(self, name: str, pattern: re.Pattern[str]) -> list[Statement]:
+        """What lines of the header state."""
+        return [
+            Statement(name, match[match.lastindex or 0], line.line)
+            for line in self.header
+            for match in pattern.finditer(line.value)
+        ]
 
 
 def recognises_columns(text: RecordText) -> bool:
@@ -99,15 +117,17 @@ def read_columns(text: RecordText) -> GroundMotion:
     table = _table(text)
     _check_count(text, table)
     width = int(table.widths[0])
+    even = not np.any(table.widths != width)
     titles = _titles(table, width)
-    _refuse_other_quantities(text, table.header, titles)
-    if np.any(table.widths != width) or (width > 2 and not titles):
-        text.single_channel()
-        return _wrapped_rows(text, table)
-    if width == 1:
-        text.single_channel()
-        return _sequence(text, table, titles)
-    return _columns(text, table, titles)
+    if even and width > 2 and text.channel and not titles:  # by their places
+        line = int(table.lines[0])
+        titles = [_Title("time" if i == 0 else f"{i + 1}", "", line) for i in range(width)]
+    _refuse_other_quantities(text, table, titles)
+    if even and width > 1 and (width == 2 or titles):
+        return _columns(text, table, titles)
+    text.single_channel()
+    note = [] if width == 1 and even else [_wrapped(text, table)]
+    return _sequence(text, table, titles[0] if width == 1 and titles else None, *note)
 
 
 def _plain(line: str) -> str:
@@ -115,30 +135,38 @@ def _plain(line: str) -> str:
     return line.replace('"', " ") if '"' in line else line
 
 
+def _is_comment(line: str) -> bool:
+    return line.lstrip().startswith(("#", "%", "!", "//", "*", "|"))
+
+
 def _titles(table: _Table, width: int) -> list[_Title]:
     """The last line that has a title for each column; empty without one."""
+    units: list[str] = []
     for line in reversed(table.header):
         for separator in (r"[,;\t]", r"\s{2,}|\t", r"\s+"):
             cells = [_plain(cell).strip() for cell in re.split(separator, line.value.strip())]
-            if len(cells) == width and all(cells) and not any(":" in cell for cell in cells):
-                titles = [_title(cell, line.line) for cell in cells]
-                last = line.line == table.lines[0] - 1 and width > 2
-                if last or any(each.is_acceleration for each in titles):
-                    return titles
-                if any(_SPECTRUM.search(each.name) for each in titles) and width > 1:
-                    return titles
-    return []
+            if len(cells) != width or not all(cells) or any(":" in cell for cell in cells):
+                continue
+            bare = [cell.strip("()[]") for cell in cells]
+            if not units and width > 1 and all(map(_ANY_UNIT.fullmatch, bare)):
+                units = bare  # a row of their own below the names
+                break
+            titles = [_title(cell, line.line) for cell in cells]
+            if units:
+                titles = [t._replace(unit=t.unit or u) for t, u in zip(titles, units, strict=True)]
+            last = line.line == table.lines[0] - 1 and width > 2
+            spectrum = width > 1 and any(_SPECTRUM.search(each.name) for each in titles)
+            if last or spectrum or any(each.is_acceleration for each in titles):
+                return titles
+    names = ["time" if re.fullmatch("m?s(?:ec)?", unit) else "acceleration" for unit in units]
+    return [_Title(*each, table.header[-1].line) for each in zip(names, units, strict=True)]
 
 
 def _title(cell: str, line: int) -> _Title:
-    name, bracket, words = (_CELL.fullmatch(cell) or _CELL.match("")).groups()  # type: ignore[union-attr]
-    if name is None or not (name or bracket):
+    match = _CELL.fullmatch(cell)
+    if match is None or not (match[1] or match[2]):
         return _Title(cell, "", line)
-    return _Title(name.strip(), (bracket or words or "").strip(), line)
-
-
-def _is_comment(line: str) -> bool:
-    return line.lstrip().startswith(("#", "%", "!", "//", "*", "|"))
+    return _Title(match[1].strip(), (match[2] or match[3] or "").strip(), line)
 
 
 def _table(text: RecordText) -> _Table:
@@ -160,7 +188,15 @@ def _table(text: RecordText) -> _Table:
                 index,
             )
     if len(widths) > 3 and widths[0] == 2 and set(widths[1:]) == {1}:
-        _take_count_and_step(text, header, values, widths, lines)
+        count, step = numerals_in(text.lines[lines[0]])
+        if not (count.isdigit() and int(count) == len(widths) - 1):
+            raise text.fault(
+                f"{count} and {step} look like the number of values and their step, but"
+                f" {len(widths) - 1} values follow; correct them, or begin their line with #",
+                lines[0],
+            )
+        header.append(Statement("count and step", f"npts: {count}, dt: {step}", lines[0]))
+        del values[:2], widths[0], lines[0]
     if len(widths) < 2:
         for index, line in enumerate(text.heads):
             if why := why_no_numbers(line):
@@ -169,43 +205,18 @@ def _table(text: RecordText) -> _Table:
             f"no known format of ground motions: {len(widths)} row(s) of numbers; export the "
             f"record as PEER AT2, or as columns of time and acceleration"
         )
-    return _Table(
-        tuple(line for line in header if line.value),
-        np.array(values),
-        np.array(widths),
-        np.array(lines),
-    )
+    kept = tuple(line for line in header if line.value)
+    return _Table(kept, np.array(values), np.array(widths), np.array(lines))
 
 
 def _check_count(text: RecordText, table: _Table) -> None:
-    stated = agreed(text, _found(table.header, _COUNT, "npts"), stated_count)
-    count = None if stated is None else stated_count(text, stated)
-    found = table.values.size
-    if count is not None and count not in (found, table.widths.size):
+    stated = text.agreed(table.found("npts", _COUNT), text.count)
+    rows, numbers = table.widths.size, table.values.size
+    if stated and text.count(stated) not in (numbers, rows):
         raise text.fault(
-            f"the header announces {count} values and the file holds {table.widths.size} row(s)"
-            f" and {found} number(s); fetch it again, or correct the header"
+            f"the header announces {stated.value} values and the file holds {rows} row(s)"
+            f" and {numbers} number(s); fetch it again, or correct the header"
         )
-
-
-def _take_count_and_step(
-    text: RecordText,
-    header: list[Statement],
-    values: array[float],
-    widths: array[int],
-    lines: array[int],
-) -> None:
-    """Take a line with the number of the values behind it and their step for what it is."""
-    count, step = numerals_in(text.lines[lines[0]])
-    if count.isdigit() and int(count) == len(widths) - 1:
-        header.append(Statement("count and step", f"npts: {count}, dt: {step}", lines[0]))
-        del values[:2], widths[0], lines[0]
-        return
-    raise text.fault(
-        f"{count} and {step} look like the number of values and their step, but {len(widths) - 1}"
-        " values follow; correct them, or begin their line with #",
-        lines[0],
-    )
 
 
 def _columns(text: RecordText, table: _Table, titles: list[_Title]) -> GroundMotion:
@@ -217,42 +228,39 @@ def _columns(text: RecordText, table: _Table, titles: list[_Title]) -> GroundMot
     if times is None and width == 2 and not (titles and text.channel):
         times = 1 - place
     title = titles[place] if titles else None
-    unit, factor = text.agreed_factor(_stated_units(text, table.header, title), _first_line(table))
-    warnings: tuple[str, ...] = ()
-    if times is None:
-        dt = text.agreed_dt(_stated_step(text, table.header))
-    else:
-        dt, warnings = _step(text, table, values[:, times], times, titles)
-    return GroundMotion(
-        values[:, place] * factor,
-        dt,
-        text.name,
-        text.source,
-        "two-column text" if width == 2 else "columns of text",
-        _description(table, unit) + (f", column {title.name}" if title and width > 2 else ""),
-        warnings,
-    )
+    stated, header = _stated(text, table, title)
+    warnings: list[str] = []
+    if times is not None:
+        stated, warnings = _timed(text, table, stated, values[:, times], times, titles)
+    words = f"{header[:100] or 'no header'}"
+    words += f", column {title.name}" if title and width > 2 else ""
+    form = "two-column text" if width == 2 else "columns of text"
+    return text.motion(stated, values[:, place], form, words, *warnings, header=header)
 
 
 def _chosen(text: RecordText, titles: list[_Title]) -> int:
     """The column that is wanted: the only acceleration, or the one that the user names."""
     series = [i for i, title in enumerate(titles) if title.is_acceleration]
-    if not series:
-        series = [i for i, title in enumerate(titles) if not title.is_time]
+    series = series or [i for i, title in enumerate(titles) if not title.is_time]
     if text.channel is None and len(series) == 1:
         return series[0]
-    named = [Channel(i, titles[i].line, titles[i].name) for i in series]
-    return chosen_channel(text, named).number
+    named = [Channel(i + 1, titles[i].line, titles[i].name) for i in series]
+    return text.chosen(named).number - 1
 
 
-def _step(
-    text: RecordText, table: _Table, times: NDArray[np.float64], place: int, titles: list[_Title]
-) -> tuple[float, tuple[str, ...]]:
-    """The step of a column of times [s], and what is to be said of them."""
+def _timed(
+    text: RecordText,
+    table: _Table,
+    stated: Stated,
+    times: Array,
+    place: int,
+    titles: list[_Title],
+) -> tuple[Stated, list[str]]:
+    """The step of a column of times, and what is to be said of them."""
     numerals = (numerals_in(_plain(text.lines[line]))[place] for line in table.lines)
     resolution = printed_resolution(times, numerals)
     title = titles[place] if titles and titles[place].is_time else None
-    factor = 1.0 if title is None else time_factor(text, title.unit, title.line)
+    factor = 1.0 if title is None else text.time_factor(title.unit, title.line)
     try:
         step = factor * uniform_step(times, resolution)
     except ValueError as error:
@@ -260,43 +268,26 @@ def _step(
             f"two columns should be time and acceleration at a uniform step, but {error}"
         ) from error
     step = float(f"{step:.15g}") if factor != 1.0 else step
-    header_step = _stated_step(text, table.header)
     # Rounded times know the step to one unit of their last digit over the whole record.
     coarsest = factor * float(resolution.max())
-    known_to = max(1e-6, 2.0 * coarsest / (step * table.widths.size))
-    if header_step is not None and abs(header_step - step) > known_to * step:
+    known_to = max(1e-6 * step, 2.0 * coarsest / table.widths.size)
+    if stated.step is not None and abs(stated.step - step) > known_to:
         raise text.fault(
-            f"the header says dt = {header_step:g} s and the times advance by {step:g} s; "
+            f"the header says dt = {stated.step:g} s and the times advance by {step:g} s; "
             f"correct the one or the other"
         )
-    warnings: tuple[str, ...] = ()
-    if abs(factor * times[0]) > 0.5 * coarsest:
-        warnings = (f"times begin at {factor * times[0]:g} s; taken as the record's zero",)
-    return text.agreed_dt(step, known_to), warnings
+    late = factor * times[0]
+    late_by = [f"times begin at {late:g} s; taken as the record's zero"]
+    said = late_by if abs(late) > 0.5 * coarsest else []
+    return replace(stated, step=step, resolution=known_to / 0.51), said
 
 
-def _sequence(
-    text: RecordText, table: _Table, titles: Sequence[_Title] = (), *warnings: str
-) -> GroundMotion:
-    title = titles[0] if titles else None
-    unit, factor = text.agreed_factor(_stated_units(text, table.header, title), _first_line(table))
-    dt = text.agreed_dt(_stated_step(text, table.header))
+def _sequence(text: RecordText, table: _Table, title: _Title | None, *doubts: str) -> GroundMotion:
+    """All numbers, one after the other."""
+    stated, header = _stated(text, table, title)
     values = table.values
-    _refuse_leading_header(text, table, values)
-    if values[0] == dt:
-        warnings = (*warnings, f"the first value, {dt:g}, equals dt: see that it is not a header")
-    return GroundMotion(
-        values * factor,
-        dt,
-        text.name,
-        text.source,
-        "one-column text",
-        _description(table, unit),
-        warnings,
-    )
-
-
-def _refuse_leading_header(text: RecordText, table: _Table, values: NDArray[np.float64]) -> None:
+    text.agreed_factor(stated.unit, header)
+    dt = text.agreed_dt(stated.step)
     # A whole number before decimal ones is a count or a flag: 4000, or 1 and then the time step.
     numerals = [word for line in table.lines[:2] for word in numerals_in(text.lines[line])]
     flagged = values[0] != 0.0 and numerals[0].isdigit() and not numerals[1].isdigit()
@@ -306,9 +297,15 @@ def _refuse_leading_header(text: RecordText, table: _Table, values: NDArray[np.f
             f"the time step), not like accelerations; remove them or begin their lines with #",
             int(table.lines[0]),
         )
+    if values[0] == dt:
+        doubts += (f"the first value, {dt:g}, equals dt: see that it is not a header",)
+    return text.motion(
+        stated, values, "one-column text", header[:100] or "no header", *doubts, header=header
+    )
 
 
-def _wrapped_rows(text: RecordText, table: _Table) -> GroundMotion:
+def _wrapped(text: RecordText, table: _Table) -> str:
+    """What is said of rows that were read one after the other; refuses what looks otherwise."""
     width = int(table.widths[0])
     ragged = np.flatnonzero(table.widths[:-1] != width)
     if ragged.size or table.widths[-1] > width:
@@ -319,8 +316,8 @@ def _wrapped_rows(text: RecordText, table: _Table) -> GroundMotion:
             int(table.lines[bad]),
         )
     first = table.values[::width]
-    counted = _found(table.header, _COUNT, "npts")
-    if counted and stated_count(text, counted[0]) == table.widths.size:
+    counted = table.found("npts", _COUNT)
+    if counted and text.count(counted[0]) == table.widths.size:
         raise text.fault(
             f"the header announces {table.widths.size} values, as many as there are rows of {width}"
             " numbers: name the columns in a line of titles, and one of them by ?channel=NAME"
@@ -328,47 +325,28 @@ def _wrapped_rows(text: RecordText, table: _Table) -> GroundMotion:
     if width == 2 or (first.size > 2 and bool(np.all(np.diff(first) > 0.0))):
         raise text.fault(
             f"rows of {width} numbers whose first one increases look like time and several "
-            f"quantities; keep time and acceleration"
+            f"quantities; keep time and acceleration, or take one column by its place, ?channel=2"
         )
-    note = f"rows of {width} numbers were read one after the other"
-    return _sequence(text, table, (), note)
+    return f"rows of {width} numbers were read one after the other"
 
 
-def _first_line(table: _Table) -> str:
-    return table.header[0].value if table.header else ""
-
-
-def _description(table: _Table, unit: str) -> str:
-    return f"{_first_line(table)[:100] or 'no header'}; values in {unit}"
-
-
-def _found(header: Sequence[Statement], pattern: re.Pattern[str], name: str) -> list[Statement]:
-    return [
-        Statement(name, value, line.line)
-        for line in header
-        for value in pattern.findall(line.value)
-    ]
-
-
-def _stated_step(text: RecordText, header: Sequence[Statement]) -> float | None:
-    """The time step that the header states [s]; two different ones are refused."""
-    steps = [step for line in header for step in found_steps("dt", _STEP, line.value, line.line)]
-    step = agreed(text, steps, stated_step)
-    return None if step is None else stated_step(text, step)
-
-
-def _stated_units(
-    text: RecordText, header: Sequence[Statement], title: _Title | None
-) -> str | None:
-    """The canonical unit of acceleration that the header, or the title of the column, states."""
+def _stated(text: RecordText, table: _Table, title: _Title | None) -> tuple[Stated, str]:
+    """What the header and the title of the column say; two units, or steps, are refused."""
     units: set[str] = set()
-    for line in header:
+    for line in table.header:
         for key in _UNITS_KEY.finditer(line.value):
-            units.add(_unit_after_key(text, key[0], key[1], line.line))
+            word = re.match(rf"[\s(\[]*({UNIT_PATTERN})", key[1], re.IGNORECASE)
+            if (unit := canonical_unit(word[1]) if word else None) is None:
+                raise text.fault(
+                    f"the header says {key[0].strip()[:60]!r}, which is not a unit of acceleration"
+                    f" that is known ({KNOWN_UNITS}); correct the header",
+                    line.line,
+                )
+            units.add(unit)
     if title is not None and title.unit:
         if unit := canonical_unit(title.unit):
             units.add(unit)
-        elif re.match(UNIT_PATTERN, title.unit, re.IGNORECASE):
+        elif not _NO_UNIT.fullmatch(title.unit):
             raise text.fault(
                 f"the title says {title.name} in {title.unit[:40]!r}, which is not a unit of"
                 f" acceleration that is known ({KNOWN_UNITS}); correct it",
@@ -378,12 +356,19 @@ def _stated_units(
         raise text.fault(
             f"the header states different units: {', '.join(sorted(units))}; correct the header"
         )
-    return units.pop() if units else None
+    steps = [step for line in table.header for step in steps_in("dt", _STEP, line.value, line.line)]
+    step = text.agreed(steps, text.step)
+    header = table.header[0].value if table.header else ""
+    peak = next((m for line in table.header if (m := _PEAK.search(line.value))), None)
+    return Stated(
+        units.pop() if units else None,
+        None if step is None else text.step(step),
+        peak=Statement("peak", peak[2], 0) if peak else None,
+        peak_unit=canonical_unit(peak[1]) if peak else None,
+    ), header
 
 
-def _refuse_other_quantities(
-    text: RecordText, header: Sequence[Statement], titles: Sequence[_Title]
-) -> None:
+def _refuse_other_quantities(text: RecordText, table: _Table, titles: list[_Title]) -> None:
     """Refuse spectra, and series of velocities or displacements."""
     for title in titles:
         if _SPECTRUM.search(title.name):
@@ -393,36 +378,14 @@ def _refuse_other_quantities(
             )
     if any(title.is_acceleration for title in titles):
         return
-    for line in header:
-        for other in _others(line):
-            name = "velocity" if other[1] else "displacement"
-            raise text.fault(
-                f"the header says {line.value[:60]!r}: this is a {name} record; give the"
-                " acceleration record of the same station",
-                line.line,
-            )
-
-
-def _others(line: Statement) -> Iterator[re.Match[str]]:
-    """Titles of velocities and displacements: cells of their own."""
-    for cell in re.split(r"[,;\t]|\s{2,}", line.value):
-        title = _title(_plain(cell).strip(), line.line)
-        found = _OTHER.match(title.name)
-        if (
-            found
-            and found.end() == len(title.name)
-            and (not title.unit or _OTHER_UNIT.fullmatch(title.unit))
-        ):
-            yield found
-
-
-def _unit_after_key(text: RecordText, statement: str, spelling: str, line: int) -> str:
-    word = re.match(rf"[\s(\[]*({UNIT_PATTERN})", spelling, re.IGNORECASE)
-    unit = canonical_unit(word[1]) if word else None
-    if unit is None:
-        raise text.fault(
-            f"the header says {statement.strip()[:60]!r}, which is not a unit of acceleration that"
-            f" is known ({KNOWN_UNITS}); correct the header",
-            line,
-        )
-    return unit
+    for line in table.header:
+        for cell in re.split(r"[,;\t]|\s{2,}", line.value):
+            title = _title(_plain(cell).strip(), line.line)
+            other = _OTHER.fullmatch(title.name)
+            if other and (not title.unit or _OTHER_UNIT.fullmatch(title.unit)):
+                name = "velocity" if other[1] else "displacement"
+                raise text.fault(
+                    f"the header says {line.value[:60]!r}: this is a {name} record; give the"
+                    " acceleration record of the same station",
+                    line.line,
+                )

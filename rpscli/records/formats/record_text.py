@@ -1,35 +1,89 @@
-"""The text of a record file, with what the user said of it, and the time step of its samples."""
+"""The text of a record file, and what its header states: numbers, channels, rows of values."""
 
 from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.errors import RecordError, stem_of
-from rpscli.records.quantities import KNOWN_UNITS, canonical_unit, last_digit, unit_factor
+from rpscli.records.ground_motion import UNKNOWN, GroundMotion, Recording
+from rpscli.records.quantities import (
+    KNOWN_UNITS,
+    NUMBER_PATTERN,
+    canonical_unit,
+    last_digit,
+    numbers_in,
+    to_float,
+    unit_factor,
+    why_no_numbers,
+)
 
-_BINARY_KINDS = {
-    b"PK\x03\x04": "a ZIP archive; unpack it first",
-    b"\x1f\x8b": "a gzip archive; unpack it first",
-    b"\x89HDF": "an HDF5 file; export the record as text",
-    b"%PDF": "a PDF document",
-    b"\x89PNG": "a picture",
-    b"\xd0\xcf\x11\xe0": "an old Excel or Word file; save the sheet as CSV",
+Array = NDArray[np.float64]
+
+STATED_PATTERN = rf"{NUMBER_PATTERN}(?:,[0-9]+)?"
+"""A number as a header states it; one with a decimal comma is then refused by name."""
+
+STEP_PATTERN = (
+    r"\s*(?:[\[(]\s*([A-Za-z]+)\.?\s*[\])])?\s*[=:]?\s*"
+    rf"({STATED_PATTERN}[.0-9]*)\s*((?!(?:dt|npts)\b)[A-Za-z]+)?"
+)
+"""What follows the name of a time step: a unit in brackets, the number, a unit behind it."""
+
+_TIME_UNITS = {
+    **dict.fromkeys(("", "s", "sec", "secs", "second", "seconds"), 1.0),
+    **dict.fromkeys(("ms", "msec", "msecs", "millisecond", "milliseconds"), 1e-3),
 }
-_UTF_16 = (b"\xff\xfe", b"\xfe\xff")
-_SPREADSHEET = re.compile(rb"\APK\x03\x04.*?(?:xl/|opendocument\.spreadsheet)", re.DOTALL)
-_SHEET = "a spreadsheet under another name; save the sheet as CSV"
+_OTHER_TIMES = re.compile(r"(?:us|usec|ns|min|minutes?|hz|h|hours?|days?|years?)", re.IGNORECASE)
+
+MOST_VALUES = 10_000_000
+"""Of one series: more than a day at a hundred samples a second."""
+
+_SHOWN = 40  # letters of a value in a message
 _HEADER_WIDTH = 1000  # letters
 _LARGEST_FILE = 200_000_000  # bytes; a day at a hundred samples a second has a tenth
 _SHORTEST_STEP, _LONGEST_STEP = 1e-6, 100.0  # s
-_MARKUP = re.compile(rb"\s*<(?:!doctype|html|head|\?xml)", re.IGNORECASE)
+
+
+class Statement(NamedTuple):
+    """What a header says: the name of the quantity, its value as printed, the line (from zero)."""
+
+    name: str
+    value: str
+    line: int
+
+
+class Channel(NamedTuple):
+    """A channel of a file: its number, the line where it begins, what it calls itself."""
+
+    number: int
+    line: int
+    label: str
+
+
+@dataclass(frozen=True)
+class Stated:
+    """What a file says of its values; None where it is silent.
+
+    `unit` is a canonical one of acceleration, `step` [s] that of the samples, `resolution` [s] what
+    its printing leaves open, `peak` in `peak_unit` or in the unit of the values.
+    """
+
+    unit: str | None = None
+    step: float | None = None
+    resolution: float = 0.0
+    count: Statement | None = None
+    duration: Statement | None = None
+    peak: Statement | None = None
+    peak_unit: str | None = None
+    recording: Recording = UNKNOWN
 
 
 @dataclass(frozen=True)
@@ -114,6 +168,225 @@ class RecordText:
                 f"channel = {self.channel[:60]}: this file holds one channel; leave it out"
             )
 
+    def chosen(self, channels: Sequence[Channel]) -> Channel:
+        """The channel whose number the user asked for, or the only one."""
+        if not channels:
+            raise self.fault(
+                "no series of accelerations begins in this file; if it is of another format than"
+                " its name says, give it another ending (.txt for columns of numbers)"
+            )
+        listing = "; ".join(f"{channel.number}: {channel.label[:60]}" for channel in channels)
+        if self.channel is None:
+            if len(channels) == 1:
+                return channels[0]
+            raise self.fault(
+                f"the file holds {len(channels)} channels; say which one by "
+                f"?channel={channels[0].number} after the file name ({listing})"
+            )
+        asked = self.channel.strip().lower()
+        wanted = [of for of in channels if asked in (str(of.number), of.label.strip().lower())]
+        if not wanted:
+            raise self.fault(f"there is no channel {self.channel[:60]}; the file has {listing}")
+        if len(wanted) > 1:
+            raise self.fault(f"channel {self.channel[:60]} comes {len(wanted)} times: {listing}")
+        return wanted[0]
+
+    def number(self, stated: Statement, *, positive: bool = False) -> float:
+        """The finite number that a header states."""
+        name, numeral, line = stated.name, stated.value.strip(), stated.line
+        if re.fullmatch(r"[+-]?[0-9]*,[0-9]+", numeral):
+            short = numeral[:_SHOWN]
+            raise self.fault(
+                f"{name} = {short} has a decimal comma; write {short.replace(',', '.')}", line
+            )
+        if not re.fullmatch(NUMBER_PATTERN, numeral) or not math.isfinite(to_float(numeral)):
+            raise self.fault(
+                f"{name} = {numeral[:_SHOWN]!r} is not a finite number; correct the header, or"
+                " fetch the file again",
+                line,
+            )
+        if positive and to_float(numeral) <= 0.0:
+            raise self.fault(
+                f"{name} = {numeral[:_SHOWN]} must be positive; correct the header", line
+            )
+        return to_float(numeral)
+
+    def count(self, stated: Statement) -> int:
+        """The number of values that a header announces."""
+        numeral = stated.value.strip()
+        count = int(numeral) if re.fullmatch("[0-9]{1,9}", numeral) else 0
+        if not 0 < count <= MOST_VALUES:
+            raise self.fault(
+                f"{stated.name} = {numeral[:_SHOWN]!r} should be a number of values, a whole number"
+                f" from 1 to {MOST_VALUES}; correct the header",
+                stated.line,
+            )
+        return count
+
+    def step(self, stated: Statement) -> float:
+        """The time step that a header states [s]: its number, and perhaps a unit behind it."""
+        number, _, unit = stated.value.partition(" ")
+        value = self.number(stated._replace(value=number), positive=True)
+        factor = self.time_factor(unit, stated.line)
+        return value if factor == 1.0 else float(f"{factor * value:.15g}")
+
+    def time_factor(self, unit: str, line: int) -> float:
+        """The size of a unit of time [s]; words that are none say nothing."""
+        if (factor := _TIME_UNITS.get(unit.strip(" .").lower())) is not None:
+            return factor
+        if _OTHER_TIMES.fullmatch(unit.strip(" .")):
+            raise self.fault(f"a time in {unit!r} is not known; write seconds, or ms", line)
+        return 1.0
+
+    def agreed(
+        self, statements: Sequence[Statement], meaning: Callable[[Statement], object]
+    ) -> Statement | None:
+        """The one thing that several statements of a header say; None if there is none."""
+        first = next(iter(statements), None)
+        said = first and meaning(first)
+        for other in statements[1:]:
+            if first is not None and meaning(other) != said:
+                raise self.fault(
+                    f"{other.name} = {other.value.strip()[:_SHOWN]} contradicts"
+                    f" {first.name} = {first.value.strip()[:_SHOWN]} of line {first.line + 1};"
+                    " correct the header",
+                    other.line,
+                )
+        return first
+
+    def series(
+        self,
+        start: int,
+        count: int,
+        *,
+        width: int | None = None,
+        stop: int | None = None,
+        closed_by: re.Pattern[str] | None = None,
+    ) -> Array:
+        """Exactly `count` numbers of the lines from `start` on; blank lines are skipped."""
+        # Rows have `width` numbers, or as many as the first one, but for the last.
+        rows: list[tuple[int, list[float]]] = []
+        found = 0
+        end = len(self.lines) if stop is None else min(stop, len(self.lines))
+        for index in range(start, end):
+            row = numbers_in(self.lines[index])
+            if row is None:
+                if closed_by is not None and closed_by.match(self.lines[index]):
+                    end = index
+                    break
+                raise self._foreign_line(index, found, count)
+            if row:
+                rows.append((index, row))
+                found += len(row)
+        if found != count:
+            raise self.fault(
+                f"the header announces {count} values, but there are {found} up to"
+                f" {'the end' if end >= len(self.lines) else f'line {end}'}; the file is damaged,"
+                " fetch it again"
+            )
+        width = width or len(rows[0][1])
+        for index, row in rows:
+            if len(row) != width and not (index == rows[-1][0] and len(row) < width):
+                raise self.fault(
+                    f"{len(row)} value(s) in a row where the format has {width}; the file is"
+                    " damaged, fetch it again",
+                    index,
+                )
+        return np.array([value for _, row in rows for value in row])
+
+    def _foreign_line(self, index: int, found: int, count: int) -> RecordError:
+        line = self.lines[index].strip()[:_SHOWN]
+        if found >= count:
+            return self.fault(
+                f"the header announces {count} values, and after {found} follows {line!r}; keep one"
+                " record in a file",
+                index,
+            )
+        return self.fault(
+            f"found {found} of the {count} values that the header announces, then {line!r}"
+            f"{why_no_numbers(self.lines[index])}; the file is damaged or cut short",
+            index,
+        )
+
+    def motion(
+        self,
+        stated: Stated,
+        values: Array,
+        form: str,
+        description: str,
+        *doubts: str,
+        header: str = "",
+        name: str = "",
+    ) -> GroundMotion:
+        """The motion of values in their unit, held against what the header states of them."""
+        unit, factor = self.agreed_factor(stated.unit, header)
+        tolerance = 0.51 * stated.resolution / stated.step if stated.step else 0.0
+        dt = self.agreed_dt(stated.step, max(tolerance, 1e-9))
+        if stated.duration is not None:
+            self._refuse_other_duration(stated.duration, values.size, dt)
+        if stated.peak is not None:
+            of_peak = unit_factor(stated.peak_unit or unit) / factor
+            peak, said = float(np.max(np.abs(values))), of_peak * abs(self.number(stated.peak))
+            off = 0.51 * of_peak * last_digit(stated.peak.value.strip()) + 1e-3 * said
+            if abs(peak - said) > off:
+                doubts += (f"the values peak at {peak:.6g} and the header says {said:.6g}",)
+        return GroundMotion(
+            values * factor,
+            dt,
+            name or self.name,
+            self.source,
+            form,
+            f"{description}; values in {unit}",
+            doubts,
+            recording=stated.recording,
+        )
+
+    def _refuse_other_duration(self, stated: Statement, count: int, dt: float) -> None:
+        """Refuse a duration [s] that is not that of the values, give or take an interval."""
+        duration, rounding = self.number(stated), last_digit(stated.value.strip())
+        if abs(duration - (count - 0.5) * dt) > 0.51 * dt + rounding:
+            raise self.fault(
+                f"{stated.name} = {stated.value.strip()[:_SHOWN]} s, but {count} values {dt:g} s"
+                f" apart last {count * dt:g} s; correct the header, or fetch the file again",
+                stated.line,
+            )
+
+
+def steps_in(name: str, pattern: re.Pattern[str], line: str, place: int) -> list[Statement]:
+    """Time steps that a line states, with their units; the pattern ends as `STEP_PATTERN`."""
+    return [
+        Statement(name, f"{match[2]} {match[1] or match[3] or ''}".strip(), place)
+        for match in pattern.finditer(line)
+    ]
+
+
+_STATES = re.compile(
+    r"(?<![?&])\b(u|d|n|t|s|e)"
+    r"(nits?|t|pts|data|ime\s*step|ampling\s*\w+|umber of \w+|qually spaced)"
+    r"(?=[\s\[(]*(?:[a-z]+[\s\])]*)?[=:]|\s*(?:of|in|are|is|at|intervals)\b)",
+    re.IGNORECASE,
+)
+
+
+def remark(text: str) -> str:
+    """A text in one line that states nothing to those who read the file again."""
+    line = "".join(letter for letter in " ".join(text.split()) if letter.isprintable())
+    return _STATES.sub(r"\1-\2", line)
+
+
+_FOREIGN = {
+    b"PK\x03\x04": "a ZIP archive; unpack it first",
+    b"\x1f\x8b": "a gzip archive; unpack it first",
+    b"\x89HDF": "an HDF5 file; export the record as text",
+    b"%PDF": "a PDF document",
+    b"\x89PNG": "a picture",
+    b"\xd0\xcf\x11\xe0": "an old Excel or Word file; save the sheet as CSV",
+}
+_SPREADSHEET = re.compile(rb"\APK\x03\x04.*?(?:xl/|opendocument\.spreadsheet)", re.DOTALL)
+_MARKUP = re.compile(rb"(?:\xef\xbb\xbf)?\s*<(?:!doctype|html|head|\?xml)", re.IGNORECASE)
+_UTF_16 = (b"\xff\xfe", b"\xfe\xff")
+_PADDING = re.compile(rb"\0{2,}|\0\Z")  # of old systems, to the ends of their blocks
+
 
 def read_text(
     path: Path,
@@ -136,10 +409,7 @@ def read_text(
         data = path.read_bytes()
     except OSError as error:
         raise RecordError(f"{path}: cannot be read: {error.strerror}") from error
-    if not data.startswith(_UTF_16):
-        data = data.rstrip(b"\0")  # padding of old systems
-    _refuse_foreign(path, data)
-    text = re.sub(r"\r+\n?", "\n", _decoded(data)).rstrip("\x1a\n")
+    text = re.sub(r"\r+\n?", "\n", _decoded(data, path)).rstrip("\x1a\n")
     if not text.strip():
         raise RecordError(
             f"{path}: the file is empty; fetch it again, or export the record as text"
@@ -147,23 +417,22 @@ def read_text(
     return RecordText(path, source, tuple(text.split("\n")), dt, unit, channel)
 
 
-def _refuse_foreign(path: Path, data: bytes) -> None:
-    for magic, kind in _BINARY_KINDS.items():
+def _decoded(data: bytes, path: Path) -> str:
+    for magic, kind in _FOREIGN.items():
         if data.startswith(magic):
-            sheet = _SPREADSHEET.search(data)
-            raise RecordError(f"{path}: not a record but {_SHEET if sheet else kind}")
-    if _MARKUP.match(data.removeprefix(b"\xef\xbb\xbf")):
+            sheet = "a spreadsheet under another name; save the sheet as CSV"
+            raise RecordError(
+                f"{path}: not a record but {sheet if _SPREADSHEET.search(data) else kind}"
+            )
+    if _MARKUP.match(data):
         raise RecordError(
             f"{path}: not a record but a web page, perhaps the log-in page of the database; "
             f"download the record itself"
         )
-    if b"\x00" in data and not data.startswith(_UTF_16):
-        raise RecordError(f"{path}: not a text file; export the record as text")
-
-
-def _decoded(data: bytes) -> str:
     if data.startswith(_UTF_16):
         return data.decode("utf-16", errors="replace")
+    if b"\0" in (data := _PADDING.sub(b"", data)):
+        raise RecordError(f"{path}: not a text file; export the record as text")
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError:  # station names of older files; every byte is a Latin-1 letter
@@ -178,9 +447,7 @@ _COARSEST = 0.25
 """Share of a step beyond which rounding can no longer tell uniform times from others."""
 
 
-def printed_resolution(
-    printed: NDArray[np.float64], numerals: Iterable[str]
-) -> NDArray[np.float64]:
+def printed_resolution(printed: Array, numerals: Iterable[str]) -> Array:
     """The unit of the last digit of each time of a column, dropped zeros included."""
     # Of so many decimals or significant digits: one a decade, and growing by no more than ten.
     times = np.abs(printed)
@@ -196,7 +463,7 @@ def printed_resolution(
     return result
 
 
-def uniform_step(times: NDArray[np.float64], resolution: NDArray[np.float64] | float) -> float:
+def uniform_step(times: Array, resolution: Array | float) -> float:
     """The step of uniform times, the shortest decimal number that fits all of them."""
     steps = np.diff(times)
     if not steps.min() > 0.0:
@@ -204,36 +471,23 @@ def uniform_step(times: NDArray[np.float64], resolution: NDArray[np.float64] | f
         raise ValueError(
             f"the times do not increase after sample {after}; sort them, or print more digits"
         )
-    typical = _median(steps)
+    ordered = np.sort(steps)  # numpy's median imports masked arrays
+    typical = 0.5 * float(ordered[(steps.size - 1) // 2] + ordered[steps.size // 2])
     rounding = np.minimum(0.5 * np.asarray(resolution), _COARSEST * typical)
     for summed in _SUMMED:
-        step = _shortest_step(times, rounding + summed * typical)
-        if step is not None:
-            return step
+        # Each time bounds the step from both sides; the bounds close in as the samples go on.
+        allowance = np.broadcast_to(rounding + summed * typical, times.shape)
+        either = allowance[1:] + (allowance[0] if times[0] else 0.0)  # a printed zero is exact
+        elapsed, count = times[1:] - times[0], np.arange(1, times.size)
+        lowest = float(np.max((elapsed - either) / count))
+        highest = float(np.min((elapsed + either) / count))
+        if 0.0 < lowest <= highest:
+            middle = 0.5 * (lowest + highest)
+            rounded = (round(middle, decimals) for decimals in range(17))
+            return next((step for step in rounded if lowest <= step <= highest), middle)
     off = np.abs(steps - typical)
     first = int(np.argmax(off > 0.5 * off.max()))
     raise ValueError(
         f"the step after sample {first + 1} is {steps[first]:.6g} s, most others {typical:.6g} s;"
         " resample the record to a uniform step first"
     )
-
-
-def _median(values: NDArray[np.float64]) -> float:
-    # What numpy's function gives, without the masked arrays that it imports.
-    ordered = np.sort(values)
-    return 0.5 * float(ordered[(values.size - 1) // 2] + ordered[values.size // 2])
-
-
-def _shortest_step(times: NDArray[np.float64], allowance: NDArray[np.float64]) -> float | None:
-    # Each time bounds the step from both sides; the bounds close in as the samples go on.
-    allowance = np.broadcast_to(allowance, times.shape)
-    count = np.arange(1, times.size)
-    elapsed = times[1:] - times[0]
-    either = allowance[1:] + (allowance[0] if times[0] else 0.0)  # a printed zero is exact
-    lowest = float(np.max((elapsed - either) / count))
-    highest = float(np.min((elapsed + either) / count))
-    if not 0.0 < lowest <= highest:
-        return None
-    middle = 0.5 * (lowest + highest)
-    candidates = (round(middle, decimals) for decimals in range(17))
-    return next((step for step in candidates if lowest <= step <= highest), middle)

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from rpscli.constants import STANDARD_GRAVITY
-from rpscli.records.formats.statements import remark
+from rpscli.records.formats.record_text import remark
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.measures import IntensityMeasures, displacement, velocity
 from rpscli.records.selection import Selection
