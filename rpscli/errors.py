@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from numbers import Real
 from pathlib import PurePath
 from typing import TypeVar
@@ -77,6 +78,18 @@ class PluginError(RpsError):
 
 class OutputError(RpsError):
     """A result cannot be written: no permission, a full disk, a file where a folder should be."""
+
+
+@contextmanager
+def refused_by_system(
+    name: object, fault: type[RpsError], verb: str, remedy: str
+) -> Iterator[None]:
+    """What the system refuses, as an error of the program: no permission, a name too long."""
+    try:
+        yield
+    except OSError as error:
+        reason = error.strerror or error
+        raise fault(f"{str(name)[:200]}: cannot be {verb}: {reason}; {remedy}") from None
 
 
 def nearest(word: str, known: Iterable[str], likeness: float = 0.7) -> str | None:

@@ -28,7 +28,7 @@ from rpscli.case.text.document import Document, Fault, is_case, is_design
 from rpscli.case.text.files import read_text
 from rpscli.case.text.yaml_text import read_yaml
 from rpscli.errors import CaseError, hint, listed
-from rpscli.records.clusters import clusters
+from rpscli.records.recordings import clusters
 from rpscli.registry import Registry
 from rpscli.units import in_si
 

@@ -29,8 +29,8 @@ from rpscli.units import as_written
 if TYPE_CHECKING:
     from rpscli.case.case import Case
     from rpscli.case.schema.scale_to import ScaleToSection
-    from rpscli.records.clusters import Pair
     from rpscli.records.ground_motion import MotionComponents
+    from rpscli.records.recordings import Pair
 
 
 RESULTS = Path("results")
@@ -185,8 +185,8 @@ def single_motions(
     if not records:
         yield request
         return
-    from rpscli.records.clusters import pairs
     from rpscli.records.loading import expanded
+    from rpscli.records.recordings import pairs
 
     single, notes = expanded(records)
     tell(f"--record {text}" for text in notes)

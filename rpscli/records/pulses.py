@@ -96,7 +96,7 @@ def load_pulse(of: Source) -> GroundMotion:
     divide pulses of one period. The Mavroeidis-Papageorgiou pulse takes `cycles` (default 2) and
     `phase` (default 0), and `velocity_amplitude` in place of `amplitude`.
     """
-    name, source = of.place, of.text
+    name, source = of.place, of
     if name not in PULSES:
         raise RecordError(f"{source}: pulse {name!r} is not known; {hint(name, PULSES)}")
     own = ("velocity_amplitude", "cycles", "phase") if name == _MAVROEIDIS else ()

@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.errors import RecordError
-from rpscli.records.clusters import clusters, event_of, pairs
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.loading import load_record
 from rpscli.records.measures import (
@@ -19,6 +18,7 @@ from rpscli.records.measures import (
     over_directions,
     spectra_over_directions,
 )
+from rpscli.records.recordings import clusters, event_of, pairs
 from rpscli.records.requirements import RULES, Component, Periods, Requirements, Rule
 from rpscli.records.search import Goal, Pool, best_choice
 from rpscli.records.source import Source
@@ -308,7 +308,9 @@ def _measured(
         pgv, pgd = (float(_of_pair(peaks, of)) for peaks in both)
     if not spectrum.all() or pgv <= 0.0:
         raise RecordError(f"{first.source}: is zero throughout; leave it out")
-    return Candidate(motions, event_of(first) or "", float(spectrum[0]), pgv, pgd, spectrum[1:])
+    return Candidate(
+        motions, event_of(first.recording) or "", float(spectrum[0]), pgv, pgd, spectrum[1:]
+    )
 
 
 def _recordings(candidates: Sequence[Candidate]) -> list[int]:

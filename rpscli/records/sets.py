@@ -59,7 +59,7 @@ def expand_set(of: Source) -> list[Source]:
         elif any(fnmatchcase(f"{pair}/a", of.place) for pair in known):
             pairs = of.place.rpartition("/")[0]
             remedy = f"a pair has no components; write {SET}:{pairs}{options}"
-        raise RecordError(f"{of.text}: no {word} of FEMA P695 fits {of.place[:60]!r}; {remedy}")
+        raise RecordError(f"{of}: no {word} of FEMA P695 fits {of.place[:60]!r}; {remedy}")
     return [of.at(place) for place in found]
 
 
@@ -77,7 +77,7 @@ def require_pair(of: Source) -> None:
         remedy = f"both components: {pair}?both"
         if of.angle is not None:
             remedy = f"an angle turns a pair: {pair}?angle={of.angle:g}"
-    raise RecordError(f"{of.text}: FEMA P695 has no pair {of.place[:60]!r}; {remedy}")
+    raise RecordError(f"{of}: FEMA P695 has no pair {of.place[:60]!r}; {remedy}")
 
 
 def load_component(of: Source) -> GroundMotion:
@@ -91,9 +91,9 @@ def load_component(of: Source) -> GroundMotion:
                 f"name {place}/a or {place}/b, or the pair: {place}?both for both components"
                 f" together, {place}?angle=30 for one direction"
             )
-        raise RecordError(f"{of.text}: FEMA P695 has no component {place[:60]!r}; {remedy}")
+        raise RecordError(f"{of}: FEMA P695 has no component {place[:60]!r}; {remedy}")
     normalised = ("normalised", None) in of.options
-    return _component(_package_folder(of.text), place, of.text, normalised=normalised)
+    return _component(_package_folder(of), place, of, normalised=normalised)
 
 
 def _package_folder(source: str) -> Path:

@@ -5,7 +5,8 @@ A source is `place?options` or `scheme:place?options`. Options of every kind, in
 * `factor=1.5`, on the values;
 * of pairs `angle=30`, one direction between the components, or `both`, both components together,
   which `rotation=30` turns;
-* of files `second=FILE`, the other component, seen from the folder of the first one.
+* of files `second=FILE`, the other component, seen from the folder of the first one; of files with
+  several channels `channel=1,3` are both components.
 
 All others are those of what reads or makes the motion, as `dt`, `units` and `channel` of a file.
 """
@@ -14,12 +15,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path, PurePath
+from typing import Self
 
 from rpscli.errors import RecordError
-from rpscli.records.quantities import Query, hint, parse_query
+from rpscli.records.quantities import Query, hint
 
 FILE, LIST, SET = "", "list", "fema_p695"
 SCHEMES = (SET, "pulse", "synthetic", LIST)
@@ -35,15 +36,14 @@ _SCHEME = re.compile(r"([A-Za-z][A-Za-z0-9_.+-]+):(.*)", re.DOTALL)
 _OPTION = r"(?:[A-Za-z_]\w*=[^&?]*|both)"
 _FILE_OPTIONS = re.compile(rf"(.+?)\?({_OPTION}(?:&{_OPTION})*)", re.DOTALL)
 
+Options = tuple[tuple[str, str | None], ...]
 
-@dataclass(frozen=True)
-class Source:
-    """A source taken apart.
+
+class Source(str):  # noqa: SLOT000 -- parts are kept beside the text
+    """A source taken apart; its text reads the same.
 
     Parameters
     ----------
-    text
-        As it was written, for messages.
     scheme
         Of what is no file; empty for files, folders and globs of them.
     place
@@ -52,16 +52,23 @@ class Source:
         Names and values, those of `COMMON` last; a value is None without `=`.
     """
 
-    text: str
     scheme: str
     place: str
-    options: tuple[tuple[str, str | None], ...] = ()
+    options: Options
 
-    def __str__(self) -> str:
-        """As it is written: what reads the same."""
-        words = (name if value is None else f"{name}={value}" for name, value in self.options)
-        head = f"{self.scheme}:{self.place}" if self.scheme else self.place
-        return f"{head}?{'&'.join(words)}" if self.options else head
+    def __new__(cls, scheme: str, place: str, options: Iterable[tuple[str, str | None]]) -> Self:
+        """The parts, and the text that they are written as."""
+        rank = {name: number for number, name in enumerate(COMMON)}
+        ordered = tuple(sorted(options, key=lambda each: rank.get(each[0], -1)))
+        words = "&".join(name if value is None else f"{name}={value}" for name, value in ordered)
+        head = f"{scheme}:{place}" if scheme else place
+        made = super().__new__(cls, f"{head}?{words}" if words else head)
+        made.scheme, made.place, made.options = scheme, place, ordered
+        return made
+
+    def __getnewargs__(self) -> tuple[str, str, Options]:  # type: ignore[override]
+        """What a copy in another process is made of."""
+        return self.scheme, self.place, self.options
 
     @classmethod
     def parse(cls, text: str, folder: Path | None = None) -> Source:
@@ -72,51 +79,54 @@ class Source:
         RecordError
             For an unknown scheme, an option twice, and options that exclude each other.
         """
+        if isinstance(text, Source):
+            return text
         match = _SCHEME.fullmatch(text)
-        if match is None or is_file(split_options(text)[0], folder) or is_file(text, folder):
-            place, options = (text, "") if is_file(text, folder) else split_options(text)
-            found = cls(text, FILE, place, _parsed(options, text))
-        elif match[1] in SCHEMES:
-            place, options = match[2].partition("?")[::2]
-            if match[1] == LIST:
-                place, options = split_options(match[2])
-            found = cls(text, match[1], place, _parsed(options, text))
-        else:
-            raise RecordError(
-                f"{text}: {match[1]!r} is not a kind of record source; {hint(match[1], SCHEMES)}"
-            )
+        scheme, (place, options) = FILE, split_options(text)
+        if is_file(text, folder):
+            place, options = text, ""
+        elif match is not None and not is_file(place, folder):
+            scheme, rest = match.groups()
+            if scheme not in SCHEMES:
+                raise RecordError(
+                    f"{text}: {scheme!r} is not a kind of record source; {hint(scheme, SCHEMES)}"
+                )
+            place, _, options = rest.partition("?")
+            if scheme == LIST:
+                place, options = split_options(rest)
+        found = cls(scheme, place, _each(options, text))
         found._check()
         return found
 
     def _check(self) -> None:
-        if "rotation" in self._values and not self.both:
+        if "rotation" in self.values and not self.both:
             raise RecordError(
-                f"{self.text}: rotation turns both components together; write both&rotation"
+                f"{self}: rotation turns both components together; write both&rotation"
             )
-        if self.both and "angle" in self._values:
+        if self.both and "angle" in self.values:
             raise RecordError(
-                f"{self.text}: angle= is one direction between the components, in which a plane"
+                f"{self}: angle= is one direction between the components, in which a plane"
                 " structure is shaken; both has them act together, in two directions: keep one of"
                 " the options, or turn the pair by rotation= in place of angle="
             )
         for name in COMMON:
-            if name in self._values and not self._values[name] and name not in FLAGS:
-                raise RecordError(f"{self.text}: {name} has no value; write {name}=...")
+            if name in self.values and not self.values[name] and name not in FLAGS:
+                raise RecordError(f"{self}: {name} has no value; write {name}=...")
         _ = self.rotation, self.angle, self.factor  # which refuse what is no number
 
     @cached_property
-    def _values(self) -> dict[str, str | None]:
+    def values(self) -> dict[str, str | None]:
+        """Values of options by their names."""
         return dict(self.options)
 
     def _number(self, name: str, kind: str, usual: float) -> float:
-        if (value := self._values.get(name)) is None and name not in self._values:
-            return usual
-        return parse_query(f"{name}={value or ''}", self.text, (name,)).quantity(name, kind)
+        given = {name: self.values[name] or ""} if name in self.values else {}
+        return Query(self, given).quantity(name, kind, usual)
 
     @property
     def both(self) -> bool:
         """Whether both components act together."""
-        return "both" in self._values
+        return "both" in self.values
 
     @property
     def rotation(self) -> float:
@@ -126,7 +136,7 @@ class Source:
     @property
     def angle(self) -> float | None:
         """Of one direction, from the first component towards the second [deg]."""
-        return self._number("angle", "direction", 0.0) if "angle" in self._values else None
+        return self._number("angle", "direction", 0.0) if "angle" in self.values else None
 
     @property
     def factor(self) -> float:
@@ -136,12 +146,12 @@ class Source:
     @property
     def of_pair(self) -> bool:
         """Whether two components are wanted: together, or one direction between them."""
-        return self.both or "angle" in self._values
+        return self.both or "angle" in self.values
 
     @property
     def second(self) -> str | None:
         """The file of the second component, as seen from where the first one is seen."""
-        second = self._values.get("second")
+        second = self.values.get("second")
         return None if second is None else str(PurePath(self.place).parent / second)
 
     def query(self, *allowed: str) -> Query:
@@ -150,23 +160,24 @@ class Source:
         for name, value in self.options:
             if name not in (*COMMON, *allowed):
                 known = (*allowed, *COMMON)
-                raise RecordError(f"{self.text}: option {name!r} is not known; {hint(name, known)}")
+                raise RecordError(f"{self}: option {name!r} is not known; {hint(name, known)}")
             if not value and name not in FLAGS:
-                raise RecordError(f"{self.text}: {name} has no value; write {name}=...")
-        return Query(self.text, own)
+                raise RecordError(f"{self}: {name} has no value; write {name}=...")
+        return Query(self, own)
 
     def without(self, *names: str) -> Source:
         """The same without some options."""
-        return replace(self, options=tuple(each for each in self.options if each[0] not in names))
+        kept = (each for each in self.options if each[0] not in names)
+        return Source(self.scheme, self.place, kept)
 
     def plus(self, **options: str | None) -> Source:
         """The same with further options, in place of those of the same names."""
         kept = self.without(*options).options
-        return replace(self, options=_in_order((*kept, *options.items())))
+        return Source(self.scheme, self.place, (*kept, *options.items()))
 
     def at(self, place: str) -> Source:
         """The same of another place."""
-        return replace(self, place=place)
+        return Source(self.scheme, place, self.options)
 
     @property
     def alone(self) -> Source:
@@ -179,7 +190,10 @@ class Source:
         if self.scheme == SET:
             pair = re.sub("/[ab]$", "", self.place)
             return self.alone.at(f"{pair}/a"), self.alone.at(f"{pair}/b")
-        return None if self.second is None else (self.alone, self.alone.at(self.second))
+        if self.second is not None:
+            return self.alone, self.alone.at(self.second)
+        first, comma, other = (self.values.get("channel") or "").partition(",")
+        return (self.alone.plus(channel=first), self.alone.plus(channel=other)) if comma else None
 
     def turned(self, rotation: float) -> Source:
         """A source of both components, turned further [deg]."""
@@ -192,29 +206,19 @@ class Source:
         if self.of_pair and self.components is None:
             word = "both needs" if self.both else "angle turns"
             raise RecordError(
-                f"{self.text}: {word} two components: a pair of a set, fema_p695:farfield/1?both,"
+                f"{self}: {word} two components: a pair of a set, fema_p695:farfield/1?both,"
                 " or second=FILE, seen from the folder of the first one"
             )
-
-
-def _parsed(options: str, text: str) -> tuple[tuple[str, str | None], ...]:
-    return _in_order(_each(options, text))
-
-
-def _in_order(options: Iterable[tuple[str, str | None]]) -> tuple[tuple[str, str | None], ...]:
-    """Own options as they were written, and behind them those that all kinds have."""
-    rank = {name: number for number, name in enumerate(COMMON)}
-    return tuple(sorted(options, key=lambda each: rank.get(each[0], -1)))
 
 
 def _each(options: str, text: str) -> Iterator[tuple[str, str | None]]:
     seen = set[str]()
     for item in filter(None, (part.strip() for part in options.split("&"))):
         name, mark, value = (part.strip() for part in item.partition("="))
+        name = SPELLINGS.get(name, name)
         if name in seen:
             raise RecordError(f"{text}: {name} is given twice; keep one")
         seen.add(name)
-        name = SPELLINGS.get(name, name)
         if name in FLAGS and mark:
             raise RecordError(f"{text}: {name} takes no value; write {name} alone")
         yield name, value if mark else None

@@ -53,7 +53,7 @@ def load_synthetic(of: Source) -> GroundMotion:
     (2.39 Hz) and `ground_damping` (0.6) of the soil, `cut_frequency` (0.239 Hz) and `cut_damping`
     (0.6) of the low cut; with `pulse_velocity`, also `pulse_period` (3 s) and `pulse_cycles` (2).
     """
-    query, source = of.query(*_OPTIONS), of.text
+    query, source = of.query(*_OPTIONS), of
     seed = query.integer("seed")
     pga = query.acceleration("pga")
     duration = query.quantity("duration", "time", 30.0)

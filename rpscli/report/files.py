@@ -9,12 +9,17 @@ import stat
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import Any, TypeAlias
 
-from rpscli.errors import OutputError, Refused
+from rpscli.errors import OutputError, Refused, refused_by_system
 from rpscli.machine import mode_of
 from rpscli.report.documents import SCHEMA_VERSION, json_text, versions
+
+_writing = partial(
+    refused_by_system, fault=OutputError, verb="written", remedy="name another place with -o"
+)
 
 Content: TypeAlias = bytes | Iterator[str]
 """Of a file, or its lines, which are made as they are written."""
@@ -83,18 +88,6 @@ def require_writable_file(file: Path) -> None:
     with _writing(file):
         if stat.S_ISDIR(mode_of(file)):
             raise IsADirectoryError(0, "there is a folder of this name")
-
-
-@contextmanager
-def _writing(path: Path) -> Iterator[None]:
-    """What the system refuses to write, as an error of the program."""
-    try:
-        yield
-    except OSError as error:
-        reason = error.strerror or error
-        raise OutputError(
-            f"{str(path)[:200]}: cannot be written: {reason}; name another place with -o"
-        ) from None
 
 
 RUN_FILE = "run.json"

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.analyses.result_quantities import STOREY_SHEARS
-from rpscli.records.clusters import By
+from rpscli.records.recordings import By
 from rpscli.shown import Frozen, frozen
 from rpscli.sweep.evaluation.results import FAILED, MISSING, SCALARS
 from rpscli.sweep.points.layout import StudyPoints

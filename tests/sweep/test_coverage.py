@@ -10,7 +10,7 @@ import pytest
 from numpy.typing import NDArray
 
 import rpscli
-from rpscli.records.clusters import clusters
+from rpscli.records.recordings import clusters
 from rpscli.sweep.fits.lognormal import Bootstrap, Lognormal, lognormal_fit
 from rpscli.sweep.statistics.fractiles import clustered
 

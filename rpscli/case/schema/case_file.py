@@ -25,8 +25,8 @@ from rpscli.constants import MOST_STOREYS, STANDARD_GRAVITY
 from rpscli.errors import RecordError
 from rpscli.model.devices import DEVICES
 from rpscli.model.impact import CONTACT_TIME, LONGEST_CONTACT
-from rpscli.records.clusters import ONE_FACTOR, Pair, pairs
 from rpscli.records.measures import Of
+from rpscli.records.recordings import ONE_FACTOR, Pair, pairs
 from rpscli.records.source import Source
 
 DEVICE_KEYS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {

@@ -40,8 +40,8 @@ from rpscli.case.schema.fields import (
 from rpscli.case.schema.limits import StudyLimits
 from rpscli.case.schema.scale_to import MeasuredValue, MeasureName, at_period, measured_value
 from rpscli.case.text.document import shown
-from rpscli.records.clusters import By
 from rpscli.records.measures import Of
+from rpscli.records.recordings import By
 
 Number = Annotated[float, Quantity()]
 Seed = Annotated[int, Whole(0)]

@@ -99,16 +99,16 @@ def contents(path: Path) -> tuple[Contents, ...]:
 
 @lru_cache(maxsize=4096)
 def _contents(path: Path, _changed: int, _size: int) -> tuple[Contents, ...]:
-    try:
+    text = form = None
+    with suppress(RecordError):
         text = read_text(path, str(path))
-    except RecordError:
+        form = _by_content(text)
+    if text is None or form is None:
         return ()
-    if (form := _by_content(text)) is None:
-        return ()
-    layout = _LAYOUTS.get(form.name)
-    if layout is None:
-        of = recording_of_at2(text) if form.name == FORMAT else UNKNOWN
-        return (Contents("", of),)
+    if (layout := _LAYOUTS.get(form.name)) is None:
+        if form in _OURS:
+            return (Contents("", recording_of_at2(text)),)
+        return (Contents("", UNKNOWN if form is _PLAIN else form.read(text).recording),)
     try:
         channels = layout.channels(text)
         found = [(f"{each.number}", layout.stated(text, each)[0].recording) for each in channels]

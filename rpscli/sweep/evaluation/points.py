@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from rpscli.case.study.schema import Analysis, MeasureScale
-from rpscli.records.clusters import Pair
 from rpscli.records.measures import USUAL, Of
+from rpscli.records.recordings import Pair
 from rpscli.records.source import Source
 from rpscli.version import VERSION
 

@@ -18,8 +18,8 @@ from rpscli.case.study.study import Study
 from rpscli.case.text.document import Fault
 from rpscli.case.text.yaml_text import read_value
 from rpscli.errors import RecordError, RpsError
-from rpscli.records.clusters import By, clusters, pairs
 from rpscli.records.measures import MEASURES, Of, measure_label, needs_period
+from rpscli.records.recordings import By, clusters, pairs
 from rpscli.records.source import Source
 from rpscli.shown import frozen
 from rpscli.sweep.evaluation.context import StudyContext, System, resolved, system_of

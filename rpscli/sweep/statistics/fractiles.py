@@ -11,7 +11,7 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.records.clusters import By
+from rpscli.records.recordings import By
 from rpscli.sweep.table import Array, Indices
 
 CONFIDENCE = 0.95

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.analyses.result_quantities import LIMITED, ResultQuantity
-from rpscli.records.clusters import By, clusters
 from rpscli.records.ground_motion import LEAST, MOST
 from rpscli.records.measures import measure_label
+from rpscli.records.recordings import By, clusters
 from rpscli.sweep.evaluation.results import FAILED
 from rpscli.sweep.statistics.fixed_base import FixedBaseReferences
 from rpscli.sweep.statistics.fractiles import Outcomes, Share, Spread, demand, share_of, spread

