@@ -162,7 +162,10 @@ motion_options = gathered(
     MotionRequest,
     records_option,
     click.option(
-        "--vertical", metavar="SRC", type=FILE, help="Vertical component, with the same time step."
+        "--vertical",
+        metavar="SRC",
+        type=FILE,
+        help="Vertical component, with the same time step; own: that of the recording.",
     ),
     click.option("--scale", type=FACTOR, metavar="FACTOR", help="Factor on the acceleration."),
     click.option(
@@ -185,12 +188,12 @@ def single_motions(
     if not records:
         yield request
         return
-    from rpscli.records.loading import expanded
+    from rpscli.records.loading import OWN, expanded
     from rpscli.records.recordings import pairs
 
     single, notes = expanded(records)
     tell(f"--record {text}" for text in notes)
-    if len(single) > 1 and request.vertical is not None:
+    if len(single) > 1 and request.vertical not in {None, OWN}:
         raise UsageError(f"--vertical {request.vertical}: belongs to one record, not {len(single)}")
     of = None if request.scale_to is None else _parsed_target(request.scale_to).of
     for source, pair in zip(single, pairs(single, of), strict=True):
@@ -218,7 +221,7 @@ def motion_source(case: Case, request: MotionRequest) -> Path | str:
 
 def load_motion(case: Case, request: MotionRequest) -> MotionComponents:
     """Read the motion; a `--record` stands in place of the whole `record` section of the case."""
-    from rpscli.records.loading import load_components, load_record
+    from rpscli.records.loading import OWN, load_components, load_record
 
     given = case.record if request.record is None else None
     how: dict[str, Any] = {}
@@ -228,10 +231,11 @@ def load_motion(case: Case, request: MotionRequest) -> MotionComponents:
         raise UsageError(f"{case.source}: the case names no record; give one with --record")
     else:
         own = given.vertical if request.vertical is None else None
+        own = OWN if request.vertical == OWN else own
         how = {"folder": case.folder, "dt": given.dt, "units": given.units}
         rotation = given.rotation or 0.0
         motion = load_components(given.source, own, given.y, rotation, **how)
-        if request.vertical is not None:
+        if request.vertical is not None and request.vertical != OWN:
             motion = replace(motion, vertical=load_record(request.vertical))
     if motion.y is not None and (why := case.structure.planar_only):
         raise CaseError(f"{case.source}: both components of {motion.horizontal.source}: {why}")

@@ -313,17 +313,22 @@ def _files(of: Source, folder: Path | None, notes: list[str]) -> list[Source]:
             return [of]
         files = {place: path}  # whose channels are both components
     held = {name: inside for name, file in files.items() if (inside := contents(file))}
+    refused = {name: inside[0].refusal for name, inside in held.items() if inside[0].refusal}
+    held = {name: inside for name, inside in held.items() if name not in refused}
+    why = [f"{PurePath(name).name}: left out: {text}" for name, text in refused.items()]
     if not held:
-        raise RecordError(f"{of}: no record file there that can be read")
+        raise RecordError("; ".join([f"{of}: no record file there that can be read", *why[:1]]))
+    notes += [f"{of}: {text}" for text in why]
     upright = verticals({name: [each.recording for each in held[name]] for name in held})
-    left_out, single = [PurePath(name).name for name in sorted(upright)], []
-    for name, inside in held.items():
-        several = len(inside) > 1 and "channel" not in of.values
-        for channel, recording in () if name in upright else inside if several else inside[:1]:
-            if several and recording.is_vertical:
-                left_out.append(f"{PurePath(name).name} channel {channel}")
+    left_out, single = [PurePath(name).name for name in sorted(upright)], list[Source]()
+    for name in (each for each in held if each not in upright):
+        several = held[name] if len(held[name]) > 1 and "channel" not in of.values else ()
+        single += [] if several else [of.at(name)]
+        for each in several:
+            if each.recording.is_vertical:
+                left_out.append(f"{PurePath(name).name} channel {each.channel}")
             else:
-                single.append(of.at(name).plus(channel=channel) if several else of.at(name))
+                single.append(of.at(name).plus(channel=each.channel))
     if left_out:
         more = f" and {len(left_out) - 3} more" if len(left_out) > 3 else ""
         some = ", ".join(left_out[:3])

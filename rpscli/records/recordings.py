@@ -65,7 +65,7 @@ def stated(of: Source, folder: Path | None) -> Recording:
 
         held = contents((folder or Path()) / Path(of.place).expanduser())
         channel = (of.values.get("channel") or "").partition(",")[0]
-        return next((r for number, r in held if len(held) == 1 or number == channel), UNKNOWN)
+        return next((c.recording for c in held if c.channel == channel or len(held) == 1), UNKNOWN)
     except (RecordError, OSError, ValueError, RuntimeError):
         return UNKNOWN  # told where it is needed
 
@@ -184,7 +184,7 @@ def vertical_of(of: Source, folder: Path | None) -> Source:
     path = (folder or Path()) / Path(of.place).expanduser()
     alone, within = of.alone.without("channel"), contents(path) if of.scheme == FILE else ()
     if len(within) > 1:
-        found = [alone.plus(channel=number) for number, each in within if each.is_vertical]
+        found = [alone.plus(channel=c.channel) for c in within if c.recording.is_vertical]
     else:
         beside = sorted(path.parent.iterdir()) if within else []
         every = {str(PurePath(of.place).with_name(file.name)): contents(file) for file in beside}

@@ -335,7 +335,7 @@ class RecordSection(Section):
     scale_to: ScaleToSection | None = None
     """value of an intensity measure, in place of scale"""
     vertical: Text | None = None
-    """source of the vertical component"""
+    """source of the vertical component; own: that which lies beside the file, or in it"""
     dt: Time | None = None
     """time step of a file that does not state it"""
     units: Text | None = None

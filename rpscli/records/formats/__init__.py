@@ -80,10 +80,14 @@ def read_record(
 
 
 class Contents(NamedTuple):
-    """One channel of a file, by its number if there are several, and what its header states."""
+    """One channel of a file, by its number if there are several, and what its header states.
+
+    `refusal` says why a file of a known format is not used, such as an uncorrected record.
+    """
 
     channel: str
     recording: Recording
+    refusal: str = ""
 
 
 def contents(path: Path) -> tuple[Contents, ...]:
@@ -99,24 +103,32 @@ def contents(path: Path) -> tuple[Contents, ...]:
 
 @lru_cache(maxsize=4096)
 def _contents(path: Path, _changed: int, _size: int) -> tuple[Contents, ...]:
-    text = form = None
+    form = None
     with suppress(RecordError):
         text = read_text(path, str(path))
         form = _by_content(text)
-    if text is None or form is None:
+    if form is None:
         return ()
-    if (layout := _LAYOUTS.get(form.name)) is None:
-        if form in _OURS:
-            return (Contents("", recording_of_at2(text)),)
-        return (Contents("", UNKNOWN if form is _PLAIN else form.read(text).recording),)
     try:
-        channels = layout.channels(text)
-        found = [(f"{each.number}", layout.stated(text, each)[0].recording) for each in channels]
+        return tuple(_held(text, form))
     except RecordError:
         return (Contents("", UNKNOWN),)  # told where it is read
-    if len(found) < 2:
-        return (Contents("", found[0][1] if found else UNKNOWN),)
-    return tuple(Contents(number, of) for number, of in found)
+
+
+def _held(text: RecordText, form: RecordFormat) -> Iterator[Contents]:
+    if form.name == FORMAT:
+        yield Contents("", recording_of_at2(text))
+    elif form is _PLAIN:
+        yield Contents("", UNKNOWN)
+    elif (layout := _LAYOUTS.get(form.name)) is None:
+        yield Contents("", form.read(text).recording)
+    elif refusal := layout.refused(text):
+        yield Contents("", UNKNOWN, refusal)
+    else:
+        channels = layout.channels(text)
+        for each in channels:
+            number = f"{each.number}" if len(channels) > 1 else ""
+            yield Contents(number, layout.stated(text, each)[0].recording)
 
 
 def _in_order() -> Iterator[RecordFormat]:

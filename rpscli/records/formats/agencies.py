@@ -72,6 +72,13 @@ class Layout:
         """Whether the file begins like one of this format."""
         return re.match(self.begins, "\n".join(text.heads[:80]), re.IGNORECASE) is not None
 
+    def refused(self, text: RecordText) -> str:
+        """What is said of a file that holds no channel that can be read; else nothing."""
+        found = self.channels(text)
+        if found and re.match(self.corrected, text.heads[found[0].line], re.IGNORECASE):
+            return ""
+        return self.refusal.format(text.heads[0].partition("(")[0].strip()[:40])
+
     def channels(self, text: RecordText) -> list[Channel]:
         """Those that can be read."""
         if not self.label:
@@ -90,8 +97,6 @@ class Layout:
     def stated(self, text: RecordText, channel: Channel) -> tuple[Stated, int, Said]:
         """What the header of a channel says, and the line where its values begin."""
         start = channel.line
-        if not re.match(self.corrected, text.heads[start], re.IGNORECASE):
-            raise text.fault(self.refusal.format(_title(text, start)), start)
         end = start + self.header if isinstance(self.header, int) else self._announced(text, start)
         said = Said()
         for name, words in self.says.items():
@@ -149,8 +154,8 @@ class Layout:
         """The acceleration of one channel."""
         if not self.label:
             text.single_channel()
-        elif not self.channels(text) and self.recognises(text):
-            raise text.fault(self.refusal.format(_title(text, 0)), 0)
+        if self.recognises(text) and (refusal := self.refused(text)):
+            raise text.fault(refusal, 0)
         channel = text.chosen(self.channels(text))
         stated, first, said = self.stated(text, channel)
         width = self.width or (int(said["width"].value) if "width" in said else None)
@@ -174,10 +179,6 @@ class Layout:
             words.append(f"mean of {mean:.4g} {stated.unit} removed")
             name = text.path.name.replace(".", "_")  # the extension tells the component
         return text.motion(stated, values, self.name, "; ".join(filter(None, words)), name=name)
-
-
-def _title(text: RecordText, line: int) -> str:
-    return text.heads[line].partition("(")[0].strip()[:40]
 
 
 def _factor(text: RecordText, scale: Statement) -> float:
