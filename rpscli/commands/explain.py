@@ -209,7 +209,7 @@ def _options(word: str) -> Iterator[Entry]:
 
 def _offers(word: str) -> Iterator[Offer]:
     """Items of other packages: all for the word plugins, else those of that name."""
-    from rpscli.records.codes import CODES
+    from rpscli.records.target import CODES
     from rpscli.records.formats import FORMATS
     from rpscli.records.measures import MEASURES
     from rpscli.report.figures.look import FIGURES

@@ -61,7 +61,7 @@ RULES = ("en1998", "asce7-ch16", "asce7-ch17", "mean90", "none")
 
 def _targets() -> list[str]:
     """Codes after --target, those of other packages too."""
-    from rpscli.records.codes import CODES  # numpy is slow
+    from rpscli.records.target import CODES  # numpy is slow
 
     return [f"{code}:?" for code in CODES.names()]
 
@@ -173,13 +173,13 @@ def command(
     Writes selection.txt, for `records: ["list:selection.txt"]` in a study or `rps timehistory CASE
     --record list:selection.txt`, selection.csv, spectra.csv and the figure selection.
     """
-    from rpscli.records.codes import load_target
     from rpscli.records.filters import parse_filter
     from rpscli.records.loading import expanded, load_components
     from rpscli.records.measures import USUAL
     from rpscli.records.requirements import RULES as KNOWN
     from rpscli.records.selection import SelectionRequest, select
     from rpscli.records.source import Source
+    from rpscli.records.target import load_target
     from rpscli.report.bundles import selection_files
     from rpscli.report.tables.motions import selection_document
 
@@ -371,7 +371,11 @@ def _tables(
         "factors at a bound": f"{selection.clamped} of {len(selection.chosen)}",
         "chosen among": f"{selection.candidates}"
         + f"; {selection.refused} beyond the factors" * bool(selection.refused)
-        + "; by exchange from many first choices, not of all sets",
+        + (
+            "; the best of all sets"
+            if selection.whole
+            else "; by exchange from many first choices, not of all sets"
+        ),
     }
     if errors is not None:
         text = "largest errors of mean and deviation of ln Sa"

@@ -1,7 +1,8 @@
-"""The set of scaled spectra that meets a goal best, sought by exchange from many first choices."""
+"""The set of scaled spectra that meets a goal best: of all sets, or sought by exchange."""
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -12,10 +13,13 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Numbers = NDArray[np.int64]
 
+WHOLE = 2_000_000
+"""Sets at most of which all are looked at."""
+
 STARTS = 100
 """First choices at most, each grown from another motion and improved by exchange."""
 
-KICKS = 100
+KICKS = 400
 """Times that the best choice is left by three motions at random, and improved again."""
 
 ROUNDING = 2e-5
@@ -90,27 +94,55 @@ class Goal:
         return float(cost), math.exp(float(common))
 
 
-def best_choice(pool: Pool, goal: Goal, count: int, per_event: int) -> list[int]:
-    """Places of the best set that is found, in order; the same for the same motions."""
-    search = _Search(pool, goal, per_event)
+def best_choice(pool: Pool, goal: Goal, count: int, per_event: int) -> tuple[list[int], bool]:
+    """Places of the best set, in order, and whether all sets were looked at.
+
+    Of more sets than `WHOLE` it is the best that is found, the same for the same motions.
+    """
+    search = _Search(pool, goal, count, per_event)
+    if math.comb(len(pool.factors), count) <= WHOLE:
+        return search.best_of_all(), True
     alone, _ = goal.judged(search.features, 1, pool.factors, pool.factors)
     first = np.argsort(alone, kind="stable")[:STARTS].tolist()
-    cost, places = min(search.exchanged(search.grown([one], count)) for one in first)
+    best = min(search.exchanged(search.grown([one])) for one in first)
     random = np.random.default_rng(1)
     for _ in range(KICKS):
-        kept = random.permutation(places)[min(3, count - 1) :].tolist()
+        kept = random.permutation(best[1])[min(3, count - 1) :].tolist()
         while len(kept) < count:
             kept.append(int(random.choice(np.flatnonzero(search.free(kept)))))
-        cost, places = min((cost, places), search.exchanged(kept))
-    return places
+        best = min(best, search.exchanged(kept))
+    return best[1], False
 
 
 class _Search:
-    """Moves among the sets of a pool."""
+    """Sets of a pool, and moves among them."""
 
-    def __init__(self, pool: Pool, goal: Goal, per_event: int) -> None:
-        self.pool, self.goal, self.per_event = pool, goal, per_event
+    def __init__(self, pool: Pool, goal: Goal, count: int, per_event: int) -> None:
+        self.pool, self.goal, self.count, self.per_event = pool, goal, count, per_event
         self.features = goal.features(pool.spectra)
+
+    def best_of_all(self) -> list[int]:
+        """Places of the best of all sets that keep the rules about recordings and events."""
+        every = itertools.combinations(range(len(self.pool.factors)), self.count)
+        best = (math.inf, list[int]())
+        while block := [*itertools.islice(every, 20_000)]:
+            sets = np.array(block)
+            sets = sets[(self._repeats(self.pool.recordings[sets]) == 1)
+                        & (self._repeats(self.pool.events[sets]) <= self.per_event)]  # fmt: skip
+            factors = self.pool.factors[sets]
+            total = np.zeros((len(sets), self.features.shape[1]))
+            for place in range(self.count):
+                total += self.features[sets[:, place]]
+            cost, _ = self.goal.judged(total, self.count, factors.min(axis=1), factors.max(axis=1))
+            if len(sets):
+                least = int(np.argmin(cost))
+                best = min(best, (float(cost[least]), sets[least].tolist()))
+        return best[1]
+
+    @staticmethod
+    def _repeats(numbers: Numbers) -> Numbers:
+        """How often the commonest number of each row (..., size) comes."""
+        return (numbers[:, :, None] == numbers[:, None, :]).sum(axis=2).max(axis=1)
 
     def free(self, places: list[int]) -> NDArray[np.bool_]:
         """(m,) what may still be chosen beside these places."""
@@ -119,37 +151,31 @@ class _Search:
         taken = np.bincount(events[places], minlength=int(events.max()) + 1)
         return np.asarray((used[recordings] == 0) & (taken[events] < self.per_event))
 
-    def cost(self, places: list[int]) -> float:
-        """Of a set."""
-        return self.goal.of_set(self.features[places], self.pool.factors[places])[0]
-
-    def with_one_more(self, places: list[int]) -> tuple[float, int] | None:
-        """The least cost of these places and another one, and that; None if none is free."""
-        others = np.flatnonzero(self.free(places))
-        if not len(others):
-            return None
-        total = self.features[places].sum(axis=0) + self.features[others]
-        factors, more = self.pool.factors[places], self.pool.factors[others]
-        least, most = np.minimum(factors.min(), more), np.maximum(factors.max(), more)
+    def with_one_more(self, places: list[int]) -> tuple[float, int]:
+        """The least cost of these places and another one, and that."""
+        total = self.features[places].sum(axis=0) + self.features
+        factors, every = self.pool.factors[places], self.pool.factors
+        least, most = np.minimum(factors.min(), every), np.maximum(factors.max(), every)
         cost, _ = self.goal.judged(total, len(places) + 1, least, most)
+        cost = np.where(self.free(places), cost, math.inf)
         best = int(np.argmin(cost))
-        return float(cost[best]), int(others[best])
+        return float(cost[best]), best
 
-    def grown(self, places: list[int], count: int) -> list[int]:
+    def grown(self, places: list[int]) -> list[int]:
         """These places and the best next one each time."""
-        while len(places) < count and (found := self.with_one_more(places)):
-            places = [*places, found[1]]
+        while len(places) < self.count and (more := self.with_one_more(places))[0] < math.inf:
+            places = [*places, more[1]]
         return places
 
     def exchanged(self, places: list[int]) -> tuple[float, list[int]]:
         """The cost and the places after the best exchanges, until none helps."""
-        now = self.cost(places)
+        now = self.goal.of_set(self.features[places], self.pool.factors[places])[0]
         while len(places) > 1:
             rest = [[place for place in places if place != out] for out in places]
-            moves = [(found, kept) for kept in rest if (found := self.with_one_more(kept))]
-            (cost, other), kept = min(moves)
+            (cost, other), kept = min((self.with_one_more(kept), kept) for kept in rest)
             # Rounding of the sums must not look like progress, or it would never end.
             if cost >= now - 1e-12:
                 break
             now, places = cost, [*kept, other]
-        return self.cost(sorted(places)), sorted(places)
+        places = sorted(places)
+        return self.goal.of_set(self.features[places], self.pool.factors[places])[0], places

@@ -103,6 +103,8 @@ class Selection:
     deviation: Array | None = None
     requirements: Requirements | None = None
     rules: tuple[Rule, ...] = ()
+    whole: bool = False
+    """Whether all sets were looked at."""
 
     @property
     def least_ratio(self) -> float:
@@ -206,7 +208,7 @@ def select(
         np.unique(events, return_inverse=True)[1],
     )
     _require_enough(pool, len(every), target, request)
-    places = best_choice(pool, goal, request.count, request.per_event)
+    places, whole = best_choice(pool, goal, request.count, request.per_event)
     # Codes ask for all periods: the common factor and the verdicts are from a finer grid.
     periods, goal = _goal(target, request, asked, FINER * PERIODS)
     best = [fitting[place] for place in places]
@@ -235,6 +237,7 @@ def select(
             len(chosen), request.of, target.level, float(ratio[0]), float(ratio[1:].min()),
             request.periods, request.structure,
         ),
+        whole=whole,
     )  # fmt: skip
 
 

@@ -1,11 +1,15 @@
-"""A target spectrum: pseudo-acceleration over the period with its peaks, or a CSV file."""
+"""Target spectra: of codes by their parameters, or from a CSV file, which is the sure way.
+
+EN 1998-1:2004, EN 1998-1-1:2024, ASCE/SEI 7-16 and SP 14.13330.2018. None of the texts was at hand:
+`checked` of each says what its formulae were compared with.
+"""
 
 from __future__ import annotations
 
 import csv
 import math
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import cast, get_args
@@ -13,12 +17,16 @@ from typing import cast, get_args
 import numpy as np
 from numpy.typing import NDArray
 
+from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import RecordError, beginning, stem_of
 from rpscli.records.measures import Of
 from rpscli.records.quantities import KNOWN_UNITS, canonical_unit, hint, parse_query, unit_factor
-from rpscli.records.requirements import Component
+from rpscli.records.requirements import NOT_VERIFIED, Component
+from rpscli.registry import Registry
 
 Array = NDArray[np.float64]
+Shape = Callable[[Array], Array]
+"""Periods (n,) [s] to pseudo-accelerations (n,) [m/s2]."""
 
 AMPLIFICATION = 1.65
 """Pseudo-velocity over PGV: median of Newmark and Hall, 1982, at 5 % damping."""
@@ -35,8 +43,7 @@ class TargetSpectrum:
     """Short, for figures."""
     source: str
     """As the user wrote it."""
-    shape: Callable[[Array], Array]
-    """Periods (n,) [s] to pseudo-accelerations (n,) [m/s2]."""
+    shape: Shape
     pgv: float | None
     """Peak ground velocity that goes with it; None if it cannot be told [m/s]."""
     pgd: float | None = None
@@ -59,11 +66,10 @@ class TargetSpectrum:
     """What the code calls its level of shaking."""
     pgv_by: str = CONVENTION
     """How its PGV is found."""
-    deviation: Callable[[Array], Array] | None = None
+    deviation: Shape | None = None
     """Standard deviation of ln Sa at periods (n,); None if motions need not scatter."""
     pinned: float | None = None
     """Period at which that is zero, the conditioning one; None without it [s]."""
-
     pga: float | None = None
     """Of the ground, where the spectrum does not begin with it [m/s2]."""
 
@@ -84,7 +90,7 @@ class TargetSpectrum:
         return self.shape(np.clip(periods, low, high))
 
 
-def velocity_of(shape: Callable[[Array], Array]) -> float:
+def velocity_of(shape: Shape) -> float:
     """PGV [m/s] that goes with a 5 % spectrum: its pseudo-velocity at 1 s over 1.65.
 
     FEMA, Hazus-MH 2.1, Earthquake Model Technical Manual, section 4.1. Later studies (Earthquake
@@ -94,6 +100,260 @@ def velocity_of(shape: Callable[[Array], Array]) -> float:
     0.5676
     """
     return float(shape(np.ones(1))[0]) / (2.0 * math.pi) / AMPLIFICATION
+
+
+def cornered(start: float, plateau: float, corners: tuple[float, float, float, float]) -> Shape:
+    """A spectrum of four corners: level, linear to a plateau, then over T and over T^2.
+
+    >>> cornered(1.0, 2.5, (0.0, 0.1, 0.4, 2.0))(np.array([0.0, 0.05, 0.3, 0.8, 4.0])).tolist()
+    [1.0, 1.75, 2.5, 1.25, 0.125]
+    """
+    T_A, T_B, T_C, T_D = corners
+
+    def shape(T: Array) -> Array:
+        rising = start + (plateau - start) * (np.maximum(T, T_A) - T_A) / (T_B - T_A)
+        falling = np.minimum(1.0, T_C / np.maximum(T, T_C))
+        falling = plateau * falling * np.minimum(1.0, T_D / np.maximum(T, T_D))
+        return np.where(T_B > T, rising, falling)
+
+    return shape
+
+
+EN1998_SOILS = {
+    "1": {
+        "A": (1.00, 0.15, 0.4, 2.0),
+        "B": (1.20, 0.15, 0.5, 2.0),
+        "C": (1.15, 0.20, 0.6, 2.0),
+        "D": (1.35, 0.20, 0.8, 2.0),
+        "E": (1.40, 0.15, 0.5, 2.0),
+    },
+    "2": {
+        "A": (1.00, 0.05, 0.25, 1.2),
+        "B": (1.35, 0.05, 0.25, 1.2),
+        "C": (1.50, 0.10, 0.25, 1.2),
+        "D": (1.80, 0.10, 0.30, 1.2),
+        "E": (1.60, 0.05, 0.25, 1.2),
+    },
+}
+"""S, T_B, T_C, T_D [s] by type and ground type: tables 3.2 and 3.3, recommended values."""
+
+_NATIONAL = {"s": "ratio", "tb": "time", "tc": "time", "td": "time"}
+"""Parameters that a national annex may set."""
+
+EN1998_LONGEST = 4.0
+"""Where clause 3.2.2.2 ends [s]."""
+
+
+def _in_words(seconds: dict[str, float] | None = None, **accelerations: float) -> str:
+    """Parameters as readers see them."""
+    words = [f"{name} = {a / STANDARD_GRAVITY:.3g} g" for name, a in accelerations.items()]
+    return ", ".join([*words, *(f"{name} = {t:.3g} s" for name, t in (seconds or {}).items())])
+
+
+def _choice(source: str, word: str, value: str, known: Sequence[str]) -> str:
+    if value not in known:
+        raise RecordError(f"{source}: {word} = {value!r} is not known; {hint(value, known)}")
+    return value
+
+
+def en1998_spectrum(rest: str, source: str) -> TargetSpectrum:
+    """Elastic spectrum of clause 3.2.2.2, expressions (3.2) to (3.6), `ag=0.3g&soil=B&type=1`.
+
+    a_g is that of ground type A with the importance factor. The parameters of a national annex
+    replace those of the tables: `s=1.3&tb=0.1&tc=0.4&td=2.5` [-, s].
+
+    From a_g S to 2.5 a_g S eta at T_B, corners T_C and T_D, up to 4 s; eta = sqrt(10/(5 + xi))
+    >= 0.55 with xi in per cent. The peak displacement is d_g = 0.025 a_g S T_C T_D, expression
+    (3.12).
+
+    >>> target = en1998_spectrum("?ag=2 m/s2&soil=C", "")
+    >>> target.acceleration(np.array([0.0, 0.1, 0.3, 1.2, 4.0])).round(5).tolist()
+    [2.3, 4.025, 5.75, 2.875, 0.43125]
+    >>> round(target.pgd, 5)
+    0.069
+    """
+    query = parse_query(rest.lstrip("?"), source, ("ag", "soil", "type", "damping", *_NATIONAL))
+    kind = _choice(source, "type", query.values.get("type", "1"), [*EN1998_SOILS])
+    soils = EN1998_SOILS[kind]
+    soil = _choice(source, "soil", query.values.get("soil", "A").upper(), [*soils])
+    usual = zip(_NATIONAL.items(), soils[soil], strict=True)
+    S, T_B, T_C, T_D = (query.quantity(key, unit, value) for (key, unit), value in usual)
+    if not (S > 0.0 and 0.0 < T_B < T_C < T_D <= EN1998_LONGEST):
+        raise RecordError(f"{source}: must have s > 0 and 0 < tb < tc < td <= {EN1998_LONGEST:g} s")
+    a_g, damping = query.acceleration("ag", bare=False), query.quantity("damping", "ratio", 0.05)
+    if a_g <= 0.0 or not 0.0 <= damping < 1.0:
+        raise RecordError(f"{source}: ag must be > 0 and damping in [0, 1); 5 % is 0.05")
+    eta = max(0.55, math.sqrt(10.0 / (5.0 + 100.0 * damping)))
+    start, corners = a_g * S, (0.0, T_B, T_C, T_D)
+    own = [key for key in _NATIONAL if key in query.values]
+    by = f"the user's {', '.join(own)}" if own else "recommended values, no national annex"
+    return TargetSpectrum(
+        f"EN 1998-1 type {kind}, ground {soil}" + ", national" * bool(own),
+        source,
+        cornered(start, 2.5 * start * eta, corners),
+        velocity_of(cornered(start, 2.5 * start, corners)),
+        0.025 * start * T_C * T_D,
+        damping,
+        (0.0, EN1998_LONGEST),
+        edition=f"EN 1998-1:2004, 3.2.2.2, whatever A1:2013 changes, {by}",
+        checked="tables and expressions compared with public implementations and with manuals of"
+        " programs, not with the text",
+        rules="en1998",
+        parameters=f"S = {S:.3g}, {_in_words({'T_B': T_B, 'T_C': T_C, 'T_D': T_D}, a_g=a_g)}",
+    )
+
+
+def en1998_2024_spectrum(rest: str, source: str) -> TargetSpectrum:
+    """Elastic spectrum of EN 1998-1-1:2024, 5.2.2.2, at 5 %: `s_alpha=0.9g&s_beta=0.35g&td=2`.
+
+    S_alpha and S_beta are those of the site, with F_T F_alpha and F_T F_beta. T_D is 2 s where
+    S_beta,RP on rock is at most 1 m/s2, else 1 s and as many seconds as that has m/s2.
+
+    From S_alpha/F_A, F_A = 2.5, up to T_A = 0.02 s, to S_alpha at T_B, corners T_C = S_beta/S_alpha
+    x 1 s and T_D. T_B is T_C/4 within 0.05 and 0.1 s. It is left at 6 s, where the displacement
+    spectrum goes on with other parameters. The peak velocity is 0.06 (S_alpha S_beta)^0.55 in m/s
+    and m/s2.
+
+    >>> target = en1998_2024_spectrum("?s_alpha=10 m/s2&s_beta=4 m/s2&td=2", "")
+    >>> target.acceleration(np.array([0.01, 0.06, 0.1, 0.4, 1.0, 4.0])).round(6).tolist()
+    [4.0, 7.0, 10.0, 10.0, 4.0, 0.5]
+    """
+    query = parse_query(rest.lstrip("?"), source, ("s_alpha", "s_beta", "td"))
+    short, long = (query.acceleration(key, bare=False) for key in ("s_alpha", "s_beta"))
+    T_D = query.quantity("td", "time")
+    if not (short > 0.0 and 0.05 < long / short < T_D <= 6.0):
+        raise RecordError(
+            f"{source}: s_alpha and s_beta must be > 0, and 0.05 < s_beta/s_alpha < td <= 6, in s"
+        )
+    T_C = long / short
+    return TargetSpectrum(
+        "EN 1998-1-1:2024",
+        source,
+        cornered(0.4 * short, short, (0.02, min(max(T_C / 4.0, 0.05), 0.1), T_C, T_D)),
+        0.06 * (short * long) ** 0.55,
+        span=(0.0, 6.0),
+        edition="EN 1998-1-1:2024, 5.2.2.2, without national annex; what its annex D asks of"
+        " motions is not checked",
+        checked="formulae compared with two public implementations (PEUSP-beta, and rshalib of the"
+        " draft of 2019), not with the text",
+        pgv_by="0.06 (S_alpha S_beta)^0.55 of the code",
+        parameters=_in_words({"T_D": T_D}, S_alpha=short, S_beta=long),
+    )
+
+
+ASCE7_LEVELS = {"design": 1.0, "mcer": 1.5}
+"""Factors on the design spectrum: clauses 11.4.6 and 11.4.7."""
+
+
+def asce7_spectrum(rest: str, source: str) -> TargetSpectrum:
+    """Design spectrum of clause 11.4.6, equations (11.4-5) to (11.4-7), at 5 % damping.
+
+    `sds=1.0g&sd1=0.6g&tl=8`; `level=mcer` is 1.5 times that, which chapters 16 and 17 ask for, for
+    the maximum direction of pairs. The multi-period spectrum of ASCE/SEI 7-22 is a CSV file.
+
+    From 0.4 S_DS to S_DS at T_0 = 0.2 T_S, corners T_S = S_D1/S_DS (with S_D1 as the acceleration
+    at 1 s) and T_L. The code gives no peak displacement.
+
+    >>> target = asce7_spectrum("?sds=10 m/s2&sd1=6 m/s2&tl=4", "")
+    >>> target.acceleration(np.array([0.0, 0.06, 0.3, 1.2, 4.0, 8.0])).round(6).tolist()
+    [4.0, 7.0, 10.0, 5.0, 1.5, 0.375]
+    """
+    query = parse_query(rest.lstrip("?"), source, ("sds", "sd1", "tl", "level"))
+    level = _choice(source, "level", query.values.get("level", "design").lower(), [*ASCE7_LEVELS])
+    S_DS, S_D1 = (query.acceleration(key, bare=False) for key in ("sds", "sd1"))
+    T_L, times, mcer = query.quantity("tl", "time"), ASCE7_LEVELS[level], level == "mcer"
+    if not (S_DS > 0.0 and 0.0 < S_D1 / S_DS < T_L):
+        raise RecordError(f"{source}: sds and sd1 must be > 0, and sd1/sds, in s, below tl")
+    T_S = S_D1 / S_DS
+    shape = cornered(0.4 * times * S_DS, times * S_DS, (0.0, 0.2 * T_S, T_S, T_L))
+    return TargetSpectrum(
+        f"ASCE 7, {'MCE_R' if mcer else 'design'}",
+        source,
+        shape,
+        velocity_of(shape),
+        edition="ASCE/SEI 7-16, 11.4.6, two-period; give the multi-period one of 7-22 as CSV",
+        checked="equations compared with manuals of programs, not with the text",
+        rules="asce7-ch16",
+        of="rotd100",
+        parameters=_in_words({"TL": T_L}, SDS=S_DS, SD1=S_D1) + ", times 1.5" * mcer,
+        level="MCE_R" if mcer else "design",
+    )
+
+
+SP14_CORNERS = {"I": 0.4, "II": 0.4, "III": 0.8, "IV": 0.8}
+"""End of the plateau [s] by soil category, clause 5.6."""
+
+
+def sp14_spectrum(rest: str, source: str) -> TargetSpectrum:
+    """A times the dynamic coefficient beta(T) of clause 5.6, at 5 % damping.
+
+    A is the acceleration of the site: 1, 2 and 4 m/s2 for intensities 7, 8 and 9 (clause 5.5).
+
+    beta = 1 + 15 T up to 0.1 s, 2.5 up to 0.4 s (categories I and II) or 0.8 s (III and IV), then
+    2.5 sqrt(0.4/T) or 2.5 sqrt(0.8/T), nowhere less than 0.8. The reduction factor of structures
+    that may be damaged is not in it. The code gives no peak displacement.
+
+    >>> target = sp14_spectrum("?acceleration=2 m/s2&soil=III", "")
+    >>> target.acceleration(np.array([0.0, 0.05, 0.5, 3.2, 20.0])).round(6).tolist()
+    [2.0, 3.5, 5.0, 2.5, 1.6]
+    """
+    query = parse_query(rest.lstrip("?"), source, ("acceleration", "soil"))
+    soil = _choice(source, "soil", query.values.get("soil", "II").upper(), [*SP14_CORNERS])
+    A, corner = query.acceleration("acceleration"), SP14_CORNERS[soil]
+    if A <= 0.0:
+        raise RecordError(f"{source}: acceleration must be > 0; it is 4 m/s2 for intensity 9")
+
+    def shape(T: Array) -> Array:
+        falling = 2.5 * np.sqrt(corner / np.maximum(T, corner))
+        return A * np.where(T <= 0.1, 1.0 + 15.0 * T, np.maximum(falling, 0.8))
+
+    return TargetSpectrum(
+        f"SP 14.13330, soil {soil}",
+        source,
+        shape,
+        velocity_of(shape),
+        edition="SP 14.13330.2018 without its amendments, 5.5 and 5.6",
+        parameters=_in_words(A=A),
+        checked=f"{NOT_VERIFIED}: from memory; supply the spectrum as a CSV file where it matters",
+    )
+
+
+CODES: Registry[Callable[[str, str], TargetSpectrum]] = Registry(
+    "targets",
+    {
+        "en1998": en1998_spectrum,
+        "en1998-2024": en1998_2024_spectrum,
+        "asce7": asce7_spectrum,
+        "sp14": sp14_spectrum,
+    },
+)
+"""Spectra of what follows a name and its colon, and of the whole source."""
+
+_UNKNOWN = ("sprk", "sp_rk", "ntprk", "ntp_rk")
+"""SP RK 2.03-30-2017 and NTP RK 08-01, which are not SP 14.13330 and whose text was not found."""
+
+
+def load_target(source: str) -> TargetSpectrum:
+    """A spectrum of a code by its parameters, or from a CSV file."""
+    scheme, colon, rest = source.partition(":")
+    if colon and scheme.lower() in _UNKNOWN:
+        raise RecordError(
+            f"{source}: the spectra of SP RK 2.03-30-2017 and NTP RK 08-01 could not be verified"
+            " and are not those of sp14; give the spectrum as a CSV file"
+        )
+    if colon and (scheme in CODES or scheme in CODES.names()):  # others are looked for last
+        return CODES[scheme](rest, source)
+    place, _, options = source.partition("?")
+    if (path := Path(place)).is_file():
+        return table_spectrum(path, options, source)
+    known = CODES.names()
+    if colon and len(scheme) > 1:
+        raise RecordError(
+            f"{source}: {scheme!r} is not a known code; {hint(scheme, known)}, or a file"
+        )
+    raise RecordError(
+        f"{source}: there is no file {path}; give a CSV file or a code: {', '.join(known)}"
+    )
 
 
 _HEAD = re.compile(r"\s*(.*?)\s*[\[(]([^\])]*)[\])]\s*")
@@ -107,12 +367,18 @@ def table_spectrum(path: Path, options: str, source: str) -> TargetSpectrum:
         lines = list(csv.reader(path.read_text(encoding="utf-8-sig").splitlines()))
     except (OSError, UnicodeDecodeError) as error:
         raise RecordError(f"{source}: cannot be read: {error}; name a CSV file") from None
-    factor = _acceleration_unit(lines[0] if lines else [], path)
-    rows = [(number, row) for number, row in enumerate(lines[1:], start=2) if any(row)]
-    scatters = len(lines[0]) > 2 and _DEVIATION.fullmatch(lines[0][2]) is not None
+    head = lines[0] if lines else []
+    units = [match[2].strip() if (match := _HEAD.fullmatch(cell)) else "" for cell in head[:2]]
+    unit = canonical_unit(units[1]) if len(units) == 2 and units[0] == "s" else None
+    if unit is None:
+        raise RecordError(
+            f"{path}:1: {beginning(','.join(head))} should name two columns with units, as in"
+            f" 'period [s],acceleration [g]'; accelerations are in {KNOWN_UNITS}"
+        )
+    factor, rows = unit_factor(unit), [(n, row) for n, row in enumerate(lines[1:], 2) if any(row)]
+    scatters = len(head) > 2 and _DEVIATION.fullmatch(head[2]) is not None
     width = 3 if scatters else 2
-    cells = np.array([_cells(row, width, f"{path}:{number}") for number, row in rows])
-    cells = cells.reshape(-1, width)
+    cells = np.array([_cells(row, width, f"{path}:{n}") for n, row in rows]).reshape(-1, width)
     rigid, cells = cells[cells[:, 0] == 0.0], cells[cells[:, 0] > 0.0]  # 0 has no logarithm
     if len(cells) < 2 or (np.diff(cells[:, 0]) <= 0.0).any():
         raise RecordError(f"{path}: needs two rows at least, with periods that grow")
@@ -127,36 +393,23 @@ def table_spectrum(path: Path, options: str, source: str) -> TargetSpectrum:
     query = parse_query(options, source, ("damping", "component", "level"))
     damping = query.quantity("damping", "ratio", 0.05)
     of = query.values.get("component", "").lower()
-    if of not in {"", *(known_of := get_args(Of))}:
-        raise RecordError(f"{source}: component = {of!r} is not known; {hint(of, known_of)}")
+    if of:
+        _choice(source, "component", of, get_args(Of))
     first, last = float(cells[0, 0]), float(cells[-1, 0])
-    pgv = velocity_of(shape) if damping == 0.05 and first <= 1.0 <= last else None
+    pinned = scatters and not cells[:, 2].all()
     return TargetSpectrum(
         stem_of(path),
         source,
         shape,
-        pgv,
+        velocity_of(shape) if damping == 0.05 and first <= 1.0 <= last else None,
         damping=damping,
         span=(first, last),
         of=cast("Of", of) if of else None,
         level=query.values.get("level", ""),
         deviation=deviation if scatters else None,
         pga=factor * float(rigid[0, 1]) if len(rigid) else None,
-        pinned=float(cells[np.argmin(cells[:, 2]), 0])
-        if scatters and not cells[:, 2].all()
-        else None,
+        pinned=float(cells[np.argmin(cells[:, 2]), 0]) if pinned else None,
     )
-
-
-def _acceleration_unit(head: list[str], path: Path) -> float:
-    units = [match[2] if (match := _HEAD.fullmatch(cell)) else "" for cell in head[:2]]
-    unit = canonical_unit(units[1]) if len(units) == 2 else None
-    if unit is None or units[0].strip() != "s":
-        raise RecordError(
-            f"{path}:1: {beginning(','.join(head))} should name two columns with units, as in"
-            f" 'period [s],acceleration [g]'; accelerations are in {KNOWN_UNITS}"
-        )
-    return unit_factor(unit)
 
 
 def _cells(row: list[str], width: int, place: str) -> list[float]:

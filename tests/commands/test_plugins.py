@@ -21,9 +21,9 @@ from rpscli import registry
 from rpscli.case.schema.scale_to import scale_to_of
 from rpscli.commands.record_select import command as select
 from rpscli.errors import PluginError, RecordError
-from rpscli.records.codes import CODES, load_target
 from rpscli.records.formats import FORMATS
 from rpscli.records.measures import MEASURES
+from rpscli.records.target import CODES, load_target
 
 from .conftest import Invoke, InvokeJson
 

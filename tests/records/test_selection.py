@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from rpscli.errors import RecordError
-from rpscli.records.codes import load_target
+from rpscli.records import search
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.loading import expand_sources, load_record
 from rpscli.records.measures import intensity_measures
@@ -19,6 +19,7 @@ from rpscli.records.requirements import Periods
 from rpscli.records.search import Goal, Pool, best_choice
 from rpscli.records.selection import PERIODS, SelectionRequest, misfit, select
 from rpscli.records.spectrum import response_spectrum
+from rpscli.records.target import load_target
 
 TARGET = "en1998:?ag=0.3g&soil=C"
 
@@ -59,12 +60,12 @@ def scanned(mean: np.ndarray, wanted: np.ndarray, least: float, *, pga: bool) ->
 @pytest.mark.parametrize(
     ("least", "pga", "per_event"), [(0.0, False, 2), (0.9, False, 1), (0.9, True, 9)]
 )
+@pytest.mark.parametrize("whole", [True, False])
 def test_against_all_choices_of_random_spectra(
-    least: float,
-    pga: bool,
-    per_event: int,
+    monkeypatch: pytest.MonkeyPatch, least: float, per_event: int, *, pga: bool, whole: bool
 ) -> None:
-    """The search is no proof of the best choice, but it finds it in all of these."""
+    """The search by exchange is no proof of the best choice, but it finds it in all of these."""
+    monkeypatch.setattr(search, "WHOLE", 1e6 if whole else 0)
     rng = np.random.default_rng(7)
     for _ in range(6):
         spectra = np.exp(rng.normal(0.0, 0.4, (10, 26)))
@@ -73,7 +74,9 @@ def test_against_all_choices_of_random_spectra(
         sets = admissible(3, recordings.tolist(), events.tolist(), per_event)
         costs = [scanned(spectra[places].mean(axis=0), wanted, least, pga=pga) for places in sets]
         goal = Goal(wanted, None, least, pga)
-        found = best_choice(Pool(spectra, np.ones(10), recordings, events), goal, 3, per_event)
+        pool = Pool(spectra, np.ones(10), recordings, events)
+        found, all_sets = best_choice(pool, goal, 3, per_event)
+        assert all_sets == whole
         assert found in sets
         # Neighbouring factors of the scan differ by 0.14 %.
         assert costs[sets.index(found)] == pytest.approx(min(costs), abs=1e-3)
@@ -94,7 +97,7 @@ def test_moments_against_all_choices() -> None:
         ]
         costs = [float(np.sqrt(error.mean())) for error in errors]
         pool = Pool(spectra, np.ones(10), np.arange(10), np.arange(10))
-        found = best_choice(pool, Goal(wanted, deviation), 3, 1)
+        found, _ = best_choice(pool, Goal(wanted, deviation), 3, 1)
         assert costs[sets.index(found)] == pytest.approx(min(costs), rel=1e-9)
 
 

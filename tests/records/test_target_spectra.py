@@ -9,9 +9,9 @@ import pytest
 
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import RecordError
-from rpscli.records.codes import load_target
 from rpscli.records.loading import load_record
 from rpscli.records.spectrum import response_spectrum
+from rpscli.records.target import load_target
 from rpscli.report.table import csv_text
 from rpscli.report.tables.motions import spectrum_columns
 
