@@ -30,13 +30,8 @@ if TYPE_CHECKING:
     from rpscli.records.ground_motion import GroundMotion
 
 
-BOTH = "_both"
-"""In the name of a pair."""
-MADE = ("synthetic", "pulse")
-"""What may be made of a description."""
 FORMATS = {"at2": ".at2", "text": ".txt"}
 """Formats that can be written, and how their files are called."""
-ENDINGS = {ending: form for form, ending in FORMATS.items()}
 
 
 def source_options(function: Command) -> Command:
@@ -51,36 +46,23 @@ def source_options(function: Command) -> Command:
         "--scale", type=float, default=1.0, metavar="FACTOR", help="Factor on the values."
     )
     @functools.wraps(function)
-    def command(
-        *,
-        source: str,
-        dt: float | None,
-        units: str | None,
-        scale: float,
-        terminal: Terminal,
-        **rest: Any,
-    ) -> None:
+    def command(*, source: str, scale: float, terminal: Terminal, dt: float | None,
+                units: str | None, **rest: Any) -> None:  # fmt: skip
         from rpscli.records.loading import expanded, load_components
-        from rpscli.records.source import PAIRING, Source
+        from rpscli.records.source import Source
 
-        if any(name in PAIRING for name, _ in Source.parse(source).options):
-            single, notes = expanded([source])
+        single = [source]
+        if Source.parse(source).of_pair:
+            single, notes = expanded(single)
             terminal.warn(notes)
-            if len(single) > 1:
-                raise UsageError(f"{source}: is {len(single)} pairs; name one: {single[0]}, ...")
-            source = single[0]
-        found = load_components(source, dt=dt, units=units)
-        if scale != 1.0:
-            found = found.scaled(scale)
-        stem = found.horizontal.name.replace(BOTH, "", 1)
-        motions = (
-            [found.horizontal]
-            if found.y is None
-            else [
-                replace(each, name=f"{stem}_{way}")
-                for way, each in (("x", found.horizontal), ("y", found.y))
-            ]
-        )
+        if len(single) > 1:
+            raise UsageError(f"{source}: is {len(single)} pairs; name one: {single[0]}, ...")
+        read = load_components(single[0], dt=dt, units=units)
+        read = read if scale == 1.0 else read.scaled(scale)
+        motions, stem = [read.horizontal], read.horizontal.name.replace("_both", "", 1)
+        if read.y is not None:
+            named = zip("xy", (read.horizontal, read.y), strict=True)
+            motions = [replace(each, name=f"{stem}_{way}") for way, each in named]
         terminal.warn(dict.fromkeys(text for each in motions for text in each.warnings))
         function(motions=motions, terminal=terminal, **rest)
 
@@ -94,33 +76,26 @@ def record_folder(
     from rpscli.records.source import Source
 
     motion, *others = motions
-    place = Path(Source.parse(motion.source).place)
-    name = f"{motion.name.removesuffix('_x')}{BOTH}" if others else motion.name
+    file = Path(Source.parse(motion.source).place)
+    name = f"{motion.name.removesuffix('_x')}_both" if others else motion.name
     inputs |= {"source": motion.source} | ({"y": others[0].digest} if others else {})
-    file = place if place.is_file() else None
-    run = Run(f"record {command}", name, file, motion.digest, inputs)
-    folder = output.place or RESULTS / name / f"record_{command}"
-    return OutputFolder(folder, run, force=output.force)
+    run = Run(f"record {command}", name, file if file.is_file() else None, motion.digest, inputs)
+    place = output.place or RESULTS / name / f"record_{command}"
+    return OutputFolder(place, run, force=output.force)
 
 
 def _result(
-    command: str,
-    motions: Sequence[GroundMotion],
-    terminal: Terminal,
-    files: Sequence[str] | None = None,
+    command: str, motions: Sequence[GroundMotion], terminal: Terminal, **more: Sequence[str]
 ) -> None:
     """What was read and how strong it is, as document or table."""
     from rpscli.records.measures import intensity_measures
     from rpscli.report.tables.motions import record_document, record_table
 
-    found = [(motion, intensity_measures(motion)) for motion in motions]
-    own, *others = (record_document(*each) for each in found)
-    document = {**heading(f"record {command}"), **own}
-    if others:
-        document["y"] = others[0]
-    if files is not None:
-        document["files"] = files
-    terminal.result(document, [record_table(*each) for each in found])
+    measured = [(motion, intensity_measures(motion)) for motion in motions]
+    own, *others = (record_document(*each) for each in measured)
+    other = {"y": others[0]} if others else {}
+    document = {**heading(f"record {command}"), **own, **other, **more}
+    terminal.result(document, [record_table(*each) for each in measured])
 
 
 @click.command("info")
@@ -151,7 +126,7 @@ def plot(
         files = record_files(motion, drawn_spectrum(motion), look)
         folder.add_all((f"{way}{name}", content) for name, content in files)
     write(folder, terminal)
-    _result("plot", motions, terminal, folder.files)
+    _result("plot", motions, terminal, files=folder.files)
 
 
 def write_record(
@@ -165,29 +140,26 @@ def write_record(
     from rpscli.records.formats.at2 import at2_text
     from rpscli.report.tables.motions import two_column_text
 
-    place = output.place
-    named = None if place is None or place.is_dir() else ENDINGS.get(place.suffix.lower())
+    place = Path() if output.place is None else output.place
+    endings = {} if place.is_dir() else {ending: form for form, ending in FORMATS.items()}
+    named = endings.get(place.suffix.lower())
     if named and form not in {None, named}:
         raise UsageError(f"--to {form}: contradicts the file name {place}")
     if named and len(motions) > 1:
         raise UsageError(f"-o {place}: both components are two files; name a folder, and --to")
     wanted = named or form or "at2"
-    contents = [
-        at2_text(motion) if wanted == "at2" else two_column_text(motion) for motion in motions
-    ]
-    if named and place is not None:
+    contents = [(at2_text if wanted == "at2" else two_column_text)(motion) for motion in motions]
+    if named:
         if place.exists() and not output.force:
             raise Refused(f"{place} exists; name another file, or overwrite it with --force")
         write_whole({place: encoded(contents[0])})
         terminal.note(f"written to {place}")
-        files = [str(place)]
-    else:
-        folder = record_folder(motions, output, command, format=wanted)
-        for motion, content in zip(motions, contents, strict=True):
-            folder.add(f"{motion.name}{FORMATS[wanted]}", content)
-        write(folder, terminal)
-        files = folder.files
-    _result(command, motions, terminal, files)
+        return _result(command, motions, terminal, files=[str(place)])
+    folder = record_folder(motions, output, command, format=wanted)
+    names = (f"{motion.name}{FORMATS[wanted]}" for motion in motions)
+    folder.add_all(zip(names, contents, strict=True))
+    write(folder, terminal)
+    return _result(command, motions, terminal, files=folder.files)
 
 
 @click.command("convert")
@@ -235,10 +207,8 @@ def synth(motions: Sequence[GroundMotion], output: OutputRequest, terminal: Term
     pulse:ricker?amplitude=0.4g&period=1. The same seed gives the same motion.
     """
     motion = motions[0]
-    if motion.format not in MADE:
-        raise UsageError(
-            f"{motion.source}: is {motion.format}, not made here; use `rps record convert`"
-        )
+    if (form := motion.format) not in ("synthetic", "pulse"):
+        raise UsageError(f"{motion.source}: is {form}, not made here; use `rps record convert`")
     write_record("synth", motions, output, terminal, "at2")
 
 

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import hashlib
-from collections import Counter
 from dataclasses import asdict
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 import click
 
@@ -26,34 +25,17 @@ from rpscli.errors import LimitExceeded, UsageError
 from rpscli.report.documents import heading
 from rpscli.report.figures.look import Look
 from rpscli.report.files import OutputFolder, Run
-from rpscli.report.table import Part, Table, picked, shown
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
-
-    from rpscli.records.ground_motion import GroundMotion
-    from rpscli.records.requirements import Component, Periods
-    from rpscli.records.selection import Selection
+    from rpscli.records.requirements import Component, Periods, Requirements
     from rpscli.records.target import TargetSpectrum
 
 
-WHY_PGV = (
-    "Sa(T1) is a poor measure for rocking: once lifted the structure has no period of its own,"
-    " and overturning depends on the velocity of long pulses. Compare PGV and PGD with the"
-    " target's; --scale-by PGV brings every motion to the target's PGV."
-)
-
-USUAL_PERIODS = (0.2, 3.0)
+USUAL_PERIODS = 0.2, 3.0
 """Range of comparison without a structure [s]."""
 
 USUAL_ROTATION = 0.5
 """Of the critical rotation, where a case sets no limit."""
-
-USUAL_DAMPING = 0.05
-"""Of the spectra that codes' rules are about."""
-
-FAR = 2.0
-"""Times the target's peaks, or as many parts of them, beyond which it is told."""
 
 COMPONENTS = ("component", "rotd50", "rotd100", "geomean", "larger", "x", "srss")
 RULES = ("en1998", "asce7-ch16", "asce7-ch17", "mean90", "none")
@@ -173,7 +155,7 @@ def command(
     Writes selection.txt, for `records: ["list:selection.txt"]` in a study or `rps timehistory CASE
     --record list:selection.txt`, selection.csv, spectra.csv and the figure selection.
     """
-    from rpscli.records.filters import parse_filter
+    from rpscli.records.filters import kept, parse_filter
     from rpscli.records.loading import expanded, load_components
     from rpscli.records.measures import USUAL
     from rpscli.records.requirements import RULES as KNOWN
@@ -181,17 +163,16 @@ def command(
     from rpscli.records.source import Source
     from rpscli.records.target import load_target
     from rpscli.report.bundles import selection_files
-    from rpscli.report.tables.motions import selection_document
+    from rpscli.report.tables import motions as report
 
     spectrum = load_target(target)
     wanted_pgv = _pgv(scale_by, pgv, spectrum)
-    structure, told = (None, "") if case_source is None else _structure(case_source, terminal)
+    structure, limit = (None, "") if case_source is None else _structure(case_source, terminal)
     if spectrum.deviation is not None and rules not in {None, "none"}:
         raise UsageError(f"--rules {rules}: is about means, {target} has a sigma_ln to be met")
     asked = KNOWN.get(rules or spectrum.rules)
-    span, why = _range(structure, told, spectrum, isolated=asked is not None and asked.isolated)
-    if periods is not None:
-        span, why = periods, "as asked for"
+    span, why = _range(structure, limit, spectrum, asked)
+    span, why = (span, why) if periods is None else (periods, "as asked for")
     single, notes = expanded(sources)
     terminal.warn(notes)
     usual: Component = USUAL if any(Source.parse(text).both for text in single) else "component"
@@ -201,32 +182,21 @@ def command(
     )
     numbers = watched("records read", terminal, range(len(single)), many=100)
     every = [load_components(single[number]).horizontal for number in numbers]
-    motions, left_out = _kept(every, [parse_filter(text) for text in where])
+    motions, left_out = kept(every, [parse_filter(text) for text in where])
     if not motions:
         counts = ", ".join(f"{text} {sum(out.values())}" for text, out in left_out.items())
         raise UsageError(f"--where: leaves no motion of {len(every)}; out go by {counts}")
-    selection = select(
-        motions, spectrum, request, partial(watched, "candidates", terminal, many=100)
-    )
-    place = output.place or RESULTS / "selection" / "record_select"
-    folder = OutputFolder(
-        place,
-        Run(
-            "record select",
-            spectrum.name,
-            Path(target) if Path(target).is_file() else None,
-            hashlib.sha256("".join(motion.digest for motion in motions).encode()).hexdigest(),
-            {
-                "sources": list(sources),
-                "target": target,
-                "request": asdict(request),
-                "where": where,
-            },
-        ),
-        force=output.force,
-    )
+    looking = partial(watched, "candidates", terminal, many=100)
+    selection = select(motions, spectrum, request, looking)
+    place, file = output.place or RESULTS / "selection" / "record_select", Path(target)
+    digest = hashlib.sha256("".join(motion.digest for motion in motions).encode()).hexdigest()
+    inputs = {
+        "sources": list(sources), "target": target, "request": asdict(request), "where": where
+    }  # fmt: skip
+    run = Run("record select", spectrum.name, file if file.is_file() else None, digest, inputs)
+    folder = OutputFolder(place, run, force=output.force)
     folder.add_all(selection_files(selection, place, look))
-    terminal.warn(_doubts(selection, structure))
+    terminal.warn(report.selection_doubts(selection, structure and structure.fixed))
     write(folder, terminal)
     missed = [
         f"not met: {rule.rule}, {rule.found}; required {rule.required}"
@@ -235,10 +205,10 @@ def command(
     ]
     error = LimitExceeded("\n".join(missed)) if missed else None
     document = {
-        **heading("record select"), **selection_document(selection),
+        **heading("record select"), **report.selection_document(selection),
         "periods_from": why, "left_out": left_out, "files": folder.files,
     }  # fmt: skip
-    terminal.result(concluded(document, error), _tables(selection, why, left_out))
+    terminal.result(concluded(document, error), report.selection_tables(selection, why, left_out))
     leave(error)
 
 
@@ -258,80 +228,31 @@ def _structure(source: str, terminal: Terminal) -> tuple[Periods, str]:
         for limit in conditions_of(case.limits, "")
         if limit.name in scales
     ] or [(USUAL_ROTATION * critical, f"{USUAL_ROTATION:g} theta_cr, as the case has no limit")]
-    rotation, told = min(limits)
+    rotation, where = min(limits)
     if rotation >= critical:
-        raise UsageError(f"--case {source}: {told} has no secant; it must be below theta_cr")
+        raise UsageError(f"--case {source}: {where} has no secant; it must be below theta_cr")
     building = structure.superstructure
     fixed = None if building is None else float(building.periods[0])
-    return Periods(fixed, secant_period(structure, rotation)), told
+    return Periods(fixed, secant_period(structure, rotation)), where
 
 
 def _range(
-    structure: Periods | None, told: str, target: TargetSpectrum, *, isolated: bool
+    structure: Periods | None, limit: str, target: TargetSpectrum, asked: Requirements | None
 ) -> tuple[tuple[float, float], str]:
     """Range of periods, and why it is that."""
-    if structure is None:
-        found, why = USUAL_PERIODS, "usual; --case takes it from a structure"
-    else:
+    low, high, why = *USUAL_PERIODS, "usual; --case takes it from a structure"
+    if structure is not None:
         fixed, secant = structure
-        why = f"the secant period {secant:.3g} s on bearings at {told}"
-        if isolated:
-            found, why = (0.75 * secant, 1.25 * secant), f"0.75 and 1.25 T_M, {why}"
+        why = f"the secant period {secant:.3g} s on bearings at {limit}"
+        if asked is not None and asked.isolated:
+            low, high, why = 0.75 * secant, 1.25 * secant, f"0.75 and 1.25 T_M, {why}"
         elif fixed is None:
-            found, why = (0.2 * secant, secant), f"0.2 of it to {why}"
+            low, high, why = 0.2 * secant, secant, f"0.2 of it to {why}"
         else:
-            found = 0.2 * fixed, max(2.0 * fixed, secant)
+            low, high = 0.2 * fixed, max(2.0 * fixed, secant)
             why = f"0.2 T1, T1 = {fixed:.3g} s on a fixed base, to the longer of 2 T1 and {why}"
-    cut = max(found[0], target.span[0]), min(found[1], target.span[1])
-    return cut, why if cut == found else f"{why}; cut where the target ends"
-
-
-def _kept(
-    motions: Iterable[GroundMotion], filters: Iterable[Any]
-) -> tuple[list[GroundMotion], dict[str, dict[str, int]]]:
-    """Motions that pass every filter, and how many each keeps out, or knows nothing of."""
-    kept, left_out = list(motions), {}
-    for each in filters:
-        verdicts = [each.keeps(motion) for motion in kept]
-        counts = Counter(verdicts)
-        left_out[each.text] = {"outside": counts[False], "not_known": counts[None]}
-        kept = [motion for motion, keeps in zip(kept, verdicts, strict=True) if keeps]
-    return kept, left_out
-
-
-def _doubts(selection: Selection, structure: Periods | None) -> Iterator[str]:
-    """What a human should look at."""
-    from rpscli.records.requirements import NOT_VERIFIED
-
-    asked = selection.requirements
-    first, last = selection.periods[[0, -1]]
-    fixed = structure.fixed if structure else None
-    if fixed is not None and not first <= fixed <= last:
-        yield (
-            f"T1 = {fixed:.3g} s lies outside of the periods that are compared, {first:.3g} to"
-            f" {last:.3g} s: there nothing is known of the target"
-        )
-    yield from (text for one in selection.chosen for m in one.motions for text in m.warnings)
-    end = selection.periods[-1]
-    usable = {one.name: one.motions[0].recording.usable_period for one in selection.chosen}
-    short = [f"{name} ({until:.3g} s)" for name, until in usable.items() if until and until < end]
-    if short:
-        yield f"filtered before the end of the range, {end:.4g} s: {', '.join(short)}"
-    if asked is not None and selection.target.damping != USUAL_DAMPING:
-        yield f"{asked.clause} is about spectra of 5 % damping"
-    if selection.clamped:
-        of = f"{selection.clamped} of {len(selection.chosen)} factors"
-        yield f"{of} are held at a bound: widen --factors, or give motions of another size"
-    means = {"pgv": selection.mean_pgv, "pgd": selection.mean_pgd}
-    for name, mean in means.items():
-        wanted = getattr(selection.target, name)
-        if wanted is not None and not wanted / FAR <= mean <= wanted * FAR:
-            yield f"the mean {name.upper()} is {mean / wanted:.2g} times that of the target"
-    checks = [selection.target.checked]
-    if asked is not None:
-        remedy = "take that from the clause (--periods), and give the spectrum as a CSV file"
-        checks.append(f"{asked.clause}: {asked.checked}; where it matters {remedy}")
-    yield from (checked for checked in checks if NOT_VERIFIED in checked)
+    cut = max(low, target.span[0]), min(high, target.span[1])
+    return cut, why if cut == (low, high) else f"{why}; cut where the target ends"
 
 
 def _pgv(scale_by: str, pgv: float | None, target: TargetSpectrum) -> float | None:
@@ -343,48 +264,3 @@ def _pgv(scale_by: str, pgv: float | None, target: TargetSpectrum) -> float | No
     if pgv is None and target.pgv is None:
         raise UsageError(f"--scale-by PGV: the PGV of {target.source} is not known; add --pgv V")
     return target.pgv if pgv is None else pgv
-
-
-def _tables(
-    selection: Selection, why: str, left_out: Mapping[str, Mapping[str, int]]
-) -> Iterator[Part]:
-    from rpscli.records.requirements import COMPONENTS
-    from rpscli.report.tables.motions import selection_columns
-
-    names = ("name", "event", "factor", "pgv", "pgd", "misfit", "clamped")
-    yield Table(picked(selection_columns(selection), *names), words=2)
-    target, errors, asked = selection.target, selection.errors, selection.requirements
-    low, high = selection.periods[[0, -1]]
-    of = COMPONENTS[selection.of] + ("" if target.of else "; the target does not say")
-    by = f" ({target.pgv_by})" if target.pgv else ""
-    rows = {
-        "target": ": ".join(filter(None, (target.name, target.parameters))),
-        "edition": target.edition,
-        "checked": target.checked,
-        "spectra of": of,
-        "periods": f"{low:.3g} to {high:.3g} s: {why}",
-        "common factor, after their own": f"{selection.common:.4f}",
-        "misfit of the mean, rms of ln(mean/target)": f"{selection.misfit:.4f}",
-        "least mean/target": f"{selection.least_ratio:.3f}",
-        "mean PGV, target's": f"{selection.mean_pgv:.3f}, {shown(target.pgv, 3)} m/s{by}",
-        "mean PGD, target's": f"{selection.mean_pgd:.3f}, {shown(target.pgd, 3)} m",
-        "factors at a bound": f"{selection.clamped} of {len(selection.chosen)}",
-        "chosen among": f"{selection.candidates}"
-        + f"; {selection.refused} beyond the factors" * bool(selection.refused)
-        + (
-            "; the best of all sets"
-            if selection.whole
-            else "; by exchange from many first choices, not of all sets"
-        ),
-    }
-    if errors is not None:
-        text = "largest errors of mean and deviation of ln Sa"
-        rows[text] = f"{errors[0]:.3f}, {errors[1]:.3f}"
-    for text, counts in left_out.items():
-        rows[f"left out by {text}"] = f"{counts['outside']}; {counts['not_known']} not known"
-    yield Table.listing(rows.items())
-    if asked is not None:
-        yield f"{asked.clause}; {asked.checked}:"
-        judged = [(rule.rule, rule.required, rule.found, rule.word) for rule in selection.rules]
-        yield Table.of_texts(["requirement", "required", "result", ""], judged, words=4)
-    yield WHY_PGV

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 from rpscli.errors import UsageError, hint
@@ -38,6 +39,18 @@ class Filter(NamedTuple):
         else:
             value = getattr(motion.recording, self.name)
         return None if value is None else self.low <= value <= self.high
+
+
+def kept(
+    motions: Sequence[GroundMotion], filters: Iterable[Filter]
+) -> tuple[list[GroundMotion], dict[str, dict[str, int]]]:
+    """Motions that pass every filter, and how many each keeps out, or knows nothing of."""
+    passing, left_out = list(motions), {}
+    for each in filters:
+        verdicts = [each.keeps(motion) for motion in passing]
+        left_out[each.text] = {"outside": verdicts.count(False), "not_known": verdicts.count(None)}
+        passing = [motion for motion, keeps in zip(passing, verdicts, strict=True) if keeps]
+    return passing, left_out
 
 
 def parse_filter(text: str) -> Filter:

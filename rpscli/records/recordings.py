@@ -235,7 +235,7 @@ def _pair(of_one: Sequence[Source], text: str) -> Source:
             " both act together under one factor"
         )
     if first.scheme == SET:
-        return first.at(re.sub("/[ab]$", "", first.place))
+        return first.together(first)
     horizontal = [
         of for of in of_one if "channel" in of.values or not _VERTICAL.fullmatch(of.place)
     ]
@@ -247,9 +247,7 @@ def _pair(of_one: Sequence[Source], text: str) -> Source:
             " pair, as in x.at2?second=y.at2&both"
         )
     one, other = horizontal
-    if one.place == other.place:
-        return one.plus(channel=f"{one.values['channel']},{other.values['channel']}")
-    return one.plus(second=PurePath(other.place).name)
+    return one.together(other)
 
 
 ONE_FACTOR = (

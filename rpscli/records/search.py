@@ -142,7 +142,8 @@ class _Search:
     @staticmethod
     def _repeats(numbers: Numbers) -> Numbers:
         """How often the commonest number of each row (..., size) comes."""
-        return (numbers[:, :, None] == numbers[:, None, :]).sum(axis=2).max(axis=1)
+        same = numbers[:, :, None] == numbers[:, None, :]
+        return np.asarray(same.sum(axis=2).max(axis=1))
 
     def free(self, places: list[int]) -> NDArray[np.bool_]:
         """(m,) what may still be chosen beside these places."""

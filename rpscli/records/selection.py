@@ -63,15 +63,10 @@ class Candidate:
         return name if len(self.motions) == 1 else name.removesuffix("_a")
 
     @property
-    def sources(self) -> tuple[str, ...]:
-        """Of the motion, or of both components: one, if they were given together."""
-        first, *_ = found = tuple(motion.source for motion in self.motions)
-        return (first,) if Source.parse(first).both else found
-
-    @property
-    def source(self) -> str:
-        """The same in one text."""
-        return " + ".join(self.sources)
+    def source(self) -> Source:
+        """Of the motion, or of both components together."""
+        first, *others = (Source.parse(motion.source) for motion in self.motions)
+        return first.together(others[0]).plus(both=None) if others and not first.both else first
 
     @property
     def scaled(self) -> Array:

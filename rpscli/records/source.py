@@ -13,6 +13,7 @@ All others are those of what reads or makes the motion, as `dt`, `units` and `ch
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Iterable, Iterator
 from functools import cached_property
@@ -194,6 +195,15 @@ class Source(str):  # noqa: SLOT000 -- parts are kept beside the text
             return self.alone, self.alone.at(self.second)
         first, comma, other = (self.values.get("channel") or "").partition(",")
         return (self.alone.plus(channel=first), self.alone.plus(channel=other)) if comma else None
+
+    def together(self, other: Source) -> Source:
+        """A source of both components, of one set, of one file, or of two."""
+        if self.scheme == SET:
+            return self.at(re.sub("/[ab]$", "", self.place))
+        if self.place == other.place:
+            return self.plus(channel=f"{self.values['channel']},{other.values['channel']}")
+        second = os.path.relpath(other.place, PurePath(self.place).parent)
+        return self.plus(second=PurePath(second).as_posix())
 
     def turned(self, rotation: float) -> Source:
         """A source of both components, turned further [deg]."""

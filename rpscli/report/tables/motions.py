@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator, Mapping
 from dataclasses import asdict
 from functools import partial
 from pathlib import Path
@@ -12,10 +13,11 @@ from rpscli.constants import STANDARD_GRAVITY
 from rpscli.records.formats.record_text import remark
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.measures import IntensityMeasures, displacement, velocity
+from rpscli.records.requirements import COMPONENTS, NOT_VERIFIED
 from rpscli.records.selection import Selection
 from rpscli.records.source import Source, is_file
 from rpscli.records.spectrum import ResponseSpectrum
-from rpscli.report.table import Column, Table, picked, records, shown
+from rpscli.report.table import Column, Part, Table, picked, records, shown
 
 
 def record_document(motion: GroundMotion, measures: IntensityMeasures) -> dict[str, Any]:
@@ -124,6 +126,86 @@ def selection_columns(selection: Selection) -> list[Column]:
     ]
 
 
+USUAL_DAMPING = 0.05
+"""Of the spectra that codes' rules are about."""
+
+FAR = 2.0
+"""Times the target's peaks, or as many parts of them, beyond which it is told."""
+
+WHY_PGV = (
+    "Sa(T1) is a poor measure for rocking: once lifted the structure has no period of its own,"
+    " and overturning depends on the velocity of long pulses. Compare PGV and PGD with the"
+    " target's; --scale-by PGV brings every motion to the target's PGV."
+)
+
+
+def selection_doubts(selection: Selection, fixed: float | None) -> Iterator[str]:
+    """What a human should look at; `fixed` is T1 of the structure on a fixed base [s]."""
+    asked, target, chosen = selection.requirements, selection.target, selection.chosen
+    first, last = selection.periods[[0, -1]]
+    if fixed is not None and not first <= fixed <= last:
+        yield (
+            f"T1 = {fixed:.3g} s lies outside of the periods that are compared, {first:.3g} to"
+            f" {last:.3g} s: there nothing is known of the target"
+        )
+    yield from (text for one in chosen for m in one.motions for text in m.warnings)
+    usable = {one.name: one.motions[0].recording.usable_period for one in chosen}
+    short = [f"{name} ({until:.3g} s)" for name, until in usable.items() if until and until < last]
+    if short:
+        yield f"filtered before the end of the range, {last:.4g} s: {', '.join(short)}"
+    if asked is not None and target.damping != USUAL_DAMPING:
+        yield f"{asked.clause} is about spectra of 5 % damping"
+    if selection.clamped:
+        of = f"{selection.clamped} of {len(chosen)} factors"
+        yield f"{of} are held at a bound: widen --factors, or give motions of another size"
+    for name in ("pgv", "pgd"):
+        wanted, mean = getattr(target, name), getattr(selection, f"mean_{name}")
+        if wanted is not None and not wanted / FAR <= mean <= wanted * FAR:
+            yield f"the mean {name.upper()} is {mean / wanted:.2g} times that of the target"
+    remedy = "take that from the clause (--periods), and give the spectrum as a CSV file"
+    of_rules = f"{asked.clause}: {asked.checked}; where it matters {remedy}" if asked else ""
+    yield from (checked for checked in (target.checked, of_rules) if NOT_VERIFIED in checked)
+
+
+def selection_tables(
+    selection: Selection, why: str, left_out: Mapping[str, Mapping[str, int]]
+) -> Iterator[Part]:
+    """What was chosen, how well it fits, and what the code asks."""
+    names = ("name", "event", "factor", "pgv", "pgd", "misfit", "clamped")
+    yield Table(picked(selection_columns(selection), *names), words=2)
+    target, errors, asked = selection.target, selection.errors, selection.requirements
+    low, high = selection.periods[[0, -1]]
+    by = f" ({target.pgv_by})" if target.pgv else ""
+    refused = f"; {selection.refused} beyond the factors" * bool(selection.refused)
+    how = "by exchange from many first choices, not of all sets"
+    rows = {
+        "target": ": ".join(filter(None, (target.name, target.parameters))),
+        "edition": target.edition,
+        "checked": target.checked,
+        "spectra of": COMPONENTS[selection.of] + ("" if target.of else "; the target does not say"),
+        "periods": f"{low:.3g} to {high:.3g} s: {why}",
+        "common factor, after their own": f"{selection.common:.4f}",
+        "misfit of the mean, rms of ln(mean/target)": f"{selection.misfit:.4f}",
+        "least mean/target": f"{selection.least_ratio:.3f}",
+        "mean PGV, target's": f"{selection.mean_pgv:.3f}, {shown(target.pgv, 3)} m/s{by}",
+        "mean PGD, target's": f"{selection.mean_pgd:.3f}, {shown(target.pgd, 3)} m",
+        "factors at a bound": f"{selection.clamped} of {len(selection.chosen)}",
+        "chosen among": f"{selection.candidates}{refused}; "
+        + ("the best of all sets" if selection.whole else how),
+    }
+    if errors is not None:
+        text = "largest errors of mean and deviation of ln Sa"
+        rows[text] = f"{errors[0]:.3f}, {errors[1]:.3f}"
+    for text, counts in left_out.items():
+        rows[f"left out by {text}"] = f"{counts['outside']}; {counts['not_known']} not known"
+    yield Table.listing(rows.items())
+    if asked is not None:
+        yield f"{asked.clause}; {asked.checked}:"
+        judged = [(rule.rule, rule.required, rule.found, rule.word) for rule in selection.rules]
+        yield Table.of_texts(["requirement", "required", "result", ""], judged, words=4)
+    yield WHY_PGV
+
+
 def mean_columns(selection: Selection) -> list[Column]:
     """`spectra.csv`: one row a period; target, mean, and every scaled motion."""
     scatter = []
@@ -146,14 +228,11 @@ def selection_list(selection: Selection, folder: Path) -> str:
         f"# {len(selection.chosen)} {what}, for {selection.target.source}",
         "# in a study: records: ['list:selection.txt'], with the path as seen from the study",
     )
-    lines = (
-        _line(source, one.factor, folder) for one in selection.chosen for source in one.sources
-    )
+    lines = (_line(one.source, one.factor, folder) for one in selection.chosen)
     return "\n".join((*heads, *lines)) + "\n"
 
 
-def _line(source: str, factor: float, folder: Path) -> str:
-    of = Source.parse(source)
+def _line(of: Source, factor: float, folder: Path) -> str:
     if is_file(of.place, None) and not Path(of.place).expanduser().is_absolute():
         of = of.at(Path(os.path.relpath(of.place, folder)).as_posix())
-    return str(of.plus(factor=f"{of.factor * factor:g}"))
+    return of.plus(factor=f"{of.factor * factor:g}")
