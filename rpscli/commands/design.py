@@ -19,7 +19,6 @@ from rpscli.commands.shell.terminal import Terminal, concluded, leave
 from rpscli.commands.study import (
     SweepChoices,
     compute,
-    of_first_system,
     show_dry_run,
     study_heading,
 )
@@ -130,5 +129,7 @@ def tables_of(done: Design) -> Iterator[Part]:
     counts = [(name.replace("_", " "), str(n)) for name, n in document["designs"].items()]
     yield Table.listing([*counts, ("records scaled to", layout.scaled_to)])
     yield from done.tables
+    from rpscli.report.study.shown import of_first_system
+
     yield of_first_system(done.judged.layout)
     yield from filter(None, [direction_note(layout.pairs)])

@@ -209,9 +209,9 @@ def _options(word: str) -> Iterator[Entry]:
 
 def _offers(word: str) -> Iterator[Offer]:
     """Items of other packages: all for the word plugins, else those of that name."""
-    from rpscli.records.target import CODES
     from rpscli.records.formats import FORMATS
     from rpscli.records.measures import MEASURES
+    from rpscli.records.target import CODES
     from rpscli.report.figures.look import FIGURES
     from rpscli.report.study.registry import REPORTS
 

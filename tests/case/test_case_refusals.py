@@ -202,7 +202,9 @@ def test_an_unknown_key_is_the_only_fault(
     assert "\n" not in message
 
 
-@pytest.mark.parametrize(("key", "now"), REMOVED.items())
+@pytest.mark.parametrize(
+    ("key", "now"), [item for item in REMOVED.items() if not item[0].startswith("reports.")]
+)
 def test_a_removed_key_says_what_to_do_without_it(key: str, now: str) -> None:
     with pytest.raises(CaseError) as refused:
         parse_case(BUILDING, name="c.yaml", overrides=[f"{key}=1"])

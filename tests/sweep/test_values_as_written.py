@@ -38,14 +38,13 @@ def test_a_study_fits_the_terminal_and_has_what_was_typed(
     text = measured("superstructure.storey_mass", "200 t, 300 t")
     (workplace / "study.yaml").write_text(text, encoding="utf-8")
     monkeypatch.setenv("COLUMNS", str(columns))
-    result = sweep("study.yaml")
+    result = sweep("study.yaml", "--all")
     assert result.exit_code == 10, result.stderr
     lines = [line.rstrip() for line in result.stdout.splitlines()]
     assert max(map(len, lines)) <= columns
     words = " ".join(lines)
     assert {"0.6 g", "200 t"} == {text for text in ("0.6 g", "200 t") if text in words}
     assert not [text for text in ("1.96133", "5.88399", "200000") if text in words]
-    assert "storey_mass = 300 t, PGA = 0.6 g" in result.stderr
     with (workplace / "results/study/sweep/verdicts.csv").open(encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     # 0.2 and 0.6 of standard gravity, 9.80665 m/s2 by definition.
