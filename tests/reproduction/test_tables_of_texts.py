@@ -84,7 +84,7 @@ def energy_rows(points: Sequence[Row]) -> Iterator[list[str]]:
         some = impacts > 0
         lost = created + net
         yield [
-            name, f"{some.sum()}", f"{(creating > 0).sum()}", f"{impacts.sum():.0f}",
+            name, f"{some.sum()}", f"{(creating > 0).sum()}", f"{impacts.sum() / 1e3:.0f}",
             f"{creating.sum() / impacts.sum():.3f}", f"{created.sum() / lost.sum():.3f}",
             f"{np.median(created[some] / lost[some]):.3f}", f"{(net < 0.0).sum()}",
         ]  # fmt: skip
@@ -112,12 +112,12 @@ def test_what_the_flexible_law_changes(reproduce: Reproduce, fema_record: Record
     assert [*profile_rows(both)] == table(README, "Figure 9, tan(alpha) = 0.15")[1:]
     text = " ".join(README.read_text("utf-8").split())
     points = [reproduce("figure_9", "points", *law) for law in laws]
-    impacts = [f"{column(rows, 'impacts').sum():,.0f}" for rows in points]
+    impacts = [f"{column(rows, 'impacts').sum() / 1e3:.0f} thousand" for rows in points]
     fell = [sum(row["outcome"].startswith("overturned") for row in rows) for rows in points]
     assert f"fewer impacts, {impacts[1]} in place of {impacts[0]}," in text
     assert f"{fell[1]} of 900 in place of {fell[0]}" in text
     flexible = reproduce("figure_8", "points", FLEXIBLE)
-    assert f"(0 of {column(flexible, 'impacts').sum():,.0f} impacts)" in text
+    assert f"(0 of {column(flexible, 'impacts').sum() / 1e3:.0f} thousand impacts)" in text
     assert column(flexible, "creating_impacts").sum() == 0
 
 
