@@ -297,12 +297,13 @@ def resolve_step(s: Record, l: int) -> bool:
     if not math.isfinite(total):
         s.outcome[l] = FAILED_NOT_FINITE
         return False
+    if s.error[l] > 1.0 and s.h[l] > LEAST_STEP * s.dt[l]:
+        # also of a step that is to end on an event: there a bed may be steeper than beyond it
+        s.h[l] *= 0.5 if s.error[l] < 64.0 else 0.25
+        s.h_limit[l], s.wanted[l] = s.h[l], NOTHING
+        return True
     if s.wanted[l] != NOTHING:
         land(s, l)
-        return True
-    if s.error[l] > 1.0 and s.h[l] > LEAST_STEP * s.dt[l]:
-        s.h[l] *= 0.5 if s.error[l] < 64.0 else 0.25
-        s.h_limit[l] = s.h[l]
         return True
     fraction, kind, which = first_event(s, l)
     if kind == NOTHING:

