@@ -34,7 +34,6 @@ from rpscli.records.loading import load_components
 from .closed_forms import RigidFrame, least_tilt, statics, uplift_time, uplifted_roots
 from .podiums import Floors, Podium
 
-Answers = Mapping[str, float]
 Change = Callable[[PodiumStructure], PodiumStructure]
 
 DT, KNOTS = 0.1, 30
