@@ -229,18 +229,26 @@ class Trace(Direction):
 ENERGIES = ("energy_input", "energy_damped", "energy_impact", "energy_stored")
 
 
-def sampled(structure: PodiumStructure, t: Trace) -> Iterator[tuple[str, str, NDArray[Any]]]:
+Sampled: TypeAlias = tuple[str, str, NDArray[Any]]
+
+
+def sampled(structure: PodiumStructure, t: Trace) -> Iterator[Sampled]:
     """Name, SI unit and samples of each quantity, for tables."""
     # Largest results may lie between the rows. Displacements are relative to the ground, floor
     # accelerations absolute. Forces are those of one column, F to the right and N upwards on what
     # is above; of all columns together where the case does not give their number. Devices' energy
     # is what they dissipated so far, of a damped stop that has let go as the cap beam moves back to
     # the gap. Where both components act, what has a direction stands in x and in y.
-    ways: list[tuple[str, Trace | Direction]] = (
-        [("", t)] if t.y is None else [("_x", t), ("_y", t.y)]
-    )
+    ways: list[tuple[str, Direction]] = [("", t)] if t.y is None else [("_x", t), ("_y", t.y)]
+
+    def directed(name: str, unit: str, field: str, over: int = 1) -> Iterator[Sampled]:
+        for way, of in ways:
+            values = getattr(of, field)
+            for i, column in enumerate(np.atleast_2d(values.T), start=1):
+                yield name.format(i) + way, unit, column if over == 1 else column / over
+
     yield "time", "s", t.time
-    yield from ((f"ground_acceleration{way}", "m/s2", of.ground_acceleration) for way, of in ways)
+    yield from directed("ground_acceleration", "m/s2", "ground_acceleration")
     yield "rotation", "rad", t.rotation
     if t.azimuth is not None and t.azimuth_rate is not None:
         yield "azimuth", "rad", t.azimuth
@@ -248,22 +256,15 @@ def sampled(structure: PodiumStructure, t: Trace) -> Iterator[tuple[str, str, ND
         yield "rotation_x", "rad", t.rotation * np.cos(t.azimuth)
         yield "rotation_y", "rad", t.rotation * np.sin(t.azimuth)
     yield "rotation_rate", "rad/s", t.rotation_rate
-    for way, of in ways:
-        yield f"cap_beam_displacement{way}", "m", of.cap_beam_displacement
+    yield from directed("cap_beam_displacement", "m", "cap_beam_displacement")
     yield "lift", "m", t.lift
-    for name, unit, field in (
-        ("floor_{}_displacement", "m", "floor_displacements"),
-        ("storey_{}_drift", "m", "drifts"),
-        ("storey_{}_shear", "N", "storey_shears"),
-        ("floor_{}_acceleration", "m/s2", "floor_accelerations"),
-    ):
-        for way, of in ways:
-            for i, column in enumerate(getattr(of, field).T, start=1):
-                yield name.format(i) + way, unit, column
-    yield from ((f"driving_moment{way}", "N m", of.driving_moment) for way, of in ways)
-    for end in ("top", "bottom"):
-        for way, of in ways:
-            yield f"column_shear_{end}{way}", "N", getattr(of, f"shear_{end}") / structure.columns
+    yield from directed("floor_{}_displacement", "m", "floor_displacements")
+    yield from directed("storey_{}_drift", "m", "drifts")
+    yield from directed("storey_{}_shear", "N", "storey_shears")
+    yield from directed("floor_{}_acceleration", "m/s2", "floor_accelerations")
+    yield from directed("driving_moment", "N m", "driving_moment")
+    yield from directed("column_shear_top", "N", "shear_top", structure.columns)
+    yield from directed("column_shear_bottom", "N", "shear_bottom", structure.columns)
     yield "column_force_top", "N", t.normal_top / structure.columns
     yield "column_force_bottom", "N", t.normal_bottom / structure.columns
     yield from ((name, "J", getattr(t, name)) for name in ENERGIES)
