@@ -59,7 +59,7 @@ def _surroundings() -> list[tuple[str, str, str]]:
         ("Python", f"{platform.python_version()}, {sys.executable}", ""),
         ("system", f"{platform.platform()}, text in {locale.getencoding()}", ""),
         ("cores", str(available_cores()), ""),
-        ("cache", f"{place}, {_size(place)}, free to be deleted" if place else "-", mine),
+        ("cache", f"{place}, {_size(place)}, may be deleted" if place else "-", mine),
         ("font of figures", font_file() if place and installed("matplotlib") else "-", ""),
         (ENCODER, encoder or "-", "" if encoder else "animations as MP4"),
     ]

@@ -87,4 +87,4 @@ def test_another_cache_than_the_wanted_one_is_told(
         assert row["found"].startswith(str(tmp_path / (name if not remedy else "rps")))
         assert row["remedy"].startswith(remedy)
         assert bool(row["remedy"]) == bool(remedy)
-    assert "3.0 MB, free to be deleted" in row["found"]
+    assert "3.0 MB, may be deleted" in row["found"]
