@@ -11,8 +11,8 @@ from rpscli.model.bearing import Bearing
 ImpactKind = Literal["flexible", "rigid", "value"]
 
 CONTACT_TIME = 2e-3
-"""Duration of an impact [s]: a joint that settles by D_0 under the building has sqrt(2 D_0/g), 2 to
-4.5 ms of 20 to 100 um; it moves the medians of many pairs by less than 5 %."""
+"""Duration of an impact [s]: a joint that settles by D_0 under the building has sqrt(2 D_0/g), that
+is 2 to 4.5 ms of 20 to 100 um; it moves the medians of many pairs by less than 5 %."""
 
 LONGEST_CONTACT = 0.02
 """Longest impact [s]; beyond it a pass would no longer be short against the motion."""

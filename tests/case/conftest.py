@@ -60,16 +60,6 @@ Faults = Callable[..., str]
 
 
 @pytest.fixture
-def building() -> str:
-    return BUILDING
-
-
-@pytest.fixture
-def frame() -> str:
-    return FRAME
-
-
-@pytest.fixture
 def faults() -> Faults:
     """What a case is refused with, after one replacement in its text."""
 

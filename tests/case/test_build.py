@@ -77,9 +77,9 @@ def test_lists_go_from_the_bottom() -> None:
     assert floors(text=text).stiffnesses.tolist() == [3e6, 2e6, 1e6]
 
 
-def test_sine_is_the_profile_of_a_period_alone() -> None:
-    text = BUILDING.replace("  profile: sine\n", "")
-    assert case_of(text=text).document == case_of().document
+@pytest.mark.parametrize(("old", "new"), [("  profile: sine\n", ""), ("200 t", "2.0e5")])
+def test_two_ways_to_say_the_same(old: str, new: str) -> None:
+    assert case_of(text=BUILDING.replace(old, new)).document == case_of().document
 
 
 def test_one_storey_takes_two_modes() -> None:

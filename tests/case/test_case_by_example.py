@@ -2,39 +2,12 @@
 
 from __future__ import annotations
 
-import pytest
-
-from rpscli.case.conditions import Condition, condition_text, parse_condition
 from rpscli.case.rules.consistency import above, largest_slenderness
 from rpscli.case.rules.plausibility import Doubt, doubts_of_many
 from rpscli.case.schema.fields import ValueRange
 from rpscli.case.schema.scale_to import scale_to_of
 from rpscli.case.study.observed import comparable
-from rpscli.errors import UsageError
 from rpscli.model.impact import ImpactLaw
-
-
-@pytest.mark.parametrize(
-    ("condition", "text"),
-    [
-        (Condition("overturning", 0.0, ""), "no record"),
-        (Condition("a", 2.0, ""), "at most 2 in every record"),
-        (Condition("a", 0.5, "", share=0.1), "at most 0.5 except in 10 % of the records"),
-        (
-            Condition("min_column_force", 1e5, "", fractile=0.1),
-            "at least 100000 at the 10 % fractile",
-        ),
-    ],
-)
-def test_conditions_in_words(condition: Condition, text: str) -> None:
-    assert condition_text(condition) == text
-
-
-def test_conditions_of_options() -> None:
-    assert parse_condition("max_base_shear=2 kN").limit == 2000.0
-    with pytest.raises(UsageError, match="or '0"):
-        parse_condition("max_base_shear=2 m")
-    assert parse_condition("rotation_ratio=0.5") == Condition("rotation_ratio", 0.5, "--fail-on")
 
 
 def test_doubts_of_many_systems() -> None:

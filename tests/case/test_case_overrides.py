@@ -13,15 +13,17 @@ from rpscli.case.text.document import Document
 from rpscli.case.text.yaml_text import read_yaml
 from rpscli.errors import CaseError
 
+from .conftest import BUILDING, FRAME
 
-def refusal(text: str, overrides: Overrides, label: str = "--set") -> str:
+
+def refusal(overrides: Overrides, label: str = "--set", text: str = BUILDING) -> str:
     with pytest.raises(CaseError) as error:
         apply_overrides(read_yaml(text, "c.yaml"), overrides, label=label)
     return str(error.value)
 
 
-def test_values_are_yaml(building: str) -> None:
-    document = read_yaml(building, "c.yaml")
+def test_values_are_yaml() -> None:
+    document = read_yaml(BUILDING, "c.yaml")
     before = copy.deepcopy(document.content)
     changed = apply_overrides(
         document,
@@ -45,22 +47,22 @@ def test_values_are_yaml(building: str) -> None:
     assert str(document.value_place(("podium", "bearing", "slenderness"))) == "c.yaml:12:18"
 
 
-def test_sections_that_are_not_written_come_into_being(frame: str) -> None:
-    case = parse_case(frame, name="c.yaml", overrides=["record.source=a.at2", "record.scale=2"])
+def test_sections_that_are_not_written_come_into_being() -> None:
+    case = parse_case(FRAME, name="c.yaml", overrides=["record.source=a.at2", "record.scale=2"])
     assert case.record is not None
     assert (case.record.source, case.record.scale) == ("a.at2", 2.0)
 
 
-def test_null_takes_a_key_out(building: str) -> None:
+def test_null_takes_a_key_out() -> None:
     overrides = ["podium.superstructure_mass_ratio=null", "podium.cap_beam_mass=150 t"]
-    structure = parse_case(building, name="c.yaml", overrides=overrides).structure
+    structure = parse_case(BUILDING, name="c.yaml", overrides=overrides).structure
     assert structure.eta == pytest.approx(4.0, rel=1e-15)
-    case = parse_case(building, name="c.yaml", overrides=["record=null", "record.vertical=null"])
+    case = parse_case(BUILDING, name="c.yaml", overrides=["record=null", "record.vertical=null"])
     assert case.record is None
 
 
-def test_python_values_of_a_study(building: str) -> None:
-    document = read_yaml(building, "c.yaml")
+def test_python_values_of_a_study() -> None:
+    document = read_yaml(BUILDING, "c.yaml")
     point = {
         "superstructure.storeys": np.int64(2),
         "podium.bearing.slenderness": np.float64(0.1),
@@ -77,8 +79,8 @@ def test_python_values_of_a_study(building: str) -> None:
     assert structure.impact_law.kind == "flexible"
 
 
-def test_a_fault_of_a_value_is_placed_at_its_override(building: str) -> None:
-    document = read_yaml(building, "c.yaml")
+def test_a_fault_of_a_value_is_placed_at_its_override() -> None:
+    document = read_yaml(BUILDING, "c.yaml")
     with pytest.raises(CaseError) as error:
         case_from_mapping(
             document, "c.yaml", None, {"podium.bearing.slenderness": -0.5}, label="vary"
@@ -86,7 +88,7 @@ def test_a_fault_of_a_value_is_placed_at_its_override(building: str) -> None:
     start = "vary podium.bearing.slenderness=-0.5: podium.bearing.slenderness = -0.5 must be >= 0"
     assert str(error.value) == start
     with pytest.raises(CaseError, match=r"both fix") as error:
-        parse_case(building, name="c.yaml", overrides=["podium.cap_beam_mass=1"])
+        parse_case(BUILDING, name="c.yaml", overrides=["podium.cap_beam_mass=1"])
     assert str(error.value).startswith("--set podium.cap_beam_mass=1: podium.cap_beam_mass and")
     assert "(line 16)" in str(error.value)
 
@@ -114,20 +116,21 @@ def test_a_fault_of_a_value_is_placed_at_its_override(building: str) -> None:
         ("podium.impact={law: rigid, law: rigid}", ["law is written twice"]),
     ],
 )
-def test_refusals(building: str, override: str, parts: list[str]) -> None:
-    message = refusal(building, [override])
+def test_refusals(override: str, parts: list[str]) -> None:
+    message = refusal([override])
     assert message.startswith(f"--set {override}:")
     for part in parts:
         assert part in message
 
 
-def test_a_key_below_a_list(building: str) -> None:
-    message = refusal(building.replace("{source: motion.at2}", "[a]"), ["record.source=b"])
+def test_a_key_below_a_list() -> None:
+    text = BUILDING.replace("{source: motion.at2}", "[a]")
+    message = refusal(["record.source=b"], text=text)
     assert message == "--set record.source=b: record is a list, without a key source"
 
 
-def test_keys_of_a_study_are_checked_together(building: str) -> None:
-    message = refusal(building, {"podium.foo": 1, "record.bar": 2}, label="vary")
+def test_keys_of_a_study_are_checked_together() -> None:
+    message = refusal({"podium.foo": 1, "record.bar": 2}, label="vary")
     assert [line.split(":")[0] for line in message.splitlines()] == [
         "vary podium.foo=1",
         "vary record.bar=2",

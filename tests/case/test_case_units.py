@@ -9,7 +9,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rpscli.case.case import parse_case
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.units import FOOT, INCH, KINDS, POUND, POUND_FORCE, si_factor, si_value
 
@@ -79,21 +78,10 @@ UNUSUAL: dict[str, dict[str, float]] = {
 @pytest.mark.parametrize(
     ("text", "unit", "value"),
     [
-        ("200 t", "kg", 2e5),
-        ("200t", "kg", 2e5),
-        ("1485 mm", "m", 1.485),
-        ("1.5e0 m", "m", 1.5),
-        ("30 kN/mm", "N/m", 3e7),
-        ("1 MN/m", "N/m", 1e6),
-        ("100 kip/in", "N/m", 100 * 4448.2216152605 / 0.0254),
-        ("0.6 s", "s", 0.6),
-        ("600 ms", "s", 0.6),
-        ("981 cm/s2", "m/s2", 9.81),
-        ("9.81 m/s^2", "m/s2", 9.81),
-        ("9.81 m/s**2", "m/s2", 9.81),
-        ("-5 µm", "m", -5e-6),
+        ("200t", "kg", 2e5), ("1485 mm", "m", 1.485), ("1.5e0 m", "m", 1.5), ("-5 µm", "m", -5e-6),
+        ("30 kN/mm", "N/m", 3e7), ("981 cm/s2", "m/s2", 9.81), ("9.81 m/s^2", "m/s2", 9.81),
     ],
-)
+)  # fmt: skip
 def test_si(text: str, unit: str, value: float) -> None:
     assert si_value(text, unit) == pytest.approx(value, rel=ROUNDING)
 
@@ -137,11 +125,6 @@ def test_any_text_is_a_number_or_refused(text: str) -> None:
     except ValueError as error:
         reason = str(error)
     assert "length" in reason or "unit" in reason or not reason
-
-
-def test_units_make_the_same_case(building: str) -> None:
-    plain = parse_case(building.replace("200 t", "2.0e5"), name="c.yaml")
-    assert plain.document == parse_case(building, name="c.yaml").document
 
 
 @pytest.mark.parametrize(("unit", "written"), FACTORS.items())

@@ -1,4 +1,4 @@
-"""Limits in their three forms, for every result that may be limited."""
+"""Limits in their three forms, for every result that may be limited, and those of `--fail-on`."""
 
 from __future__ import annotations
 
@@ -6,63 +6,69 @@ import pytest
 
 from rpscli.analyses.result_quantities import LIMITED
 from rpscli.case.case import parse_case
-from rpscli.case.conditions import Condition, condition_text, conditions_of
+from rpscli.case.conditions import Condition, condition_text, conditions_of, parse_condition
+from rpscli.errors import UsageError
+
+from .conftest import BUILDING
+
+WITH_COLUMNS = BUILDING.replace("  profile: sine\n", "  vertical_period: 0.1 s\n").replace(
+    "  impact: {law: rigid}\n", "  plan: {length: 12 m}\n"
+)
+"""What the force of a column is made of."""
 
 
-def limited(building: str, text: str) -> tuple[Condition, ...]:
+def limited(text: str) -> tuple[Condition, ...]:
     """Conditions of a case with these limits."""
-    changed = building.replace("limits: {rotation_ratio: 0.5}", f"limits: {text}")
-    assert changed != building
+    changed = WITH_COLUMNS.replace("limits: {rotation_ratio: 0.5}", f"limits: {text}")
     return conditions_of(parse_case(changed, name="c.yaml").limits, "the case")
 
 
-def test_a_limit_is_a_number_or_has_a_share_or_a_fractile(building: str) -> None:
-    found = limited(
-        building,
-        "{rotation_ratio: 0.25, max_cap_beam_displacement: {at_most: 300 mm, share: 0.1},"
-        " drift_ratio: {at_most: 0.005, fractile: 0.84}, overturning: 0.05}",
-    )
-    assert found == (
-        Condition("rotation_ratio", 0.25, "the case"),
-        Condition("max_cap_beam_displacement", 0.3, "the case", share=0.1),
-        Condition("drift_ratio", 0.005, "the case", fractile=0.84),
-        Condition("overturning", 0.0, "the case", share=0.05),
-    )
-    assert [condition_text(condition) for condition in found] == [
-        "at most 0.25 in every record",
-        "at most 0.3 except in 10 % of the records",
-        "at most 0.005 at the 84 % fractile",
-        "at most 5 % of the records",
-    ]
+def condition(
+    name: str, limit: float, share: float = 0.0, fractile: float | None = None
+) -> Condition:
+    return Condition(name, limit, "the case", share, fractile)
 
 
-def test_full_contact_that_gives_way_is_limited_from_both_sides(building: str) -> None:
-    """How often it is entered from above, how long it lasts from below."""
-    found = limited(building, "{reentries: 20, full_contact_share: {at_least: 0.5, share: 0.1}}")
-    assert [(c.name, c.from_below, condition_text(c)) for c in found] == [
-        ("reentries", False, "at most 20 in every record"),
-        ("full_contact_share", True, "at least 0.5 except in 10 % of the records"),
-    ]
-
-
-def with_columns(building: str) -> str:
-    """What the force of a column is made of."""
-    building = building.replace("  profile: sine\n", "  vertical_period: 0.1 s\n")
-    return building.replace("  impact: {law: rigid}\n", "  plan: {length: 12 m}\n")
-
-
-def test_a_least_force_is_limited_from_below(building: str) -> None:
-    building = with_columns(building)
-    found = limited(building, "{min_column_force: {at_least: 100 kN, share: 0.1}}")
-    assert found == (Condition("min_column_force", 1e5, "the case", share=0.1),)
-    assert condition_text(found[0]) == "at least 100000 except in 10 % of the records"
-    (plain,) = limited(building, "{min_column_force: 0}")  # no tension
-    assert condition_text(plain) == "at least 0 in every record"
-    (above,) = limited(building, "{max_column_force: 100 kN}")
-    assert (plain.sign, above.sign) == (-1.0, 1.0)
+@pytest.mark.parametrize(
+    ("text", "expected", "words"),
+    [
+        ("{rotation_ratio: 0.25}", condition("rotation_ratio", 0.25),
+         "at most 0.25 in every record"),
+        ("{max_lift: {at_most: 300 mm, share: 0.1}}", condition("max_lift", 0.3, 0.1),
+         "at most 0.3 except in 10 % of the records"),
+        ("{drift_ratio: {at_most: 0.005, fractile: 0.84}}",
+         condition("drift_ratio", 0.005, fractile=0.84), "at most 0.005 at the 84 % fractile"),
+        ("{overturning: 0.05}", condition("overturning", 0.0, 0.05), "at most 5 % of the records"),
+        ("{overturning: 0}", condition("overturning", 0.0), "no record"),
+        ("{min_column_force: {at_least: 100 kN, share: 0.1}}",
+         condition("min_column_force", 1e5, 0.1), "at least 100000 except in 10 % of the records"),
+        ("{min_column_force: {at_least: 100 kN, fractile: 0.1}}",
+         condition("min_column_force", 1e5, fractile=0.1), "at least 100000 at the 10 % fractile"),
+        ("{min_column_force: 0}", condition("min_column_force", 0.0),  # no tension
+         "at least 0 in every record"),
+        # full contact is entered, which is limited from above, and lasts, from below
+        ("{reentries: 20}", condition("reentries", 20.0), "at most 20 in every record"),
+        ("{full_contact_share: {at_least: 0.5, share: 0.1}}",
+         condition("full_contact_share", 0.5, 0.1), "at least 0.5 except in 10 % of the records"),
+    ],
+)  # fmt: skip
+def test_a_limit_is_a_number_or_has_a_share_or_a_fractile(
+    text: str, expected: Condition, words: str
+) -> None:
+    (found,) = limited(text)
+    assert found == expected
+    assert condition_text(found) == words
+    assert found.sign == (-1.0 if "least" in words else 1.0)
 
 
 @pytest.mark.parametrize("name", [quantity.name for quantity in LIMITED])
-def test_every_result_of_the_list_may_be_limited(building: str, name: str) -> None:
-    ((found),) = limited(with_columns(building), f"{{{name}: 3}}")
+def test_every_result_of_the_list_may_be_limited(name: str) -> None:
+    ((found),) = limited(f"{{{name}: 3}}")
     assert (found.name, found.limit) == (name, 3.0)
+
+
+def test_conditions_of_options() -> None:
+    assert parse_condition("max_base_shear=2 kN").limit == 2000.0
+    with pytest.raises(UsageError, match="or '0"):
+        parse_condition("max_base_shear=2 m")
+    assert parse_condition("rotation_ratio=0.5") == Condition("rotation_ratio", 0.5, "--fail-on")
