@@ -13,27 +13,8 @@ from rpscli.model.podium import Array, AtRest, Consequence, Device, Linear, Podi
 from rpscli.model.uplifted_state import UpliftedState
 
 
-class _OnCapBeam(Device):
-    """A device that pushes the cap beam horizontally and follows its displacement u_b."""
-
-    @classmethod
-    def in_each_column(cls) -> bool:
-        return False
-
-    def stroke(self, structure: PodiumStructure, rotation: Array) -> Array:
-        return structure.path(rotation)[1]
-
-    def beam_forces(
-        self, structure: PodiumStructure, rotation: Array, force: Array
-    ) -> tuple[Array, Array]:
-        return force, np.zeros_like(force)
-
-    def remaining_prestress(self, permanent: float) -> float | None:
-        return None
-
-
 @dataclass(frozen=True)
-class ViscousDamper(_OnCapBeam):
+class ViscousDamper(Device):
     """P = -c |u_b'|^a sgn(u_b') on the cap beam, c the force at 1 m/s.
 
     Parameters
@@ -81,7 +62,7 @@ class ViscousDamper(_OnCapBeam):
 
 
 @dataclass(frozen=True)
-class FrictionDamper(_OnCapBeam):
+class FrictionDamper(Device):
     """P = -F_d sgn(u_b'); at rest any |P| <= F_d.
 
     Parameters
@@ -121,7 +102,7 @@ class FrictionDamper(_OnCapBeam):
 
 
 @dataclass(frozen=True)
-class Stop(_OnCapBeam):
+class Stop(Device):
     """s P = -(k_s (|u_b| - d) + c_s |u_b|') beyond the gap, where that pushes back.
 
     Parameters
@@ -189,10 +170,7 @@ class Tendon(Device):
     yield_force: float = math.inf
 
     kind = "tendon"
-
-    @classmethod
-    def in_each_column(cls) -> bool:
-        return True
+    in_each_column = True
 
     def __post_init__(self) -> None:
         _require_none_below_zero(prestress=self.prestress)
@@ -276,7 +254,7 @@ class Tendon(Device):
 
 
 @dataclass(frozen=True)
-class RollingResistance(_OnCapBeam):
+class RollingResistance(Device):
     """The moment f (N_top + N_bot) against the tilt's rate, with the weight for normal forces.
 
     Parameters

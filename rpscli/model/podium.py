@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
 from numbers import Integral
-from typing import Any, NamedTuple, TypeAlias
+from typing import Any, ClassVar, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -372,10 +372,10 @@ class Consequence(NamedTuple):
 
 @dataclass(frozen=True)
 class Device(ABC):
-    """The law of a device between ground and cap beam.
+    """The law of a device between ground and cap beam, which it pushes unless a law says otherwise.
 
-    Whatever follows from a device is asked here and answered by every law: a law that leaves a
-    question open cannot be made. How it is drawn is told in `report.figures.devices`.
+    All that follows from a law is asked here, and a law that leaves a question open cannot be made.
+    How it is drawn is told in `report.figures.devices`.
 
     Parameters
     ----------
@@ -393,15 +393,13 @@ class Device(ABC):
         [m].
     """
 
+    in_each_column: ClassVar[bool] = False
+    """Whether each column has one; its force and stroke are those of one then."""
+
     @property
     @abstractmethod
     def kind(self) -> str:
         """Its name in a case."""
-
-    @classmethod
-    @abstractmethod
-    def in_each_column(cls) -> bool:
-        """Whether each column has one; its force and stroke are those of one then."""
 
     @property
     @abstractmethod
@@ -432,19 +430,21 @@ class Device(ABC):
     def consequences(self, structure: PodiumStructure) -> Iterator[Consequence]:
         """Numbers that follow from it before any analysis."""
 
-    @abstractmethod
     def stroke(self, structure: PodiumStructure, rotation: Array) -> Array:
         """Its displacement or elongation [m]."""
+        return structure.path(rotation)[1]
 
-    @abstractmethod
     def beam_forces(
         self, structure: PodiumStructure, rotation: Array, force: Array
     ) -> tuple[Array, Array]:
         """Forces on the cap beam, to the right and downwards [N]."""
+        del structure, rotation
+        return force, np.zeros_like(force)
 
-    @abstractmethod
     def remaining_prestress(self, permanent: float) -> float | None:
         """Prestress of one, upright, after a permanent elongation [m]; None without [N]."""
+        del permanent
+        return None
 
     def reached_at(self, structure: PodiumStructure, length: float) -> float | None:
         """The |theta| at which its stroke reaches a length; None beyond 2 theta_cr [rad]."""

@@ -235,7 +235,7 @@ class Consistency:
             )
         for index, device in enumerate(devices):
             yield from self._device(f"podium.devices.{index}", device)
-        of_columns = [i for i, each in enumerate(devices) if DEVICES[each.kind].in_each_column()]
+        of_columns = [i for i, each in enumerate(devices) if DEVICES[each.kind].in_each_column]
         if of_columns and self.file.podium.columns is None:
             yield _of_value(
                 f"podium.devices.{of_columns[0]}",
