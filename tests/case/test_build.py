@@ -87,19 +87,14 @@ def test_one_storey_takes_two_modes() -> None:
     assert above.damping_ratios.tolist() == pytest.approx([0.05], rel=1e-9)
 
 
+RATIOS = "cap_beam_mass_ratio: 10\n  superstructure_mass_ratio: 3"
 MASSES = "cap_beam_mass: 200 t\n  column_mass: 5 t\n  columns: 4"
 
 
 @pytest.mark.parametrize(
     ("text", "old", "given", "columns", "beam"),
     [
-        (
-            BUILDING,
-            "cap_beam_mass_ratio: 10\n  superstructure_mass_ratio: 3",
-            "column_mass: 5 t\n  columns: 4\n  cap_beam_mass: 150 t",
-            2e4,
-            1.5e5,
-        ),
+        (BUILDING, RATIOS, "column_mass: 5 t\n  columns: 4\n  cap_beam_mass: 150 t", 2e4, 1.5e5),
         (FRAME, MASSES, "cap_beam_mass: 100 t\n  cap_beam_mass_ratio: 10", 1e4, 1e5),
         (FRAME, MASSES, "cap_beam_mass_ratio: 10\n  column_mass: 5 t\n  columns: 4", 2e4, 2e5),
         (FRAME, MASSES, "cap_beam_mass: 100 t\n  column_mass: 5 t\n  columns: 4", 2e4, 1e5),
@@ -231,16 +226,11 @@ def test_codes_of_the_kernels() -> None:
 @pytest.mark.parametrize(
     ("kind", "values"),
     [
-        ("viscous", (0.0, 1.0)),
-        ("viscous", (1.0, 0.1)),
-        ("friction", (math.inf,)),
-        ("stop", (-0.1, 1.0, 0.0)),
-        ("stop", (0.1, 0.0, 0.0)),
-        ("tendon", (2.0, 1.0, 1.0)),
-        ("tendon", (-1.0, 1.0, 1.0)),
-        ("rolling_resistance", (0.0,)),
+        ("viscous", (0.0, 1.0)), ("viscous", (1.0, 0.1)), ("friction", (math.inf,)),
+        ("stop", (-0.1, 1.0, 0.0)), ("stop", (0.1, 0.0, 0.0)), ("tendon", (2.0, 1.0, 1.0)),
+        ("tendon", (-1.0, 1.0, 1.0)), ("rolling_resistance", (0.0,)),
     ],
-)
+)  # fmt: skip
 def test_the_model_refuses_devices_too(kind: str, values: tuple[float, ...]) -> None:
     with pytest.raises(ValueError, match="must be"):
         DEVICES[kind](*values)

@@ -97,6 +97,21 @@ OF_A_BUILDING: list[Row] = [
     ("  storey_height: 3.0\n", "  storey_height: 3.0\n  storey_height: 4\n", "6:3", "twice"),
     ("  period: 0.3", "  period:", "6:3: superstructure.period has no value", "remove the key"),
     ("200 t", "[1, null, 3]", "4:20: superstructure.storey_mass.1 has no value"),
+    # unknown keys are the only fault
+    ("  impact", "  cap_beam_mas: 3\n  impact", "17:3: podium.cap_beam_mas is not a key",
+     "did you mean podium.cap_beam_mass?"),
+    ("  profile", "  stifness: 3\n  profile", "7:3", "did you mean superstructure.stiffness?"),
+    ("  bearing:", "  baering:", "10:3", "did you mean podium.bearing?"),
+    ("    slenderness: 0.15", "    slendernes: 0.15", "12:5", "mean podium.bearing.slenderness?"),
+    ("  storey_mass", "  storey-mass", "4:3", "did you mean superstructure.storey_mass?"),
+    ("  cap_beam_mass_ratio", "  Cap_Beam_Mass_Ratio", "15:3", "podium.cap_beam_mass_ratio?"),
+    ("limits: {", "limits: {gravity: 9.8, ", "20:10", "gravity belongs under analysis"),
+    ("  impact: {law: rigid}", "  restitution: 1", "17:3", "belongs under podium.impact"),
+    ("record:", "title: a\nstoreys: 3\nrecord:", "19:1", "storeys belongs under superstructure"),
+    ("limits: {", "limits: {title: x, ", "20:10", "it belongs at the top level"),
+    ("analysis: {", "analysis: {foo: 3, ", "19:12", "known here: free_vibration, recontact"),
+    ("analysis: {", "analysis: {foo: , ", "19:12", "known here: free_vibration, recontact"),
+    ("analysis: {", "analysis: {foo: {bar: }, ", "19:12", "analysis.foo is not a key"),
     # an arc that does not fit
     ("slenderness: 0.30", "slenderness: 0.10", "13:24", "= 0.1 must be >=", "0.15 (line 12)"),
     ("ratio: 0.5\n  c", "ratio: 0.05\n  c", "14:22", "at least 0.075", "at most 0.25"),
@@ -172,34 +187,6 @@ def test_a_refusal(faults: Faults, text: str, row: Row) -> None:
     assert "\n" not in message
     for part in parts:
         assert part in message
-
-
-UNKNOWN_KEYS = [
-    ("  impact", "  cap_beam_mas: 3\n  impact", "17:3", "did you mean podium.cap_beam_mass?"),
-    ("  profile", "  stifness: 3\n  profile", "7:3", "did you mean superstructure.stiffness?"),
-    ("  bearing:", "  baering:", "10:3", "did you mean podium.bearing?"),
-    ("    slenderness: 0.15", "    slendernes: 0.15", "12:5", "did you mean podium.bearing.slend"),
-    ("  storey_mass", "  storey-mass", "4:3", "did you mean superstructure.storey_mass?"),
-    ("  cap_beam_mass_ratio", "  Cap_Beam_Mass_Ratio", "15:3", "mean podium.cap_beam_mass_ratio?"),
-    ("limits: {", "limits: {gravity: 9.8, ", "20:10", "gravity belongs under analysis"),
-    ("  impact: {law: rigid}", "  restitution: 1", "17:3", "belongs under podium.impact"),
-    ("record:", "title: a\nstoreys: 3\nrecord:", "19:1", "storeys belongs under superstructure"),
-    ("limits: {", "limits: {title: x, ", "20:10", "it belongs at the top level"),
-    ("analysis: {", "analysis: {foo: 3, ", "19:12", "known here: free_vibration, recontact"),
-    ("analysis: {", "analysis: {foo: , ", "19:12", "known here: free_vibration, recontact"),
-    ("analysis: {", "analysis: {foo: {bar: }, ", "19:12", "analysis.foo is not a key"),
-]
-
-
-@pytest.mark.parametrize(("old", "new", "place", "hint"), UNKNOWN_KEYS)
-def test_an_unknown_key_is_the_only_fault(
-    faults: Faults, old: str, new: str, place: str, hint: str
-) -> None:
-    message = faults(BUILDING, old, new)
-    assert message.startswith(f"c.yaml:{place}: ")
-    assert "is not a key of the format" in message
-    assert hint in message
-    assert "\n" not in message
 
 
 @pytest.mark.parametrize(
