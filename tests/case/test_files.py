@@ -143,11 +143,6 @@ def test_sizes_are_refused_before_they_are_read(tmp_path: Path) -> None:
     assert "more than 2 MB is not a case or a study" in refusal(path)
 
 
-def test_many_values_are_refused_while_they_are_read() -> None:
-    text = "rps: 1\nperiod: [" + "1," * 50_000 + "1]"
-    assert "no case or study has so many values" in text_refusal(text)
-
-
 def test_of_many_faults_the_first_hundred_are_told() -> None:
     lines = text_refusal(
         "title: t\n" + "".join(f"key_{number}: 1\n" for number in range(3000))
@@ -165,12 +160,6 @@ def test_nothing_is_told_of_a_file_that_is_no_case() -> None:
     message = text_refusal("key_of_somebody: 1\nsecret:\n")
     assert "rps is missing" in message
     assert not {"key_of_somebody", "secret"} & {*message.replace(":", " ").split()}
-
-
-@pytest.mark.parametrize("text", ["- " * 60, "\n".join(" " * n + "a:" for n in range(60))])
-def test_nesting_is_named_for_what_it_is(text: str) -> None:
-    message = text_refusal(text)
-    assert "a case is five levels deep: close brackets, or remove indentation" in message
 
 
 def test_a_decimal_comma_in_braces_is_named() -> None:
