@@ -94,27 +94,27 @@ def parse_condition(text: str) -> Condition:
 
 def conditions_of(limits: LimitsSection, source: str) -> tuple[Condition, ...]:
     """The limits that a case or a study sets, in the order of the table of results."""
-    found = []
+    conditions = []
     for name, given in limits.model_dump(exclude_none=True).items():
         if name in EVENTS:
-            found.append(Condition(name, 0.0, source, given))
+            conditions.append(Condition(name, 0.0, source, given))
         elif name == "probability_in_50_years":  # of a Poisson process
-            found.append(Condition(RATE, -math.log1p(-given) / 50.0, source))
+            conditions.append(Condition(RATE, -math.log1p(-given) / 50.0, source))
         elif isinstance(given, dict):
             share, fractile = given.get("share", 0.0), given.get("fractile")
             limit = given["at_least" if LIMITS[name].from_below else "at_most"]
-            found.append(Condition(name, limit, source, share, fractile))
+            conditions.append(Condition(name, limit, source, share, fractile))
         else:
-            found.append(Condition(name, given, source))
-    return tuple(found)
+            conditions.append(Condition(name, given, source))
+    return tuple(conditions)
 
 
 def case_conditions(limits: LimitsSection, *, overturning: bool = False) -> list[Condition]:
     """The limits that a case sets; if asked for, that it does not overturn is said besides."""
-    found = conditions_of(limits, "limits of the case")
-    if not overturning or not found or any(each.name == "overturning" for each in found):
-        return list(found)
-    return [Condition("overturning", 0.0, "limits of the case"), *found]
+    conditions = conditions_of(limits, "limits of the case")
+    if not overturning or not conditions or any(each.name == "overturning" for each in conditions):
+        return list(conditions)
+    return [Condition("overturning", 0.0, "limits of the case"), *conditions]
 
 
 def with_friction(

@@ -56,8 +56,8 @@ def study_json_schema(model: type[StudyParts]) -> dict[str, Any]:
 
     def definition(model: Any) -> dict[str, Any]:
         name = references[model, "validation"]["$ref"].rsplit("/", 1)[1]
-        found: dict[str, Any] = definitions.pop(name)
-        return found
+        schema: dict[str, Any] = definitions.pop(name)
+        return schema
 
     study, base = definition(model), definition(CaseFile)
     base.pop("required")

@@ -275,9 +275,9 @@ def bed_of(structure: Standing) -> Bed | None:
     if contact.kind == "rigid":
         return None
     _refuse_combinations(structure)
-    softest, found = b.slenderness * SHAPE[contact.kind], None
+    softest, bed = b.slenderness * SHAPE[contact.kind], None
     if contact.settlement is not None:
-        found = _make_bed(structure, contact.settlement / b.half_width)
+        bed = _make_bed(structure, contact.settlement / b.half_width)
     else:
         from scipy.optimize import brentq
 
@@ -292,26 +292,26 @@ def bed_of(structure: Standing) -> Bed | None:
         if misses(ends[0]) < 0.0:
             raise ValueError("the contact is so stiff that it is rigid; use the kind `rigid`")
         if misses(ends[1]) < 0.0:
-            found = _make_bed(structure, float(brentq(misses, *ends, xtol=1e-18, rtol=1e-15)))
-    if found is None or found.uplift_rotation >= softest or found.spring <= 0.0:
+            bed = _make_bed(structure, float(brentq(misses, *ends, xtol=1e-18, rtol=1e-15)))
+    if bed is None or bed.uplift_rotation >= softest or bed.spring <= 0.0:
         share = "3 phi_u" if contact.kind == "plane" else "phi_u"
         raise ValueError(
             f"the contact is so soft that it does not hold the weight upright: {share} must stay"
             " below tan(alpha); use a smaller period_ratio or settlement, or a larger stiffness"
         )
-    beyond = max(found.uplift_rotation, found.full_rotation)
+    beyond = max(bed.uplift_rotation, bed.full_rotation)
     if not b.is_flat and beyond >= b.beta:
         raise ValueError(
             f"the ends bear outside of their flat part from {beyond:.3g} rad on, beyond the end of"
             f" their arcs at {b.beta:.3g} rad; use a stiffer contact, or flat ends"
         )
-    farthest = 2.0 * b.semi_diagonal * found.height * found.uplift_rotation
+    farthest = 2.0 * b.semi_diagonal * bed.height * bed.uplift_rotation
     if any(getattr(device, "gap", math.inf) <= farthest for device in structure.devices):
         raise ValueError(
             f"with compliant ends a stop must have a gap above {farthest:.3g} m, the"
             " displacement at which they begin to lift"
         )
-    return found
+    return bed
 
 
 def _refuse_combinations(structure: Standing) -> None:

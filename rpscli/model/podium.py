@@ -180,18 +180,18 @@ class PodiumStructure(Shown):
         axial
             Of axial forces; else of shears.
         """
-        building, found = self.superstructure, []
+        building, parts = self.superstructure, []
         if not (axial or both):
             return ()
         if axial and building is not None and (both or not self.rows):
             key = "known under one component" if both else "podium.plan"
-            found.append(f"the overturning moment of the building ({key})")
+            parts.append(f"the overturning moment of the building ({key})")
         if both and building is None:
-            found.append(f"the shock of passes shorter than {1e3 * self.shock_time:g} ms")
+            parts.append(f"the shock of passes shorter than {1e3 * self.shock_time:g} ms")
         elif building is not None and building.vertical_period is None:
             what = f"passes shorter than {1e3 * self.shock_time:g} ms" if both else "impacts"
-            found.append(f"the shock of {what} (superstructure.vertical_period)")
-        return tuple(found)
+            parts.append(f"the shock of {what} (superstructure.vertical_period)")
+        return tuple(parts)
 
     @property
     def shock_time(self) -> float:

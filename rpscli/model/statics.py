@@ -150,9 +150,9 @@ def device_consequences(structure: PodiumStructure) -> dict[str, Any]:
         "devices": [
             {
                 "kind": device.kind,
-                **{found.name: found.value for found in device.consequences(structure)},
+                **{item.name: item.value for item in device.consequences(structure)},
             }
             for device in structure.devices
         ],
-        "recentring": [found._asdict() for found in returns(structure)],
+        "recentring": [row._asdict() for row in returns(structure)],
     }

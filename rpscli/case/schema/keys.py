@@ -153,8 +153,8 @@ def unknown_key(model: type[BaseModel], path: Path) -> tuple[Fault, Path | None]
 @lru_cache(maxsize=1024)
 def unit(key: str) -> str:
     """SI unit of a case key; ``-`` for plain numbers and words."""
-    found = next((mark.unit for mark in _marks_of(key) if isinstance(mark, Quantity)), "1")
-    return "-" if found == "1" else found
+    si_unit = next((mark.unit for mark in _marks_of(key) if isinstance(mark, Quantity)), "1")
+    return "-" if si_unit == "1" else si_unit
 
 
 def is_whole(key: str) -> bool:

@@ -39,9 +39,9 @@ def measured_value(value: object, info: ValidationInfo) -> float:
     """A value of the measure that stands before it, in SI: a number, or text with a unit."""
     measure = info.data.get("measure")
     bounds = Quantity(MEASURES[measure].unit, symbol=measure, above=0) if measure else Quantity()
-    found = bounds.number(value)
-    assert isinstance(found, float), "there are no words in place of the number"
-    return Written(found, value) if isinstance(value, str) else found
+    number = bounds.number(value)
+    assert isinstance(number, float), "there are no words in place of the number"
+    return Written(number, value) if isinstance(value, str) else number
 
 
 MeasuredValue = Annotated[
@@ -79,10 +79,10 @@ class ScaleToSection(Section):
 
 def scale_to_of(text: str) -> ScaleToSection:
     """The target that a text asks for: ``PGA=0.4g``, ``Sa(0.6 s)=1 g``, ``PGV(rotd100)=0.5``."""
-    found = _TARGET.fullmatch(text)
-    if found is None:
+    match = _TARGET.fullmatch(text)
+    if match is None:
         raise ValueError("write MEASURE=VALUE, as in PGA=0.4g, or Sa(0.6 s)=1g")
-    name, inside, value = found.groups()
+    name, inside, value = match.groups()
     _scalable(name)
     ours = {known.lower(): known for known in MEASURES}
     if (measure := ours.get(name.lower(), name)) not in MEASURES:

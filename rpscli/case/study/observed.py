@@ -82,11 +82,11 @@ class _Column(NamedTuple):
 
 def comparable(key: str, value: object) -> str:
     """A value of a varied key as text that is the same for the same value."""
-    found = in_si(value, key_unit(key))
+    si = in_si(value, key_unit(key))
     try:
-        return format(float(found), ".9g")  # type: ignore[arg-type]
+        return format(float(si), ".9g")  # type: ignore[arg-type]
     except (TypeError, ValueError):
-        return str(found).strip()
+        return str(si).strip()
 
 
 def read_observed(
@@ -106,9 +106,9 @@ def read_observed(
         text = f"observed: {name} must have a line of titles and more lines"
         document.refuse([Fault(PATH, text)])
     (first, heads), *rest = rows
-    found = ((_TITLE.fullmatch(head), head.strip()) for head in heads)
+    matches = ((_TITLE.fullmatch(head), head.strip()) for head in heads)
     columns = [
-        _Column(*((match[1], match[2] or "") if match else (head, ""))) for match, head in found
+        _Column(*((match[1], match[2] or "") if match else (head, ""))) for match, head in matches
     ]
     columns = [c._replace(unit="") if c.unit in {"-", "1"} else c for c in columns]
     known = [RECORD, "scale", *(key for axis in axes for key in axis.keys)]

@@ -81,10 +81,10 @@ def _scale_of_base(base: Document) -> MeasureScale | None:
     if target is None:
         return None
     try:
-        found = ScaleToSection.model_validate(target)
+        section = ScaleToSection.model_validate(target)
     except ValidationError:
         return None  # told with the other faults of the systems
-    given = found.model_dump(exclude={"value"}, exclude_unset=True)
+    given = section.model_dump(exclude={"value"}, exclude_unset=True)
     return MeasureScale.model_validate(given | {"values": target["value"]})
 
 

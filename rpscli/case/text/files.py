@@ -92,8 +92,8 @@ def _similar(path: Path) -> str:
         return f"; the folder {folder} does not exist either"
     # By what stands before the dot: all cases end alike.
     names = {item.stem: item.name for item in folder.iterdir() if item.is_file()}
-    if found := nearest(path.stem, names):
-        return f"; did you mean {folder / names[found]}?"
+    if similar := nearest(path.stem, names):
+        return f"; did you mean {folder / names[similar]}?"
     return (
         "; check its name" if path.suffix == ".csv" else "; `rps init` writes a case to start from"
     )
