@@ -119,6 +119,7 @@ OF_A_BUILDING: list[Row] = [
     ("slenderness: 0.15", "slenderness: 8.5", "13:24", "of 8.5 degrees 0.1495"),
     # two components
     ("{source: motion.at2}", "{x: a.at2}", "18:1: record.y is missing"),
+    ("{source: motion.at2}", "{x: 0.9, y: b}", "18:13: record.x = 0.9 must be text"),
     ("{source: motion.at2}", "{y: a.at2}", "18:1: record.source is missing"),
     ("{source: motion.at2}", "{x: a, source: b, y: c}", "18:10", "both name the first component"),
     ("motion.at2", "'a.at2?second=b.at2&both&angle=3'", "18:18", "angle= is one direction"),

@@ -41,11 +41,11 @@ def doubts_of_many(systems: Sequence[Iterable[Doubt]]) -> list[str]:
             values = kinds.setdefault(sentence, {}).setdefault(system, [])
             values += [] if value is None else [value]
     texts = []
-    for sentence, doubting in kinds.items():
-        values = [value for of_system in doubting.values() for value in of_system]
+    for sentence, raised in kinds.items():
+        values = [value for of_system in raised.values() for value in of_system]
         numbers = dict.fromkeys(f"{f(values):.4g}" for f in (min, max) if values)
         texts.append(
-            f"{len(doubting)} of {len(systems)} systems: {sentence.format(' to '.join(numbers), '')}"
+            f"{len(raised)} of {len(systems)} systems: {sentence.format(' to '.join(numbers), '')}"
         )
     return texts
 

@@ -345,7 +345,9 @@ class RecordSection(Section):
     @classmethod
     def _first_component(cls, value: object) -> object:
         if isinstance(value, dict) and "x" in value and "source" not in value:
-            return {"source": value["x"], **value}
+            x = value["x"]
+            fits = isinstance(x, str) and x.strip()  # else it is refused as x, which is enough
+            return {"source": x if fits else "x", **value}
         return value
 
     @property
