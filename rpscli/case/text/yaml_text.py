@@ -1,6 +1,6 @@
-"""Strict YAML: text -> Document. Core-schema scalars, no duplicate keys, positions kept.
+"""Strict YAML: text -> Document with positions, core-schema scalars and no duplicate keys.
 
-And values put into a text, all the rest of which stays.
+`edited` puts values into a text and leaves the rest of it as it is.
 """
 
 from __future__ import annotations
@@ -235,8 +235,8 @@ def _no_key(node: Node) -> str:
 
 
 def _decimal_commas(node: MappingNode) -> dict[int, ScalarNode]:
-    """The fractions of whole numbers with a decimal comma, as in ``{period: 0,3}``."""
-    # YAML reads a second key, a number without a value. By the identity of the number before.
+    """Fractions behind a decimal comma, as in ``{period: 0,3}``, by the id of the whole part."""
+    # YAML reads such a fraction as one more key, without a value.
     if not node.flow_style:
         return {}
     return {
