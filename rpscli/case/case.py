@@ -137,7 +137,8 @@ def load_case(source: str | Path | Mapping[str, Any], overrides: Overrides = ())
     Raises
     ------
     CaseError
-        If the file cannot be read, or is not a valid case: one line for each fault.
+        If the file cannot be read, or is not a valid case: one line for each fault of a key, or,
+        if there are none, for each between keys.
     """
     if isinstance(source, Mapping):
         text = text_of_values(source, "<case>")
