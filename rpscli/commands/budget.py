@@ -34,7 +34,7 @@ from rpscli.report.figures.look import Look
 if TYPE_CHECKING:
     from rpscli.case.case import Case
     from rpscli.records.ground_motion import MotionComponents
-    from rpscli.sweep.budget import Effect, Row
+    from rpscli.report.budget import Budget, Row
 
 PERIOD_RATIO = 1.2
 LOSSES = (0.3, 0.6, 0.9, 1.2)
@@ -71,8 +71,6 @@ def command(
     the far-field set of FEMA P695 at its PGA shows the scatter. Each row names the options with
     which `rps timehistory CASE` gives its numbers. The exit code is 0 whatever the verdicts are.
     """
-    from rpscli.report.budget import budget_document, budget_files, budget_tables
-
     given = read_case(request, terminal)
     motions = list(single_motions(records, motion, terminal.warn))
     grounds = all_made(partial(load_motion, given.case), motions, RpsError)
@@ -81,9 +79,9 @@ def command(
     folder = case_folder(given, output, "budget", record_source=source, **inputs)
     announce_compilation(terminal)
     found = case_budget(given, motions, grounds, period_ratio, terminal)
-    folder.add_all(budget_files(*found, given.case.title, look))
-    document, plane = budget_document(*found), grounds[0].y is None
-    conclude(given, folder, document, budget_tables(*found), terminal, plane=plane)
+    folder.add_all(found.files(look))
+    plane = grounds[0].y is None
+    conclude(given, folder, found.document(), found.tables(), terminal, plane=plane)
 
 
 def case_budget(
@@ -92,9 +90,9 @@ def case_budget(
     grounds: Sequence[MotionComponents],
     period_ratio: float | None,
     terminal: Terminal,
-) -> tuple[list[Row], list[Effect]]:
-    """All rows of a case under the first of its motions, and what they do to each result."""
-    from rpscli.sweep.budget import effects
+) -> Budget:
+    """All rows of a case under the first of its motions."""
+    from rpscli.report.budget import Budget
 
     bed = given.case.structure.bed
     ratio = period_ratio or (bed and bed.period_ratio) or PERIOD_RATIO
@@ -106,14 +104,14 @@ def case_budget(
             tell(len(rows), len(wishes))
     if rows[0].refused:
         raise AnalysisError(rows[0].refused)
-    return rows, [*effects([row for row in rows if not row.refused], given.case)]
+    return Budget(given.case, rows)
 
 
 def _row(given: CaseInput, cause: str, sets: tuple[str, ...], motion: MotionRequest | str) -> Row:
     """What `rps timehistory` would find; the sentence of a refusal."""
     from rpscli.analyses.timehistory import time_history
     from rpscli.case.case import case_from_mapping
-    from rpscli.sweep.budget import Row
+    from rpscli.report.budget import Row
 
     if isinstance(motion, str):
         return Row(cause, "", "", "", {}, "", motion)

@@ -241,12 +241,11 @@ def _budget(
 ) -> list[Section]:
     """What `rps budget` says of one of the histories, the others as its records."""
     from rpscli.commands.budget import case_budget
-    from rpscli.report.budget import budget_section
 
     given, order = requests[0].given, sorted(range(len(motions)), key=lambda n: n != first)
     grounds = [requests[n].ground for n in order]
     found = case_budget(given, [motions[n] for n in order], grounds, None, terminal)
-    return [budget_section(*found, given.case.title, look, requests[first].label)]
+    return [found.section(look, requests[first].label)]
 
 
 def _files(request: HistoryRequest) -> list[tuple[str, object]]:
