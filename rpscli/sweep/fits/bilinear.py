@@ -47,36 +47,27 @@ def bilinear_fit(x: Array, y: Array) -> Bilinear | None:
     ends = np.unique(x)
     if len(ends) < 2 * FEWEST:
         return None
-    inner, sums = ends[FEWEST - 1 : len(ends) - FEWEST + 1], _Sums(x, y)
-    knees = np.concatenate([_crossings(sums, inner[:-1], inner[1:]), inner])
-    best_first = knees[np.argsort(_squares_at(sums, knees), kind="stable")].tolist()
-    curves = [_curve(x, y, knee) for knee in [*dict.fromkeys(best_first)][:FINALISTS]]
-    return min(curves, key=lambda curve: curve.residual)
+    inner = ends[FEWEST - 1 : len(ends) - FEWEST + 1]
+    # n, sums of x, y, x^2, x y and y^2 over the points up to each, about the mean of all.
+    middle = float(x.mean())
+    centred, level = x - middle, y - y.mean()
+    columns = [np.ones_like(x), centred, level, centred**2, centred * level, level**2]
+    running, total = np.cumsum(columns, axis=1), np.sum(columns, axis=1)[:, None]
 
+    def sums(breaks: Array) -> tuple[Array, Array]:
+        """(6, breaks) up to and beyond each break."""
+        before = running[:, np.searchsorted(x, breaks, side="right") - 1]
+        return before, total - before
 
-class _Sums:
-    """Sums over all points up to an abscissa, about the mean of all."""
-
-    def __init__(self, x: Array, y: Array) -> None:
-        self.x = x
-        self.middle = float(x.mean())
-        centred, level = x - self.middle, y - y.mean()
-        columns = (np.ones_like(x), centred, level, centred**2, centred * level, level**2)
-        self.total = np.array([[column.sum()] for column in columns])
-        self._running = np.vstack([np.cumsum(column) for column in columns])
-
-    def up_to(self, abscissae: Array) -> Array:
-        """n, sums of x, y, x^2, x y, y^2 over the points up to each abscissa, (6, splits)."""
-        return np.asarray(self._running[:, np.searchsorted(self.x, abscissae, side="right") - 1])
-
-
-def _crossings(sums: _Sums, left: Array, right: Array) -> Array:
-    """Where two free lines cross; the left neighbour of the split if not between both."""
-    before = sums.up_to(left)
-    (a, b), (c, d) = _lines(before), _lines(sums.total - before)
+    left, right = inner[:-1], inner[1:]
+    (a, b), (c, d) = map(_lines, sums(left))
     with np.errstate(divide="ignore", invalid="ignore"):
-        crossing = sums.middle + (c - a) / (b - d)
-    return np.where((left <= crossing) & (crossing <= right), crossing, left)
+        crossing = middle + (c - a) / (b - d)
+    crossing = np.where((left <= crossing) & (crossing <= right), crossing, left)
+    breaks = np.concatenate([crossing, inner])
+    best_first = breaks[np.argsort(_squares(breaks - middle, *sums(breaks)), kind="stable")]
+    curves = [_curve(x, y, at) for at in [*dict.fromkeys(best_first.tolist())][:FINALISTS]]
+    return min(curves, key=lambda curve: curve.residual)
 
 
 def _lines(sums: Array) -> tuple[Array, Array]:
@@ -86,35 +77,21 @@ def _lines(sums: Array) -> tuple[Array, Array]:
     return (y - slope * x) / n, slope
 
 
-def _squares_at(sums: _Sums, knees: Array) -> Array:
+def _squares(k: Array, before: Array, after: Array) -> Array:
     """Sum of squares of the best a + b min(x, k) + c max(x - k, 0), at given breaks k."""
-    k = knees - sums.middle
-    n, x, y, xx, xy, _ = sums.up_to(knees)
-    m, u, v, uu, uv, _ = sums.total - sums.up_to(knees)
-    low, beyond = x + m * k, u - m * k
-    matrix = np.empty((len(k), 3, 3))
-    matrix[:, 0, 0] = n + m
-    matrix[:, 0, 1] = matrix[:, 1, 0] = low
-    matrix[:, 0, 2] = matrix[:, 2, 0] = beyond
-    matrix[:, 1, 1] = xx + m * k * k
-    matrix[:, 1, 2] = matrix[:, 2, 1] = k * beyond
-    matrix[:, 2, 2] = uu - 2.0 * k * u + m * k * k
+    (n, x, y, xx, xy, yy), (m, u, v, uu, uv, vv) = before, after
+    low, beyond, both = x + m * k, u - m * k, k * (u - m * k)
+    rows = (n + m, low, beyond), (low, xx + m * k * k, both), (beyond, both, uu - k * (u + beyond))
+    matrix = np.moveaxis(np.array(rows), 2, 0)
     load = np.stack([y + v, xy + k * v, uv - k * v], axis=1)
     found = np.linalg.solve(matrix, load[:, :, None])[:, :, 0]
-    return np.asarray(sums.total[5] - np.sum(found * load, axis=1))
+    return np.asarray(yy + vv - np.sum(found * load, axis=1))
 
 
 def _curve(x: Array, y: Array, knee: float) -> Bilinear:
     """The best curve with its break at a given place."""
     columns = np.column_stack([np.ones_like(x), np.minimum(x, knee), np.maximum(x - knee, 0.0)])
     coefficients = np.linalg.lstsq(columns, y, rcond=None)[0]
-    squares = float(np.sum((y - columns @ coefficients) ** 2))
+    residual = np.sqrt(np.sum((y - columns @ coefficients) ** 2) / max(len(x) - 4, 1))
     start, slope, after = coefficients.tolist()
-    return Bilinear(
-        start=start,
-        slope=slope,
-        break_x=knee,
-        break_y=start + slope * knee,
-        slope_after=after,
-        residual=float(np.sqrt(squares / max(len(x) - 4, 1))),
-    )
+    return Bilinear(start, slope, knee, start + slope * knee, after, float(residual))

@@ -15,8 +15,6 @@ throughout gives rate = H(median) exp(k^2 beta^2/2).
 
 from __future__ import annotations
 
-import csv
-import io
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -26,7 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.case.text.document import shown
-from rpscli.case.text.files import read_text
+from rpscli.case.text.files import csv_rows, read_text
 from rpscli.errors import CaseError
 from rpscli.records.measures import MEASURES, Measure
 from rpscli.units import si_value
@@ -58,14 +56,11 @@ class Hazard:
 
 def read_hazard(path: Path, measure: Measure) -> Hazard:
     """A hazard curve from a CSV file headed ``PGV [cm/s],rate [1/year]``, then fractiles."""
-    text = read_text(path)
-    rows = [
-        (line, row)
-        for line, row in enumerate(csv.reader(io.StringIO(text)), 1)
-        if any(cell.strip() for cell in row) and not row[0].lstrip().startswith("#")
-    ]
+    every = csv_rows(read_text(path), path)
+    rows = [(line, row) for line, row in every if not row[0].lstrip().startswith("#")]
     whole = len(rows)
-    while len(rows) > 1 and _is_zero(rows[-1][1]):
+    # Tables go on with rates that print as zero.
+    while len(rows) > 1 and rows[-1][1][1:] and {*map(_number, rows[-1][1][1:])} == {0.0}:
         rows.pop()
     if len(rows) < 3:
         raise CaseError(
@@ -84,14 +79,6 @@ def read_hazard(path: Path, measure: Measure) -> Hazard:
             )
     fractiles = dict(zip(shares, points.T[2:], strict=True))
     return Hazard(points[:, 0] * factor, points[:, 1], fractiles, whole - len(rows))
-
-
-def _is_zero(row: Sequence[str]) -> bool:
-    """Whether a row ends a curve: tables go on with rates that print as zero."""
-    try:
-        return len(row) > 1 and not any(map(float, row[1:]))
-    except ValueError:
-        return False
 
 
 def _header(measure: Measure) -> str:
@@ -117,10 +104,7 @@ def _head(
         if unit not in RATE_UNITS:
             raise CaseError(f"{wrong}: the unit of {name} must be one of {', '.join(RATE_UNITS)}")
     for name in names[2:]:
-        try:
-            shares.append(float(name))
-        except ValueError:
-            shares.append(math.nan)
+        shares.append(_number(name))
         if not 0.0 < shares[-1] < 1.0:
             raise CaseError(f"{wrong}: {shown(name)} must be a fractile, as in `0.84 [1/year]`")
     try:
@@ -130,15 +114,20 @@ def _head(
 
 
 def _numbers(path: Path, line: int, row: Sequence[str], count: int) -> tuple[float, ...]:
-    try:
-        found = tuple(map(float, row))
-    except ValueError:
-        found = ()
+    found = tuple(map(_number, row))
     if len(found) != count or not all(0.0 < value < math.inf for value in found):
         number = "two" if count == 2 else str(count)
         text = f"must be {number} numbers > 0, an intensity and its annual rate"
         raise CaseError(f"{path}:{line}: {shown(','.join(row))} {text}")
     return found
+
+
+def _number(cell: str) -> float:
+    """NaN of what is none."""
+    try:
+        return float(cell)
+    except ValueError:
+        return math.nan
 
 
 def exceeded(hazard: Hazard, intensities: Array) -> Array:

@@ -260,7 +260,7 @@ def probit_fit(
     z = (x - middle) / spread
     penalty = penalised.astype(float)
     at = np.zeros((2, len(weights)))
-    here = _evaluated(at, z, y, weights, penalty)
+    objective, steps = _evaluated(at, z, y, weights, penalty)
     low, high = _span(x, weights > 0.0)
     several = low < high
     active = several.copy()
@@ -268,31 +268,24 @@ def probit_fit(
         rows = np.flatnonzero(active)
         if not len(rows):
             break
-        step = here.step[:, rows]
+        step, before = steps[:, rows], objective[rows]
         for _ in range(MOST_HALVINGS):
             there = _evaluated(at[:, rows] + step, z, y, weights[rows], penalty[rows])
-            before = here.objective[rows]
-            worse = ~(there.objective >= before - 1e-12 * np.abs(before))
+            worse = ~(there[0] >= before - 1e-12 * np.abs(before))
             if not worse.any():
                 break
             step[:, worse] *= 0.5
         at[:, rows] += step
-        here.objective[rows], here.step[:, rows] = there
+        objective[rows], steps[:, rows] = there
         active[rows] = np.abs(step).max(axis=0) > close_enough
     a, b = at
     return Probit(a - b * middle / spread, b / spread, several & ~active)
 
 
-class _Evaluated(NamedTuple):
-    """Objective (fits,), and the step of Fisher scoring from here (2, fits)."""
-
-    objective: Array
-    step: Array
-
-
 def _evaluated(
     at: Array, z: Array, y: NDArray[np.bool_], weights: Array, penalty: Array
-) -> _Evaluated:
+) -> tuple[Array, Array]:
+    """Objective (fits,), and the step of Fisher scoring from here (2, fits)."""
     from scipy.special import ndtr
 
     eta = np.clip(at[0][:, None] + at[1][:, None] * z, -LARGEST, LARGEST)
@@ -313,4 +306,4 @@ def _evaluated(
         score += penalty[:, None] * 0.5 * leverage * growth
     u0, u1 = score.sum(axis=1), score @ z
     step = np.array([i2 * u0 - i1 * u1, i0 * u1 - i1 * u0]) / determinant
-    return _Evaluated(objective, step)
+    return objective, step
