@@ -122,8 +122,9 @@ def _is_number(value: object) -> TypeGuard[float]:
     return is_finite(value) and abs(value) <= LARGEST
 
 
-def _with_keys(value: dict[str, object]) -> dict[str, object]:
-    return {key: (key, bounds) for key, bounds in value.items()}
+def _with_keys(value: object) -> object:
+    """Each value with its key, whose unit it may have."""
+    return {key: (key, of) for key, of in value.items()} if isinstance(value, dict) else value
 
 
 def _unknown(given: tuple[str, object]) -> Unknown:
@@ -141,7 +142,10 @@ def _unknown(given: tuple[str, object]) -> Unknown:
     return Unknown(key, float(si[0]), float(si[1]))
 
 
-def _linear(terms: object) -> dict[str, float]:
+def _linear(given: tuple[str, object]) -> dict[str, float]:
+    key, terms = given
+    if isinstance(terms, dict) and PLUS in terms:
+        terms = terms | {PLUS: in_si(terms[PLUS], unit(key))}
     if not isinstance(terms, dict) or not all(map(_is_number, terms.values())):
         refuse(f"must be a linear sum, {{key: factor, plus: number}}, of numbers up to {LARGEST:g}")
     return terms
@@ -155,8 +159,13 @@ Variables = Annotated[
         dict, "keys with their ranges, as in {podium.bearing.slenderness: [0.1, 0.3]}", filled=True
     ),
 ]
-_TERMS = {"type": "object", "additionalProperties": {"type": "number"}}
-Sums = dict[str, Annotated[dict[str, float], PlainValidator(_linear), WithJsonSchema(_TERMS)]]
+_TERMS = {"type": "object", "additionalProperties": {"type": "number"}} | {
+    "properties": {PLUS: {"type": ["number", "string"]}}
+}
+Sums = Annotated[
+    dict[str, Annotated[dict[str, float], PlainValidator(_linear), WithJsonSchema(_TERMS)]],
+    BeforeValidator(_with_keys),
+]
 
 
 class SearchSection(Section):

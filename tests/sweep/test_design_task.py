@@ -395,6 +395,11 @@ def test_refusals(design: Design, old: str, new: str, place: str, said: str) -> 
     assert said in result.stderr
 
 
+def test_the_constant_of_a_sum_may_have_a_unit() -> None:
+    text = FRAME.replace("linked:\n", f"linked:\n  {SIZE}: {{{SLENDERNESS}: 2, plus: 1400 mm}}\n")
+    assert parse_design(text, "design.yaml").file.linked[SIZE] == {SLENDERNESS: 2, "plus": 1.4}
+
+
 def test_cases_studies_and_designs_are_told_apart(design: Design, workplace: Path) -> None:
     assert "is a case without `variables`" in design(BASE).stderr
     assert "is a file without `variables`" in design("rps: 1").stderr
