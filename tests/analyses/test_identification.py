@@ -64,6 +64,13 @@ def test_a_block_of_another_integrator_has_its_restitution() -> None:
     assert not read.ensembles
     with pytest.raises(AnalysisError, match="four are needed"):
         rocking(case, time[:300], theta[:300])
+    with pytest.raises(AnalysisError, match="beyond the critical one"):
+        rocking(case, time, 5.0 * theta)
+    # A swing whose top the record cuts is none.
+    ends = int(np.searchsorted(time, read.swings[5].time - 0.05))
+    cut = rocking(case, time[:ends], theta[:ends])
+    assert len(cut.swings) == 5
+    assert held(e, cut.restitution)
 
 
 def decay(T: float, zeta: float, t: Any) -> Any:
@@ -92,6 +99,19 @@ def test_the_period_of_closed_forms(test: str) -> None:
     assert found.period.high - found.period.low < 0.03 * T
     with pytest.raises(AnalysisError, match="fewer than ten periods"):
         vibration(0.4, dt, floor[:300])
+
+
+def test_what_determines_no_period_is_refused() -> None:
+    t, rng = np.arange(3000) * 0.01, np.random.default_rng(2)
+    noise, steady = rng.normal(0.0, 1.0, 3000), np.sin(2.0 * math.pi * t / 0.4)
+    for floor, free, said in (
+        (np.ones(3000), False, "the acceleration of the floor is constant"),
+        (noise, True, "its misfit of"),
+        (steady, False, "its damping ratio of"),
+        (decay(0.1, 0.05, t), True, "is not from 0.85 to 3 times that of the case"),
+    ):
+        with pytest.raises(AnalysisError, match=said):
+            vibration(0.4, 0.01, floor, free=free)
 
 
 STILL = np.zeros(2)
@@ -129,7 +149,11 @@ def identified(number: int, noise: Any) -> tuple[float, Rocking]:
 @needs
 @pytest.mark.long
 def test_intervals_of_the_loss_hold_the_truth() -> None:
-    """90 +- 4 % of 240, twenty of each of twelve structures."""
+    """93 +- 4 % of 240, twenty of each of twelve structures.
+
+    The larger of two sizes of the noise, that of the samples and that of the residuals, makes
+    intervals of 90 % hold in 93 % for twelve swings, in more for fewer.
+    """
     held_ones = 0
     for number in range(12):
         noise = np.random.default_rng(number)
@@ -137,7 +161,7 @@ def test_intervals_of_the_loss_hold_the_truth() -> None:
             loss, found = identified(number, noise)
             assert found.loss is not None
             held_ones += held(loss, found.loss)
-    assert 0.86 <= held_ones / 240 <= 0.94
+    assert 0.89 <= held_ones / 240 <= 0.97
 
 
 @needs

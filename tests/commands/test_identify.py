@@ -29,6 +29,12 @@ RELEASED = ("--record", "pulse:sine?amplitude=1e-9g&period=0.1&dt=0.005", "--fig
             "--set", "analysis.free_vibration=12")  # fmt: skip
 
 
+SLOW = "time [min],rotation [mrad]\n" + "".join(
+    f"{0.01 * i:.2f},{100.0 * math.cos(0.09 * i):.4f}\n" for i in range(500)
+)
+"""As from a wrong unit: swings of 42 s, and no energy is lost."""
+
+
 @pytest.fixture
 def measured(workplace: Path, rps: Invoke) -> Path:
     """A frame, and a release of one of another loss at impacts; mm and ms, as sensors have them."""
@@ -107,7 +113,11 @@ def test_a_longer_period_tells_how_the_columns_bear(
         (("rocking",), "time [s],rotation [rad]\n0,0\n1,1\n", 3, "at even times"),
         (("rocking",), "", 3, "no column `time [s]`"),
         (("ambient",), "time [s],floor_acceleration [g]\n", 2, "no period before uplift"),
-        (("rocking",), "time [s],rotation [rad]\n", 4, "four are needed"),
+        (("rocking",), "time [s],rotation [mrad]\n", 4, "four are needed"),
+        (("rocking",), "time [s],rotation [rad]\n", 4, "2 rad is beyond the critical one of"),
+        (("rocking",), "time [s],rotation [rad]\n0,0\n1,nan\n", 3, "csv:3: column rotation: nan"),
+        (("rocking",), 'time [s],rotation [rad]\n0,"0\n' + 140_000 * "1", 3, "is not CSV: field"),
+        (("rocking",), SLOW, 4, "no structure of this kind rocks in this way: the swings of"),
         (("rocking", "--from", "9"), "time [s],rotation [rad]\n", 2, "between --from and --to"),
     ],
 )
@@ -118,6 +128,7 @@ def test_refusals_say_what_to_do(
     if text.count("\n") == 1:
         text += "".join(f"{0.1 * i:.1f},{i % 3}\n" for i in range(40))
     (workplace / "data.csv").write_text(text, encoding="utf-8")
-    result = rps("identify", "frame.yaml", "data.csv", *words)
+    result = rps("identify", "frame.yaml", "data.csv", *words, "-o", "new.yaml")
     assert result.exit_code == code, result.stderr
     assert reason in result.stderr
+    assert not (workplace / "new.yaml").exists()

@@ -15,6 +15,11 @@ class Estimate(NamedTuple):
     low: float
     high: float
 
+    @property
+    def determined(self) -> bool:
+        """Whether its interval has a width, and one below the value."""
+        return 0.0 < self.high - self.low < abs(self.value)
+
 
 def estimate(value: float, error: float, freedoms: int) -> Estimate:
     """From a standard error whose own size was estimated: Student's t."""

@@ -37,6 +37,8 @@ SHARED = ((0.9, 0.003), (0.6, 0.01), (0.3, 0.03))
 """Parts of what is lost at impacts, and levers over B that take the rest: where fits begin."""
 PARTING = 0.3
 """Scatter of an ensemble over the error of measurement from which it counts."""
+WORST_MISFIT = 10.0
+"""Of a model that rocks like the structure; what a model lacks leaves a few times the noise."""
 
 
 class Swing(NamedTuple):
@@ -127,16 +129,22 @@ def rocking(structure: PodiumStructure, time: Array, rotation: Array) -> Rocking
     Raises
     ------
     AnalysisError
-        If fewer than four swings stand out of the noise, or no such structure rocks like this.
+        If fewer than four swings stand out of the noise, or no such structure rocks like this: it
+        is far from it, or has a value at the end of its range.
     """
+    if (largest := float(np.abs(rotation).max())) >= structure.critical_rotation:
+        raise AnalysisError(
+            f"the rotation of {largest:.4g} rad is beyond the critical one of"
+            f" {structure.critical_rotation:.4g} rad, where it would overturn; check its unit"
+        )
     time = time - time[0]
     # Third differences of a smooth motion are small against those of noise, 20 sigma^2.
     rough = float(np.median(np.abs(np.diff(rotation, 3)))) / 0.6745 / math.sqrt(20.0)
-    noise = max(rough, 1e-6 * float(np.abs(rotation).max()))
+    noise = max(rough, 1e-6 * largest)
     every = swings_of(time, rotation, noise, SEEN * noise)
     if len(every) < 4:
         raise AnalysisError(
-            f"{len(every)} swings exceed the noise of {noise:.2g} rad, and four are needed:"
+            f"{len(every)} whole swings exceed the noise of {noise:.2g} rad, and four are needed:"
             " release it from a larger rotation, or choose a part of the motion by --from and --to"
         )
     if structure.bearing.is_spherical:
@@ -145,7 +153,7 @@ def rocking(structure: PodiumStructure, time: Array, rotation: Array) -> Rocking
     dt, side = float(time[1] - time[0]), math.copysign(1.0, rotation[np.argmax(time >= first.time)])
     # Half a swing more than is looked at, which are ever shorter ones.
     span = swings[-1].time + 0.5 * (swings[-1].time - swings[-2].time)
-    of = _Release(structure, dt, min(span, float(time[-1])), noise, side, swings)
+    of = _Release(structure, dt, span, noise, side, swings)
     errors = np.array([value for swing in swings for value in swing[2:]])
     starts, steps, bounds = _starts(of, first)
     try:
@@ -153,7 +161,8 @@ def rocking(structure: PodiumStructure, time: Array, rotation: Array) -> Rocking
         q, gain, misfit = min(fits, key=lambda fit: fit[2])
         covariance = (gain * errors**2) @ gain.T
         reach = 3.0 * max(1.0, misfit) * math.sqrt(covariance[0, 0]) / q[0]
-        releases = 1.0 + reach * np.linspace(-1.0, 1.0, ENSEMBLE)
+        # A model that does not rock does not depend on its release either.
+        releases = 1.0 + max(reach, 1e-9) * np.linspace(-1.0, 1.0, ENSEMBLE)
 
         def means(q: Array) -> tuple[Array, Array]:
             """Of the ensemble, and what the size of the release does not explain."""
@@ -174,6 +183,8 @@ def rocking(structure: PodiumStructure, time: Array, rotation: Array) -> Rocking
             covariance = (gain * errors**2) @ gain.T + gain @ scatter @ gain.T
     except (ValueError, np.linalg.LinAlgError) as error:
         raise AnalysisError(f"no structure of this kind rocks in this way: {error}") from None
+    model = of.tops(q).reshape(-1, 2)
+    _refuse_bad_fit(q, bounds, model, misfit)
     spread = max(1.0, misfit) * np.sqrt(np.diag(covariance))
     # The scatter of an ensemble is known from so few motions.
     freedoms = ENSEMBLE - 2 if ensembles else 2 * len(swings) - len(q)
@@ -183,7 +194,25 @@ def rocking(structure: PodiumStructure, time: Array, rotation: Array) -> Rocking
                     np.clip(found[2], *bounds[:, 2]))  # fmt: skip
     e = Estimate(of.changed(q).restitution, ratios[0], ratios[-1])
     lever = None if of.place is None else found[3]
-    return Rocking(e, kappa, lever, swings, of.tops(q).reshape(-1, 2), misfit, ensembles)
+    return Rocking(e, kappa, lever, swings, model, misfit, ensembles)
+
+
+def _refuse_bad_fit(q: Array, bounds: Array, model: Array, misfit: float) -> None:
+    """What least squares end at is no answer if the model does not rock like the structure."""
+    away = f"{misfit:.3g} times the noise from those measured"
+    if not misfit <= WORST_MISFIT:
+        seen, count = int((model[:, 1] > 0.0).sum()), len(model)
+        short = f", and only {seen} of {count}" * (seen < count)
+        why = f"the swings of the model that fits best are {away}{short}"
+    elif (at_ends := (q == bounds)[:, (0, 2)].any(axis=0)).any():
+        name = ("rotation of the release", "loss at impacts")[int(at_ends.argmax())]
+        why = f"the {name} that fits best is at the end of its range, {away}"
+    else:
+        return
+    raise AnalysisError(
+        f"no structure of this kind rocks in this way: {why}; check the units, the geometry of the"
+        " case, and that the structure was let go from rest"
+    )
 
 
 def _starts(of: _Release, first: Swing) -> tuple[list[Array], Array, Array]:
@@ -220,7 +249,8 @@ def swings_of(time: Array, rotation: Array, noise: float, least: float) -> list[
             break
         x = np.abs(rotation[run[0] : run[-1] + 1])
         top = run[0] + np.flatnonzero(x > NEAR_TOP * x.max())
-        if len(top) < 5:
+        # The record ends before the top has passed.
+        if len(top) < 5 or top[-1] == len(rotation) - 1:
             break
         middle, half = 0.5 * (time[top[0]] + time[top[-1]]), 0.5 * (time[top[-1]] - time[top[0]])
         powers = np.vander((time[top] - middle) / half, 3, increasing=True)

@@ -14,6 +14,14 @@ from rpscli.errors import AnalysisError
 Array = NDArray[np.float64]
 BAND = (0.6, 1.5)
 """Frequencies about the first one that are looked at, over it."""
+LOOKED_FOR = (0.85, 3.0)
+"""Periods that are looked for, over the one on a fixed base."""
+DAMPED = (1e-4, 0.5)
+"""Damping ratios of structures."""
+LEFT, SCATTER = (0.0, 0.7), (0.3, 3.0)
+"""Misfits of a model that holds: of what is fitted, and of an ambient spectrum."""
+UNKNOWN = 3.0
+"""Standard error of a logarithm that says nothing."""
 
 
 class Vibration(NamedTuple):
@@ -46,7 +54,8 @@ def vibration(
     Raises
     ------
     AnalysisError
-        If the record holds fewer than ten periods, or no peak is found.
+        If the record holds fewer than ten periods, or no peak is found; if the motion determines
+        neither period nor damping, or a period that is not looked for.
 
     Notes
     -----
@@ -54,6 +63,9 @@ def vibration(
     b, P. Whittle, Ark. Mat. 2, 1953; intervals from Fisher's information. Else least squares of the
     transform in the band, linear in all but period and damping.
     """
+    for name, record in (("floor", floor), ("ground", ground)):
+        if record is not None and not np.ptp(record) > 0.0:
+            raise AnalysisError(f"the acceleration of the {name} is constant")
     n = len(floor)
     if n * dt < 10.0 * expected:
         raise AnalysisError(
@@ -68,14 +80,14 @@ def vibration(
         power /= np.abs(X) ** 2 + np.median(np.abs(X) ** 2)
     width = max(3, round(0.05 * n * dt / expected))
     smooth = np.convolve(power, np.ones(width) / width, "same")
-    looked = (f > 1.0 / (3.0 * expected)) & (f < 1.0 / (0.85 * expected))
+    looked = (f > 1.0 / (LOOKED_FOR[1] * expected)) & (f < 1.0 / (LOOKED_FOR[0] * expected))
     peak = float(f[looked][np.argmax(smooth[looked])])
     inside = (f > BAND[0] * peak) & (f < BAND[1] * peak)
     f, Y = f[inside], Y[inside]
     if len(f) < 12:
         raise AnalysisError(f"{len(f)} frequencies about {peak:.3g} Hz; a longer record is needed")
     if X is None and not free:
-        return _ambient(f, np.abs(Y) ** 2 / n, peak)
+        return _ambient(f, np.abs(Y) ** 2 / n, peak, expected)
     time = np.arange(n) * dt
 
     def columns(q: Array) -> Array:
@@ -102,12 +114,12 @@ def vibration(
     freedoms = 2 * len(f) - (6 if X is None else 9)
     variance = 2.0 * float(best.cost) / freedoms
     J = np.asarray(best.jac)
-    errors = np.sqrt(np.diag(variance * np.linalg.inv(J.T @ J)))
+    errors = np.sqrt(np.diag(variance * np.linalg.pinv(J.T @ J)))
     share = 2.0 * float(best.cost) / float(np.sum(np.abs(Y) ** 2))
-    return _of_logarithms(best.x, errors, freedoms, math.sqrt(share))
+    return _of_logarithms(best.x, errors, freedoms, math.sqrt(share), expected, LEFT)
 
 
-def _ambient(f: NDArray[Any], power: NDArray[Any], peak: float) -> Vibration:
+def _ambient(f: NDArray[Any], power: NDArray[Any], peak: float, expected: float) -> Vibration:
     """From the periodogram, whose values are exponential about the spectrum."""
 
     def spectrum(p: Array) -> Array:
@@ -129,11 +141,29 @@ def _ambient(f: NDArray[Any], power: NDArray[Any], peak: float) -> Vibration:
     J = np.array([(spectrum(p + h * d) - spectrum(p - h * d)) / (2.0 * h * S) for d in np.eye(5)])
     errors = np.sqrt(np.diag(np.linalg.pinv(J @ J.T)))
     q = np.array([p[0] + math.log(2.0 * math.pi), p[1]])
-    return _of_logarithms(q, errors[:2], len(f) - 5, float((power / S).std()))
+    return _of_logarithms(q, errors[:2], len(f) - 5, float((power / S).std()), expected, SCATTER)
 
 
-def _of_logarithms(q: Array, errors: Array, freedoms: int, misfit: float) -> Vibration:
-    """Period and damping from the logarithms of circular frequency and damping."""
-    w, zeta = (estimate(value, error, freedoms) for value, error in zip(q, errors, strict=False))
+def _of_logarithms(
+    q: Array, errors: Array, freedoms: int, misfit: float, expected: float, usual: tuple[float, ...]
+) -> Vibration:
+    """Period and damping from logarithms of circular frequency and damping; refuse a bad fit."""
+    T, zeta = 2.0 * math.pi * np.exp(-q[0]), np.exp(q[1])
+    why = ""
+    if not (LOOKED_FOR[0] * expected < T < LOOKED_FOR[1] * expected):
+        reach = f"from {LOOKED_FOR[0]:g} to {LOOKED_FOR[1]:g} times that of the case"
+        why = f"its period of {T:.4g} s is not {reach}, {expected:.4g} s"
+    elif not DAMPED[0] < zeta < DAMPED[1]:
+        why = f"its damping ratio of {zeta:.3g} is none of a structure"
+    elif not usual[0] < misfit < usual[1]:
+        why = f"its misfit of {misfit:.3g} is not from {usual[0]:g} to {usual[1]:g}"
+    elif not np.all(errors < UNKNOWN):
+        why = "the motion does not determine it"
+    if why:
+        raise AnalysisError(
+            f"no vibration before uplift fits: {why}; choose a part of the motion by --from and"
+            " --to, or check the case and the units"
+        )
+    w, ratio = (estimate(value, error, freedoms) for value, error in zip(q, errors, strict=False))
     period = Estimate(*(2.0 * math.pi * math.exp(-value) for value in (w.value, w.high, w.low)))
-    return Vibration(period, Estimate(*(math.exp(value) for value in zeta)), misfit)
+    return Vibration(period, Estimate(*(math.exp(value) for value in ratio)), misfit)
