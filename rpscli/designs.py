@@ -25,10 +25,9 @@ from rpscli.report.study.statistics import (
     verdict_texts,
 )
 from rpscli.report.table import Heading, Part, Table, csv_text
-from rpscli.study_run import Collected, StudyRun
+from rpscli.studies import Collected, Study, StudyResult
 from rpscli.sweep.design import Answer, Search
-from rpscli.sweep.evaluation.context import StudyContext
-from rpscli.sweep.points.layout import StudyPoints, lay_out
+from rpscli.sweep.points import StudyPoints, lay_out
 from rpscli.sweep.store import Store
 
 
@@ -42,10 +41,10 @@ class Design:
 
     search: Search
     answer: Answer
-    run: StudyRun
+    run: StudyResult
     found: Collected
-    judged: StudyRun
-    validated: StudyRun | None
+    judged: StudyResult
+    validated: StudyResult | None
     folder: OutputFolder
 
     @property
@@ -53,7 +52,7 @@ class Design:
         """Whether the best design does so in the validation; None without one."""
         if self.validated is None:
             return None
-        verdicts = self.validated.verdicts
+        verdicts = self.validated.judgements
         return bool(verdicts) and not any(verdict.exceeded for verdict in verdicts)
 
     @property
@@ -68,7 +67,7 @@ class Design:
             return None
         if messages := dict.fromkeys(self.validated.table.messages.values()):
             return StudyIncomplete("\n".join(f"validation: {text}" for text in messages))
-        lines = verdict_lines(self.validated.keys_of_rows, self.validated.verdicts, "validation: ")
+        lines = verdict_lines(self.validated.keys, self.validated.judgements, "validation: ")
         return LimitExceeded("\n".join(lines)) if lines else None
 
     @property
@@ -82,53 +81,47 @@ class Design:
     @property
     def document(self) -> dict[str, Any]:
         """The answer in JSON."""
-        found = answer_document(self.answer, self.judged.verdicts)
+        found = answer_document(self.answer, self.judged.judgements)
         found |= {"validated": self.keeps_limits, "validation": []}
         if (run := self.validated) is not None:
-            found["validation"] = [verdict_document(run.keys_of_rows, v) for v in run.verdicts]
+            found["validation"] = [verdict_document(run.keys, v) for v in run.judgements]
         return found
 
     @property
     def tables(self) -> Iterator[Part]:
         """The answer, then its validation."""
-        yield from answer_tables(self.answer, self.judged.verdicts)
+        yield from answer_tables(self.answer, self.judged.judgements)
         if self.validated is not None:
             unseen = len(self.answer.task.unseen)
             yield Heading(f"validation with {unseen} records that were not used")
-            yield Table.of_texts(VERDICT, map(verdict_texts, self.validated.verdicts), words=4)
+            yield Table.of_texts(VERDICT, map(verdict_texts, self.validated.judgements), words=4)
 
 
 def find_design(
     search: Search,
     folder: OutputFolder,
     look: Look,
-    compute: Callable[[str, StudyRun], object],
+    compute: Callable[[str, Study, Store], StudyResult],
     *,
     fresh: bool = False,
-    **choices: Any,
 ) -> Design:
     """Search, judge what is best, and collect all files, with the points in a store of the folder.
 
-    `compute` computes what a run lacks, and may say so in the words that it gets; `choices` are
-    those of a `StudyRun`.
+    `compute` computes what the store lacks of a study, and may say so in the words that it gets.
     """
     task, rounds, validated = search.task, 0, None
-    records = StudyContext(search.layout.plan).records  # read once
+    records = search.layout.context.records  # read once
 
     with Store(folder.folder, fresh=fresh) as store:
 
-        def computed(words: str, layout: StudyPoints) -> StudyRun:
-            context = StudyContext(layout.plan, layout.examined)
-            context.records = records
-            run = StudyRun(layout, context, store, **choices)
-            compute(words, run)
-            _ = run.verdicts  # which need the store as long as it is open
-            return run
+        def computed(words: str, layout: StudyPoints) -> StudyResult:
+            layout.context.records = records
+            return compute(words, Study(layout), store)
 
         def evaluated(layout: StudyPoints) -> Any:
             nonlocal rounds
             rounds += 1
-            return computed(f"round {rounds}: {len(layout.combinations)} designs", layout).table
+            return computed(f"round {rounds}: {len(layout.properties)} designs", layout).table
 
         answer = search.run(evaluated)
         best = answer.values[[answer.closest]]
@@ -137,11 +130,11 @@ def find_design(
             validated = computed("validation of the best design", unseen)
         judged = computed("", lay_out(task.study_of(best)))
         run = computed("", lay_out(task.study_of(answer.values[answer.valid])))
-        found = run.collect(folder.folder, look)
+        found = run.collected(look)
         folder.add_all(found.files.items())
         folder.add("designs.csv", csv_text(design_columns(answer)))
         if validated is not None:
-            columns = verdict_columns(validated.keys_of_rows, validated.verdicts)
+            columns = verdict_columns(validated.keys, validated.judgements)
             folder.add("validation.csv", csv_text(columns))
         title = task.study.title
         folder.add_all(figure_files(figures(answer, title), look).items())

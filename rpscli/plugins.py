@@ -31,8 +31,7 @@ from rpscli.records.target import TargetSpectrum
 from rpscli.report.figures.style import single
 from rpscli.report.study.report import Found, Report
 from rpscli.report.table import Column
-from rpscli.sweep.points_csv import point_columns
-from rpscli.sweep.study_results import StudyResults
+from rpscli.sweep.table import StudyResults, point_columns
 
 __all__ = [
     "Column",

@@ -1,4 +1,4 @@
-"""Studies from Python: many histories from one case, stored as they end, and reports on them.
+"""Studies: many histories from one case, stored as they end, and reports on them.
 
 >>> from rpscli import load_study
 >>> study = load_study({
@@ -16,48 +16,88 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager, nullcontext
+from dataclasses import dataclass, field
 from functools import cached_property
 from hashlib import sha256
 from pathlib import Path
 from shutil import rmtree
 from tempfile import mkdtemp
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 from weakref import finalize
 
 from rpscli.case.conditions import Condition
 from rpscli.case.overrides import apply_overrides
 from rpscli.case.rules.plausibility import doubts_of_many
 from rpscli.case.study.schema import StudyFile
-from rpscli.case.study.study import Study as CheckedStudy
 from rpscli.case.study.study import parse_study, shared_out, study_of
 from rpscli.case.text.document import Document, text_of_values
 from rpscli.case.text.files import read_text
 from rpscli.constants import MOST_JOBS
-from rpscli.errors import UsageError, hint, require_kind
+from rpscli.errors import (
+    LimitExceeded,
+    RpsError,
+    StudyIncomplete,
+    UsageError,
+    hint,
+    require_kind,
+)
+from rpscli.machine import available_cores
 from rpscli.report.figures.look import Look
 from rpscli.report.figures.style import drawable_style
-from rpscli.report.study.folder import study_folder
-from rpscli.report.study.registry import REPORTS
-from rpscli.report.study.report import Found
-from rpscli.report.study.statistics import summary_columns, verdict_columns
-from rpscli.report.table import Column
+from rpscli.report.files import Content, OutputFolder, Run, require_writable
+from rpscli.report.study.registry import REPORTS, lacking, not_judged, requirement_faults
+from rpscli.report.study.report import Found, add_notes
+from rpscli.report.study.statistics import (
+    summary_columns,
+    summary_document,
+    verdict_columns,
+    verdict_document,
+    verdict_lines,
+)
+from rpscli.report.table import Column, Heading, Part, columns_of, csv_text
 from rpscli.shown import Shown, data_frame, frozen
-from rpscli.study_run import StudyRun, require_results
-from rpscli.sweep.evaluation.context import StudyContext
-from rpscli.sweep.points.check import Watched
-from rpscli.sweep.points.layout import StudyPoints, lay_out
-from rpscli.sweep.points_csv import Columns, array, point_columns, units_of_columns
-from rpscli.sweep.run.runner import Progress
-from rpscli.sweep.statistics.summary import Summary
-from rpscli.sweep.statistics.verdicts import Verdict
+from rpscli.sweep.context import StudyContext
+from rpscli.sweep.points import StudyPoints, lay_out, reproduction
+from rpscli.sweep.run import Engine, Progress, Start, run, start
+from rpscli.sweep.statistics.summary import Summary, scale_notes, summary
+from rpscli.sweep.statistics.verdicts import Verdict, judged, rate_notes
+from rpscli.sweep.steps import step_notes
 from rpscli.sweep.store import Store
-from rpscli.sweep.table import Table
+from rpscli.sweep.systems import Watched, needs_of
+from rpscli.sweep.table import (
+    Columns,
+    StudyResults,
+    Table,
+    array,
+    names_of,
+    point_columns,
+    points_csv,
+    units_of_columns,
+)
 
 if TYPE_CHECKING:
     from rpscli.case.study.reports import ReportRequest
     from rpscli.report.figures.style import Target
+
+BASE = "base.yaml"
+FAILURES_SHOWN = 10
+
+Watch = Callable[[Start], AbstractContextManager[Callable[[Progress], None]]]
+"""Is told where a run begins; what it gives is open during the run, and is told how far it is."""
+
+
+class StudyInterrupted(KeyboardInterrupt):
+    """Somebody stopped a study; what is stored stays."""
+
+    def __init__(self, stored: int, total: int, path: Path) -> None:
+        super().__init__(
+            f"interrupted: {stored} of {total} points are stored in {path}; the same command"
+            " continues from there"
+        )
+        self.points = {"total": total, "stored": stored}
 
 
 def load_study(source: Path | str | Mapping[str, Any], overrides: Sequence[str] = ()) -> Study:
@@ -86,28 +126,24 @@ def read_study(
 ) -> Study:
     """A study from a file, the standard input (``-``) or a mapping, whose systems are `watched`."""
     if isinstance(source, Mapping):
-        study = _study_of(source, overrides)
+        text = text_of_values(source, "<study>")
+        own, of_base = shared_out(overrides, StudyFile)
+        document = apply_overrides(Document("<study>", json.loads(text)), own, model=StudyFile)
+        digest = sha256(text.encode()).hexdigest()
+        checked = study_of(document, of_base, kinds=REPORTS, folder=Path(), digest=digest)
     else:
         require_kind(source, (str, Path), "the study", "give the name of a file, or a mapping")
         piped = str(source) == "-"
-        study = parse_study(
+        checked = parse_study(
             read_text(source),
             name="<stdin>" if piped else str(source),
             kinds=REPORTS,
             folder=None if piped else Path(source).parent,
             overrides=overrides,
         )
-    layout = lay_out(study, watched)
-    require_results(layout, conditions)
-    return Study(layout, StudyContext(layout.plan, layout.examined), tuple(overrides))
-
-
-def _study_of(mapping: Mapping[str, Any], overrides: Sequence[str]) -> CheckedStudy:
-    text = text_of_values(mapping, "<study>")
-    own, of_base = shared_out(overrides, StudyFile)
-    document = apply_overrides(Document("<study>", json.loads(text)), own, model=StudyFile)
-    digest = sha256(text.encode()).hexdigest()
-    return study_of(document, of_base, kinds=REPORTS, folder=Path(), digest=digest)
+    study = Study(lay_out(checked, watched), tuple(overrides), tuple(conditions))
+    study.require_results()
+    return study
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -118,15 +154,26 @@ class Study(Shown):
     ----------
     layout
         Its points, each made when it is asked for.
-    context
-        Its systems and motions.
     overrides
         What was put over the file.
+    conditions
+        Limits besides those of study and case.
     """
 
     layout: StudyPoints
-    context: StudyContext
     overrides: tuple[str, ...] = ()
+    conditions: tuple[Condition, ...] = ()
+
+    def require_results(self) -> None:
+        """Refuse limits and reports on results that its systems do not have."""
+        layout = self.layout
+        layout.study.document.refuse(requirement_faults(layout))
+        _ = [*rate_notes(layout)]  # which refuses a hazard that the intensities do not go with
+        for condition in self.conditions:
+            if layout.plan.analysis != "timehistory":
+                raise UsageError(f"--fail-on {condition.name} needs analysis: timehistory")
+            if lacking(layout, condition.name, all):
+                raise UsageError(f"--fail-on: {needs_of(condition.name, 'no')}")
 
     def __len__(self) -> int:
         return len(self.layout)
@@ -135,6 +182,11 @@ class Study(Shown):
     def title(self) -> str:
         """Heading of reports."""
         return self.layout.study.title
+
+    @property
+    def context(self) -> StudyContext:
+        """Its systems and motions."""
+        return self.layout.context
 
     @property
     def reports(self) -> dict[str, ReportRequest]:
@@ -153,12 +205,30 @@ class Study(Shown):
         return {
             "title": self.title,
             "points": len(layout),
-            "systems": len(layout.combinations),
+            "systems": len(layout.properties),
             "records": len(layout.records),
             "scales": len(layout.scales),
             "analysis": layout.plan.analysis,
             "reports": list(self.reports),
         }
+
+    def output(self, place: Path, command: str = "sweep", *, force: bool = False) -> OutputFolder:
+        """A folder for its results, claimed for a command; a store there belongs to the study."""
+        # After a kill there may be files there that no `run.json` speaks of.
+        require_writable(place)
+        study, plan = self.layout.study, self.layout.plan
+        inputs = {
+            "study": study.document.content,
+            "base": plan.base,
+            "overrides": list(self.overrides),
+            "points": len(self),
+            "solver": plan.solver,
+        }
+        file = None if study.source.startswith("<") else Path(study.source)
+        known = Store(place).path.exists()
+        return OutputFolder(
+            place, Run(command, study.name, file, study.digest, inputs), force=force or known
+        )
 
     def run(
         self,
@@ -170,7 +240,7 @@ class Study(Shown):
         retry_failed: bool = False,
         progress: Callable[[Progress], None] = lambda _: None,
     ) -> StudyResult:
-        """Compute what is not stored yet, and store each point as it ends.
+        """Compute what is not stored yet, and store each batch of points as it ends.
 
         Parameters
         ----------
@@ -199,15 +269,72 @@ class Study(Shown):
             raise UsageError(f"jobs = {jobs} must be a number of threads from 1 to {MOST_JOBS}")
         keeper = _Temporary() if folder is None else None
         place = keeper.place if keeper else Path(folder or "")
-        study_folder(self.layout, place, self.overrides)
-        with Store(place, fresh=fresh) as store:
-            run = self.opened(store, jobs=jobs, scheduler=scheduler, retry_failed=retry_failed)
-            run.compute(progress)
-        return StudyResult(self, place, run, keeper)
+        self.output(place)
+        return self.computed(
+            Store(place, fresh=fresh),
+            jobs=jobs,
+            scheduler=scheduler,
+            retry_failed=retry_failed,
+            watch=lambda _: nullcontext(progress),
+            keeper=keeper,
+        )
 
-    def opened(self, store: Store, **choices: Any) -> StudyRun:
-        """Its run in a store that is open."""
-        return StudyRun(self.layout, self.context, store, **choices)
+    def computed(
+        self,
+        store: Store,
+        *,
+        jobs: int | None = None,
+        scheduler: str | None = None,
+        retry_failed: bool = False,
+        watch: Watch = lambda _: nullcontext(lambda _: None),
+        announce: Callable[[], None] = lambda: None,
+        keeper: object = None,
+    ) -> StudyResult:
+        """Compute what a store has not yet; `announce` says that a first Ctrl-C lets points end."""
+        layout, jobs = self.layout, jobs or available_cores()
+        with store:
+            begin = start(layout, store, retry_failed=retry_failed)
+            done = Progress(len(self), begin.kept, 0, 0, 0.0)
+            with watch(begin) as report:
+                store.note(**begin.facts)
+                try:
+                    if begin.pending:
+                        engine = Engine(layout.context, jobs, scheduler)
+                        done = run(layout, begin, store, engine, report, announce)
+                    if done.computed < len(begin.pending):
+                        raise KeyboardInterrupt  # noqa: TRY301 -- told below
+                except KeyboardInterrupt:
+                    known = store.outcomes()
+                    stored = sum(key in known for key in begin.keys)
+                    raise StudyInterrupted(stored, len(self), store.path) from None
+            table = Table.of(layout, store.results(begin.keys, names_of(layout)))
+            results = StudyResults(table, begin.keys, store, jobs)
+        return StudyResult(self, results, begin, done, keeper)
+
+
+class Failure(NamedTuple):
+    """A point that failed: its line in `points.csv`, why, and how to compute it alone."""
+
+    point: int
+    message: str
+    command: str
+
+
+@dataclass
+class Collected:
+    """The files of a study by name, and what its reports say.
+
+    `notes` warn of the numbers, `findings` are lines for the terminal, `parts` and `documents`
+    tables of reports for readers and for JSON, `broken` are the reports that could not be made.
+    """
+
+    files: dict[str, str | Content] = field(default_factory=dict)
+    failures: list[Failure] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+    findings: dict[str, list[tuple[str, str]]] = field(default_factory=dict)
+    parts: list[Part] = field(default_factory=list)
+    documents: dict[str, Any] = field(default_factory=dict)
+    broken: list[RpsError] = field(default_factory=list)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -220,19 +347,34 @@ class StudyResult(Shown):
     ----------
     study
         What was run.
-    folder
-        Of the store.
+    results
+        Its points as a table.
+    begin
+        What was stored before.
+    done
+        What was computed.
     """
 
     study: Study
-    folder: Path
-    _run: StudyRun
-    _keeper: _Temporary | None = None
+    results: StudyResults
+    begin: Start
+    done: Progress
+    _keeper: object = None
+
+    @property
+    def layout(self) -> StudyPoints:
+        """The points of the study."""
+        return self.study.layout
+
+    @property
+    def folder(self) -> Path:
+        """Of the store."""
+        return self.results.store.path.parent
 
     @property
     def table(self) -> Table:
         """Results in the study's order."""
-        return self._run.table
+        return self.results.table
 
     def __len__(self) -> int:
         return len(self.table)
@@ -254,12 +396,17 @@ class StudyResult(Shown):
     @property
     def units(self) -> dict[str, str]:
         """SI units of the columns; ``-`` for those without one."""
-        return dict(units_of_columns(self.study.layout))
+        return units_of_columns(self.layout)
 
     @property
     def failures(self) -> dict[int, str]:
         """Why points failed, by their places in the columns."""
         return self.table.messages
+
+    @property
+    def outcomes(self) -> dict[str, int]:
+        """How many points ended in which way, the commonest first."""
+        return dict(Counter(self.table.outcomes.tolist()).most_common())
 
     def to_dataframe(self) -> Any:
         """The columns as a table of pandas, which must be installed."""
@@ -267,14 +414,30 @@ class StudyResult(Shown):
 
     def facts(self) -> dict[str, Any]:
         """Outcomes, and where they are stored."""
-        stored = "in a temporary folder" if self._keeper else str(self.folder)
         return {
             "title": self.study.title,
             "points": len(self),
-            **self._run.outcomes,
+            **self.outcomes,
             "reports": list(self.study.reports),
-            "stored": stored,
+            "stored": "in a temporary folder" if self._keeper else str(self.folder),
         }
+
+    @cached_property
+    def summary(self) -> Summary | None:
+        """Statistics of each system at each intensity; None of analyses without histories."""
+        if self.layout.plan.analysis != "timehistory":
+            return None
+        return summary(self.table, self.results.fixed_base)
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """That tell apart the rows of statistics and verdicts."""
+        return self.summary.keys if self.summary else ()
+
+    @cached_property
+    def judgements(self) -> list[Verdict]:
+        """Verdicts on every limit of each system at each intensity."""
+        return judged(self.table, self.summary, self.study.conditions) if self.summary else []
 
     @cached_property
     def statistics(self) -> Columns:
@@ -283,23 +446,27 @@ class StudyResult(Shown):
         Counts, the share that overturned with its 95 % interval, and median, 84 % fractile and
         largest value of all demands, infinite where so many overturned.
         """
-        return frozen(_arrays(summary_columns(self._summary)))
+        return frozen(_arrays(summary_columns(self._of_histories())))
 
     @cached_property
     def verdicts(self) -> Columns:
         """Columns of `verdicts.csv`: a row a limit of the study or of its base case and system."""
-        return frozen(_arrays(verdict_columns(self._summary.keys, self._verdicts)))
+        return frozen(_arrays(verdict_columns(self._of_histories().keys, self.judgements)))
 
     @property
     def passed(self) -> bool:
         """Whether no limit is exceeded and no point failed."""
-        return not self.failures and not any(verdict.exceeded for verdict in self._verdicts)
+        return not self.failures and not any(verdict.exceeded for verdict in self.judgements)
+
+    def _of_histories(self) -> Summary:
+        if self.summary is None:
+            raise UsageError("statistics and limits need analysis: timehistory")
+        return self.summary
 
     @property
     def notes(self) -> list[str]:
         """What must be read before statistics and reports are used: what was pooled or left out."""
-        with self._run.reopened():
-            return self._run.collect(self.folder, Look(())).notes
+        return self.collected(Look(())).notes
 
     def report(self, name: str) -> Found:
         """What a report finds that the study asks for, by the name of its files.
@@ -307,8 +474,7 @@ class StudyResult(Shown):
         Its `tables` are the columns of its CSV files, by what follows the name.
         """
         request = self._request(name)
-        with self._run.reopened() as results:
-            return REPORTS[request.kind].make(results, request.options)
+        return self._made(request)
 
     def draw(self, name: str, target: Any = None) -> Target:
         """The figure of a report.
@@ -321,10 +487,25 @@ class StudyResult(Shown):
             A figure, a part of one or axes of matplotlib to be drawn into; axes give their place to
             a part of their figure. A figure of its own by default.
         """
-        request, found = self._request(name), self.report(name)
+        request = self._request(name)
+        found = self._made(request)
         if found.figure is None:
             raise UsageError(f"{name}: {'; '.join(found.notes) or 'nothing to draw'}")
-        return found.drawn(request.options.title or self.study.title, target)
+        return found.drawn(self._title(request), target)
+
+    def _request(self, name: str) -> ReportRequest:
+        known = self.study.reports
+        if name not in known:
+            have = f"it has {', '.join(known)}" if known else "it has none"
+            raise UsageError(f"{name} is not a report of the study; {have}")
+        return known[name]
+
+    def _made(self, request: ReportRequest) -> Found:
+        with self.results.store:
+            return REPORTS[request.kind].make(self.results, request.options)
+
+    def _title(self, request: ReportRequest) -> str:
+        return request.options.title or self.study.title
 
     def write(
         self,
@@ -358,35 +539,93 @@ class StudyResult(Shown):
         if folder is None and self._keeper:
             raise UsageError("name a folder: that of the store ends with the result")
         look = Look(tuple(figures), columns, drawable_style(Path(style)) if style else {})
-        place = Path(folder or self.folder)
-        made = study_folder(self.study.layout, place, self.study.overrides, force=force)
-        with self._run.reopened():
-            found = self._run.collect(made.folder, look)
+        made = self.study.output(Path(folder or self.folder), force=force)
+        found = self.collected(look, made.folder)
         made.add_all(found.files.items())
         made.write()
         if found.broken:
             raise found.broken[0]
         return made.files
 
-    def _request(self, name: str) -> ReportRequest:
-        known = self.study.reports
-        if name not in known:
-            have = f"it has {', '.join(known)}" if known else "it has none"
-            raise UsageError(f"{name} is not a report of the study; {have}")
-        return known[name]
-
-    @cached_property
-    def _summary(self) -> Summary:
-        with self._run.reopened():
-            found = self._run.summary
-        if found is None:
-            raise UsageError("statistics and limits need analysis: timehistory")
+    def collected(self, look: Look, place: Path | None = None) -> Collected:
+        """All files for a folder. A report that fails does not take the others with it."""
+        found = Collected({"points.csv": points_csv(self.table)})
+        found.failures += self._failures(place or self.folder, found)
+        if found.failures:
+            found.files["failed.csv"] = csv_text(
+                columns_of(dict.fromkeys(Failure._fields, "-"), found.failures)
+            )
+        with self.results.store:
+            if self.summary is not None:
+                found.files["statistics.csv"] = csv_text(summary_columns(self.summary))
+                if self.judgements:
+                    columns = verdict_columns(self.summary.keys, self.judgements)
+                    found.files["verdicts.csv"] = csv_text(columns)
+                unjudged = not_judged(self.layout, self.study.conditions)
+                notes = [*self.summary.notes, *scale_notes(self.table), *unjudged]
+                notes += rate_notes(self.layout)
+                found.notes += [f"statistics: {note}" for note in notes]
+                found.notes += step_notes(self.table)
+            for request in self.layout.study.reports:
+                try:
+                    self._add_report(request, look, found)
+                except RpsError as error:
+                    found.broken.append(error)
+                except Exception as error:  # noqa: BLE001 -- the others must not be lost
+                    text = f"the report {request.stem}: {type(error).__name__}: {error}"
+                    own = request.kind in REPORTS
+                    whose = "rps: please report it" if own else "the package that adds it"
+                    found.broken.append(RpsError(f"{text}; this is a fault of {whose}"))
         return found
 
-    @cached_property
-    def _verdicts(self) -> list[Verdict]:
-        with self._run.reopened():
-            return self._run.verdicts
+    def _add_report(self, request: ReportRequest, look: Look, found: Collected) -> None:
+        made = self._made(request)
+        found.files |= dict(made.files(request.stem, self._title(request), look))
+        add_notes(found.notes, request.stem, made.notes)
+        if lines := list(made.findings):
+            found.findings[request.stem] = lines
+        if document := made.document():
+            found.documents[request.stem] = document
+            found.parts += [Heading(request.stem), *made.parts()]
+
+    def _failures(self, place: Path, found: Collected) -> Iterator[Failure]:
+        base = self.layout.study.base_file
+        if base is None and self.failures:
+            # JSON is YAML too.
+            found.files[BASE] = json.dumps(self.layout.plan.base, indent=2) + "\n"
+            base = place / BASE
+        for number, message in self.failures.items():
+            command = reproduction(self.layout, self.layout[number], base or Path())
+            yield Failure(number + 1, message, command)
+
+    def error(self, found: Collected, *, limits: bool = True) -> RpsError | None:
+        """The gravest of what went wrong, whose exit code counts; its text tells of all."""
+        errors: list[RpsError] = [*found.broken]
+        if failures := found.failures:
+            lines = [f"{len(failures)} of {len(self)} points failed; they enter no statistic"]
+            for failure in failures[:FAILURES_SHOWN]:
+                lines += [f"point {failure.point}: {failure.message}", f"  {failure.command}"]
+            lines += _and_more(failures, "failed.csv")
+            errors.append(StudyIncomplete("\n".join(lines)))
+        if limits and (lines := verdict_lines(self.keys, self.judgements)):
+            told = [*lines[:FAILURES_SHOWN], *_and_more(lines, "verdicts.csv")]
+            errors.append(LimitExceeded("\n".join(told)))
+        return type(errors[0])("\n".join(map(str, errors))) if errors else None
+
+    def documents(self) -> dict[str, Any]:
+        """Statistics and verdicts in JSON; nothing of analyses without histories."""
+        if self.summary is None:
+            return {}
+        return {
+            "pooled": self.summary.pooled,
+            "statistics": summary_document(self.summary),
+            "verdicts": [verdict_document(self.summary.keys, each) for each in self.judgements],
+        }
+
+
+def _and_more(items: Sequence[Any], file: str) -> list[str]:
+    more = len(items) - FAILURES_SHOWN
+    return [f"... and {more} more, all in {file}"] if more > 0 else []
 
 
 class _Temporary:

@@ -1,7 +1,7 @@
 """What Windows, macOS and plain network folders do otherwise, simulated where the program asks.
 
 Each difference has one place in `rpscli`: paths and the cache in `user_cache`, cores in `machine`,
-locks of folders in `report.files`, of stores in `sweep.store`, Ctrl-C in `sweep.run.runner`, pipes
+locks of folders in `report.files`, of stores in `sweep.store`, Ctrl-C in `sweep.run`, pipes
 and encodings of files in `case.text.files`, those of the console in `commands.shell.terminal`.
 """
 
@@ -30,7 +30,7 @@ from rpscli.machine import available_cores
 from rpscli.records.loading import load_record
 from rpscli.report.figures.look import quiet_matplotlib
 from rpscli.report.files import locked, write_whole
-from rpscli.sweep.run.runner import first_interrupt
+from rpscli.sweep.run import first_interrupt
 from rpscli.sweep.store import Store
 
 ROOT = Path(__file__).parents[1]
@@ -50,7 +50,7 @@ SEAMS = {
     "fork": set[str](),
     "SIGTERM": set[str](),
     "SIGKILL": set[str](),
-    "SIGINT": {"sweep/run/runner.py"},
+    "SIGINT": {"sweep/run.py"},
     "sqlite3": {"sweep/store.py", "user_cache.py"},
 }
 """What is not the same everywhere, and the only files that may name it."""
@@ -185,7 +185,7 @@ def test_stores_in_network_folders_say_what_is_wrong(
 
     monkeypatch.setattr(sqlite3, "connect", refuse)
     with pytest.raises(Exception, match=told) as raised:
-        Store(tmp_path)
+        Store(tmp_path).__enter__()
     assert "another folder with -o" in str(raised.value)
 
 

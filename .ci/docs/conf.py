@@ -31,7 +31,7 @@ nitpick_ignore_regex = [
     ("py:obj", r".*"),  # single backticks of docstrings: a link if there is one, else code
     (
         "py:.*",
-        r"rpscli\.(case|physics|report|sweep|study_run|studies\._\w+|records\.(quantities|ground_motion\.Recording)|model\.contact\.Bed)\b.*",
+        r"rpscli\.(case|physics|report|sweep|studies\._\w+|records\.(quantities|ground_motion\.Recording)|model\.contact\.Bed)\b.*",
     ),
     (
         "py:.*",

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import TypeAlias
 
 import numpy as np
@@ -159,6 +160,18 @@ def _follow(
     return shears, np.array(largest), floors
 
 
+@lru_cache(maxsize=4096)  # records of a study share their time step
+def _grown(k: float, xi: float) -> Array:
+    """What a step makes of displacement, velocity, ground and its slope, (4, 4)."""
+    from scipy.linalg import expm
+
+    # The step is the unit of time: formulae would lose all digits where k is small.
+    rates = np.zeros((4, 4))
+    rates[0, 1] = rates[2, 3] = 1.0
+    rates[1, :3] = -(k**2), -2.0 * xi * k, -1.0
+    return np.asarray(expm(rates))
+
+
 def oscillator(ground: Array, dt: float, omega: float, xi: float) -> tuple[Array, Array]:
     """Exact displacement and velocity of an oscillator from rest, the ground linear in each step.
 
@@ -176,14 +189,9 @@ def oscillator(ground: Array, dt: float, omega: float, xi: float) -> tuple[Array
     N. C. Nigam and P. C. Jennings, BSSA 59 (1969) 909-922: the state obeys a recurrence, each of
     its components alone one of second order, which is a digital filter.
     """
-    from scipy.linalg import expm
     from scipy.signal import lfilter
 
-    k = omega * dt  # the step is the unit of time: formulae would lose all digits where k is small
-    rates = np.zeros((4, 4))
-    rates[0, 1] = rates[2, 3] = 1.0
-    rates[1, :3] = -(k**2), -2.0 * xi * k, -1.0
-    grown = np.asarray(expm(rates))
+    grown = _grown(float(omega * dt), float(xi))
     a, start, slope = grown[:2, :2], grown[:2, 2] - grown[:2, 3], grown[:2, 3]
     recursion = np.array([1.0, -np.trace(a), a[0, 0] * a[1, 1] - a[0, 1] * a[1, 0]])
     other = np.array([[-a[1, 1], a[0, 1]], [a[1, 0], -a[0, 0]]])

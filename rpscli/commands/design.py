@@ -18,7 +18,7 @@ from rpscli.commands.shell.options import (
 from rpscli.commands.shell.terminal import Terminal, concluded, leave
 from rpscli.commands.study import (
     SweepChoices,
-    compute,
+    computed,
     show_dry_run,
     study_heading,
 )
@@ -28,8 +28,8 @@ from rpscli.report.table import Heading, Part, Table
 
 if TYPE_CHECKING:
     from rpscli.designs import Design
-    from rpscli.studies import Study
-    from rpscli.study_run import StudyRun
+    from rpscli.studies import Study, StudyResult
+    from rpscli.sweep.store import Store
 
 
 @click.command("design")
@@ -76,35 +76,32 @@ def designed(
     """Search, and collect the files; None after a dry run."""
     from rpscli.case.design import read_design
     from rpscli.designs import find_design
-    from rpscli.report.study.folder import study_folder
     from rpscli.studies import Study
-    from rpscli.study_run import require_results
     from rpscli.sweep.design import Search
-    from rpscli.sweep.evaluation.context import StudyContext
 
     search = Search(read_design(design, overrides))
-    first = search.layout
-    require_results(first, ())
+    first = Study(search.layout, overrides)
+    first.require_results()
     if chosen.dry_run:
         terminal.note(f"the first of at most {search.most} designs:")
-        show_dry_run(Study(first, StudyContext(first.plan), overrides), chosen, terminal)
+        show_dry_run(first, chosen, terminal)
         return None
-    place = output.place or RESULTS / first.study.name / "design"
-    folder = study_folder(first, place, overrides, "design", force=output.force)
+    place = output.place or RESULTS / first.layout.study.name / "design"
+    folder = first.output(place, "design", force=output.force)
 
-    def told(words: str, run: StudyRun) -> None:
+    def told(words: str, study: Study, store: Store) -> StudyResult:
         if words:
             terminal.note(words)
-        compute("design", run, terminal)
+        return computed("design", study, store, chosen, terminal)
 
-    return find_design(search, folder, look, told, fresh=chosen.fresh, **chosen.of_run)
+    return find_design(search, folder, look, told, fresh=chosen.fresh)
 
 
 def all_designs(done: Design, overrides: tuple[str, ...]) -> Study:
     """All valid designs as a study."""
     from rpscli.studies import Study
 
-    return Study(done.run.layout, done.run.context, overrides)
+    return Study(done.run.layout, overrides)
 
 
 def document_of(done: Design, overrides: tuple[str, ...]) -> dict[str, Any]:
@@ -117,7 +114,7 @@ def document_of(done: Design, overrides: tuple[str, ...]) -> dict[str, Any]:
         "points": {"total": len(done.run.table), "failed": len(done.found.failures)},
         **done.document,
         "warnings": [*done.notes, *all_designs(done, overrides).warnings],
-        "files": [str(done.run.store.path), *done.folder.files],
+        "files": [str(done.run.results.store.path), *done.folder.files],
     }
     return concluded(document, done.error)
 

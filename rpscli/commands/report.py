@@ -109,7 +109,7 @@ def command(
         folder = None if earlier is None else earlier.folder
         made = read(earlier.subject if earlier else request, conditions, terminal)
         name = made.layout.study.name
-        make = partial(study_page, made, folder, conditions, look, terminal)
+        make = partial(study_page, made, folder, look, terminal)
     else:
         if earlier is not None:
             given, motions = earlier_case(earlier)

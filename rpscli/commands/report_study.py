@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from rpscli.case.case import Case
-from rpscli.case.conditions import Condition
 from rpscli.commands.design import all_designs, designed, document_of, tables_of
 from rpscli.commands.inputs import RESULTS
 from rpscli.commands.report_case import Earlier, PageDone, ends, subject_words
 from rpscli.commands.shell.options import CaseRequest, OutputRequest
 from rpscli.commands.shell.terminal import Terminal, concluded
+from rpscli.commands.shell.waiting import passing_time
 from rpscli.commands.study import (
     SweepChoices,
-    stored_study,
+    computed,
     study_heading,
 )
 from rpscli.errors import RecordError
@@ -33,9 +33,9 @@ from rpscli.report.html.page import Block, Picture, Section, page_look, pictures
 from rpscli.report.study.labels import label
 from rpscli.report.study.shown import cut, of_first_system, summary_tables, verdict_table
 from rpscli.report.table import Heading, Table
-from rpscli.studies import Study
-from rpscli.study_run import Collected, StudyRun
-from rpscli.sweep.evaluation.context import resolved
+from rpscli.studies import Collected, Study, StudyResult
+from rpscli.sweep.context import resolved
+from rpscli.sweep.store import Store
 
 FAILURES_SHOWN = 20
 
@@ -43,7 +43,6 @@ FAILURES_SHOWN = 20
 def study_page(
     study: Study,
     place: Path | None,
-    conditions: Iterable[Condition],
     look: Look,
     terminal: Terminal,
 ) -> PageDone:
@@ -52,9 +51,11 @@ def study_page(
     folder = place or RESULTS / layout.study.name / "sweep"
     # What is in a folder is shown, not added to.
     only = place is not None
-    run, found = stored_study(
-        "report", study, folder, look, terminal, conditions=conditions, report_only=only
-    )
+    study.output(folder)
+    with Store(folder) as store:
+        run = computed("report", study, store, SweepChoices(report_only=only), terminal)
+        with passing_time("making reports", terminal):
+            found = run.collected(look)
     notes = [*study.warnings, *found.notes]
     error = run.error(found)
     document = {
@@ -78,7 +79,7 @@ def study_page(
 
 
 def _sections(
-    study: Study, run: StudyRun, found: Collected, notes: Sequence[str], folder: Path, look: Look
+    study: Study, run: StudyResult, found: Collected, notes: Sequence[str], folder: Path, look: Look
 ) -> list[Section]:
     layout = study.layout
     first = resolved(layout.plan, layout[0].values)
@@ -91,7 +92,7 @@ def _sections(
         )
         results = [motions_section(*motions_of(study), study.title, look), statistics, *results]
     which = []
-    if (systems := len(layout.combinations)) > 1:
+    if (systems := len(layout.properties)) > 1:
         values = zip(layout.plan.keys, layout[0].values, strict=True)
         named = ", ".join(label(key, value) for key, value in values)
         which = [f"The first of {systems} systems: {named}."]
@@ -108,17 +109,17 @@ def _sections(
     return page_sections(first, study.title, look, short, inputs, results, repeat, which)
 
 
-def _in_short(run: StudyRun, found: Collected, notes: Sequence[str]) -> Iterator[Block]:
+def _in_short(run: StudyResult, found: Collected, notes: Sequence[str]) -> Iterator[Block]:
     from rpscli.report.study.statistics import verdicts_in_short
 
     counts = {"points": len(run.table), **run.outcomes}
     yield Table.of_texts(tuple(counts), [tuple(map(str, counts.values()))], words=0)
     if aim := run.layout.scaled_to:
         yield f"Records are scaled to {aim}."
-    if run.summary is not None and run.verdicts:
-        what = f"{len(run.verdicts)} limits of a system at an intensity"
-        yield verdicts_in_short(run.verdicts, what)
-        yield from cut([verdict_table(run.summary, run.verdicts)])
+    if run.summary is not None and run.judgements:
+        what = f"{len(run.judgements)} limits of a system at an intensity"
+        yield verdicts_in_short(run.judgements, what)
+        yield from cut([verdict_table(run.summary, run.judgements)])
     elif run.summary is not None:
         yield "No limits were set."
     texts = [*notes, *(str(error) for error in found.broken)]

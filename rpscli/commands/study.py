@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -22,15 +22,13 @@ from rpscli.commands.shell.waiting import (
 )
 from rpscli.errors import Refused, UsageError
 from rpscli.report.documents import failure_document, heading
-from rpscli.report.figures.look import Look
 from rpscli.report.table import Heading, Part, Table
 
 if TYPE_CHECKING:
-    from rpscli.studies import Study
-    from rpscli.study_run import Collected, StudyRun
-    from rpscli.sweep.points.layout import StudyPoints
-    from rpscli.sweep.run.runner import Finish
-
+    from rpscli.studies import Study, StudyResult
+    from rpscli.sweep.points import StudyPoints
+    from rpscli.sweep.run import Progress, Start
+    from rpscli.sweep.store import Store
 
 POINTS_SHOWN = 3
 """At each end of a study."""
@@ -57,17 +55,11 @@ class SweepChoices:
         if self.scheduler and self.jobs:
             raise UsageError("--jobs counts threads of this machine; --scheduler has its own")
 
-    @property
-    def of_run(self) -> dict[str, Any]:
-        """What a `StudyRun` takes of them."""
-        names = ("jobs", "scheduler", "retry_failed")
-        return {name: getattr(self, name) for name in names}
-
 
 def read(request: CaseRequest, conditions: Iterable[Condition], terminal: Terminal) -> Study:
     """Read and check a study and all its systems."""
     from rpscli.studies import read_study
-    from rpscli.sweep.points.combinations import balance_note
+    from rpscli.sweep.systems import balance_note
 
     examined = partial(watched, "systems examined", terminal)
     study = read_study(request.source, request.overrides, conditions, examined)
@@ -76,73 +68,59 @@ def read(request: CaseRequest, conditions: Iterable[Condition], terminal: Termin
     return study
 
 
-def begin(run: StudyRun, terminal: Terminal, *, report_only: bool) -> None:
-    """Say what changed since the last run; refuse to go on where points lack and none is wanted."""
-    for note in run.start.notes:
-        terminal.note(note)
-    if report_only and run.start.pending:
-        raise Refused(
-            f"{run.store.path} lacks {len(run.start.pending)} of {len(run.keys)} points; run the"
-            " study without --report-only first"
-        )
+def computed(
+    command: str, study: Study, store: Store, choices: SweepChoices, terminal: Terminal
+) -> StudyResult:
+    """A study whose points are in a store; what goes on is said, and an interruption ends it."""
+    from rpscli.studies import StudyInterrupted
 
+    layout = study.layout
 
-def compute(command: str, run: StudyRun, terminal: Terminal) -> Finish:
-    """Compute what is not stored yet, and say what is going on; leave if the user interrupts."""
-    from rpscli.study_run import StudyInterrupted
-
-    start, total = run.start, len(run.keys)
-    if start.pending and start.kept:
-        terminal.note(f"continuing: {start.kept} of {total} points are stored already")
-    if start.pending and run.layout.plan.analysis == "timehistory" and not run.scheduler:
-        announce_compilation(terminal)
+    @contextmanager
+    def watch(begin: Start) -> Iterator[Callable[[Progress], None]]:
+        for note in begin.notes:
+            terminal.note(note)
+        pending, total = len(begin.pending), len(begin.keys)
+        if choices.report_only and pending:
+            raise Refused(
+                f"{store.path} lacks {pending} of {total} points; run the study without"
+                " --report-only first"
+            )
+        if pending and begin.kept:
+            terminal.note(f"continuing: {begin.kept} of {total} points are stored already")
+        if pending and layout.plan.analysis == "timehistory" and not choices.scheduler:
+            announce_compilation(terminal)
+        with progress_report(terminal, begin.kept, begin.kept + pending) as report:
+            yield report
 
     def announce() -> None:
         terminal.note("\nstopping after the points under way; Ctrl-C again stops at once")
 
     try:
-        with progress_report(terminal, start.kept, start.kept + len(start.pending)) as report:
-            finish = run.compute(report, announce)
+        result = study.computed(
+            store,
+            jobs=choices.jobs,
+            scheduler=choices.scheduler,
+            retry_failed=choices.retry_failed,
+            watch=watch,
+            announce=announce,
+        )
     except StudyInterrupted as interruption:
         text = str(interruption)
         terminal.note(text)
         document = {
             **heading(command),
-            "study": study_heading(run.layout),
+            "study": study_heading(layout),
             "points": interruption.points,
             **failure_document("Interrupted", text, INTERRUPTED),
         }
         terminal.result(document)
         raise click.exceptions.Exit(INTERRUPTED) from None
-    if start.pending:
-        rate = finish.computed / finish.seconds if finish.seconds else 0.0
-        terminal.note(
-            f"computed {finish.computed} points in {duration(finish.seconds)}, {rate:.3g} points/s"
-        )
-    return finish
-
-
-def stored_study(
-    command: str,
-    study: Study,
-    folder: Path,
-    look: Look,
-    terminal: Terminal,
-    *,
-    conditions: Iterable[Condition] = (),
-    report_only: bool = False,
-) -> tuple[StudyRun, Collected]:
-    """A study whose points are stored in a folder, after those that lack were computed."""
-    from rpscli.report.study.folder import study_folder
-    from rpscli.sweep.store import Store
-
-    study_folder(study.layout, folder, study.overrides)
-    with Store(folder) as store:
-        run = study.opened(store, conditions=conditions)
-        begin(run, terminal, report_only=report_only)
-        compute(command, run, terminal)
-        with passing_time("making reports", terminal):
-            return run, run.collect(folder, look)
+    if count := result.done.computed:
+        seconds = result.done.seconds
+        rate = count / seconds if seconds else 0.0
+        terminal.note(f"computed {count} points in {duration(seconds)}, {rate:.3g} points/s")
+    return result
 
 
 def study_heading(layout: StudyPoints) -> dict[str, str]:
@@ -157,8 +135,7 @@ def show_dry_run(study: Study, choices: SweepChoices, terminal: Terminal) -> Non
     from rpscli.analyses.kernels.compilation import is_ready
     from rpscli.machine import available_cores
     from rpscli.physics.state import LANES
-    from rpscli.sweep.points.layout import described
-    from rpscli.sweep.run.schedule import estimated_seconds
+    from rpscli.sweep.run import estimated_seconds
 
     terminal.warn(study.warnings)  # first: trying points may take long where the case is at fault
     layout, count = study.layout, len(study)
@@ -168,7 +145,7 @@ def show_dry_run(study: Study, choices: SweepChoices, terminal: Terminal) -> Non
     points: dict[int, dict[str, Any]] = {}
     for number in sorted({*first, *last}):
         point = layout[number]
-        points[number] = {"point": number + 1, **described(layout, number)}
+        points[number] = {"point": number + 1, **layout.described(number)}
         if histories and layout.plan.measure is None:  # no measure decides about the factor
             points[number]["scale"] = point.scale * point.scale_change
     ways = 2 if any(record and record.is_pair for record in layout.records) else 1
@@ -177,7 +154,7 @@ def show_dry_run(study: Study, choices: SweepChoices, terminal: Terminal) -> Non
         source = "a guess, since the kernel is not compiled yet"
     else:
         with passing_time("trying some of the points", terminal):
-            seconds = estimated_seconds(layout, study.context, jobs)
+            seconds = estimated_seconds(layout, jobs)
         source = "trying some of the points"
     document: dict[str, Any] = {
         **heading("sweep"),
@@ -185,7 +162,7 @@ def show_dry_run(study: Study, choices: SweepChoices, terminal: Terminal) -> Non
         "dry_run": True,
         "analysis": layout.plan.analysis,
         "points": count,
-        "systems": len(layout.combinations),
+        "systems": len(layout.properties),
         "records": len(layout.records),
         "scales": len(layout.scales),
         "members": len(layout.members),

@@ -23,8 +23,7 @@ from rpscli.commands.shell.terminal import Terminal, concluded, leave, rendered
 from rpscli.commands.shell.waiting import passing_time
 from rpscli.commands.study import (
     SweepChoices,
-    begin,
-    compute,
+    computed,
     read,
     show_dry_run,
     study_heading,
@@ -35,7 +34,7 @@ from rpscli.report.figures.look import Look
 from rpscli.report.table import Heading, Part, Table
 
 if TYPE_CHECKING:
-    from rpscli.study_run import Collected, StudyRun
+    from rpscli.studies import Collected, StudyResult
 
 
 OF_A_REPORT = 12
@@ -88,19 +87,16 @@ def command(
     if chosen.dry_run:
         show_dry_run(given, chosen, terminal)
         return
-    from rpscli.report.study.folder import study_folder
     from rpscli.report.study.statistics import verdicts_in_short
     from rpscli.sweep.store import Store
 
     place = output.place or RESULTS / given.layout.study.name / "sweep"
-    folder = study_folder(given.layout, place, given.overrides, force=output.force)
+    folder = given.output(place, force=output.force)
     with Store(place, fresh=chosen.fresh) as store:
-        run = given.opened(store, conditions=conditions, **chosen.of_run)
-        begin(run, terminal, report_only=chosen.report_only)
-        finish = compute("sweep", run, terminal)
+        result = computed("sweep", given, store, chosen, terminal)
         with passing_time("making reports", terminal):
-            found = run.collect(place, look)
-        error = run.error(found)
+            found = result.collected(look)
+        error = result.error(found)
         folder.add_all(found.files.items())
         store.require()
         write(folder, terminal)
@@ -110,41 +106,43 @@ def command(
         terminal.warn_first(list(of_one), "with --json", OF_A_REPORT)
     document = {
         **heading("sweep"),
-        "study": study_heading(run.layout),
-        "note": _note(run) or None,
+        "study": study_heading(result.layout),
+        "note": _note(result) or None,
         "points": {
-            "total": len(run.table),
-            "computed": finish.computed,
-            "kept": run.start.kept,
+            "total": len(result),
+            "computed": result.done.computed,
+            "kept": result.begin.kept,
             "failed": len(found.failures),
-            "unused": run.start.unused,
+            "unused": result.begin.unused,
         },
-        "outcomes": run.outcomes,
-        **run.documents(),
+        "outcomes": result.outcomes,
+        **result.documents(),
         "findings": {
             stem: [{"of": name, "found": sentence} for name, sentence in lines]
             for stem, lines in found.findings.items()
         },
         "reports": found.documents,
         "failures": [failure._asdict() for failure in found.failures],
-        "notes": list(run.start.notes),
+        "notes": list(result.begin.notes),
         "warnings": notes,
         "files": [str(store.path), *folder.files],
     }
-    terminal.result(concluded(document, error), _shown(run, found, whole=whole))
+    terminal.result(concluded(document, error), _shown(result, found, whole=whole))
     if isinstance(error, LimitExceeded) and not (terminal.as_json or terminal.quiet):
         # The table has them one by one.
-        error = LimitExceeded(verdicts_in_short(run.verdicts, f"{len(run.verdicts)} limits"))
+        error = LimitExceeded(
+            verdicts_in_short(result.judgements, f"{len(result.judgements)} limits")
+        )
     leave(error)
 
 
-def _shown(run: StudyRun, found: Collected, *, whole: bool) -> list[Part]:
+def _shown(result: StudyResult, found: Collected, *, whole: bool) -> list[Part]:
     """All, or as many rows of each table as fit into some lines."""
     from rpscli.report.study.shown import asked, cut
 
     if whole:
-        return list(_tables(run, found, None))
-    parts, rows = list(_tables(run, found, asked(run.layout))), MOST_ROWS
+        return list(_tables(result, found, None))
+    parts, rows = list(_tables(result, found, asked(result.layout))), MOST_ROWS
     while True:
         few = list(cut(parts, rows, "; --all prints them"))
         if rows == 1 or rendered(few).count("\n") <= MOST_LINES:
@@ -152,20 +150,20 @@ def _shown(run: StudyRun, found: Collected, *, whole: bool) -> list[Part]:
         rows = max(1, min(rows - 1, 3 * rows // 4))
 
 
-def _tables(run: StudyRun, found: Collected, wanted: set[str] | None) -> Iterator[Part]:
+def _tables(result: StudyResult, found: Collected, wanted: set[str] | None) -> Iterator[Part]:
     from rpscli.report.study.shown import of_first_system, summary_tables, verdict_table
 
-    yield Heading(run.layout.study.title)
-    counts = {"points": len(run.table), **run.outcomes}
+    yield Heading(result.study.title)
+    counts = {"points": len(result), **result.outcomes}
     listing = [(name, str(count)) for name, count in counts.items()]
-    if aim := run.layout.scaled_to:
+    if aim := result.layout.scaled_to:
         listing.append(("records scaled to", aim))
     yield Table.listing(listing)
-    if run.summary is not None:
-        yield from summary_tables(run.summary, wanted)
-        yield of_first_system(run.layout)
-        if run.verdicts:
-            yield verdict_table(run.summary, run.verdicts)
+    if result.summary is not None:
+        yield from summary_tables(result.summary, wanted)
+        yield of_first_system(result.layout)
+        if result.judgements:
+            yield verdict_table(result.summary, result.judgements)
     for stem, lines in found.findings.items():
         yield Heading(stem)
         yield Table.listing(lines)
@@ -175,9 +173,9 @@ def _tables(run: StudyRun, found: Collected, wanted: set[str] | None) -> Iterato
         if isinstance(part, Table | Heading) or part not in told:
             yield part
         told |= set() if isinstance(part, Table) else {part}
-    if note := _note(run):
+    if note := _note(result):
         yield note
 
 
-def _note(run: StudyRun) -> str:
-    return direction_note(run.layout.pairs) if run.summary else ""
+def _note(result: StudyResult) -> str:
+    return direction_note(result.layout.pairs) if result.summary else ""

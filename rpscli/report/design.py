@@ -26,10 +26,9 @@ from rpscli.report.study.statistics import (
 )
 from rpscli.report.table import Column, Part, Table, large, shown
 from rpscli.sweep.design import ROBUST, Answer, Requirement
-from rpscli.sweep.intensities import unit_of
 from rpscli.sweep.statistics.fractiles import CONFIDENCE
 from rpscli.sweep.statistics.verdicts import Verdict
-from rpscli.sweep.table import Array
+from rpscli.sweep.table import Array, unit_of
 
 DIGITS = 4
 

@@ -22,12 +22,11 @@ from rpscli.case.design import DesignTask
 from rpscli.case.study.schema import SampleSection
 from rpscli.case.text.document import Fault
 from rpscli.errors import CaseError
-from rpscli.sweep.points.check import needs_of
-from rpscli.sweep.points.combinations import unit_cube
-from rpscli.sweep.points.layout import StudyPoints, lay_out
+from rpscli.sweep.points import StudyPoints, lay_out
 from rpscli.sweep.statistics.fractiles import CONFIDENCE, fractiles
 from rpscli.sweep.statistics.grouping import INTENSITY, shown_keys
 from rpscli.sweep.statistics.verdicts import decisive, judge, rates_of_levels, worse
+from rpscli.sweep.systems import needs_of, unit_cube
 from rpscli.sweep.table import Array, Indices, Table
 
 Flags = NDArray[np.bool_]

@@ -16,7 +16,6 @@ from rpscli.analyses.demand import WORTH_LANES, demands
 from rpscli.analyses.kernels.compilation import is_ready
 from rpscli.analyses.largest_demands import Demand
 from rpscli.physics.state import LANES
-from rpscli.sweep.evaluation.context import StudyContext
 from rpscli.sweep.table import Table
 
 MOST = 64
@@ -28,17 +27,21 @@ PROMISED = 1e-4
 NAMED = 5
 
 
-def step_notes(table: Table, context: StudyContext) -> Iterator[str]:
+def step_notes(table: Table) -> Iterator[str]:
     """What to know of points that change with steps of half the length; nothing if none does."""
-    known = np.flatnonzero(~table.failed)
+    layout, known = table.layout, np.flatnonzero(~table.failed)
     some = known[:: max(-(-len(known) // MOST), 1)].tolist()
-    given = [context.history(table.layout[number]) for number in some]
-    lanes = LANES if len(given) >= WORTH_LANES else 1
-    if not all(is_ready(1 if of.motion.y is None else 2, lanes) for of in given):
-        return  # all was stored before, by a machine that had to compile nothing since
+    requests = [layout.context.history(layout[number]) for number in some]
+    lanes = LANES if len(requests) >= WORTH_LANES else 1
+    if not all(is_ready(1 if of.motion.y is None else 2, lanes) for of in requests):
+        yield (
+            "steps: whether points change with steps of half the length was not tried: all of them"
+            " were stored before, and the kernel that computes them is not compiled yet"
+        )
+        return
     finer = [
         replace(of, settings=replace(of.settings, accuracy=2.0 * of.settings.accuracy))
-        for of in given
+        for of in requests
     ]
     names = [
         f"{number + 1} ({changed})"

@@ -1,42 +1,69 @@
-"""All results of a study as columns, in its order; the ground on which statistics stand."""
+"""All results of a study as columns, in its order: in memory, as `points.csv`, by groups."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import csv
+import hashlib
+import io
+import json
+from collections.abc import Iterable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.analyses.result_quantities import STOREY_SHEARS
+from rpscli.case.schema.keys import unit as key_unit
+from rpscli.errors import RecordError
+from rpscli.model.podium import PodiumStructure
+from rpscli.records.ground_motion import MotionComponents
+from rpscli.records.measures import MEASURES, Measure, Of, measure_label, needs_period
 from rpscli.records.recordings import By
 from rpscli.shown import Frozen, frozen
-from rpscli.sweep.evaluation.results import FAILED, MISSING, SCALARS
-from rpscli.sweep.points.layout import StudyPoints
-from rpscli.sweep.store import Stored
+from rpscli.sweep.context import RecordRequest, StudyContext
+from rpscli.sweep.evaluation import (
+    FAILED,
+    MISSING,
+    SCALARS,
+    PointResults,
+    reference_shears,
+)
+from rpscli.sweep.points import StudyPoints
+from rpscli.sweep.store import Store
+from rpscli.units import in_si
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
+Columns = dict[str, NDArray[Any]]
+
+LINES_A_PIECE = 1000
+"""Of `points.csv`."""
+
+
+def unit_of(name: str) -> str:
+    """SI unit of a measure or of a varied key; ``-`` for plain numbers and words."""
+    alone = name.partition("(")[0]
+    # Keys have dots, all but those that a study varies besides them.
+    if alone in MEASURES or ("." not in name and alone in MEASURES.names()):
+        return MEASURES[alone].unit
+    return key_unit(name)
 
 
 @dataclass(frozen=True, eq=False)
-class Table(Frozen):
-    """Outcomes and scalar results of all points."""
+class Outcomes(Frozen):
+    """Outcomes and scalar results of histories, which need not be independent."""
 
-    layout: StudyPoints
-    """The study, laid out."""
     outcomes: NDArray[np.str_]
     """(points,) words."""
-    scale: Array
-    """(points,) factors on the records; NaN where it is not known."""
     columns: dict[str, Array]
     """(points,) of each scalar result under its name; NaN where there is none."""
-    messages: dict[int, str]
-    """Why points failed, by their number."""
-    storey_shears: Array
-    """(points, most storeys) largest storey shears from the bottom [N], NaN above the roof."""
+    clusters: Indices
+    """(points,) numbers of what is independent."""
+    independent: By
+    """What that is."""
 
     def __len__(self) -> int:
         return len(self.outcomes)
@@ -51,54 +78,52 @@ class Table(Frozen):
         """(points,) which overturned."""
         return frozen(np.char.startswith(self.outcomes, "overturned"))
 
-    @property
-    def clusters(self) -> Indices:
-        """(points,) numbers of what is independent."""
-        return self.layout.clusters
+
+@dataclass(frozen=True, eq=False)
+class Table(Outcomes):
+    """Those of all points of a study."""
+
+    layout: StudyPoints
+    """The study, laid out."""
+    scale: Array
+    """(points,) factors on the records; NaN where it is not known."""
+    messages: dict[int, str]
+    """Why points failed, by their number."""
+    storey_shears: Array
+    """(points, most storeys) largest storey shears from the bottom [N], NaN above the roof."""
+
+    @classmethod
+    def of(cls, layout: StudyPoints, stored: PointResults) -> Table:
+        """From what is stored of `NAMES`, in the order of the study."""
+        unknown = np.full(len(layout), np.nan)
+        most = max(properties.storeys for properties in layout.properties)
+        shears = np.full((len(layout), most), np.nan)
+        if (known := stored.columns.get(STOREY_SHEARS.name)) is not None:
+            shears[:, : known.shape[1]] = known
+        return cls(
+            outcomes=stored.outcomes,
+            columns={
+                name: stored.columns.get(name, unknown) for name in SCALARS[layout.plan.analysis]
+            },
+            clusters=layout.clusters,
+            independent=layout.independent,
+            layout=layout,
+            scale=stored.columns.get("scale", unknown),
+            messages={row: text or "no reason was given" for row, text in stored.messages.items()},
+            storey_shears=shears,
+        )
 
     @property
-    def independent(self) -> By:
-        """What that is."""
-        return self.layout.independent
+    def factors(self) -> Array | None:
+        """(points,) on the records, known before unless a measure decides; None without records."""
+        if self.layout.plan.analysis != "timehistory":
+            return None
+        return self.layout.factors if self.layout.plan.measure is None else self.scale
 
 
-def tabulate(layout: StudyPoints, stored: Stored) -> Table:
-    """Columns of what is stored, given in the order of the study."""
-    names, count = SCALARS[layout.plan.analysis], len(layout)
-    found = stored([*names, "scale", STOREY_SHEARS.name])
-    unknown = np.full(count, np.nan)
-    most = max(properties.storeys for properties in layout.properties)
-    shears = np.full((count, most), np.nan)
-    if (known := found.columns.get(STOREY_SHEARS.name)) is not None:
-        shears[:, : known.shape[1]] = known
-    return Table(
-        layout,
-        found.outcomes,
-        found.columns.get("scale", unknown),
-        {name: found.columns.get(name, unknown) for name in names},
-        {row: text or "no reason was given" for row, text in found.messages.items()},
-        shears,
-    )
-
-
-class Dimension(NamedTuple):
-    """One axis of the product: the keys that name it, and their values along it."""
-
-    keys: tuple[str, ...]
-    rows: Sequence[tuple[object, ...]]
-
-
-def dimensions(layout: StudyPoints) -> tuple[Dimension, ...]:
-    """Axes of the study, then sample, record, scale and member: those of `StudyPoints.shape`."""
-    axes = [Dimension(axis.keys, axis.rows) for axis in layout.study.axes]
-    sources = [(None if r is None else r.source,) for r in layout.records]
-    return (
-        *axes,
-        Dimension((), [()] * layout.combinations.shape[-1]),
-        Dimension(("record",), sources),
-        Dimension(("scale",), [(scale,) for scale in layout.scales]),
-        Dimension((), [()] * len(layout.members)),
-    )
+def names_of(layout: StudyPoints) -> list[str]:
+    """Of the stored results that a table takes."""
+    return [*SCALARS[layout.plan.analysis], "scale", STOREY_SHEARS.name]
 
 
 class Group(NamedTuple):
@@ -109,36 +134,257 @@ class Group(NamedTuple):
 
 
 def groups(layout: StudyPoints, keys: Sequence[str], within: Indices | None = None) -> list[Group]:
-    """Points grouped by the values of keys, in the order in which the keys are named."""
-    known, shape = dimensions(layout), layout.shape
-    numbers = np.arange(len(layout)) if within is None else within
-    places = np.unravel_index(numbers, shape)
-    axes = list(dict.fromkeys(_axis(known, key) for key in keys))
-    if not axes:
+    """All points, or some, grouped by the values of keys, in the order in which these are named."""
+    numbers, axes = np.arange(len(layout)) if within is None else within, layout.study.axes
+    known: dict[str, tuple[int, Sequence[object]]] = {
+        key: (number, [row[place] for row in axis.rows])
+        for number, axis in enumerate(axes)
+        for place, key in enumerate(axis.keys)
+    }
+    known["record"] = len(axes) + 1, [record and record.source for record in layout.records]
+    known["scale"] = len(axes) + 2, layout.scales
+    asked = [known[key] for key in keys]
+    chosen = [*dict.fromkeys(axis for axis, _ in asked)]
+    if not chosen:
         return [Group((), numbers)]
-    found: list[Group] = []
-    for row in np.ndindex(*(shape[axis] for axis in axes)):
-        chosen = np.ones(len(numbers), dtype=bool)
-        for axis, place in zip(axes, row, strict=True):
-            chosen &= places[axis] == place
-        if chosen.any():
-            at = dict(zip(axes, row, strict=True))
-            values = tuple(_value(known[_axis(known, key)], key, at, known) for key in keys)
-            found.append(Group(values, numbers[chosen]))
-    return found
-
-
-def _axis(known: Sequence[Dimension], key: str) -> int:
-    return next(axis for axis, dimension in enumerate(known) if key in dimension.keys)
-
-
-def _value(
-    dimension: Dimension, key: str, at: dict[int, int], known: Sequence[Dimension]
-) -> object:
-    row = dimension.rows[at[_axis(known, key)]]
-    return row[dimension.keys.index(key)]
+    places = np.unravel_index(numbers, layout.shape)
+    lengths = [layout.shape[axis] for axis in chosen]
+    codes = np.ravel_multi_index([places[axis] for axis in chosen], lengths)
+    order = np.argsort(codes, kind="stable")
+    parts = np.split(order, np.flatnonzero(np.diff(codes[order])) + 1)
+    return [
+        Group(tuple(values[places[axis][part[0]]] for axis, values in asked), numbers[part])
+        for part in parts
+        if len(part)
+    ]
 
 
 def leading_keys(layout: StudyPoints) -> tuple[str, ...]:
     """The first key of each varied axis: what tells systems apart, sample aside."""
     return tuple(axis.keys[0] for axis in layout.study.axes)
+
+
+def units_of_columns(layout: StudyPoints) -> dict[str, str]:
+    """Units of all columns by name."""
+    names = {name: unit_of(name) for name in layout.identifying}
+    scale = {"scale": "-"} if layout.plan.analysis == "timehistory" else {}
+    results = {path: quantity.unit for path, quantity in SCALARS[layout.plan.analysis].items()}
+    return {**names, **scale, "outcome": "-", **results}
+
+
+def points_csv(table: Table) -> Iterator[str]:
+    """The text of `points.csv`, in pieces: one line a point, the same bytes on every run.
+
+    Numbers have all their digits; what does not exist is empty.
+    """
+    layout, scales, units = table.layout, table.factors, units_of_columns(table.layout)
+    known = [
+        (layout.places[of], [_cell(value, units[name]) for value in values])
+        for name, (of, values) in layout.identifying.items()
+    ]
+    results = [(table.columns[name], q.whole) for name, q in SCALARS[layout.plan.analysis].items()]
+    buffer = io.StringIO()
+    writer = csv.writer(buffer, lineterminator="\n")
+    writer.writerow(f"{name} [{unit}]" for name, unit in units.items())
+    for first in range(0, len(table), LINES_A_PIECE):
+        piece = slice(first, first + LINES_A_PIECE)
+        columns = [[cells[i] for i in places[piece].tolist()] for places, cells in known]
+        columns += [] if scales is None else [_numbers(scales[piece])]
+        columns.append(table.outcomes[piece].tolist())
+        columns += [_numbers(column[piece], whole=whole) for column, whole in results]
+        writer.writerows(zip(*columns, strict=True))
+        yield buffer.getvalue()
+        buffer.seek(0)
+        buffer.truncate()
+
+
+def _numbers(values: Array, *, whole: bool = False) -> list[str]:
+    if not np.isfinite(values).any():
+        return [""] * len(values)
+    text = (lambda value: str(int(value))) if whole else repr
+    finite = np.isfinite(values).tolist()
+    return [text(v) if known else "" for v, known in zip(values.tolist(), finite, strict=True)]
+
+
+def _cell(value: object, unit: str) -> str:
+    """A value in the unit of its column; lists and mappings as JSON."""
+    value = in_si(value, unit)
+    if isinstance(value, str):
+        return value
+    return "" if value is None else json.dumps(value)
+
+
+def point_columns(table: Table) -> Columns:
+    """(points,) of each column of `points.csv` by name: SI numbers, NaN for none, else objects."""
+    layout, units = table.layout, units_of_columns(table.layout)
+    columns = {
+        name: array([in_si(value, units[name]) for value in values])[layout.places[of]]
+        for name, (of, values) in layout.identifying.items()
+    }
+    if (scales := table.factors) is not None:
+        columns["scale"] = scales
+    return {**columns, "outcome": table.outcomes, **table.columns}
+
+
+def array(values: Iterable[Any]) -> NDArray[Any]:
+    """Numbers if all of them are, with NaN for None; else objects."""
+    kept = list(values)
+    numbers = [np.nan if value is None else np.inf if value == "inf" else value for value in kept]
+    if all(isinstance(value, int | float) for value in numbers):
+        return np.array(numbers)
+    objects = np.empty(len(kept), dtype=object)
+    objects[:] = kept
+    return objects
+
+
+class Asked(Protocol):
+    """Which measure is asked for, as options of a report say it."""
+
+    @property
+    def measure(self) -> Measure | None:
+        """The one that the study scales to by default, else PGV."""
+
+    @property
+    def period(self) -> float | None:
+        """Of Sa, AvgSa or FIV3; T1 of each system by default."""
+
+    @property
+    def damping(self) -> float:
+        """Of Sa, AvgSa or Housner."""
+
+
+class Intensity(NamedTuple):
+    """A measure of the scaled records.
+
+    `values` are (points,), NaN where a record cannot be read; `period` is that of Sa and the like,
+    None for T1 of each system; `of` says what of pairs it is, None where no record is measured as
+    a pair.
+    """
+
+    measure: Measure
+    unit: str
+    period: float | None
+    values: Array
+    of: Of | None = None
+
+    @property
+    def name(self) -> str:
+        """As columns call it."""
+        return measure_label(self.measure, self.of)
+
+
+def intensity(table: Table, options: Asked) -> Intensity:
+    """The measure that a report asks for; by default the one that the study scales to, else PGV."""
+    layout, scaled = table.layout, table.layout.plan.measure
+    measure, period, damping = options.measure, options.period, options.damping
+    if measure is None and scaled is not None:
+        measure, period, damping = scaled.measure, scaled.period, scaled.damping
+    measure = measure or "PGV"
+    target = scaled and (scaled.measure, scaled.period, scaled.damping) == (
+        measure,
+        period,
+        damping,
+    )
+    values, power = np.full(len(table), np.nan), MEASURES[measure].power
+    for point in layout:
+        assert point.record is not None, "points of histories have a record"
+        if target:
+            # Not by way of the factor, whose rounding would blur equal intensities.
+            unscaled, factor = point.scale, point.scale_change
+        else:
+            at = None
+            if needs_period(measure):
+                at = period or layout.properties[point.system].period
+                assert at is not None, "`measure_without_period` was asked before"
+            try:
+                unscaled = layout.context.records.intensity(
+                    point.record, measure, at, damping, layout.plan.of
+                )
+            except RecordError:
+                continue
+            factor = float(table.scale[point.number])
+        values[point.number] = unscaled * abs(factor) ** power
+    return Intensity(measure, MEASURES[measure].unit, period, values, layout.of)
+
+
+FixedBaseReferences = dict[tuple[int, RecordRequest], Array]
+"""Largest storey shears (n,) [N] of a system on a fixed base, under an unscaled record."""
+
+
+def fixed_base_references(layout: StudyPoints, store: Store, jobs: int) -> FixedBaseReferences:
+    """Those of all systems with a building; what is not in the store is computed and stored.
+
+    The response is linear: one run at scale 1 serves every scale, and systems that differ in their
+    bearings alone share it.
+    """
+    known, records = store.fixed_base(), layout.context.records
+    keys: dict[tuple[int, RecordRequest], bytes] = {}
+    runs: dict[bytes, tuple[PodiumStructure, MotionComponents]] = {}
+    structures: dict[bytes, PodiumStructure] = {}  # buildings of many systems are the same
+    for system, properties in enumerate(layout.properties):
+        if not properties.building:
+            continue
+        for request in dict.fromkeys(request or properties.record for request in layout.records):
+            assert request is not None, "points of histories have a record"
+            what = layout.plan.solver.encode(), properties.building, records.digest(request)
+            key = hashlib.sha256(b"".join(what)).digest()
+            try:
+                if key not in known and key not in runs:
+                    motion = records.motion(request)
+                    if properties.building not in structures:
+                        structures[properties.building] = layout.system(system).structure
+                    runs[key] = structures[properties.building], motion
+            except RecordError:
+                continue
+            keys[system, request] = key
+    with ThreadPoolExecutor(jobs) as pool:
+        shears = pool.map(lambda run: reference_shears(*run), runs.values())
+        new = dict(zip(runs, shears, strict=True))
+    if new:
+        store.add_fixed_base(new)
+    known |= new
+    return {place: known[key] for place, key in keys.items()}
+
+
+@dataclass(frozen=True, eq=False)
+class StudyResults:
+    """Results of all points as a table, and the ways to what is not in it."""
+
+    table: Table
+    keys: list[bytes]
+    store: Store
+    jobs: int
+
+    @property
+    def context(self) -> StudyContext:
+        """Systems and motions of the study."""
+        return self.table.layout.context
+
+    def stored(self, names: Iterable[str]) -> PointResults:
+        """What is stored of each point by name; elements of lists by their index."""
+        with self.store:
+            return self.store.results(self.keys, names)
+
+    @cached_property
+    def fixed_base(self) -> FixedBaseReferences:
+        """Storey shears on a fixed base; computed if they are not stored."""
+        with self.store:
+            return fixed_base_references(self.table.layout, self.store, self.jobs)
+
+    def intensity(self, options: Asked) -> Intensity:
+        """The intensity of the ground motion at every point."""
+        return intensity(self.table, options)
+
+    def floor_spectra(self, number: int, damping: float) -> Array:
+        """(2, 2, n, p): isolated and fixed base; pseudo-acceleration and displacement."""
+        # Samples are not stored, so that the history is run once more.
+        from rpscli.analyses import floor_spectra as spectra
+        from rpscli.analyses.timehistory import time_history
+
+        layout = self.table.layout
+        given = layout.context.history(layout[number])
+        result = time_history(given.structure, given.motion.scaled(given.scale), given.settings)
+        fixed = spectra.fixed_base_floor_spectra(result, damping=damping)
+        assert fixed is not None, "every system has a building"
+        both = spectra.isolated_floor_spectra(result, damping=damping), fixed
+        return np.array([(each.pseudo_acceleration, each.displacement) for each in both])

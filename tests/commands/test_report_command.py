@@ -12,7 +12,7 @@ import pytest
 from click.testing import Result
 
 from rpscli.report.table import shown
-from rpscli.sweep.run.runner import Finish
+from rpscli.sweep.run import Progress
 
 Invoke = Callable[..., Result]
 
@@ -189,7 +189,7 @@ def test_a_study_that_is_stopped_goes_on(
     rps: Invoke, study: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     with monkeypatch.context() as patch:
-        patch.setattr("rpscli.study_run.run", lambda *_: Finish(1, 0, 1.0, interrupted=True))
+        patch.setattr("rpscli.studies.run", lambda *_: Progress(9, 0, 1, 0, 1.0))
         result = rps("report", study, "-o", "out.html")
     assert result.exit_code == 130
     assert "the same command continues" in result.stderr

@@ -32,11 +32,10 @@ from rpscli.report.study.fragility import Fragilities, Fragility, LimitState, Ob
 from rpscli.report.study.risk import Risk, risk_figure
 from rpscli.sweep.design import Answer, Requirement
 from rpscli.sweep.fits.lognormal import NOTHING, Lognormal
-from rpscli.sweep.intensities import Intensity
 from rpscli.sweep.statistics.fractiles import share
 from rpscli.sweep.statistics.grouping import Grouping
 from rpscli.sweep.statistics.observations import Agreement, maxima
-from rpscli.sweep.table import Indices
+from rpscli.sweep.table import Indices, Intensity
 
 Array = NDArray[np.float64]
 

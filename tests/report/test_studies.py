@@ -16,12 +16,11 @@ from click.testing import CliRunner
 from matplotlib.figure import Figure
 
 import rpscli
-import rpscli.sweep
 from report.small_results import curve
 from rpscli.cli import program
 from rpscli.report.study.registry import REPORTS
 from rpscli.report.study.report import Found
-from rpscli.sweep.run import schedule
+from rpscli.sweep import run
 from rpscli.sweep.store import Store
 
 ROOT = Path(__file__).parents[2]
@@ -187,7 +186,7 @@ def test_references_take_no_more_threads_than_asked(
         asked.append(given[-1])
         return {}
 
-    monkeypatch.setattr("rpscli.sweep.study_results.fixed_base_references", references)
+    monkeypatch.setattr("rpscli.sweep.table.fixed_base_references", references)
     monkeypatch.chdir(tmp_path)
     Path("study.yaml").write_text(json.dumps(SMALL | {"scale": [0.1], "vary": []}), "utf-8")
     swept = CliRunner().invoke(program, ["sweep", "study.yaml", "--jobs", "1", "-q"])
@@ -255,9 +254,9 @@ def test_slow_points_are_tried_no_more_than_needed(
         tried.append(len(points))
         return 10.0
 
-    monkeypatch.setattr(schedule, "_seconds", slow)
+    monkeypatch.setattr(run, "_seconds", slow)
     layout = result.study.layout
-    assert schedule.estimated_seconds(layout, result.study.context, 2) == 10.0 * len(layout) / 2
+    assert run.estimated_seconds(layout, 2) == 10.0 * len(layout) / 2
     assert tried == [1]  # of which loading is little
 
 
@@ -378,12 +377,6 @@ def test_they_show_themselves_in_a_line(result: rpscli.StudyResult) -> None:
     assert repr(result.study).startswith("Study(title=A small study, points=24, systems=4, ")
     assert repr(result).startswith("StudyResult(title=A small study, points=24, survived=")
     assert "<td>A small study</td>" in result._repr_html_()
-
-
-def test_the_package_of_studies_has_the_public_names() -> None:
-    assert rpscli.sweep.load_study is rpscli.load_study
-    with pytest.raises(AttributeError, match="no attribute 'lode_study'"):
-        _ = rpscli.sweep.lode_study
 
 
 def test_changes_of_the_impact_law_are_mapped(tmp_path: Path) -> None:

@@ -13,11 +13,9 @@ import time
 from collections.abc import Sequence
 
 from rpscli.cli import program
-from rpscli.sweep.evaluation.batch import run_batch
-from rpscli.sweep.evaluation.context import StudyContext
-from rpscli.sweep.evaluation.points import Point
-from rpscli.sweep.evaluation.results import PointResults
-from rpscli.sweep.run import engines
+from rpscli.sweep import run
+from rpscli.sweep.context import Point, StudyContext
+from rpscli.sweep.evaluation import PointResults, run_batch
 from rpscli.sweep.store import Store
 
 LAST = 3
@@ -58,6 +56,6 @@ if __name__ == "__main__":
     NUMBER = signal.Signals[sys.argv.pop(1)]
     # Shells have what runs in the background ignore SIGINT, and its children inherit that.
     signal.signal(signal.SIGINT, signal.default_int_handler)
-    engines.run_batch = compute  # type: ignore[attr-defined]
+    run.run_batch = compute  # type: ignore[attr-defined]
     Store.add = add  # type: ignore[method-assign, assignment]
     program()

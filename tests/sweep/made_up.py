@@ -9,13 +9,9 @@ from typing import Any, NamedTuple, cast
 import numpy as np
 
 from rpscli.report.study.report import Found
-from rpscli.sweep import table
-from rpscli.sweep.evaluation.context import StudyContext
-from rpscli.sweep.evaluation.results import FAILED, MISSING, SCALARS, PointResults, at_path, stacked
-from rpscli.sweep.intensities import intensity
-from rpscli.sweep.points.layout import StudyPoints, lay_out
-from rpscli.sweep.study_results import StudyResults
-from rpscli.sweep.table import Table
+from rpscli.sweep.evaluation import FAILED, MISSING, SCALARS, PointResults, at_path, stacked
+from rpscli.sweep.points import StudyPoints, lay_out
+from rpscli.sweep.table import StudyResults, Table, intensity, names_of
 from sweep.small_studies import STUDY, Make
 
 
@@ -40,7 +36,7 @@ def stored(outcome: str = "survived", **results: object) -> Stored:
 
 
 def reader(rows: Iterable[Stored | None]) -> Callable[[Iterable[str]], PointResults]:
-    """Rows as a store hands them out, by the names of their columns."""
+    """Reads columns of rows by their names, as a store does."""
     points = [row or Stored(MISSING, None, {}) for row in rows]
     names = dict.fromkeys(name for point in points for name in point.results)
     columns = {name: stacked([point.results.get(name) for point in points]) for name in names}
@@ -56,7 +52,7 @@ def reader(rows: Iterable[Stored | None]) -> Callable[[Iterable[str]], PointResu
 
 
 def tabulate(layout: StudyPoints, rows: Iterable[Stored | None]) -> Table:
-    return table.tabulate(layout, reader(rows))
+    return Table.of(layout, reader(rows)(names_of(layout)))
 
 
 def table_of(make: Make, answer: Answer, *changes: tuple[str, str]) -> Table:
@@ -74,13 +70,12 @@ def place(layout: StudyPoints, number: int) -> dict[str, object]:
 
 def results_of(found: Table, rows: Iterable[Stored] = (), fixed: Any = None) -> StudyResults:
     """Results of a study as reports take them; rows are what is stored of its points."""
-    context = StudyContext(found.layout.plan)
     results = SimpleNamespace(
         table=found,
-        context=context,
-        stored=lambda: reader(rows),
+        context=found.layout.context,
+        stored=reader(rows),
         fixed_base=fixed,
-        intensity=lambda asked: intensity(found, context, asked),
+        intensity=lambda asked: intensity(found, asked),
     )
     return cast("StudyResults", results)
 

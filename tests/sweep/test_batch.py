@@ -14,11 +14,10 @@ from rpscli.analyses.pushover import pushover
 from rpscli.analyses.result_quantities import SAMPLED
 from rpscli.analyses.timehistory import time_history
 from rpscli.records.loading import load_record
-from rpscli.sweep.evaluation.batch import run_batch
-from rpscli.sweep.evaluation.context import StudyContext, resolved
-from rpscli.sweep.evaluation.results import SCALARS, PointResults, at_path
-from rpscli.sweep.points.layout import lay_out
-from rpscli.sweep.run.resume import all_keys
+from rpscli.sweep.context import resolved
+from rpscli.sweep.evaluation import SCALARS, PointResults, at_path, run_batch
+from rpscli.sweep.points import lay_out
+from rpscli.sweep.run import all_keys
 from sweep.small_studies import STUDY, Make
 
 PERTURB = ("scale: [", "perturb: {members: 3}\nscale: [")
@@ -38,21 +37,21 @@ def rows(results: PointResults) -> list[dict[str, object]]:
 
 def test_bits_do_not_depend_on_the_batch(study_of: Make) -> None:
     layout = lay_out(study_of())
-    together = run_batch(StudyContext(layout.plan), list(layout))
-    backwards = run_batch(StudyContext(layout.plan), list(layout)[::-1])
-    alone = [run_batch(StudyContext(layout.plan), [layout[number]]) for number in (0, 17, 35)]
+    together = run_batch(layout.context, list(layout))
+    backwards = run_batch(layout.context, list(layout)[::-1])
+    alone = [run_batch(layout.context, [layout[number]]) for number in (0, 17, 35)]
     assert rows(backwards)[::-1] == rows(together)
     assert [rows(one)[0] for one in alone] == [rows(together)[number] for number in (0, 17, 35)]
 
 
 def test_results_are_those_of_a_single_time_history(study_of: Make) -> None:
     layout = lay_out(study_of(STUDY, PERTURB))
-    context = StudyContext(layout.plan)
+    context = layout.context
     for number in (3, 40, 76):
         point = layout[number]
         assert point.record is not None
         case = resolved(layout.plan, point.values)
-        structure = context.systems[point].perturbed(point.restitution_change)
+        structure = layout.system(point.system).perturbed(point.restitution_change)
         changed = case.structure.restitution * point.restitution_change
         assert structure.restitution == pytest.approx(changed, rel=1e-12)
         motion = load_record(point.record.source).scaled(point.scale * point.scale_change)
@@ -70,7 +69,7 @@ def test_results_are_those_of_a_single_time_history(study_of: Make) -> None:
 def test_whole_histories_tell_more_and_nothing_else(study_of: Make) -> None:
     brief = lay_out(study_of())
     whole = lay_out(study_of(STUDY, ("scale: [", "whole_histories: true\nscale: [")))
-    context, more = StudyContext(brief.plan), StudyContext(whole.plan)
+    context, more = brief.context, whole.context
     for number in (3, 20):
         (without,) = rows(run_batch(context, [brief[number]]))
         (row,) = rows(run_batch(more, [whole[number]]))
@@ -81,14 +80,14 @@ def test_whole_histories_tell_more_and_nothing_else(study_of: Make) -> None:
         told = {quantity.name: getattr(single, quantity.name) for quantity in SAMPLED}
         assert {name: row.get(name) for name in told} == told
         assert set(row) - set(without) <= set(told)
-    assert all_keys(brief, context)[3] != all_keys(whole, more)[3]
+    assert all_keys(brief)[3] != all_keys(whole)[3]
 
 
 def test_whole_histories_tell_when_columns_slide(study_of: Make) -> None:
     changes = ("base: base.yaml", "base: base.yaml\nwhole_histories: true")
     layout = lay_out(study_of(STUDY, changes, overrides=("podium.friction=0.12",)))
     point = layout[20]  # tan(alpha) = 0.15 and more than that is asked of the friction
-    results = run_batch(StudyContext(layout.plan), [point]).columns
+    results = run_batch(layout.context, [point]).columns
     assert results["friction_ratio"][0] > 1.0
     assert 0.0 < results["sliding_time"][0] < results["max_rotation_time"][0]
 
@@ -98,11 +97,11 @@ def test_a_point_that_cannot_be_computed_does_not_disturb_the_others(study_of: M
     points = list(layout)[:4]
     assert points[0].record is not None
     bad = points[1]._replace(record=points[0].record._replace(source="gone.at2"))
-    found = rows(run_batch(StudyContext(layout.plan), [points[0], bad, points[2]]))
+    found = rows(run_batch(layout.context, [points[0], bad, points[2]]))
     assert found[1]["outcome"] == "failed"
     assert "gone.at2" in str(found[1].pop("message"))
     assert set(found[1]) == {"outcome", "storey_shears"}
-    whole = rows(run_batch(StudyContext(layout.plan), points))
+    whole = rows(run_batch(layout.context, points))
     assert [found[0], found[2]] == [whole[0], whole[2]]
 
 
@@ -117,8 +116,8 @@ def test_an_exception_of_the_kernel_is_told_for_its_point_only(
             raise FloatingPointError("boom")
         return histories(requests)
 
-    monkeypatch.setattr("rpscli.sweep.evaluation.batch.histories", fragile)
-    found = run_batch(StudyContext(layout.plan), points)
+    monkeypatch.setattr("rpscli.sweep.evaluation.histories", fragile)
+    found = run_batch(layout.context, points)
     assert (found.outcomes == "failed").tolist() == [False, True, False]
     assert found.messages == {1: "FloatingPointError: boom"}
 
@@ -126,10 +125,9 @@ def test_an_exception_of_the_kernel_is_told_for_its_point_only(
 def test_modal_points_have_the_modes(study_of: Make) -> None:
     begin = STUDY.index("records:")
     layout = lay_out(study_of(STUDY[:begin] + "analysis: modal\n"))
-    context = StudyContext(layout.plan)
-    columns = run_batch(context, list(layout)).columns
+    columns = run_batch(layout.context, list(layout)).columns
     assert np.isnan(columns["rolling.frequency_ratio"][2]).all()  # flat
-    modes = modal(context.systems[layout[0]].structure)
+    modes = modal(layout.system(0).structure)
     assert modes.rolling is not None
     found = at_path(columns, "rolling.frequency_ratio.0")
     assert found is not None
@@ -142,9 +140,8 @@ def test_modal_points_have_the_modes(study_of: Make) -> None:
 def test_pushover_points_have_the_curve(study_of: Make) -> None:
     begin = STUDY.index("records:")
     layout = lay_out(study_of(STUDY[:begin] + "analysis: pushover\n"))
-    context = StudyContext(layout.plan)
-    found = run_batch(context, [layout[0]])
-    expected = pushover(context.systems[layout[0]].structure)
+    found = run_batch(layout.context, [layout[0]])
+    expected = pushover(layout.system(0).structure)
     assert found.outcomes.tolist() == ["done"]
     assert found.columns["uplift_force"][0] == expected.uplift_force
     assert found.columns["curve.force"][0].tolist() == expected.curve.force.tolist()

@@ -6,22 +6,18 @@ import os
 import signal
 import warnings
 from collections.abc import Iterator
+from concurrent.futures import Executor, Future
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from rpscli.errors import RpsError, UsageError
-from rpscli.sweep.evaluation.context import StudyContext
-from rpscli.sweep.evaluation.points import Plan, Point
-from rpscli.sweep.points.layout import lay_out
-from rpscli.sweep.points_csv import points_csv
-from rpscli.sweep.run.engines import Cluster, Threads, compute
-from rpscli.sweep.run.resume import all_keys, resume
-from rpscli.sweep.run.runner import Progress, run
-from rpscli.sweep.run.schedule import Engine
+from rpscli.sweep.context import Plan
+from rpscli.sweep.points import lay_out
+from rpscli.sweep.run import Engine, Progress, compute, run, start
 from rpscli.sweep.store import Store
-from rpscli.sweep.table import tabulate
+from rpscli.sweep.table import Table, names_of, points_csv
 from sweep.small_studies import STUDY, Make
 
 distributed = pytest.importorskip("distributed")
@@ -43,10 +39,9 @@ def scheduler() -> Iterator[str]:
 @pytest.mark.posix
 def test_a_killed_worker_changes_no_byte(study_of: Make, workplace: Path, scheduler: str) -> None:
     layout = lay_out(study_of(STUDY, RECORDS))
-    context = StudyContext(layout.plan)
-    keys = all_keys(layout, context)
-    engine = Cluster(scheduler, layout.plan)
-    workers = list(engine._client.run(os.getpid).values())
+    client = distributed.Client(scheduler, set_as_default=False)
+    workers = list(client.run(os.getpid).values())
+    client.close()
     killed: list[int] = []
 
     def kill_one(progress: Progress) -> None:
@@ -55,13 +50,14 @@ def test_a_killed_worker_changes_no_byte(study_of: Make, workplace: Path, schedu
             killed.append(workers[0])
 
     texts = []
-    engines: list[tuple[str, Engine]] = [("cluster", engine), ("threads", Threads(context, 1))]
-    for name, made in engines:
+    for name, address in (("cluster", scheduler), ("threads", None)):
         with Store(workplace / name) as store:
-            begin = resume(layout, keys, store, retry_failed=False)
-            finish = run(layout, begin, store, made, kill_one)
+            begin = start(layout, store)
+            engine = Engine(layout.context, 1, address)
+            finish = run(layout, begin, store, engine, kill_one)
             assert (finish.computed, finish.failed) == (len(layout), 0)
-            texts.append("".join(points_csv(tabulate(layout, store.stored(keys)))))
+            table = Table.of(layout, store.results(begin.keys, names_of(layout)))
+            texts.append("".join(points_csv(table)))
     assert killed
     assert texts[0] == texts[1]
 
@@ -73,32 +69,33 @@ def test_a_worker_of_another_version_is_refused(study_of: Make) -> None:
         compute("digest", other, [])
 
 
-@pytest.mark.posix
-def test_points_that_kill_every_worker_come_back_as_failed(study_of: Make, scheduler: str) -> None:
+def test_points_that_kill_every_worker_come_back_as_failed(study_of: Make) -> None:
     layout = lay_out(study_of())
-    engine = Cluster(scheduler, layout.plan)
+    engine = Engine(layout.context, 1)
+    tried: list[list[int]] = []
 
-    class Deadly:
-        """What Dask hands back for a task that took its workers with it."""
+    class Deadly(Executor):
+        """A cluster on which the first point takes its workers with it."""
 
-        status = "error"
+        def submit(self, work: Any, /, *inputs: Any, **_: Any) -> Future[Any]:
+            future: Future[Any] = Future()
+            tried.append([point.number for point in inputs[-1]])
+            if 0 in tried[-1]:
+                future.set_exception(distributed.KilledWorker("task", None, 3))
+            else:
+                future.set_result(work(*inputs))
+            return future
 
-    error = distributed.KilledWorker("task", None, 3)
-    deadly = Deadly()
-    given: dict[Any, list[Point]] = {deadly: [layout[0], layout[1]]}
-    finished = distributed.as_completed(loop=engine._client.loop, with_results=True)
-    assert engine._computed(deadly, error, given, finished) == []
-    # Each is tried alone, and these can be computed after all.
-    alone = [engine._computed(future, found, given, finished) for future, found in finished]
-    assert sorted(points[0].number for ((points, _),) in alone) == [0, 1]
-    given[deadly] = [layout[0]]
-    ((points, results),) = engine._computed(deadly, error, given, finished)
-    assert (points[0].number, results.outcomes.tolist()) == (0, ["failed"])
-    assert "died" in results.messages[0]
-    engine._client.close()
+    engine._executor, engine._deadly = Deadly(), distributed.KilledWorker
+    engine._digest, engine._plan = "deadly", layout.plan
+    found = {ps[0].number: results for ps, results in engine.outcomes([[layout[0], layout[1]]])}
+    assert tried == [[0, 1], [0], [1]]  # each is tried alone
+    assert found[0].outcomes.tolist() == ["failed"]
+    assert "died" in found[0].messages[0]
+    assert found[1].messages == {}
 
 
 def test_no_scheduler_is_told(study_of: Make, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("rpscli.sweep.run.engines.PATIENCE", 0.3)
+    monkeypatch.setattr("rpscli.sweep.run.PATIENCE", 0.3)
     with pytest.raises(UsageError, match="no Dask scheduler"):
-        Cluster("tcp://127.0.0.1:9", lay_out(study_of()).plan)
+        Engine(lay_out(study_of()).context, 1, "tcp://127.0.0.1:9")

@@ -12,7 +12,7 @@ from rpscli.case.conditions import Condition
 from rpscli.case.design import parse_design
 from rpscli.errors import CaseError
 from rpscli.sweep.design import weights_of
-from rpscli.sweep.points.layout import lay_out
+from rpscli.sweep.points import lay_out
 from rpscli.sweep.statistics.fractiles import clustered, share
 from rpscli.sweep.statistics.grouping import grouping
 from rpscli.sweep.statistics.summary import Records

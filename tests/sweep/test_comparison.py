@@ -18,7 +18,7 @@ from rpscli.errors import CaseError
 from rpscli.report.study.comparison import ComparisonOptions, comparison, uncomparable
 from rpscli.report.study.report import Found
 from rpscli.report.table import records
-from rpscli.sweep.points.layout import lay_out
+from rpscli.sweep.points import lay_out
 from sweep.made_up import ALPHA, place, results_of, stored, tabulate
 from sweep.small_studies import Make
 

@@ -14,11 +14,9 @@ from rpscli.model.impact import ImpactLaw
 from rpscli.records.loading import load_record
 from rpscli.records.measures import intensity_measures
 from rpscli.records.spectrum import spectral_acceleration
-from rpscli.sweep.evaluation.context import StudyContext
-from rpscli.sweep.points.combinations import balance_note, changes, sample
-from rpscli.sweep.points.layout import lay_out
-from rpscli.sweep.run.resume import all_keys
-from rpscli.sweep.run.schedule import LARGEST_BATCH, batches
+from rpscli.sweep.points import lay_out
+from rpscli.sweep.run import LARGEST_BATCH, all_keys, batches
+from rpscli.sweep.systems import balance_note, changes, sample
 from sweep.small_studies import STUDY, Make
 
 MEASURE = ("scale: [0.5, 1.0]", "scale: {measure: PGV, values: [0.3, 0.6]}")
@@ -76,9 +74,9 @@ def test_the_loss_at_impacts_can_be_varied_and_sampled(study_of: Make) -> None:
     )
     sampled = lay_out(study_of(STUDY, (SAMPLE[0], SAMPLE[1].replace(CAP, LOSS))))
     for design in (varied, sampled):
-        context, key = StudyContext(design.plan), design.plan.keys.index("podium.impact.loss")
+        key = design.plan.keys.index("podium.impact.loss")
         for point in design:
-            structure, kappa = context.systems[point].structure, point.values[key]
+            structure, kappa = design.system(point.system).structure, point.values[key]
             edge = replace(structure, impact_law=ImpactLaw()).restitution
             assert 1.0 - structure.restitution == pytest.approx(kappa * (1.0 - edge), rel=1e-12)
 
@@ -106,7 +104,7 @@ def test_uneven_sobol_sizes_are_remarked_on() -> None:
 
 def test_records_are_scaled_to_a_measure(study_of: Make) -> None:
     design = lay_out(study_of(STUDY, MEASURE))
-    context = StudyContext(design.plan)
+    context = design.context
     for point in (design[0], design[9]):
         assert point.record is not None
         motion = load_record(point.record.source).scaled(context.factor(point))
@@ -118,7 +116,7 @@ def test_arias_intensity_grows_with_the_square(study_of: Make) -> None:
     design = lay_out(study_of(STUDY, arias))
     point = design[1]
     assert point.record is not None
-    motion = load_record(point.record.source).scaled(StudyContext(design.plan).factor(point))
+    motion = load_record(point.record.source).scaled(design.context.factor(point))
     assert intensity_measures(motion).arias == pytest.approx(0.6, rel=1e-12)
 
 
@@ -129,7 +127,7 @@ def test_sa_is_taken_at_the_first_period_of_each_system(study_of: Make) -> None:
         "  - superstructure.period: [0.3, 0.6]\n  - podium.bearing.curv",
     )
     design = lay_out(study_of(STUDY, sa, vary))
-    context = StudyContext(design.plan)
+    context = design.context
     periods = set()
     for system in range(4):
         point = design[system * 3 * design.points_of_system]
@@ -160,11 +158,11 @@ def test_the_record_of_the_case_serves_where_the_study_has_none(study_of: Make) 
 def test_keys_do_not_depend_on_how_a_study_arrives_at_a_point(study_of: Make) -> None:
     whole = lay_out(study_of())
     turned = lay_out(study_of(STUDY, ("critical, 0.5, 0", "0, critical"), ("0.5, 1.0", "1.0")))
-    first, second = (all_keys(design, StudyContext(design.plan)) for design in (whole, turned))
+    first, second = (all_keys(design) for design in (whole, turned))
     assert len(set(first)) == len(first)
     assert set(second) < set(first)
     titled = lay_out(study_of(STUDY, ("Test", "Other")))
-    assert all_keys(titled, StudyContext(titled.plan)) == first
+    assert all_keys(titled) == first
 
 
 def test_batches_hold_every_point_once_and_one_size_of_building(study_of: Make) -> None:

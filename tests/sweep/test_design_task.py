@@ -19,10 +19,9 @@ from rpscli.case.text.files import read_text
 from rpscli.case.text.yaml_text import read_yaml
 from rpscli.cli import program
 from rpscli.sweep.design import Search, weights_of
-from rpscli.sweep.evaluation.batch import run_batch
-from rpscli.sweep.evaluation.context import StudyContext
-from rpscli.sweep.points.layout import lay_out
-from rpscli.sweep.run.schedule import LARGEST_BATCH
+from rpscli.sweep.evaluation import run_batch
+from rpscli.sweep.points import lay_out
+from rpscli.sweep.run import LARGEST_BATCH
 from sweep.small_studies import BASE, ROOT
 from sweep.test_interruption import ended
 
@@ -441,7 +440,7 @@ def test_the_shipped_design_against_a_grid(workplace: Path, no_figures: None) ->
     values = task.values(np.array([(x, y) for x in axis for y in axis]))
     values = values[Search(task).valid_cases(values)]
     design = lay_out(task.study_of(values))
-    context = StudyContext(design.plan)
+    context = design.context
     numbers = range(0, len(design), LARGEST_BATCH)
     batches = [[design[n] for n in range(f, min(f + LARGEST_BATCH, len(design)))] for f in numbers]
     results = [run_batch(context, batch) for batch in batches]

@@ -15,9 +15,8 @@ from click.testing import CliRunner
 from rpscli.cli import program
 from rpscli.records.formats.at2 import at2_text
 from rpscli.records.loading import load_record
-from rpscli.sweep.evaluation.batch import run_batch
-from rpscli.sweep.evaluation.context import StudyContext
-from rpscli.sweep.points.layout import reproduction
+from rpscli.sweep.evaluation import run_batch
+from rpscli.sweep.points import reproduction
 from sweep.small_studies import BASE, STUDY, study_file
 
 Document = Callable[..., dict[str, Any]]
@@ -71,10 +70,10 @@ def test_each_failure_has_a_command_that_reproduces_it(spoilt: Path, sweep_json:
 
 def test_the_command_of_a_good_point_gives_its_numbers(spoilt: Path, sweep_json: Document) -> None:
     layout = study_file("study.yaml", "perturb={members: 3}", "podium.cap_beam_mass_ratio=8").layout
-    context = StudyContext(layout.plan)
+    context = layout.context
     point = layout[2]
     row = run_batch(context, [point]).columns
-    words = shlex.split(reproduction(layout, context, point, Path("base.yaml")))
+    words = shlex.split(reproduction(layout, point, Path("base.yaml")))
     single = CliRunner().invoke(program, [*words[1:], "--json"])
     found = json.loads(single.stdout)
     assert found["max_rotation"] == pytest.approx(row["max_rotation"][0], rel=1e-6)

@@ -20,7 +20,7 @@ from rpscli.analyses.timehistory import time_history
 from rpscli.case.case import load_case
 from rpscli.records.loading import load_record
 from rpscli.report.study.heights import FloorSpectraOptions, without_floors
-from rpscli.sweep.points.layout import lay_out
+from rpscli.sweep.points import lay_out
 from sweep.small_studies import STUDY, Make
 
 VARY = STUDY[STUDY.index("vary:") : STUDY.index("records:")]

@@ -19,7 +19,6 @@ from rpscli.report.study.scatter import (
     pulse_of,
     records_without_period,
 )
-from rpscli.sweep.evaluation.context import StudyContext
 from rpscli.sweep.fits.lognormal import (
     Bootstrap,
     Lognormal,
@@ -28,8 +27,8 @@ from rpscli.sweep.fits.lognormal import (
     probit_fit,
     separated,
 )
-from rpscli.sweep.intensities import intensity
-from rpscli.sweep.points.layout import lay_out
+from rpscli.sweep.points import lay_out
+from rpscli.sweep.table import intensity
 from sweep.made_up import Stored, cells, results_of, tabulate
 from sweep.small_studies import STUDY, Make
 
@@ -307,15 +306,14 @@ def test_a_median_beyond_all_intensities_is_called_extrapolated(
 
 def test_intensities_follow_records_and_scales(study_of: Make) -> None:
     layout = lay_out(study_of())
-    context = StudyContext(layout.plan)
     rows = [Stored("survived", None, {"scale": point.scale}) for point in layout]
     table = tabulate(layout, rows)
-    pga = intensity(table, context, FragilityOptions(measure="PGA"))
+    pga = intensity(table, FragilityOptions(measure="PGA"))
     assert pga.values[1] == pytest.approx(0.5 * 9.80665, rel=1e-9)
     assert pga.values[0] == pytest.approx(0.25 * 9.80665, rel=1e-9)
-    arias = intensity(table, context, FragilityOptions(measure="Arias"))
+    arias = intensity(table, FragilityOptions(measure="Arias"))
     assert arias.values[0] == pytest.approx(0.25 * arias.values[1], rel=1e-12)
-    assert intensity(table, context, FragilityOptions()).measure == "PGV"
+    assert intensity(table, FragilityOptions()).measure == "PGV"
 
 
 def test_overturning_spectra_are_dimensionless(study_of: Make) -> None:

@@ -15,14 +15,10 @@ from pathlib import Path
 import pytest
 from click.testing import Result
 
-from rpscli.sweep.evaluation.batch import run_batch
-from rpscli.sweep.evaluation.context import StudyContext
-from rpscli.sweep.evaluation.points import Point
-from rpscli.sweep.evaluation.results import MISSING, PointResults
-from rpscli.sweep.points.layout import lay_out
-from rpscli.sweep.run.engines import Threads
-from rpscli.sweep.run.resume import all_keys, resume
-from rpscli.sweep.run.runner import Progress, run
+from rpscli.sweep.context import Point, StudyContext
+from rpscli.sweep.evaluation import MISSING, PointResults, run_batch
+from rpscli.sweep.points import lay_out
+from rpscli.sweep.run import Engine, Progress, run, start
 from rpscli.sweep.store import Store
 from sweep.small_studies import ROOT, STUDY, Make
 
@@ -99,8 +95,6 @@ def test_the_second_ctrl_c_stops_at_once(
     study_of: Make, workplace: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     layout = lay_out(study_of())
-    context = StudyContext(layout.plan)
-    keys = all_keys(layout, context)
     told: list[str] = []
     over = threading.Event()
 
@@ -114,12 +108,12 @@ def test_the_second_ctrl_c_stops_at_once(
         told.append("first")
         os.kill(os.getpid(), signal.SIGINT)
 
-    monkeypatch.setattr("rpscli.sweep.run.engines.run_batch", one_batch)
+    monkeypatch.setattr("rpscli.sweep.run.run_batch", one_batch)
     before = signal.getsignal(signal.SIGINT)
     with Store(workplace) as store:
-        begin = resume(layout, keys, store, retry_failed=False)
+        begin = start(layout, store)
         with pytest.raises(KeyboardInterrupt):
-            run(layout, begin, store, Threads(context, 1), interrupt)
+            run(layout, begin, store, Engine(layout.context, 1), interrupt)
         assert told == ["first"]
         assert len(store.outcomes()) == 9  # the second batch is still under way
     over.set()
@@ -131,7 +125,6 @@ def test_a_ctrl_c_given_to_another_thread_is_heard(
     study_of: Make, workplace: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     layout = lay_out(study_of())
-    context = StudyContext(layout.plan)
     heard = threading.Event()
 
     def one_batch(context: StudyContext, points: Sequence[Point]) -> PointResults:
@@ -141,26 +134,24 @@ def test_a_ctrl_c_given_to_another_thread_is_heard(
         assert heard.wait(20.0)
         return run_batch(context, points)
 
-    monkeypatch.setattr("rpscli.sweep.run.engines.run_batch", one_batch)
-    keys = all_keys(layout, context)
+    monkeypatch.setattr("rpscli.sweep.run.run_batch", one_batch)
     signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         with Store(workplace) as store:
-            begin = resume(layout, keys, store, retry_failed=False)
-            finish = run(layout, begin, store, Threads(context, 1), announce=heard.set)
+            begin = start(layout, store)
+            finish = run(layout, begin, store, Engine(layout.context, 1), announce=heard.set)
     finally:
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
-    assert (finish.computed, finish.interrupted) == (9, True)
+    assert (finish.computed, len(begin.pending)) == (9, POINTS)
 
 
 def test_progress_counts_and_foresees(study_of: Make, workplace: Path) -> None:
     layout = lay_out(study_of())
-    context = StudyContext(layout.plan)
     seen: list[Progress] = []
     with Store(workplace) as store:
-        begin = resume(layout, all_keys(layout, context), store, retry_failed=False)
-        finish = run(layout, begin, store, Threads(context, 2), seen.append)
-    assert (finish.computed, finish.interrupted) == (36, False)
+        begin = start(layout, store)
+        finish = run(layout, begin, store, Engine(layout.context, 2), seen.append)
+    assert finish.computed == POINTS
     assert [p.done for p in seen] == sorted(p.done for p in seen)
     assert seen[-1].done == seen[-1].total == 36
     assert seen[-1].seconds_left == 0.0
@@ -168,12 +159,11 @@ def test_progress_counts_and_foresees(study_of: Make, workplace: Path) -> None:
 
 def test_equal_points_are_computed_once(study_of: Make, workplace: Path) -> None:
     layout = lay_out(study_of(STUDY, ("[0.5, 1.0]", "[1.0, 1.0]")))
-    context = StudyContext(layout.plan)
     with Store(workplace) as store:
-        begin = resume(layout, all_keys(layout, context), store, retry_failed=False)
+        begin = start(layout, store)
         assert len(begin.pending) == 18
-        run(layout, begin, store, Threads(context, 1))
-        found = store.stored(begin.keys)(["max_rotation"])
+        run(layout, begin, store, Engine(layout.context, 1))
+        found = store.results(begin.keys, ["max_rotation"])
     rotation = found.columns["max_rotation"]
     assert rotation.shape == (36,)
     assert rotation[0] == rotation[1]
@@ -186,6 +176,6 @@ def test_an_error_of_the_engine_is_not_swallowed(study_of: Make, workplace: Path
     def broken() -> Iterator[object]:
         yield object()
 
-    engine = Threads(StudyContext(layout.plan), 2)
+    engine = Engine(layout.context, 2)
     with pytest.raises(TypeError):
         list(engine.outcomes(broken()))  # type: ignore[arg-type]

@@ -21,9 +21,9 @@ from rpscli.records.formats.at2 import at2_text
 from rpscli.records.ground_motion import MotionComponents
 from rpscli.records.loading import load_components, load_record
 from rpscli.records.measures import pair_measure
-from rpscli.sweep.evaluation.batch import reference_shears
-from rpscli.sweep.evaluation.context import StudyContext
-from rpscli.sweep.points.layout import StudyPoints, lay_out, reproduction
+from rpscli.sweep.context import StudyContext
+from rpscli.sweep.evaluation import reference_shears
+from rpscli.sweep.points import StudyPoints, lay_out, reproduction
 from sweep.small_studies import BASE, STUDY, Make
 
 Lay = Callable[..., StudyPoints]
@@ -54,7 +54,7 @@ def test_all_rotations_have_the_factor_of_the_pair(lay: Lay) -> None:
         f"records: [{{source: '{BOTH}', rotation: {{low: 0, high: 90, count: 3}}}}, '{BOTH}']\n"
         "scale: {measure: PGV, values: [0.3], of: rotd100}\n"
     )
-    context = StudyContext(layout.plan)
+    context = layout.context
     a, b = load_record("one.at2"), load_record("other.at2")
     factor = 0.3 / pair_measure(a, b, "PGV", "rotd100")
     assert [context.factor(point) for point in layout] == pytest.approx([factor] * 4, rel=1e-12)
@@ -72,7 +72,7 @@ def test_all_rotations_have_the_factor_of_the_pair(lay: Lay) -> None:
 
 def test_members_turn_pairs_alone(lay: Lay) -> None:
     layout = lay(f"records: ['{BOTH}', one.at2]\nperturb: {{members: 3, rotation: 2 deg}}\n")
-    context = StudyContext(layout.plan)
+    context = layout.context
     (x, y), first, second, *alone = motions(layout, context)
     changes = layout.identifying["rotation_change"][1]
     assert changes[0] == 0.0
@@ -84,7 +84,7 @@ def test_members_turn_pairs_alone(lay: Lay) -> None:
     # Other changes are what they were without a turn.
     assert [c[:2] for c in layout.members][1] == pytest.approx((1.00901, 1.00901), abs=0.02)
     for point in (layout[1], layout[4]):
-        words = shlex.split(reproduction(layout, context, point, Path("base.yaml")))
+        words = shlex.split(reproduction(layout, point, Path("base.yaml")))
         request = MotionRequest(words[words.index("--record") + 1])
         again = load_motion(load_case("base.yaml"), request)
         np.testing.assert_array_equal(again.samples, context.history(point).motion.samples)
@@ -93,11 +93,11 @@ def test_members_turn_pairs_alone(lay: Lay) -> None:
 def test_the_pair_of_the_case(lay: Lay) -> None:
     record = "record: {x: one.at2, y: other.at2, rotation: 30}\n"
     layout = lay("perturb: {members: 2}\n", BASE + record)
-    context = StudyContext(layout.plan)
+    context = layout.context
     assert layout.identifying["record"][1] == ["one.at2 + other.at2"]
     wanted = load_components(f"{BOTH}&rotation=30").samples
     np.testing.assert_array_equal(motions(layout, context)[0], wanted)
-    words = shlex.split(reproduction(layout, context, layout[1], Path("base.yaml")))
+    words = shlex.split(reproduction(layout, layout[1], Path("base.yaml")))
     assert "--record" not in words
     override = next(word for word in words if word.startswith("record.rotation="))
     again = load_motion(load_case("base.yaml", [override]), MotionRequest())

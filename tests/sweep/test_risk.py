@@ -27,7 +27,7 @@ from rpscli.sweep.fits.hazard import (
     rates_above,
     read_hazard,
 )
-from rpscli.sweep.points.layout import lay_out
+from rpscli.sweep.points import lay_out
 from rpscli.sweep.statistics.summary import summary
 from rpscli.sweep.statistics.verdicts import judged
 from sweep.made_up import stored, tabulate

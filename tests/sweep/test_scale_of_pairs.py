@@ -15,11 +15,10 @@ import rpscli
 from rpscli.case.case import parse_case
 from rpscli.errors import CaseError
 from rpscli.records.loading import load_record
-from rpscli.sweep.evaluation.context import StudyContext
-from rpscli.sweep.points.layout import StudyPoints, lay_out
-from rpscli.sweep.points_csv import units_of_columns
+from rpscli.sweep.points import StudyPoints, lay_out
 from rpscli.sweep.statistics.grouping import INTENSITY, shown_keys
 from rpscli.sweep.statistics.summary import scale_notes
+from rpscli.sweep.table import units_of_columns
 from sweep.made_up import stored, tabulate
 from sweep.small_studies import BASE, STUDY, Make
 
@@ -36,7 +35,7 @@ def laid_out(make: Make, records: str, scale: str) -> StudyPoints:
 
 
 def factors(layout: StudyPoints) -> list[float]:
-    context = StudyContext(layout.plan)
+    context = layout.context
     return [context.factor(point) for point in layout]
 
 
@@ -63,7 +62,7 @@ def test_all_directions_have_one_factor(study_of: Make, of: str) -> None:
     assert factors(layout) == pytest.approx([0.4 / wanted, 0.8 / wanted] * 6, rel=1e-9)
     name = {"": "RotD50", "rotd50": "RotD50", "rotd100": "RotD100"}.get(of, of)
     assert shown_keys(layout, (INTENSITY,)) == (f"PGV({name})",)
-    assert (f"PGV({name})", "m/s") in units_of_columns(layout)
+    assert units_of_columns(layout)[f"PGV({name})"] == "m/s"
     assert layout.scaled_to == f"2 values of PGV({name})"
 
 
@@ -81,7 +80,7 @@ def test_both_components_have_one_factor_and_one_alone_its_own(study_of: Make) -
     assert factors(known) == pytest.approx([0.4 / over.max()], rel=1e-9)
     # What a list says of the size of a record does not change what it is scaled to.
     listed = laid_out(study_of, f'"{PAIR}/a?factor=3", "{PAIR}/b?factor=0.5"', scale % "")
-    context = StudyContext(listed.plan)
+    context = listed.context
     peaks = [
         context.factor(point) * context.records.intensity(point.record, "PGV")
         for point in listed

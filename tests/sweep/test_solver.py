@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 import rpscli
-from rpscli.sweep.evaluation.points import SOLVING, digest_of_sources
+from rpscli.sweep.context import SOLVING, digest_of_sources
 
 PACKAGE = Path(rpscli.__file__).parent
 
@@ -60,7 +60,7 @@ def test_a_source_in_a_sub_folder_counts(package: Path, folder: str) -> None:
 def test_every_module_behind_a_stored_number_counts() -> None:
     script = """
 import sys
-import rpscli.sweep.evaluation.batch
+import rpscli.sweep.evaluation
 print(*(m.__file__ for n, m in sys.modules.items() if n.startswith("rpscli.")), sep=chr(10))
 """
     paths = [str(PACKAGE.parent), *sys.path]

@@ -17,7 +17,7 @@ from rpscli.report.study.lines import LinesOptions, lines
 from rpscli.report.study.scatter import DemandOptions, ScatterOptions, demand, scatter
 from rpscli.report.study.table import OVERTURNING, TABLE, OverturningOptions, TableOptions
 from rpscli.sweep.fits.bilinear import bilinear_fit
-from rpscli.sweep.points.layout import lay_out
+from rpscli.sweep.points import lay_out
 from rpscli.sweep.table import groups
 from sweep.made_up import (
     ALPHA,

@@ -16,17 +16,20 @@ pytestmark = needs_compiled_kernels
 
 
 class Points:
-    """What is asked of a table and of a context: every fourth history is chaotic."""
+    """What is asked of a table, its layout and its context: every fourth history is chaotic."""
 
     def __init__(self, count: int) -> None:
         self.failed = np.zeros(count, bool)
-        self.layout = list(range(count))
+        self.layout = self.context = self
         self.structure = podium(1, 0.15, FLAT, superstructure=building(1, 0.1))
         self.chaotic = waves(60.0, 0.01, 3.0 * self.structure.uplift_acceleration, seed=3)
-        found = demands([self.history(number) for number in self.layout])
+        found = demands([self.history(number) for number in range(count)])
         self.outcomes = np.array([one.outcome for one in found])
         names = "max_rotation", "max_base_shear"
         self.columns = {name: np.array([getattr(one, name) for one in found]) for name in names}
+
+    def __getitem__(self, number: int) -> int:
+        return number
 
     def history(self, number: int) -> Request:
         motion = self.chaotic if number % 4 == 2 else stillness(1.0)
@@ -35,7 +38,7 @@ class Points:
 
 
 def notes(points: Points) -> list[str]:
-    return list(step_notes(points, points))  # type: ignore[arg-type]
+    return list(step_notes(points))  # type: ignore[arg-type]
 
 
 def test_points_that_change_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -48,12 +51,15 @@ def test_points_that_change_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
     assert "point 3 (" in found
 
 
-def test_what_is_computed_the_same_or_not_at_all_is_not_told(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_what_is_computed_the_same_or_failed_is_not_told() -> None:
     assert notes(Points(2)) == []
     failed = Points(4)
     failed.failed[2] = True
     assert notes(failed) == []
+
+
+def test_what_was_not_tried_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(steps, "is_ready", lambda *_: False)
-    assert notes(Points(4)) == []
+    (found,) = notes(Points(4))
+    assert "steps of half the length was not tried" in found
+    assert "the kernel that computes them is not compiled yet" in found

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shutil
 import sqlite3
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +12,7 @@ import numpy as np
 import pytest
 
 from rpscli.errors import OutputError, Refused, RpsError
-from rpscli.sweep.evaluation.results import PointResults
+from rpscli.sweep.evaluation import PointResults
 from rpscli.sweep.store import FILE, Store
 
 
@@ -30,7 +31,7 @@ def batch(*numbers: int, failed: bool = False) -> tuple[list[bytes], PointResult
 
 def rows(store: Store, *numbers: int) -> list[Any]:
     """Outcome, message, x and the second of the list of some points."""
-    found = store.stored(list(map(key, numbers)))(["x", "list.1", "unknown"])
+    found = store.results(list(map(key, numbers)), ["x", "list.1", "unknown"])
     nothing = np.full(len(numbers), np.nan)
     x, last = (found.columns.get(name, nothing).tolist() for name in ("x", "list.1"))
     assert "unknown" not in found.columns
@@ -50,7 +51,7 @@ def test_what_is_stored_is_there_after_reopening(tmp_path: Path) -> None:
             "('', None, nan, nan)",
             *["('survived', None, 0.1, 1.1)"] * 2,
         ]
-        assert store.meta("study") == "a"
+        assert store.facts()["study"] == "a"
         store.add(*batch(2))
         assert store.outcomes()[key(2)] is False
         assert rows(store, 2) == ["('survived', None, 0.2, 1.2)"]
@@ -60,10 +61,23 @@ def test_what_is_stored_is_there_after_reopening(tmp_path: Path) -> None:
 
 def test_a_second_process_is_refused(tmp_path: Path) -> None:
     with Store(tmp_path), pytest.raises(Refused, match=r"in use.*-o"):
-        Store(tmp_path)
+        Store(tmp_path).__enter__()
     with Store(tmp_path), pytest.raises(Refused, match="in use"):
-        Store(tmp_path, fresh=True)
-    Store(tmp_path).__exit__()
+        Store(tmp_path, fresh=True).__enter__()
+
+
+def test_a_store_may_be_entered_again_and_opened_again(tmp_path: Path) -> None:
+    with Store(tmp_path, fresh=True) as store:
+        with store:
+            store.add(*batch(1))
+        store.add(*batch(2))
+    with store:
+        assert list(store.outcomes()) == [key(1), key(2)]
+    with Store(tmp_path):  # nobody holds it
+        pass
+    store.path.unlink()
+    with pytest.raises(Refused, match="no longer exists; run the study again"):
+        store.__enter__()
 
 
 def test_fresh_begins_anew_even_where_the_file_is_damaged(tmp_path: Path) -> None:
@@ -77,7 +91,7 @@ def test_fresh_begins_anew_even_where_the_file_is_damaged(tmp_path: Path) -> Non
     content[1024:] = b"\xff" * (len(content) - 1024)
     path.write_bytes(content)
     with pytest.raises(RpsError, match=r"damaged.*--fresh"):
-        Store(tmp_path)
+        Store(tmp_path).__enter__()
     with Store(tmp_path, fresh=True) as store:
         assert store.outcomes() == {}
 
@@ -86,7 +100,7 @@ def test_one_digit_of_a_result_is_not_believed(tmp_path: Path) -> None:
     with Store(tmp_path) as store:
         store.add(*batch(*range(9)))
         store.note(study="pinned")
-        store.add_fixed_base({b"key": np.array([1.25])})
+        store.add_fixed_base({key(7): np.array([1.25])})
     path = tmp_path / FILE
     whole = path.read_bytes()
     changes = [[np.float64(x).tobytes() for x in pair] for pair in ((0.4, 0.9), (1.25, 1.26))]
@@ -97,13 +111,13 @@ def test_one_digit_of_a_result_is_not_believed(tmp_path: Path) -> None:
             (store.outcomes(), store.fixed_base())
     path.write_bytes(whole.replace(b"pinned", b"pinnex"))
     with Store(tmp_path) as store, pytest.raises(RpsError, match=r"damaged.*--fresh"):
-        store.meta("study")
+        store.facts()["study"]
 
 
 def contents(folder: Path) -> list[Any]:
     with Store(folder) as store:
         shears = {name: values.tolist() for name, values in store.fixed_base().items()}
-        return [store.outcomes(), rows(store, *range(40)), shears, store.meta("study")]
+        return [store.outcomes(), rows(store, *range(40)), shears, store.facts().get("study")]
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -113,7 +127,7 @@ def test_damage_is_one_message_with_a_remedy_or_harmless(tmp_path: Path, seed: i
         for first in range(0, 40, 8):
             store.add(*batch(*range(first, first + 8)))
         store.note(study="pinned")
-        store.add_fixed_base({b"key": np.array([1.25])})
+        store.add_fixed_base({key(7): np.array([1.25])})
     path, told = tmp_path / FILE, 0
     whole, known = path.read_bytes(), contents(tmp_path)
     rng = np.random.default_rng(seed)
@@ -161,7 +175,7 @@ def test_files_of_others_are_left_alone(tmp_path: Path) -> None:
     (tmp_path / FILE).write_text("notes of mine, not to be lost")
     for fresh in (False, True):
         with pytest.raises(Refused, match="not the store"):
-            Store(tmp_path, fresh=fresh)
+            Store(tmp_path, fresh=fresh).__enter__()
     assert (tmp_path / FILE).read_text().startswith("notes")
     (tmp_path / FILE).unlink()
     with sqlite3.connect(tmp_path / FILE) as db:
@@ -169,15 +183,19 @@ def test_files_of_others_are_left_alone(tmp_path: Path) -> None:
     db.close()
     for fresh in (False, True):
         with pytest.raises(Refused, match="another program"):
-            Store(tmp_path, fresh=fresh)
+            Store(tmp_path, fresh=fresh).__enter__()
 
 
-@pytest.mark.parametrize("form", ["0", "2"])
-def test_another_format_is_refused(tmp_path: Path, form: str) -> None:
+@pytest.mark.parametrize(("version", "told"), [(0, "before 4"), (5, "5")])
+def test_another_format_is_refused(tmp_path: Path, version: int, told: str) -> None:
     with Store(tmp_path) as store:
-        store.note(format=form)
-    with pytest.raises(Refused, match=rf"format {form}.*--fresh"):
-        Store(tmp_path)
+        store.note(study="a")
+    with closing(sqlite3.connect(tmp_path / FILE)) as db:
+        db.execute(f"PRAGMA user_version = {version}")
+    with pytest.raises(Refused, match=rf"format {told}.*--fresh"):
+        Store(tmp_path).__enter__()
+    with Store(tmp_path, fresh=True) as store:
+        assert store.facts() == {}
 
 
 def test_a_full_disk_is_told_and_what_was_stored_stays(tmp_path: Path) -> None:
@@ -193,4 +211,4 @@ def test_a_full_disk_is_told_and_what_was_stored_stays(tmp_path: Path) -> None:
 def test_a_folder_that_cannot_be_made_is_told(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     with pytest.raises(OutputError, match="-o"):
-        Store(tmp_path / "file" / "folder")
+        Store(tmp_path / "file" / "folder").__enter__()

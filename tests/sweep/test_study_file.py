@@ -10,7 +10,7 @@ from rpscli.case.json_schema import json_schema_of
 from rpscli.case.study.schema import MeasureScale, StudyFile
 from rpscli.errors import CaseError
 from rpscli.report.study.registry import REPORTS
-from rpscli.sweep.points.layout import lay_out
+from rpscli.sweep.points import lay_out
 from sweep.small_studies import STUDY, Make, study_file
 
 SAMPLE = "sample: {size: 4, ranges: {podium.cap_beam_mass_ratio: [5, 10]}}\n"

@@ -17,7 +17,7 @@ from rpscli.case.conditions import Condition
 from rpscli.report.study.shown import summary_tables
 from rpscli.report.study.statistics import summary_columns, summary_document
 from rpscli.report.table import Table as ShownTable
-from rpscli.sweep.points.layout import lay_out
+from rpscli.sweep.points import lay_out
 from rpscli.sweep.statistics.fractiles import fractiles, share
 from rpscli.sweep.statistics.grouping import own_keys, pooled
 from rpscli.sweep.statistics.summary import Summary, scale_notes, summary

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from rpscli.sweep.evaluation.results import quantity, split
-from rpscli.sweep.intensities import unit_of
-from rpscli.sweep.points.layout import yaml_scalar
-from rpscli.sweep.points_csv import _cell, array
+from rpscli.sweep.evaluation import quantity, split
+from rpscli.sweep.points import yaml_scalar
 from rpscli.sweep.statistics.fractiles import clustered, fractiles, share, shown_by
 from rpscli.sweep.statistics.grouping import statistic_words
 from rpscli.sweep.statistics.observations import agreement, maxima
+from rpscli.sweep.table import _cell, array, unit_of
 
 
 def test_evaluation_results() -> None:

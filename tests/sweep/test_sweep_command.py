@@ -18,7 +18,7 @@ from rpscli.analyses.kernels import compilation
 from rpscli.cli import program
 from rpscli.report.study.registry import REPORTS as REPORT_KINDS
 from rpscli.report.study.report import Found
-from rpscli.sweep.evaluation.results import SCALARS
+from rpscli.sweep.evaluation import SCALARS
 from sweep.small_studies import BASE, ROOT, STUDY, study_file
 
 Document = Callable[..., dict[str, Any]]

@@ -17,7 +17,7 @@ from rpscli.commands.shell.waiting import announce_compilation, progress_line, p
 from rpscli.report.study.labels import labels
 from rpscli.report.study.shown import of_first_system
 from rpscli.studies import load_study
-from rpscli.sweep.run.runner import Progress
+from rpscli.sweep.run import Progress
 
 
 def progress(computed: int, failed: int = 0, seconds: float = 10.0) -> Progress:

@@ -12,7 +12,7 @@ from click.testing import Result
 
 from rpscli.report.study.labels import key_cells, key_columns, label
 from rpscli.report.table import records
-from rpscli.sweep.points.layout import lay_out
+from rpscli.sweep.points import lay_out
 from rpscli.units import Written, in_si
 from sweep.small_studies import STUDY, Make
 

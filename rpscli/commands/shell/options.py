@@ -286,7 +286,9 @@ run_options = in_order(
         help="Threads; all cores by default.",
     ),
     click.option(
-        "--scheduler", metavar="ADDRESS", help="Use a Dask cluster, as in tcp://head:8786."
+        *("--scheduler", "--cluster", "scheduler"),
+        metavar="ADDRESS",
+        help="Use a Dask cluster, as in tcp://head:8786.",
     ),
     click.option(
         "--dry-run", is_flag=True, help="Check the file; show its points and an estimate."

@@ -12,7 +12,7 @@ from rpscli.user_cache import VARIABLE
 
 if TYPE_CHECKING:
     from rpscli.case.case import Case
-    from rpscli.sweep.run.runner import Progress
+    from rpscli.sweep.run import Progress
 
 MANY = 5000
 """Of what takes a millisecond each."""

@@ -17,10 +17,8 @@ from rpscli.report.study.labels import keyed, label
 from rpscli.report.study.panels import colour, in_panels, marker, noted
 from rpscli.report.study.report import Found, Report, without_uplift
 from rpscli.report.table import Column
-from rpscli.sweep.points.layout import described
 from rpscli.sweep.statistics.grouping import INTENSITY, Histories, grouping, own_keys
-from rpscli.sweep.study_results import StudyResults
-from rpscli.sweep.table import Array, Group, Indices, Table, groups, leading_keys
+from rpscli.sweep.table import Array, Group, Indices, StudyResults, Table, groups, leading_keys
 
 
 class RotationOptions(ReportOptions):
@@ -122,7 +120,7 @@ def _pair_columns(
     names: tuple[str, ...] = ()
     for each in pairs:
         for mine, theirs in zip(each.points.tolist(), each.references.tolist(), strict=True):
-            named = described(layout, mine) | ({INTENSITY: layout[mine].scale} if factors else {})
+            named = layout.described(mine) | ({INTENSITY: layout[mine].scale} if factors else {})
             names = tuple(named)
             ours, other = ((table.outcomes[n], float(ratio[n])) for n in (mine, theirs))
             rows.append((tuple(named.values()), *ours, reference, *other))

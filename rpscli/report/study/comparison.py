@@ -23,8 +23,7 @@ from rpscli.report.study.panels import log_ticks
 from rpscli.report.study.report import Found, Report
 from rpscli.report.study.statistics import reached
 from rpscli.report.table import Column
-from rpscli.sweep.intensities import Intensity
-from rpscli.sweep.points.layout import StudyPoints
+from rpscli.sweep.points import StudyPoints
 from rpscli.sweep.statistics.fractiles import demand
 from rpscli.sweep.statistics.grouping import Histories, grouping
 from rpscli.sweep.statistics.observations import (
@@ -35,8 +34,7 @@ from rpscli.sweep.statistics.observations import (
     observed_pairs,
     unpaired,
 )
-from rpscli.sweep.study_results import StudyResults
-from rpscli.sweep.table import Array, Indices
+from rpscli.sweep.table import Array, Indices, Intensity, StudyResults
 
 MOST_PANELS = 16
 """In the figure; the CSV files have all."""

@@ -29,13 +29,11 @@ from rpscli.report.study.report import Found, Report
 from rpscli.report.study.statistics import counted_columns, share_columns
 from rpscli.report.table import Column
 from rpscli.sweep.fits.lognormal import Bootstrap, Lognormal, band, lognormal_fit
-from rpscli.sweep.intensities import Intensity
-from rpscli.sweep.points.layout import StudyPoints
+from rpscli.sweep.points import StudyPoints
 from rpscli.sweep.statistics.fractiles import CONFIDENCE, Share, share_of
 from rpscli.sweep.statistics.grouping import INTENSITY, Grouping, Histories, grouping
 from rpscli.sweep.statistics.verdicts import exceeds
-from rpscli.sweep.study_results import StudyResults
-from rpscli.sweep.table import Array, Indices, Table
+from rpscli.sweep.table import Array, Indices, Intensity, StudyResults, Table
 
 CURVE_POINTS = 101
 MOST_BINS = 10

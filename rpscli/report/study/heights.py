@@ -17,11 +17,10 @@ from rpscli.report.study.labels import keyed
 from rpscli.report.study.panels import break_if_narrow, in_panels, noted
 from rpscli.report.study.report import Found, Report, without_uplift
 from rpscli.report.study.statistics import reached
-from rpscli.sweep.points.layout import StudyPoints
+from rpscli.sweep.points import StudyPoints
 from rpscli.sweep.statistics.fractiles import THREE
 from rpscli.sweep.statistics.grouping import Histories, grouping, own_keys
-from rpscli.sweep.study_results import StudyResults
-from rpscli.sweep.table import Array, groups
+from rpscli.sweep.table import Array, StudyResults, groups
 
 
 class StoreyShearOptions(ReportOptions):
@@ -248,7 +247,7 @@ def floor_spectra_figure(
 def without_floors(layout: StudyPoints, _options: ReportOptions) -> Iterator[str]:
     """Systems without a building, or with different ones in a sample."""
     storeys = np.array([properties.storeys for properties in layout.properties])
-    by_sample = storeys.reshape(layout.combinations.shape)
+    by_sample = storeys.reshape(layout.shape[:-3])
     if not storeys.all():
         yield "a system has no superstructure, and so no floors; leave out storeys: 0"
     elif (np.ptp(by_sample, axis=-1) > 0).any():

@@ -16,12 +16,10 @@ from rpscli.report.figures import style
 from rpscli.report.study.labels import keyed
 from rpscli.report.study.panels import in_panels, noted
 from rpscli.report.study.report import DemandName, Found, Report
-from rpscli.sweep.evaluation.results import SCALARS
-from rpscli.sweep.intensities import unit_of
+from rpscli.sweep.evaluation import SCALARS
 from rpscli.sweep.statistics.fractiles import THREE, demand, fractiles
 from rpscli.sweep.statistics.grouping import INTENSITY, Histories, grouping, shown_keys
-from rpscli.sweep.study_results import StudyResults
-from rpscli.sweep.table import Array
+from rpscli.sweep.table import Array, StudyResults, unit_of
 
 MOST_CURVES = 200
 LINES = ((style.BLUE, ":"), (style.BLUE, "-"), (style.BLUE, "--"))

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from rpscli.report.table import Column, columns_of
-from rpscli.sweep.intensities import unit_of
+from rpscli.sweep.table import unit_of
 from rpscli.units import Written, as_written, in_si
 
 SYMBOLS = {

@@ -22,8 +22,7 @@ from rpscli.report.study.labels import keyed, labels, plain, symbol
 from rpscli.report.study.panels import colour, in_panels, left_out, over, remarks
 from rpscli.report.study.report import Found, Report, Statistic
 from rpscli.report.study.statistics import reached
-from rpscli.sweep.evaluation.results import KNOWN, quantity
-from rpscli.sweep.intensities import unit_of
+from rpscli.sweep.evaluation import KNOWN, quantity
 from rpscli.sweep.statistics.grouping import (
     Histories,
     axis_keys,
@@ -32,7 +31,7 @@ from rpscli.sweep.statistics.grouping import (
     shown_keys,
     statistic_words,
 )
-from rpscli.sweep.study_results import StudyResults
+from rpscli.sweep.table import StudyResults, unit_of
 from rpscli.units import in_si
 
 LEGEND = {"frequency_parameter": "model", "frequency_parameter_rigid": "rigid estimate"}
@@ -159,7 +158,7 @@ def _left_out_of_means(panels: Sequence[Panel]) -> str:
 def _collected(study: StudyResults, names: Iterable[str]) -> Values:
     """Results of all points: numbers, lists, or None."""
     wanted = tuple(names)
-    columns, analysis = study.stored()(wanted).columns, study.table.layout.plan.analysis
+    columns, analysis = study.stored(wanted).columns, study.table.layout.plan.analysis
     values: Values = {}
     for name in wanted:
         column, of = columns.get(name), quantity(analysis, name)

@@ -20,8 +20,8 @@ from rpscli.report.study import (
     table,
 )
 from rpscli.report.study.report import Report
-from rpscli.sweep.points.check import needs_of
-from rpscli.sweep.points.layout import StudyPoints
+from rpscli.sweep.points import StudyPoints
+from rpscli.sweep.systems import needs_of
 
 REPORTS: Registry[Report[Any]] = Registry(
     "reports",

@@ -15,8 +15,8 @@ from rpscli.report.figures.look import USUAL, Look, figure_files
 from rpscli.report.figures.style import Target, kept_figure
 from rpscli.report.study.labels import key_cells, symbol
 from rpscli.report.table import Column, Part, Table, csv_text, percent, records, shown
-from rpscli.sweep.points.layout import StudyPoints
-from rpscli.sweep.study_results import StudyResults
+from rpscli.sweep.points import StudyPoints
+from rpscli.sweep.table import StudyResults
 from rpscli.units import Written
 
 if TYPE_CHECKING:

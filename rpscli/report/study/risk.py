@@ -51,10 +51,9 @@ from rpscli.sweep.fits.hazard import (
     read_hazard,
 )
 from rpscli.sweep.fits.lognormal import NOTHING, Band, band
-from rpscli.sweep.points.layout import StudyPoints
+from rpscli.sweep.points import StudyPoints
 from rpscli.sweep.statistics.verdicts import component_notes
-from rpscli.sweep.study_results import StudyResults
-from rpscli.sweep.table import Array
+from rpscli.sweep.table import Array, StudyResults
 
 BINS = 24
 """Of intensities, for what contributes."""

@@ -22,13 +22,12 @@ from rpscli.report.study.labels import keyed, labels
 from rpscli.report.study.panels import break_if_narrow, colour, in_panels, marker, noted
 from rpscli.report.study.report import DemandName, Found, Report, without_uplift
 from rpscli.report.table import Column
-from rpscli.sweep.evaluation.points import RecordRequest
-from rpscli.sweep.evaluation.results import SCALARS
+from rpscli.sweep.context import RecordRequest
+from rpscli.sweep.evaluation import SCALARS
 from rpscli.sweep.fits.bilinear import FEWEST, Bilinear, bilinear_fit
-from rpscli.sweep.points.layout import StudyPoints
+from rpscli.sweep.points import StudyPoints
 from rpscli.sweep.statistics.grouping import INTENSITY, Histories, grouping, shown_keys
-from rpscli.sweep.study_results import StudyResults
-from rpscli.sweep.table import Array, leading_keys
+from rpscli.sweep.table import Array, StudyResults, leading_keys
 
 
 class DemandOptions(ReportOptions):

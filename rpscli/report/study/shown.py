@@ -9,7 +9,7 @@ from rpscli.report.study.registry import REPORTS
 from rpscli.report.study.statistics import VERDICT, verdict_texts
 from rpscli.report.table import Part, Table, headed, large, shown
 from rpscli.report.tables.timehistory import overturned_text, restitution_text
-from rpscli.sweep.points.layout import StudyPoints
+from rpscli.sweep.points import StudyPoints
 from rpscli.sweep.statistics.fractiles import Spread
 from rpscli.sweep.statistics.summary import Summary
 from rpscli.sweep.statistics.verdicts import Verdict
@@ -99,7 +99,7 @@ def of_first_system(layout: StudyPoints) -> str:
     first = layout.system(0)
     text = overturned_text(first.structure, first.settings)
     text = f"{text}; {restitution_text(first.structure)}"
-    text += " (the first system)" * (len(layout.combinations) > 1)
+    text += " (the first system)" * (len(layout.properties) > 1)
     of_base = layout.plan.base.get("limits") if layout.study.file.limits else None
     replaced = "" if not of_base else f"; own limits replace all of the base: {', '.join(of_base)}"
     return text + replaced

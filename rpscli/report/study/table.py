@@ -17,10 +17,9 @@ from rpscli.report.study.panels import left_out, over
 from rpscli.report.study.report import DemandName, Found, Report, StatisticOrShare, preset
 from rpscli.report.study.statistics import reached
 from rpscli.report.table import Column
-from rpscli.sweep.evaluation.results import SCALARS
+from rpscli.sweep.evaluation import SCALARS
 from rpscli.sweep.statistics.grouping import Histories, grouping, shown_keys, statistic_words
-from rpscli.sweep.study_results import StudyResults
-from rpscli.sweep.table import Table, groups, leading_keys
+from rpscli.sweep.table import StudyResults, Table, groups, leading_keys
 
 MOST_ROWS = 60
 MOST_COLUMNS = 12

@@ -6,13 +6,13 @@ import math
 from bisect import bisect_left
 from collections.abc import Sequence
 from functools import lru_cache
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.records.recordings import By
-from rpscli.sweep.table import Array, Indices
+from rpscli.sweep.table import Array, Indices, Outcomes
 
 CONFIDENCE = 0.95
 LEAST_SHOWN = 5e-4
@@ -22,30 +22,6 @@ THREE = (LOW, 0.50, HIGH)
 """Fractiles of bands about a median."""
 ROUNDING = 1e-9
 """Of shares times numbers of histories, which are meant as whole numbers."""
-
-
-class Outcomes(Protocol):
-    """Results of histories as columns, as a `Table` has them."""
-
-    @property
-    def columns(self) -> dict[str, Array]:
-        """(points,) of each result; NaN where there is none."""
-
-    @property
-    def failed(self) -> NDArray[np.bool_]:
-        """(points,) which have no result."""
-
-    @property
-    def overturned(self) -> NDArray[np.bool_]:
-        """(points,) which overturned."""
-
-    @property
-    def clusters(self) -> Indices:
-        """(points,) numbers of what is independent."""
-
-    @property
-    def independent(self) -> By:
-        """What that is."""
 
 
 class Share(NamedTuple):
@@ -188,7 +164,13 @@ def fractiles(demands: Array, shares: Sequence[float]) -> Array:
     known = np.sort(demands[~np.isnan(demands)])
     if not len(known):
         return np.full(len(shares), np.nan)
-    return np.asarray(known[rank(np.asarray(shares), len(known)).astype(int) - 1])
+    return np.asarray(known[_places(tuple(shares), len(known))])
+
+
+@lru_cache(maxsize=4096)
+def _places(shares: tuple[float, ...], total: int) -> list[int]:
+    """Where fractiles stand among so many ordered values."""
+    return [int(rank(share, total)) - 1 for share in shares]
 
 
 def spread(demands: Array, *, from_below: bool = False) -> Spread:

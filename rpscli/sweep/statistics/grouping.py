@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.records.measures import measure_label
-from rpscli.sweep.points.layout import StudyPoints
+from rpscli.sweep.points import StudyPoints
 from rpscli.sweep.statistics.fractiles import Share, demand, fractiles, share_of
 from rpscli.sweep.table import Array, Indices, Table, groups, leading_keys
 
@@ -150,7 +150,7 @@ def _pooled(layout: StudyPoints, keys: set[str]) -> Iterator[str]:
     for axis in layout.study.axes:
         if len(axis.rows) > 1 and not keys & set(axis.keys):
             yield f"{len(axis.rows)} values of {axis.keys[0]}"
-    if (samples := layout.combinations.shape[-1]) > 1:
+    if (samples := layout.samples) > 1:
         yield f"{samples} samples"
     if len(layout.scales) > 1 and INTENSITY not in keys:
         yield f"{len(layout.scales)} intensities"

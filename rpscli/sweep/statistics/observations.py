@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from rpscli.case.study.observed import Observed, comparable
 from rpscli.errors import beginning
-from rpscli.sweep.points.layout import StudyPoints
+from rpscli.sweep.points import StudyPoints
 from rpscli.sweep.statistics.fractiles import Share, clustered, fractiles
 from rpscli.sweep.statistics.grouping import INTENSITY
 from rpscli.sweep.table import Array, Indices, groups

@@ -6,17 +6,14 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rpscli.analyses.result_quantities import LIMITED, ResultQuantity
 from rpscli.records.ground_motion import LEAST, MOST
 from rpscli.records.measures import measure_label
-from rpscli.records.recordings import By, clusters
-from rpscli.sweep.evaluation.results import FAILED
-from rpscli.sweep.statistics.fixed_base import FixedBaseReferences
-from rpscli.sweep.statistics.fractiles import Outcomes, Share, Spread, demand, share_of, spread
+from rpscli.records.recordings import clusters
+from rpscli.sweep.statistics.fractiles import Share, Spread, demand, share_of, spread
 from rpscli.sweep.statistics.grouping import grouping
-from rpscli.sweep.table import Array, Indices, Table
+from rpscli.sweep.table import Array, FixedBaseReferences, Indices, Outcomes, Table
 
 REDUCTION = next(quantity for quantity in LIMITED if quantity.name == "fixed_base_ratio")
 
@@ -43,15 +40,8 @@ class Summary:
     rows: tuple[SummaryRow, ...]
 
 
-@dataclass(frozen=True, eq=False)
-class Records:
-    """Histories of one structure, (records,) each, as a table of a study has them."""
-
-    outcomes: NDArray[np.str_]
-    columns: dict[str, Array]
-    clusters: Indices
-    """Numbers of their recordings."""
-    independent: By = "recordings"
+class Records(Outcomes):
+    """Histories of one structure, a point each; what is independent are their recordings."""
 
     @classmethod
     def of(
@@ -59,17 +49,7 @@ class Records:
     ) -> Records:
         """From the outcome, the demands and the record of each history."""
         columns = {name: np.array([each[name] for each in demands]) for name in demands[0]}
-        return cls(np.array(outcomes), columns, np.array(clusters(sources)))
-
-    @property
-    def failed(self) -> NDArray[np.bool_]:
-        """(records,) which have no result."""
-        return np.asarray(self.outcomes == FAILED)
-
-    @property
-    def overturned(self) -> NDArray[np.bool_]:
-        """(records,) which overturned."""
-        return np.char.startswith(self.outcomes, "overturned")
+        return cls(np.array(outcomes), columns, np.array(clusters(sources)), "recordings")
 
 
 def summary(table: Table, fixed: FixedBaseReferences) -> Summary:
@@ -149,7 +129,7 @@ def scale_notes(table: Table) -> Iterator[str]:
         )
     of, sources = layout.identifying["record"]
     pulses = np.array([source.startswith("pulse:") for source in sources])[layout.places[of]]
-    scale = np.abs(layout.factors if layout.plan.measure is None else table.scale)
+    scale = np.abs(table.scale if table.factors is None else table.factors)
     unusual = ((scale < LEAST) | (scale > MOST)) & ~pulses
     if unusual.any():
         distance = np.abs(np.log(np.where(unusual, np.maximum(scale, 1e-300), 1.0)))

@@ -13,10 +13,10 @@ from rpscli.case.conditions import EVENTS, NOT_SHOWN, RATE, Condition
 from rpscli.case.text.document import Fault
 from rpscli.records.measures import SHOWN, Of
 from rpscli.sweep.fits.hazard import exceeded, rate_of_shares, read_hazard
-from rpscli.sweep.points.layout import StudyPoints
-from rpscli.sweep.statistics.fractiles import ROUNDING, Outcomes, Share, share_of, shown_by
+from rpscli.sweep.points import StudyPoints
+from rpscli.sweep.statistics.fractiles import ROUNDING, Share, share_of, shown_by
 from rpscli.sweep.statistics.summary import Records, Summary
-from rpscli.sweep.table import Array, Indices, Table
+from rpscli.sweep.table import Array, Indices, Outcomes, Table
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 import shlex
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -22,11 +22,19 @@ from rpscli.records.measures import MEASURES, Of, measure_label, needs_period
 from rpscli.records.recordings import By, clusters, pairs
 from rpscli.records.source import Source
 from rpscli.shown import frozen
-from rpscli.sweep.evaluation.context import StudyContext, System, resolved, system_of
-from rpscli.sweep.evaluation.points import Plan, Point, RecordRequest, solver_version
-from rpscli.sweep.evaluation.results import Array, Indices
-from rpscli.sweep.points.check import SystemProperties, Watched, check_systems
-from rpscli.sweep.points.combinations import Change, Combinations, changes, combinations_of
+from rpscli.sweep.context import (
+    Array,
+    Plan,
+    Point,
+    RecordCache,
+    RecordRequest,
+    StudyContext,
+    System,
+    resolved,
+    solver_version,
+)
+from rpscli.sweep.evaluation import Indices
+from rpscli.sweep.systems import Change, SystemProperties, Watched, changes, examined, sample
 from rpscli.units import as_written
 
 
@@ -36,20 +44,18 @@ class StudyPoints:
 
     study: Study
     """What is laid out."""
-    plan: Plan
-    """The part of it that evaluates points."""
-    combinations: Combinations
-    """The systems."""
+    context: StudyContext
+    """Its plan, its systems and its motions."""
     properties: tuple[SystemProperties, ...]
     """Of every system, in order."""
+    samples: int
+    """Systems with the same values along the axes."""
     records: tuple[RecordRequest | None, ...]
     """The records; None stands for the one of each system's own case, or for no record."""
     scales: tuple[float | None, ...]
     """Factors, or values of the measure; None stands for the factor of the case."""
     members: tuple[Change, ...]
     """Changes of the perturbation."""
-    examined: Mapping[int, System]
-    """The first systems, as they were examined: they need not be resolved again."""
 
     def __len__(self) -> int:
         return math.prod(self.shape)
@@ -58,9 +64,14 @@ class StudyPoints:
         return (self[index] for index in range(len(self)))
 
     @property
+    def plan(self) -> Plan:
+        """The part of it that evaluates points."""
+        return self.context.plan
+
+    @property
     def shape(self) -> tuple[int, ...]:
         """Lengths of the axes of the study, the sample, records, scales and members."""
-        return (*self.combinations.shape, *self._within)
+        return (*(len(axis.rows) for axis in self.study.axes), self.samples, *self._within)
 
     @cached_property
     def _within(self) -> tuple[int, int, int]:
@@ -78,22 +89,24 @@ class StudyPoints:
         rest, scale = divmod(rest, scales)
         system, record = divmod(rest, records)
         properties, change = self.properties[system], self.members[member]
-        given = self.scales[scale]
-        found = self.records[record] or properties.record
+        factor, request = self.scales[scale], self.records[record] or properties.record
         at = system if self.records == (None,) else record
-        if found is not None and change.rotation and self.pairs[at]:
-            found = found._replace(rotation=found.rotation + change.rotation)
+        if request is not None and change.rotation and self.pairs[at]:
+            request = request._replace(rotation=request.rotation + change.rotation)
         return Point(
             number=index,
             system=system,
             values=properties.values,
-            record=found,
-            scale=properties.scale if given is None else given,
-            member=member,
+            record=request,
+            scale=properties.scale if factor is None else factor,
             scale_change=change.scale,
             restitution_change=change.restitution,
             period=self.period_of_measure(properties),
         )
+
+    def system(self, index: int) -> System:
+        """One of the systems."""
+        return self.context.system(index, self.properties[index].values)
 
     @cached_property
     def places(self) -> tuple[Indices, ...]:
@@ -106,8 +119,8 @@ class StudyPoints:
         """(points,) factors on the records, where no measure decides about them."""
         systems, _, scales, members = self.places
         own = np.array([properties.scale for properties in self.properties])[systems]
-        given = own if self.scales == (None,) else np.array(self.scales, np.float64)[scales]
-        return frozen(given * np.array([change.scale for change in self.members])[members])
+        scale = own if self.scales == (None,) else np.array(self.scales, np.float64)[scales]
+        return frozen(scale * np.array([change.scale for change in self.members])[members])
 
     @cached_property
     def identifying(self) -> dict[str, tuple[int, Sequence[Any]]]:
@@ -126,13 +139,29 @@ class StudyPoints:
             columns[measure_label(self.plan.measure.measure, self.of)] = 2, self.scales
         if self.plan.analysis == "timehistory":
             own = self.records == (None,)
-            columns["record"] = 0 if own else 1, [record.name for record in self._requests]
+            columns["record"] = 0 if own else 1, [record.name for record in self.requests]
         return columns
 
+    def described(self, number: int) -> dict[str, Any]:
+        """What tells a point from the others: columns of `points.csv` before the results."""
+        places = [place[number] for place in self.places]
+        return {name: values[places[of]] for name, (of, values) in self.identifying.items()}
+
     @cached_property
-    def clusters(self) -> Indices:
-        """(points,) numbers of recordings or events; under a single record of the points."""
-        return frozen(np.arange(len(self))) if self.alone else self.recordings
+    def requests(self) -> list[RecordRequest]:
+        """The records, those of the cases where the study has none of its own."""
+        own = (properties.record for properties in self.properties)
+        return [record for record in (own if self.records == (None,) else self.records) if record]
+
+    @cached_property
+    def pairs(self) -> tuple[bool, ...]:
+        """Of each record whether both horizontal components act."""
+        return tuple(record.is_pair for record in self.requests)
+
+    @property
+    def independent(self) -> By:
+        """What statistics draw and count as a whole."""
+        return self.study.file.independent
 
     @cached_property
     def alone(self) -> bool:
@@ -142,32 +171,20 @@ class StudyPoints:
     @cached_property
     def recordings(self) -> Indices:
         """(points,) numbers of the recordings, or events, of all points."""
-        of, sources = self.identifying["record"][0], [r.source for r in self._requests]
+        of, sources = self.identifying["record"][0], [r.source for r in self.requests]
         folder = self.study.base_folder if self.records == (None,) else self.study.folder
-        found = clusters(sources, folder, self.independent)
-        return frozen(np.array(found)[self.places[of]])
-
-    @property
-    def independent(self) -> By:
-        """What statistics draw and count as a whole."""
-        return self.study.file.independent
+        numbers = np.array(clusters(sources, folder, self.independent))
+        return frozen(numbers[self.places[of]])
 
     @cached_property
-    def pairs(self) -> tuple[bool, ...]:
-        """Of each record whether both horizontal components act."""
-        return tuple(record.is_pair for record in self._requests)
-
-    @property
-    def _requests(self) -> list[RecordRequest]:
-        """The records, those of the cases where the study has none of its own."""
-        own = self.records == (None,)
-        found = (each.record for each in self.properties) if own else self.records
-        return [record for record in found if record]
+    def clusters(self) -> Indices:
+        """(points,) numbers of recordings or events; under a single record of the points."""
+        return frozen(np.arange(len(self))) if self.alone else self.recordings
 
     @cached_property
     def of(self) -> Of | None:
         """What measures of pairs are of; None where no record is measured as a pair."""
-        return self.plan.of if any(record.pair for record in self._requests) else None
+        return self.plan.of if any(record.pair for record in self.requests) else None
 
     @property
     def scaled_to(self) -> str:
@@ -186,71 +203,71 @@ class StudyPoints:
             return None
         return measure.period or properties.period
 
-    def system(self, index: int) -> System:
-        """One of the systems."""
-        known = self.examined.get(index)
-        return known or system_of(resolved(self.plan, self.properties[index].values))
+    def known_factor(self, point: Point) -> float:
+        """Factor on the record of a point, or what is written where that cannot be read."""
+        try:
+            return self.context.factor(point)
+        except RpsError:
+            return point.scale
 
 
-def lay_out(study: Study, watched: Watched = iter) -> StudyPoints:
-    """The points of a study; all its systems are examined on the way, in the hands of `watched`."""
-    file, combinations = study.file, combinations_of(study)
-    scale = study.scale
-    measure = scale if isinstance(scale, MeasureScale) else None
+def lay_out(
+    study: Study, watched: Watched = iter, records: RecordCache | None = None
+) -> StudyPoints:
+    """The points of a study.
+
+    Parameters
+    ----------
+    watched
+        Goes through the numbers of its systems, all of which are examined.
+    records
+        Motions that may be known already; read when they are needed by default.
+    """
+    file, scale = study.file, study.scale
+    drawn = sample(file.sample) if file.sample else np.empty((1, 0))
+    varied = [key for axis in study.axes for key in axis.keys]
     plan = Plan(
         analysis=file.analysis,
-        keys=combinations.keys,
+        keys=(*varied, *(file.sample.ranges if file.sample else ())),
         base=study.base.content,
         base_name=study.base.name,
         base_folder=str(study.base_folder),
-        measure=measure,
+        measure=scale if isinstance(scale, MeasureScale) else None,
         whole=file.whole_histories,
         solver=solver_version(),
     )
-    members = changes(file.perturb)
-    properties, examined = check_systems(study, plan, combinations, members, watched)
+    context, members = StudyContext(plan, records), changes(file.perturb)
+    properties = examined(study, context, drawn, members, watched)
+    values = scale.values if isinstance(scale, MeasureScale) else scale
     return StudyPoints(
         study=study,
-        plan=plan,
-        combinations=combinations,
+        context=context,
         properties=properties,
-        records=_records(study, measure) or (None,),
-        scales=_scales(scale),
+        samples=len(drawn),
+        records=_records(study, plan.measure) or (None,),
+        scales=(None,) if values is None else tuple(values),
         members=members,
-        examined=examined,
     )
 
 
 def _records(study: Study, measure: MeasureScale | None) -> tuple[RecordRequest, ...]:
     """The records of a study, and which of them are measured as pairs."""
     try:
-        found = pairs(study.sources, measure.of if measure else None)
+        measured = pairs(study.sources, measure.of if measure else None)
     except RecordError as error:
         study.document.refuse([Fault(("scale", "of"), f"scale.of: {error}")])
         raise
     folder = str(study.folder)
     return tuple(
         RecordRequest(source, folder, pair=pair)
-        for source, pair in zip(study.sources, found, strict=True)
+        for source, pair in zip(study.sources, measured, strict=True)
     )
 
 
-def _scales(scale: MeasureScale | Sequence[float] | None) -> tuple[float | None, ...]:
-    if scale is None:
-        return (None,)
-    return tuple(scale.values if isinstance(scale, MeasureScale) else scale)
-
-
-def described(layout: StudyPoints, number: int) -> dict[str, Any]:
-    """What tells a point from the others: columns of `points.csv` before the results."""
-    places = [place[number] for place in layout.places]
-    return {name: values[places[of]] for name, (of, values) in layout.identifying.items()}
-
-
-def reproduction(layout: StudyPoints, context: StudyContext, point: Point, base_file: Path) -> str:
+def reproduction(layout: StudyPoints, point: Point, base_file: Path) -> str:
     """One line for the shell that computes the point alone."""
     words = ["rps", layout.plan.analysis, str(base_file)]
-    for text in (*_overrides(layout, point), *_restitution(layout, point)):
+    for text in _overrides(layout, point):
         words += ["--set", text]
     if point.record is not None and layout.plan.analysis == "timehistory":
         if point.record.y is None:
@@ -259,7 +276,7 @@ def reproduction(layout: StudyPoints, context: StudyContext, point: Point, base_
             words += ["--set", f"record.rotation={point.record.rotation!r}"]
         if point.record.vertical and point.record.y is None:
             words += ["--vertical", _source(point.record._replace(source=point.record.vertical))]
-        words += ["--scale", repr(known_factor(context, point))]
+        words += ["--scale", repr(layout.known_factor(point))]
     return shlex.join(words)
 
 
@@ -268,21 +285,10 @@ def _overrides(layout: StudyPoints, point: Point) -> Iterator[str]:
         yield from layout.study.base_overrides
     for key, value in zip(layout.plan.keys, point.values, strict=True):
         yield f"{key}={yaml_scalar(value)}"
-
-
-def _restitution(layout: StudyPoints, point: Point) -> Iterator[str]:
     if point.restitution_change != 1.0:
         law = dict(resolved(layout.plan, point.values).document["podium"]["impact"])
         law["factor"] *= point.restitution_change
         yield f"podium.impact={json.dumps(law)}"
-
-
-def known_factor(context: StudyContext, point: Point) -> float:
-    """Factor on the record of a point, or what is written where that cannot be read."""
-    try:
-        return context.factor(point)
-    except RpsError:
-        return point.scale
 
 
 def _source(request: RecordRequest) -> str:

@@ -1,4 +1,7 @@
-"""What the points of a study share: its systems and its ground motions, each made or read once."""
+"""What a point of a study is, and what points share: systems and motions, made or read once.
+
+Together with `evaluation` this decides about stored numbers.
+"""
 
 from __future__ import annotations
 
@@ -7,29 +10,138 @@ import json
 from collections import OrderedDict
 from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 from pathlib import Path
 from threading import RLock
-from typing import Any, Generic, TypeVar
+from typing import Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rpscli.analyses.demand import Request
 from rpscli.analyses.result_quantities import LIMITED
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.case.case import Case, case_from_mapping
+from rpscli.case.study.schema import Analysis, MeasureScale
 from rpscli.errors import RecordError
 from rpscli.model.podium import PodiumStructure
 from rpscli.records.ground_motion import MotionComponents
 from rpscli.records.loading import load_components
-from rpscli.records.measures import Measure, Of, factor_to, measured, pair_measure
-from rpscli.sweep.evaluation.points import Plan, Point, RecordRequest
-from rpscli.sweep.evaluation.results import Array
+from rpscli.records.measures import USUAL, Measure, Of, factor_to, measured, pair_measure
+from rpscli.records.recordings import Pair
+from rpscli.records.source import Source
+from rpscli.version import VERSION
 
+Array = NDArray[np.float64]
 Key = TypeVar("Key", bound=Hashable)
 Value = TypeVar("Value")
 
 SAMPLES_KEPT = 32_000_000
 """Samples of ground motions held in memory (256 MB); the longest unused one goes first."""
+
+SYSTEMS_KEPT = 512
+"""Systems held in memory with their modes of vibration; the longest unused one goes first."""
+
+DECIDING = ("superstructure", "podium", "analysis")
+"""Sections of a resolved case on which results depend besides the record."""
+
+PEAKS: tuple[Measure, ...] = ("PGA", "PGV")
+"""What the table of a study tells of each scaled motion."""
+
+SOLVING = (
+    *("constants.py", "units.py", "registry.py", "physics", "model", "records", "analyses", "case"),
+    *("sweep/context.py", "sweep/evaluation.py"),
+)
+"""Files and folders of the package whose sources decide about what is stored under a key."""
+
+
+@cache
+def solver_version() -> str:
+    """Version of rps and a digest of the sources that compute."""
+    return f"{VERSION}+{digest_of_sources(Path(__file__).parents[1])[:16]}"
+
+
+def digest_of_sources(package: Path) -> str:
+    """SHA-256 of the names and contents of all sources that compute, in sub-folders too."""
+    digest = hashlib.sha256()
+    for name in SOLVING:
+        place = package / name
+        for source in [place] if place.is_file() else sorted(place.rglob("*.py")):
+            digest.update(f"{source.relative_to(package).as_posix()}\0".encode())
+            digest.update(source.read_bytes())
+    return digest.hexdigest()
+
+
+class RecordRequest(NamedTuple):
+    """A ground motion to be loaded, and where its relative names start.
+
+    What is measured by a `pair` has both components of that. A second component `y` acts together
+    with the source, as both of a source do that says so; they are turned by a rotation [deg].
+    """
+
+    source: str
+    folder: str
+    vertical: str | None = None
+    dt: float | None = None
+    units: str | None = None
+    pair: Pair | None = None
+    y: str | None = None
+    rotation: float = 0.0
+
+    @property
+    def name(self) -> str:
+        """The source, or both."""
+        return self.source if self.y is None else f"{self.source} + {self.y}"
+
+    @property
+    def is_pair(self) -> bool:
+        """Whether both horizontal components act."""
+        return self.y is not None or Source.parse(self.source).both
+
+
+class Point(NamedTuple):
+    """One point, small enough to be sent anywhere.
+
+    `number` is its place in the order of the study, from 0. `values` are those of the varied keys,
+    in their order. `scale` is the factor on the record, or the value of the measure to scale it to;
+    `period` is then the one of Sa and the like. The changes are factors of the perturbation, 1
+    where there is none.
+    """
+
+    number: int
+    system: int
+    values: tuple[Any, ...]
+    record: RecordRequest | None
+    scale: float
+    scale_change: float
+    restitution_change: float
+    period: float | None
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Everything besides the points that a process needs to evaluate them."""
+
+    analysis: Analysis
+    """What is done at every point."""
+    keys: tuple[str, ...]
+    """Dotted keys of the values of a point."""
+    base: dict[str, Any]
+    """The case at the base, as plain values."""
+    base_name: str
+    base_folder: str
+    """Where it comes from, for messages and relative file names."""
+    measure: MeasureScale | None
+    """What the records are scaled to, if not by factors."""
+    whole: bool
+    """Whether histories are followed with all their samples."""
+    solver: str
+    """Version of the solver that all results must come from."""
+
+    @property
+    def of(self) -> Of:
+        """What measures of pairs are of."""
+        return (self.measure and self.measure.of) or USUAL
 
 
 class Recent(Generic[Key, Value]):
@@ -66,10 +178,10 @@ class RecordCache:
 
     def motion(self, request: RecordRequest) -> MotionComponents:
         """The motion of a request."""
-        found = self._motions.value(request, lambda: _load(request))
-        if isinstance(found, str):
-            raise RecordError(found)
-        return found
+        motion = self._motions.value(request, lambda: _load(request))
+        if isinstance(motion, str):
+            raise RecordError(motion)
+        return motion
 
     def digest(self, request: RecordRequest) -> bytes:
         """Digest of a motion's content; of the reason, if it cannot be read."""
@@ -108,11 +220,9 @@ class RecordCache:
         return self._intensities.value((whose, measure, period, damping), make)
 
 
-def _samples(found: MotionComponents | str) -> float:
+def _samples(motion: MotionComponents | str) -> float:
     """Room that a motion takes, both components together; a reason hardly any."""
-    if isinstance(found, str):
-        return 1.0
-    return sum(motion.npts for motion in found.named.values())
+    return 1.0 if isinstance(motion, str) else sum(each.npts for each in motion.named.values())
 
 
 def _load(request: RecordRequest) -> MotionComponents | str:
@@ -125,13 +235,6 @@ def _load(request: RecordRequest) -> MotionComponents | str:
         return str(error)
 
 
-SYSTEMS_KEPT = 512
-"""Systems held in memory with their modes of vibration; the longest unused one goes first."""
-
-DECIDING = ("superstructure", "podium", "analysis")
-"""Sections of a resolved case on which results depend besides the record."""
-
-
 @dataclass(frozen=True, eq=False)
 class System:
     """One structure of a study and the settings of its analysis."""
@@ -140,6 +243,13 @@ class System:
     settings: TimeHistorySettings
     digest: bytes
     """Of everything in its resolved case that decides about results."""
+
+    @classmethod
+    def of_case(cls, case: Case) -> System:
+        """The system that a case describes."""
+        deciding = {name: case.document.get(name) for name in DECIDING}
+        digest = hashlib.sha256(json.dumps(deciding, sort_keys=True).encode()).digest()
+        return cls(case.structure, case.analysis, digest)
 
     def perturbed(self, restitution_change: float) -> PodiumStructure:
         """The structure with its restitution times a factor; the building is shared."""
@@ -150,62 +260,33 @@ class System:
         return replace(self.structure, impact_law=changed)
 
 
-def system_of(case: Case) -> System:
-    """The system that a case describes."""
-    deciding = {name: case.document.get(name) for name in DECIDING}
-    digest = hashlib.sha256(json.dumps(deciding, sort_keys=True).encode()).digest()
-    return System(case.structure, case.analysis, digest)
-
-
-def record_request(case: Case, of: Of | None = None) -> RecordRequest | None:
-    """The case's own record, to be measured as a scale asks for."""
-    if (record := case.record) is None:
-        return None
-    folder, rotation = str(case.folder), record.rotation or 0.0
-    what = record.vertical, record.dt, record.units, record.pair(of), record.y, rotation
-    return RecordRequest(record.source, folder, *what)
-
-
-def unjudged(given: Mapping[str, Any]) -> list[str]:
+def unjudged(varied: Mapping[str, Any]) -> list[str]:
     """Limits of the base that a system without its building is not judged by, as is said."""
-    if given.get("superstructure.storeys") != 0:
+    if varied.get("superstructure.storeys") != 0:
         return []
     return [f"limits.{q.name}" for q in LIMITED if "superstructure" in q.needs]
 
 
 def resolved(plan: Plan, values: Sequence[Any]) -> Case:
     """The case with values at the varied keys."""
-    given = dict(zip(plan.keys, values, strict=True))
-    given |= dict.fromkeys(unjudged(given))
-    return case_from_mapping(plan.base, plan.base_name, Path(plan.base_folder), given, label="vary")
-
-
-class Systems:
-    """The systems of a plan, resolved when they are needed, if not `examined`; kept for a while."""
-
-    def __init__(self, plan: Plan, examined: Mapping[int, System]) -> None:
-        self._plan, self._examined = plan, examined
-        self._recent: Recent[int, System] = Recent(SYSTEMS_KEPT)
-
-    def __getitem__(self, point: Point) -> System:
-        """The system of a point."""
-        known = self._examined.get(point.system)
-        return known or self._recent.value(
-            point.system, lambda: system_of(resolved(self._plan, point.values))
-        )
-
-
-PEAKS: tuple[Measure, ...] = ("PGA", "PGV")
-"""What the table of a study tells of each scaled motion."""
+    varied = dict(zip(plan.keys, values, strict=True))
+    varied |= dict.fromkeys(unjudged(varied))
+    folder = Path(plan.base_folder)
+    return case_from_mapping(plan.base, plan.base_name, folder, varied, label="vary")
 
 
 class StudyContext:
     """Systems and ground motions of a plan, shared by all batches of a process."""
 
-    def __init__(self, plan: Plan, examined: Mapping[int, System] | None = None) -> None:
-        self.plan = plan
-        self.records = RecordCache()
-        self.systems = Systems(plan, examined or {})
+    def __init__(self, plan: Plan, records: RecordCache | None = None) -> None:
+        self.plan, self.records = plan, records or RecordCache()
+        self._systems: Recent[int, System] = Recent(SYSTEMS_KEPT)
+
+    def system(self, number: int, values: Sequence[Any], known: System | None = None) -> System:
+        """The system of a number with these values, resolved when it is needed if not `known`."""
+        return self._systems.value(
+            number, lambda: known or System.of_case(resolved(self.plan, values))
+        )
 
     def factor(self, point: Point) -> float:
         """Factor on the record of a point."""
@@ -222,7 +303,10 @@ class StudyContext:
     def history(self, point: Point) -> Request:
         """The history of a point; its motion is shared, and scaled while it is used."""
         assert point.record is not None, "points of histories have a record"
-        system, motion = self.systems[point], self.records.motion(point.record)
+        system, motion = (
+            self.system(point.system, point.values),
+            self.records.motion(point.record),
+        )
         return Request(
             structure=system.perturbed(point.restitution_change),
             motion=motion,
@@ -237,5 +321,5 @@ class StudyContext:
             r: self.plan.of if r.is_pair else "component" for r in set(requests) if r
         }
         peaks = {r: [self.records.intensity(r, m, of=of[r]) for m in PEAKS] for r in of}
-        found = np.array([peaks[r] for r in requests if r]).reshape(-1, len(PEAKS))
-        return {m.lower(): np.abs(factors) * found[:, i] for i, m in enumerate(PEAKS)}
+        unscaled = np.array([peaks[r] for r in requests if r]).reshape(-1, len(PEAKS))
+        return {m.lower(): np.abs(factors) * unscaled[:, i] for i, m in enumerate(PEAKS)}

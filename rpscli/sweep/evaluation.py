@@ -1,0 +1,287 @@
+"""A batch of points -> their results: the one place where the work of a study is done.
+
+Pure: what comes out for a point depends on the point and the plan alone, not on its batch, the
+order, or the process. A point that cannot be computed gives a row that says why. Results are
+columns under their published names.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from typing import Any, NamedTuple, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rpscli.analyses import result_quantities as rq
+from rpscli.analyses.demand import Request, histories
+from rpscli.analyses.fixed_base import fixed_base_shears
+from rpscli.analyses.largest_demands import Histories
+from rpscli.analyses.modal import modal
+from rpscli.analyses.outcome import failure_text
+from rpscli.analyses.pushover import pushover
+from rpscli.analyses.result_quantities import ResultQuantity
+from rpscli.analyses.timehistory import time_history
+from rpscli.case.study.schema import Analysis
+from rpscli.errors import RpsError
+from rpscli.model.podium import PodiumStructure
+from rpscli.records.ground_motion import MotionComponents
+from rpscli.sweep.context import Array, Point, StudyContext
+
+Result = TypeVar("Result")
+Indices = NDArray[np.int64]
+
+DONE = "done"
+"""Outcome of an analysis that has no others."""
+
+FAILED = "failed"
+
+MISSING = ""
+"""Outcome of a point that has not been computed."""
+
+KEPT = (*rq.HISTORY, *rq.IMPACTS, rq.STOREY_SHEARS)
+"""What a study keeps of a history besides its outcome, its scale and its intensities."""
+
+Named = dict[str, ResultQuantity]
+"""Quantities by their dotted paths in the results of a point."""
+
+
+def _named(
+    quantities: Iterable[ResultQuantity], states: Iterable[str] = ("",), index: str = ""
+) -> Named:
+    known = tuple(quantities)
+    return {f"{state}{q.name}{index}": q for state in states for q in known}
+
+
+_FIXED, _ROLLING, _ROCKING = ("fixed_base.",), ("rolling.",), ("rocking.",)
+
+SCALARS: dict[Analysis, Named] = {
+    "timehistory": _named((*rq.HISTORY, *rq.SAMPLED, *rq.IMPACTS, *rq.INTENSITIES)),
+    "modal": _named(rq.FIXED_BASE_MODES, _FIXED, ".0")
+    | _named(rq.UPLIFTED_RATIOS, _ROLLING, ".0")
+    | _named(rq.FREQUENCY_PARAMETERS, _ROLLING)
+    | _named(rq.UPLIFTED_RATIOS, _ROCKING, ".0")
+    | _named(rq.FREQUENCY_PARAMETERS, _ROCKING),
+    "pushover": _named(rq.PUSHOVER),
+}
+"""Scalar results of each analysis, in the order of `points.csv`; modes count from 0."""
+
+KNOWN: dict[Analysis, Named] = {
+    "timehistory": SCALARS["timehistory"] | _named([rq.STOREY_SHEARS]),
+    "modal": _named((*rq.FIXED_BASE_MODES, *rq.FIXED_BASE_SHAPES), _FIXED)
+    | _named((*rq.LINEAR, *rq.UPLIFTED_SHAPES), _ROLLING + _ROCKING)
+    | _named(rq.LINEAR, ("rolling.first_order.", "rocking.first_order."))
+    | _named([rq.LEVEL]),
+    "pushover": SCALARS["pushover"]
+    | _named((*rq.STOREY_CURVE, *rq.STOREY_CURVE_RATIOS), ["curve."]),
+}
+"""Results that a report may name; elements of lists by their index, counted from 0."""
+
+
+def quantity(analysis: Analysis, path: str) -> ResultQuantity | None:
+    """The quantity at a dotted path; None if the analysis has no such result."""
+    return KNOWN[analysis].get(split(path)[0])
+
+
+class PointResults(NamedTuple):
+    """What became of some points, of which each has a row.
+
+    `outcomes` are (points,) words; `messages` say by the number of the row why points failed;
+    `columns` are (points, ...) under the names of results, NaN where a point has none.
+    """
+
+    outcomes: NDArray[np.str_]
+    messages: dict[int, str]
+    columns: dict[str, Array]
+
+    @classmethod
+    def alike(cls, count: int, outcome: str, message: str | None = None) -> PointResults:
+        """Of points that all ended in one way, with one message if they failed."""
+        messages = {} if message is None else dict.fromkeys(range(count), message)
+        return cls(np.full(count, outcome, dtype="U20"), messages, {})
+
+    def put(self, rows: Indices, name: str, values: Array) -> None:
+        """Set a column at some rows; what is wider than the column so far widens it."""
+        column = self.columns.get(name)
+        shape = (len(self.outcomes), *values.shape[1:])
+        if column is None:
+            column = self.columns[name] = np.full(shape, np.nan)
+        elif any(new > old for new, old in zip(shape, column.shape, strict=True)):
+            before, wider = column, map(max, shape, column.shape)
+            column = self.columns[name] = np.full(tuple(wider), np.nan)
+            column[_up_to(before.shape)] = before
+        inner: Any = (rows, *_up_to(values.shape[1:]))
+        column[inner] = values
+
+
+def _up_to(shape: Sequence[int]) -> tuple[slice, ...]:
+    return tuple(slice(0, size) for size in shape)
+
+
+def stacked(values: Sequence[Any]) -> Array:
+    """Numbers, or arrays of as many dimensions, as (points, ...): NaN where one has no number.
+
+    >>> stacked([[1.0, 2.0], None, [3.0]]).tolist()
+    [[1.0, 2.0], [nan, nan], [3.0, nan]]
+    """
+    arrays = [None if value is None else np.asarray(value, np.float64) for value in values]
+    shapes = [array.shape for array in arrays if array is not None]
+    column = np.full((len(arrays), *map(max, zip(*shapes, strict=True))), np.nan)
+    for row, array in enumerate(arrays):
+        if array is not None:
+            inner: Any = (row, *_up_to(array.shape))
+            column[inner] = array + 0.0  # no -0.0
+    column[~np.isfinite(column)] = np.nan
+    return column
+
+
+def split(path: str) -> tuple[str, tuple[int, ...]]:
+    """The name of a column and the indices in its rows that a dotted path stands for."""
+    parts, indices = path.split("."), []
+    while len(parts) > 1 and parts[-1].isdecimal():
+        indices.append(int(parts.pop()))
+    return ".".join(parts), tuple(reversed(indices))
+
+
+def at_path(columns: Mapping[str, Array], path: str) -> Array | None:
+    """What the points have at a dotted path; None where none can have it."""
+    name, indices = split(path)
+    column = columns.get(name)
+    if column is None or len(indices) > column.ndim - 1:
+        return None
+    if any(index >= size for index, size in zip(indices, column.shape[1:], strict=False)):
+        return None
+    inner: tuple[int | slice, ...] = (slice(None), *indices)
+    return column[inner]
+
+
+def run_batch(context: StudyContext, points: Sequence[Point]) -> PointResults:
+    """Results of some points of the study, in the same order."""
+    results = PointResults.alike(len(points), FAILED, "not computed")
+    if context.plan.analysis != "timehistory":
+        _static(context, points, results)
+        return results
+    requests: dict[int, Request] = {}
+    for row, point in enumerate(points):
+        request = _attempt(context.history, point)
+        if isinstance(request, str):
+            results.messages[row] = request
+        else:
+            requests[row] = request
+    rows = np.array([*requests], np.int64)
+    run = _whole if context.plan.whole else _together
+    for members, ended, sampled in run([*requests.values()]):
+        at = rows[members]
+        if isinstance(ended, str):
+            results.messages.update(dict.fromkeys(at.tolist(), ended))
+        else:
+            _keep(results, at, ended, ended.columns(KEPT) | sampled)
+    done = np.flatnonzero(results.outcomes != FAILED)
+    scales = np.array([requests[row].scale for row in done.tolist()])
+    peaks = context.intensities([points[row] for row in done.tolist()], scales)
+    for name, values in {"scale": scales, **peaks}.items():
+        results.put(done, name, values)
+    return results
+
+
+def _keep(results: PointResults, at: Indices, ended: Histories, columns: dict[str, Array]) -> None:
+    """Add histories at some rows; of those that failed, why."""
+    outcomes = ended.outcomes
+    good = outcomes != FAILED
+    results.outcomes[at] = outcomes
+    for row, left in zip(at[~good].tolist(), ended.left[~good], strict=True):
+        results.messages[row] = str(failure_text(left))
+    for row in at[good].tolist():
+        del results.messages[row]
+    for name, values in columns.items():
+        results.put(at[good], name, values[good])
+
+
+Run = tuple[list[int], Histories | str, dict[str, Array]]
+"""Numbers of histories, what was found or why nothing was, and what their samples tell."""
+
+
+def _together(requests: list[Request]) -> Iterator[Run]:
+    """Histories side by side."""
+    every = _attempt(lambda: list(histories(requests)))
+    if not isinstance(every, str):
+        yield from ((members, ended, {}) for members, ended in every)
+        return
+    # One of them cannot be had: which one shows when each is tried alone.
+    for number, request in enumerate(requests):
+        alone = _attempt(lambda one: list(histories([one])), request)
+        yield [number], alone if isinstance(alone, str) else alone[0][1], {}
+
+
+def _whole(requests: list[Request]) -> Iterator[Run]:
+    """Each by itself, with what its samples tell."""
+    for number, request in enumerate(requests):
+        whole = _attempt(
+            lambda r: time_history(r.structure, r.motion.scaled(r.scale), r.settings), request
+        )
+        if isinstance(whole, str):
+            yield [number], whole, {}
+        else:
+            sampled = rq.values_of(whole, rq.SAMPLED)
+            ended = Histories.of_one(whole.structure, whole.history)
+            yield [number], ended, {name: stacked([value]) for name, value in sampled.items()}
+
+
+def _static(context: StudyContext, points: Sequence[Point], results: PointResults) -> None:
+    """Add the modes or the static curves of each point."""
+    analysis = context.plan.analysis
+    of, known = {"modal": _modal, "pushover": _pushover}[analysis], KNOWN[analysis]
+    rows: list[dict[str, Any]] = []
+    for row, point in enumerate(points):
+        values = _attempt(lambda p: of(context.system(p.system, p.values).structure), point)
+        if isinstance(values, str):
+            results.messages[row] = values
+        else:
+            results.outcomes[row] = DONE
+            del results.messages[row]
+        rows.append({} if isinstance(values, str) else values)
+    for name in known:
+        if any(name in row for row in rows):
+            results.columns[name] = stacked([row.get(name) for row in rows])
+
+
+def _modal(structure: PodiumStructure) -> dict[str, Any]:
+    result = modal(structure)
+    values: dict[str, Any] = {rq.LEVEL.name: range(structure.storeys + 1)}
+    paper = {f"{name}.first_order": modes for name, (_, modes) in result.both_orders.items()}
+    states: dict[str, Any] = {**result.uplifted, **paper, "fixed_base": result.fixed_base}
+    for state, modes in states.items():
+        if modes is not None:
+            values |= {f"{state}.{name}": profile for name, profile in modes.profiles().items()}
+            lists = rq.FIXED_BASE_MODES if state == "fixed_base" else rq.LINEAR
+            values |= {f"{state}.{q.name}": getattr(modes, q.name) for q in lists}
+    return values
+
+
+def _pushover(structure: PodiumStructure) -> dict[str, Any]:
+    result = pushover(structure)
+    curve = {q.name: getattr(result.curve, q.name) for q in rq.STOREY_CURVE} | result.curve_ratios()
+    scalars = {q.name: getattr(result, q.name) for q in rq.PUSHOVER}
+    return scalars | {f"curve.{name}": values for name, values in curve.items()}
+
+
+def _attempt(work: Callable[..., Result], *arguments: Any) -> Result | str:
+    """What the work gives, or a text that says why it gives nothing."""
+    try:
+        return work(*arguments)
+    except RpsError as error:
+        return str(error)
+    except Exception as error:  # noqa: BLE001 -- one point must not take the study down
+        return f"{type(error).__name__}: {error}"
+
+
+def reference_shears(structure: PodiumStructure, motion: MotionComponents) -> Array:
+    """Largest storey shears (n,) [N] from the bottom, of a pair resultants, of an unscaled one."""
+    building = structure.superstructure
+    assert building is not None, "only buildings have a response"
+    across = structure.superstructure_y or building
+    # The largest shear after the end of the record comes within a period.
+    after = math.ceil(max(float(each.periods[0]) for each in (building, across)) / motion.dt)
+    shaken = [each.npts for name, each in motion.named.items() if name != "vertical"]
+    return fixed_base_shears(structure, motion, max(shaken) - 1 + after)

@@ -1,1 +1,0 @@
-"""Which points a study has."""

@@ -1,0 +1,453 @@
+"""Running a study: what is stored already, batches to an engine, their rows to the one writer.
+
+The order of computation is not the order of the study. Points with one number of storeys stand
+together, and among them those of one record, because the kernels run fastest on them; the tallest
+buildings come first, so that the last batches, for which not all threads are needed, are short.
+Systems come in blocks, which can be held in memory while the records pass.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import hashlib
+import json
+import pickle
+import signal
+import struct
+import threading
+import time
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import FIRST_COMPLETED, CancelledError, Executor, Future, wait
+from contextlib import ExitStack, contextmanager, suppress
+from dataclasses import dataclass, replace
+from itertools import islice, takewhile
+from pathlib import Path
+from types import FrameType
+from typing import Any
+
+import numpy as np
+
+from rpscli.case.text.document import shown
+from rpscli.errors import Refused, RpsError, UsageError
+from rpscli.sweep.context import Plan, Point, StudyContext, solver_version
+from rpscli.sweep.evaluation import FAILED, PointResults, run_batch
+from rpscli.sweep.points import StudyPoints
+from rpscli.sweep.store import Store
+
+
+def all_keys(layout: StudyPoints) -> list[bytes]:
+    """Digests of resolved case, record content, scale, perturbation and solver of all points."""
+    plan, keys, of_system = layout.plan, list[bytes](), layout.points_of_system
+    tails, before = list[bytes](), None
+    for system, properties in enumerate(layout.properties):
+        begun = hashlib.sha256(plan.solver.encode() + plan.analysis.encode() + properties.digest)
+        own = properties.record, properties.scale, layout.period_of_measure(properties)
+        if own != before:
+            first, before = system * of_system, own
+            points = (layout[number] for number in range(first, first + of_system))
+            tails = [_motion_digest(layout, point) for point in points]
+        for tail in tails:
+            digest = begun.copy()
+            digest.update(tail)
+            keys.append(digest.digest())
+    return keys
+
+
+def _motion_digest(layout: StudyPoints, point: Point) -> bytes:
+    """Content of the record, or why it cannot be read; scale and perturbation."""
+    if layout.plan.analysis != "timehistory":
+        return b""
+    assert point.record is not None, "points of histories have a record"
+    factor = layout.known_factor(point)
+    change = struct.pack("<2d?", factor, point.restitution_change, layout.plan.whole)
+    return layout.context.records.digest(point.record) + change
+
+
+@dataclass(frozen=True, eq=False)
+class Start:
+    """Where a run begins."""
+
+    keys: list[bytes]
+    """Of all points, in the order of the study."""
+    pending: list[int]
+    """Points to be computed, in the order of the study; equal points are computed once."""
+    kept: int
+    """Points that are stored."""
+    unused: int
+    """Stored points that are no longer in the study. They stay in the file, for the case
+    that the study is changed back."""
+    notes: tuple[str, ...]
+    """What changed since the last run, for the user."""
+    facts: dict[str, str]
+    """What the store is to know of the study."""
+
+
+def start(layout: StudyPoints, store: Store, *, retry_failed: bool = False) -> Start:
+    """Compare a study with its store."""
+    keys, known, before = all_keys(layout), store.outcomes(), store.facts()
+    # The study and its case as they are written, with overrides.
+    written = {**layout.study.document.content, "base": layout.plan.base}
+    now = {
+        "study": json.dumps(written, sort_keys=True),
+        "name": layout.study.name,
+        "solver": layout.plan.solver,
+    }
+    wanted = set(keys)
+    seen = {key for key, failed in known.items() if key in wanted and not (failed and retry_failed)}
+    kept, pending = sum(key in seen for key in keys), list[int]()
+    for number, key in enumerate(keys):
+        if key not in seen:
+            seen.add(key)
+            pending.append(number)
+    foreign = before and known and not wanted & known.keys()
+    if foreign and (name := before["name"]) != layout.study.name:
+        raise Refused(
+            f"{store.path} holds the results of another study ({name}); name another folder with"
+            " -o, or discard them with --fresh"
+        )
+    unused, notes = len(known.keys() - wanted), list[str]()
+    if before:
+        if (solver := before["solver"]) != now["solver"]:
+            text = f"the solver changed from {solver} to {now['solver']}: nothing of it applies"
+            notes.append(text)
+        changed = list(_differences(json.loads(before["study"]), json.loads(now["study"])))
+        if changed:
+            more = "; ..." if changed[6:] else ""
+            notes.append(f"the study changed: {'; '.join(changed[:6])}{more}")
+        if changed or unused:
+            notes.append(f"{kept} points still apply, {len(keys) - kept} are to be computed")
+        if unused:
+            stay = f"they stay in {store.path}"
+            notes.append(f"{unused} stored points are no longer in the study; {stay}")
+    return Start(keys, pending, kept, unused, tuple(notes), now)
+
+
+def _differences(old: Any, new: Any, path: str = "") -> Iterator[str]:
+    """Where two documents differ, in words."""
+    if isinstance(old, Mapping) and isinstance(new, Mapping):
+        for key in dict.fromkeys((*old, *new)):
+            inner = f"{path}.{key}" if path else str(key)
+            if key not in new:
+                yield f"{inner} dropped"
+            elif key not in old:
+                yield f"{inner} = {shown(new[key])} added"
+            else:
+                yield from _differences(old[key], new[key], inner)
+    elif isinstance(old, list) and isinstance(new, list):
+        yield from _list_differences(old, new, path)
+    elif old != new:
+        yield f"{path}: {shown(old)} -> {shown(new)}"
+
+
+def _list_differences(old: list[Any], new: list[Any], path: str) -> Iterator[str]:
+    if len(old) == len(new) and any(isinstance(item, dict | list) for item in (*old, *new)):
+        for index, (before, after) in enumerate(zip(old, new, strict=True)):
+            yield from _differences(before, after, f"{path}.{index}")
+        return
+    dropped = [item for item in old if item not in new]
+    added = [item for item in new if item not in old]
+    if dropped:
+        yield f"{path} drops {shown(dropped)}"
+    if added:
+        yield f"{path} adds {shown(added)}"
+    if not dropped and not added and old != new:
+        yield f"{path}: another order"
+
+
+LARGEST_BATCH = 480
+"""Points; a batch takes about a second at most with common buildings, and keeps all lanes of the
+kernel busy but at its end."""
+
+SMALLEST_BATCH = 8
+
+TOGETHER = 32
+"""Systems whose points are computed one record after the other: the kernels keep what they read of
+the systems of a batch, near a megabyte of each."""
+
+
+def batches(layout: StudyPoints, pending: Sequence[int], jobs: int) -> Iterator[list[Point]]:
+    """Batches of the pending points, which are given in the order of the study."""
+    # Small enough that all threads have something to do until the end.
+    size = min(LARGEST_BATCH, max(SMALLEST_BATCH, len(pending) // (4 * jobs)))
+    storeys = np.array([properties.storeys for properties in layout.properties])
+    block = np.zeros_like(storeys)
+    for count in np.unique(storeys):
+        alike = storeys == count
+        block[alike] = np.arange(np.count_nonzero(alike)) // TOGETHER
+    numbers = np.array(pending, np.int64)
+    systems, within = np.divmod(numbers, layout.points_of_system)
+    records = within // (layout.points_of_system // len(layout.records))
+    order = np.lexsort((records, block[systems], -storeys[systems]))
+    numbers, systems = numbers[order], systems[order]
+    changes = np.diff(storeys[systems]) | np.diff(block[systems])
+    for part in np.split(numbers, np.flatnonzero(changes) + 1):
+        for first in range(0, len(part), size):
+            yield [layout[number] for number in part[first : first + size].tolist()]
+
+
+Computed = tuple[list[Point], PointResults]
+"""A batch of points with its results."""
+
+HEARING = 0.2
+"""Seconds after which who waits for a batch looks up.
+
+A Ctrl-C that comes between the last look and the beginning of the wait, or that is given to another
+thread, wakes nobody; on Windows none does.
+"""
+
+PATIENCE = 10.0
+"""Time to wait for a scheduler, and for its first worker [s]."""
+
+
+class Threads(Executor):
+    """Threads of this process, one a batch, which share records and systems.
+
+    The kernels let go of the interpreter while they compute, so threads use all cores without a
+    copy of a record, and start at once. They are daemons: after a second Ctrl-C the process need
+    not wait for them.
+    """
+
+    def submit(self, work: Callable[..., Any], /, *inputs: Any, **_: Any) -> Future[Any]:
+        """Begin a piece of work."""
+        future: Future[Any] = Future()
+
+        def run() -> None:
+            try:
+                future.set_result(work(*inputs))
+            except BaseException as error:  # noqa: BLE001 -- raised again where it can be told
+                future.set_exception(error)
+
+        threading.Thread(target=run, daemon=True).start()
+        return future
+
+
+M_MMAP_THRESHOLD = -3
+"""Of glibc's `mallopt`."""
+
+
+def _free_large_arrays() -> None:
+    """Have arrays that are freed go back to the system at once.
+
+    glibc keeps ever larger ones for later use, half of the memory of a study of 100,000 points.
+    """
+    with suppress(AttributeError, OSError, TypeError):  # no glibc
+        ctypes.CDLL(None).mallopt(M_MMAP_THRESHOLD, 1 << 17)
+
+
+class Engine:
+    """Computes batches, several at a time: in threads of this process or on a Dask cluster.
+
+    Workers of a cluster get the plan and the points, and read records themselves; all of them must
+    see the files of the study under the same names, and run the same version of rps. `scheduler` is
+    the address of its scheduler, as tcp://head:8786.
+    """
+
+    def __init__(self, context: StudyContext, jobs: int, scheduler: str | None = None) -> None:
+        self.jobs, self._context, self._opened = jobs, context, ExitStack()
+        self._executor: Executor = Threads()
+        self._deadly: type[BaseException] | tuple[()] = ()
+        # Batches that are under way, and on a cluster kept ready for each of its threads.
+        self._ahead = jobs
+        if scheduler:
+            self._connect(scheduler)
+        else:
+            _free_large_arrays()
+
+    def _connect(self, address: str) -> None:
+        try:
+            import distributed  # an optional extra
+        except ModuleNotFoundError:
+            raise UsageError('--scheduler needs Dask; run: pip install "rpscli[cluster]"') from None
+        dask: Any = distributed
+        try:
+            client = dask.Client(address, timeout=PATIENCE, set_as_default=False)
+            self._opened.callback(client.close)
+            client.wait_for_workers(1, timeout=PATIENCE)
+        except (OSError, ValueError) as error:  # a TimeoutError is an OSError
+            raise UsageError(
+                f"--scheduler {address}: no Dask scheduler with a worker answers there ({error})"
+            ) from None
+        self.jobs = max(1, sum(client.nthreads().values()))
+        self._ahead, self._deadly = 2 * self.jobs, dask.KilledWorker
+        # A batch whose worker dies is computed by another.
+        self._executor = client.get_executor(pure=False, retries=2)
+        plan = self._context.plan
+        self._plan = replace(plan, base_folder=str(Path(plan.base_folder).absolute()))
+        self._digest = hashlib.sha256(pickle.dumps(self._plan)).hexdigest()
+
+    def _submit(self, points: list[Point]) -> Future[PointResults]:
+        if not self._deadly:
+            return self._executor.submit(run_batch, self._context, points)
+        seen = [_seen_everywhere(point) for point in points]
+        return self._executor.submit(compute, self._digest, self._plan, seen)
+
+    def outcomes(self, batches: Iterable[list[Point]]) -> Iterator[Computed]:
+        """The batches with their results, as they come; taken when there is room for them."""
+        source, under_way = iter(batches), dict[Future[PointResults], list[Point]]()
+
+        def fill() -> None:
+            for points in islice(source, max(self._ahead - len(under_way), 0)):
+                under_way[self._submit(points)] = points
+
+        with self._opened:
+            fill()
+            while under_way:
+                done, _ = wait(under_way, timeout=HEARING, return_when=FIRST_COMPLETED)
+                ended = [(under_way.pop(future), future) for future in done]
+                fill()  # what is free goes on before the caller takes what it brought
+                for points, future in ended:
+                    error = CancelledError() if future.cancelled() else future.exception()
+                    if error is None:
+                        yield points, future.result()
+                    elif not isinstance(error, self._deadly):
+                        raise self._told(error)
+                    elif len(points) == 1:
+                        message = "the workers that computed this point died, one after the other"
+                        yield points, PointResults.alike(1, FAILED, message)
+                    else:  # points of a deadly batch are tried one by one
+                        under_way |= {self._submit([point]): [point] for point in points}
+
+    def _told(self, error: BaseException) -> BaseException:
+        if not self._deadly or isinstance(error, RpsError):
+            return error
+        return RpsError(
+            f"the cluster gave up ({type(error).__name__}: {error}); what was stored is safe, the"
+            " same command continues"
+        )
+
+
+def _seen_everywhere(point: Point) -> Point:
+    """The point with its record's folder as every machine sees it."""
+    if point.record is None:
+        return point
+    folder = str(Path(point.record.folder).absolute())
+    return point._replace(record=point.record._replace(folder=folder))
+
+
+_contexts: dict[str, StudyContext] = {}
+_lock = threading.Lock()
+
+
+def compute(digest: str, plan: Plan, points: list[Point]) -> PointResults:
+    """Results of a batch; runs on a worker, which keeps what it has read for the next one."""
+    if plan.solver != solver_version():
+        raise RpsError(
+            f"a worker runs rps {solver_version()}, but the study was laid out by {plan.solver};"
+            " install the same version on all machines"
+        )
+    with _lock:
+        if digest not in _contexts:
+            _contexts.clear()
+            _contexts[digest] = StudyContext(plan)
+        context = _contexts[digest]
+    return run_batch(context, points)
+
+
+@dataclass(frozen=True)
+class Progress:
+    """How far a study is."""
+
+    total: int
+    kept: int
+    computed: int
+    failed: int
+    """Points of the study, stored before, of this run, and those of it that failed."""
+    seconds: float
+    """Since the run began."""
+    first: int = 0
+    first_seconds: float = 0.0
+    """Points that the first batch brought, and when: kernels may have been compiled before,
+    which says nothing about the rate of the others."""
+
+    @property
+    def done(self) -> int:
+        """Points in the store."""
+        return self.kept + self.computed
+
+    @property
+    def rate(self) -> float:
+        """Points a second after the first batch; 0 before there are any."""
+        seconds = self.seconds - self.first_seconds
+        return (self.computed - self.first) / seconds if seconds > 0.0 else 0.0
+
+    @property
+    def seconds_left(self) -> float | None:
+        """Time to the end at this rate; None before the first point."""
+        return (self.total - self.done) / self.rate if self.rate > 0.0 else None
+
+
+def run(
+    layout: StudyPoints,
+    begin: Start,
+    store: Store,
+    engine: Engine,
+    report: Callable[[Progress], None] = lambda _: None,
+    announce: Callable[[], None] = lambda: None,
+) -> Progress:
+    """Compute and store points; Ctrl-C lets those under way end, a second one stops at once."""
+    began = time.monotonic()
+    progress = Progress(begin.kept + len(begin.pending), begin.kept, 0, 0, 0.0)
+    with first_interrupt(announce) as interrupted:
+        work = batches(layout, begin.pending, engine.jobs)
+        wanted = takewhile(lambda _: not interrupted.is_set(), work)
+        for points, results in engine.outcomes(wanted):
+            store.add([begin.keys[point.number] for point in points], results)
+            computed, seconds = progress.computed + len(points), time.monotonic() - began
+            progress = replace(
+                progress,
+                computed=computed,
+                failed=progress.failed + int((results.outcomes == FAILED).sum()),
+                seconds=seconds,
+                first=progress.first or computed,
+                first_seconds=progress.first_seconds or seconds,
+            )
+            report(progress)
+    return replace(progress, seconds=time.monotonic() - began)
+
+
+@contextmanager
+def first_interrupt(announce: Callable[[], None]) -> Iterator[threading.Event]:
+    """An event that the first Ctrl-C sets; the second one interrupts as usual."""
+    event = threading.Event()
+    if threading.current_thread() is not threading.main_thread():
+        yield event
+        return
+    before = signal.getsignal(signal.SIGINT)
+
+    def stop(_number: int, _frame: FrameType | None) -> None:
+        event.set()
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+        announce()
+
+    signal.signal(signal.SIGINT, stop)
+    try:
+        yield event
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+PROBES = 96
+LONGEST_PROBING = 3.0
+"""Time after which no further points are tried [s]."""
+
+
+def estimated_seconds(layout: StudyPoints, jobs: int) -> float:
+    """Compute points spread over the study, in batches, and take the rest to be like them."""
+    count = len(layout)
+    tried, spent, points = min(PROBES, count), 0.0, 0
+    numbers = sorted({count * (2 * i + 1) // (2 * tried) for i in range(tried)})
+    for batch in batches(layout, numbers, jobs=1):
+        alone = _seconds(layout.context, batch[:1])  # reads records, loads kernels
+        if alone > 2.0 * LONGEST_PROBING:  # of which loading is little
+            return alone * count / min(jobs, count)
+        affordable = batch[: 1 + int(LONGEST_PROBING / _seconds(layout.context, batch[:1]))]
+        spent, points = spent + _seconds(layout.context, affordable), points + len(affordable)
+        if spent > LONGEST_PROBING:
+            break
+    return spent / points * count / min(jobs, count)
+
+
+def _seconds(context: StudyContext, points: Sequence[Point]) -> float:
+    began = time.perf_counter()
+    run_batch(context, points)
+    return time.perf_counter() - began

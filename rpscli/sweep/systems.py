@@ -1,0 +1,360 @@
+"""The systems of a study in order, the product of its axes and its sample, each examined first."""
+
+from __future__ import annotations
+
+import hashlib
+import itertools
+import math
+import warnings
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any, NamedTuple, TypeAlias
+
+import numpy as np
+
+from rpscli.analyses.column_forces import no_bound
+from rpscli.analyses.result_quantities import HISTORY, NEEDS, SAMPLED
+from rpscli.case.case import Case, case_from_mapping
+from rpscli.case.conditions import Condition, conditions_of, with_friction
+from rpscli.case.overrides import Override
+from rpscli.case.rules.plausibility import Doubt, doubts_of_directions
+from rpscli.case.study.axes import Values
+from rpscli.case.study.schema import PerturbSection, RangeSection, SampleSection
+from rpscli.case.study.study import Study
+from rpscli.case.text.document import Fault, Place
+from rpscli.errors import CaseError, RecordError
+from rpscli.model.podium import PodiumStructure
+from rpscli.records.measures import Of, needs_period
+from rpscli.records.source import Source
+from rpscli.sweep.context import (
+    SYSTEMS_KEPT,
+    Array,
+    RecordRequest,
+    StudyContext,
+    System,
+    resolved,
+    unjudged,
+)
+
+Watched: TypeAlias = Callable[[range], Iterator[int]]
+"""Goes through numbers and may show how far it is."""
+
+MOST_FAULTY = 8
+"""Inadmissible systems after which the search for more gives up."""
+
+
+def sample(section: SampleSection) -> Array:
+    """The sample, (size, keys): scrambled Sobol or Latin hypercube, fixed by the seed."""
+    unit = unit_cube(section, len(section.ranges))
+    columns = [_values(unit[:, i], given) for i, given in enumerate(section.ranges.values())]
+    return np.column_stack(columns)
+
+
+def unit_cube(section: SampleSection, dimensions: int) -> Array:
+    """(size, dimensions) of the section's sequence, in the unit cube."""
+    from scipy.stats import qmc
+
+    engine = {"sobol": qmc.Sobol, "latin_hypercube": qmc.LatinHypercube}[section.method]
+    sequence: Any = engine(dimensions, seed=np.random.default_rng(section.seed))
+    with warnings.catch_warnings():
+        # Sobol sequences are balanced at powers of two; `balance_note` tells the user.
+        warnings.simplefilter("ignore", UserWarning)
+        return np.asarray(sequence.random(section.size), dtype=np.float64)
+
+
+def balance_note(section: SampleSection) -> str | None:
+    """What the user should know about the size of a Sobol sample."""
+    size = section.size
+    if section.method != "sobol" or size & (size - 1) == 0:
+        return None
+    better = 1 << (size.bit_length() - 1)
+    return f"sample.size = {size} is not a power of 2; Sobol samples are even at {better}"
+
+
+def _values(unit: Array, given: RangeSection) -> Array:
+    """One parameter from its place in the unit interval."""
+    from scipy.special import ndtri
+
+    if given.low is not None and given.high is not None:
+        return given.low + (given.high - given.low) * unit
+    assert given.mean is not None, "the study's rules make sure that the moments are given"
+    assert given.cov is not None, "the study's rules make sure that the moments are given"
+    deviation = given.cov * abs(given.mean)
+    if given.distribution == "uniform":
+        return given.mean + math.sqrt(3.0) * deviation * (2.0 * unit - 1.0)
+    # A scrambled sequence may hit zero, whose quantile is minus infinity.
+    normal = np.asarray(ndtri(np.maximum(unit, 1e-16)))
+    if given.distribution == "normal":
+        return given.mean + deviation * normal
+    spread = math.sqrt(math.log1p(given.cov**2))
+    median = given.mean / math.sqrt(1.0 + given.cov**2)
+    return np.asarray(median * np.exp(spread * normal))
+
+
+class Change(NamedTuple):
+    """Factors on the record's scale and on the restitution; a turn of pairs [deg]."""
+
+    scale: float
+    restitution: float
+    rotation: float = 0.0
+
+
+def changes(section: PerturbSection | None) -> tuple[Change, ...]:
+    """The members of an ensemble, uniform within the given shares; the first is unperturbed."""
+    unchanged = Change(1.0, 1.0)
+    if section is None:
+        return (unchanged,)
+    generator = np.random.default_rng(section.seed)
+    drawn = generator.uniform(-1.0, 1.0, (section.members - 1, 2)).tolist()
+    # A sequence of their own: more members leave the earlier ones.
+    turning = np.random.default_rng([section.seed, 1])
+    turns = (section.rotation * turning.uniform(-1.0, 1.0, section.members - 1)).tolist()
+    others = (
+        Change(1.0 + section.scale * a, 1.0 + section.restitution * b, turn)
+        for (a, b), turn in zip(drawn, turns, strict=True)
+    )
+    return (unchanged, *others)
+
+
+class SystemProperties(NamedTuple):
+    """What the layout of points and statistics must know of a system, SI units.
+
+    `values` are those of the varied keys; `period` is T1 on a fixed base, `frequency_parameter`
+    that of the rigid frame, p_hat; `building` is a digest of the superstructure, empty without one;
+    `limits` are those of the study or, where it has none, of
+    the case; `lacking` names results that the system cannot have; `doubts` are what is unusual.
+    """
+
+    values: Values
+    digest: bytes
+    storeys: int
+    period: float | None
+    alpha: float
+    uplift_acceleration: float
+    frequency_parameter: float
+    static_base_shear: float
+    building: bytes
+    record: RecordRequest | None
+    scale: float
+    limits: tuple[Condition, ...]
+    lacking: frozenset[str]
+    doubts: tuple[Doubt, ...]
+
+
+def examined(
+    study: Study,
+    context: StudyContext,
+    drawn: Array,
+    members: Sequence[Change],
+    watched: Watched = iter,
+) -> tuple[SystemProperties, ...]:
+    """Properties of all systems; the first ones are kept in the context.
+
+    Parameters
+    ----------
+    drawn
+        The sample (size, keys), which runs faster than the axes; (1, 0) if nothing is sampled.
+    members
+        Of the perturbation.
+    watched
+        Goes through the numbers of the systems.
+
+    Raises
+    ------
+    CaseError
+        If one is no valid case, at the places of its values. Unknown keys are among them.
+    """
+    plan = context.plan
+    properties: list[SystemProperties] = []
+    requests: dict[RecordRequest, RecordRequest] = {}
+    complaints: dict[str, None] = {}
+    faulty, pairs = 0, any(Source.parse(source).both for source in study.sources)
+    lengths = (*(len(axis.rows) for axis in study.axes), len(drawn))
+    rows_of = itertools.product(*map(range, lengths))
+    for number, rows in zip(watched(range(math.prod(lengths))), rows_of, strict=True):
+        varied = (axis.rows[row] for axis, row in zip(study.axes, rows, strict=False))
+        values = (*itertools.chain.from_iterable(varied), *drawn[rows[-1]].tolist())
+        try:
+            case = resolved(plan, values)
+            system = System.of_case(case)
+            both = pairs if case.record is None or study.sources else case.record.is_pair
+            request = (
+                None
+                if study.sources
+                else record_request(case, plan.measure.of if plan.measure else None)
+            )
+            request = request and requests.setdefault(request, request)
+            properties.append(_properties(study, values, case, system.digest, request, both=both))
+            if number < SYSTEMS_KEPT:
+                context.system(number, values, system)
+            _refuse_restitution(study, case, members)
+            _refuse_missing(study, context, case)
+            if both and plan.analysis == "timehistory" and (why := case.structure.planar_only):
+                raise CaseError(f"both components together: {why}")  # noqa: TRY301 -- placed below
+        except CaseError as error:
+            complaints |= dict.fromkeys(_placed(study, context, values, rows, error))
+            faulty += 1
+            if faulty >= MOST_FAULTY:
+                break
+    if complaints:
+        raise CaseError("\n".join(complaints))
+    return tuple(properties)
+
+
+def record_request(case: Case, of: Of | None = None) -> RecordRequest | None:
+    """The case's own record, to be measured as a scale asks for."""
+    if (record := case.record) is None:
+        return None
+    try:
+        pair = record.pair(of)
+    except RecordError as error:
+        raise CaseError(str(error)) from None
+    what = record.vertical, record.dt, record.units, pair, record.y, record.rotation or 0.0
+    return RecordRequest(record.source, str(case.folder), *what)
+
+
+def _properties(
+    study: Study,
+    values: Values,
+    case: Case,
+    digest: bytes,
+    request: RecordRequest | None,
+    *,
+    both: bool,
+) -> SystemProperties:
+    structure, building = case.structure, case.structure.superstructure
+    buildings = filter(None, (building, structure.superstructure_y))
+    return SystemProperties(
+        values=values,
+        digest=digest,
+        storeys=structure.storeys,
+        period=None if building is None else float(building.periods[0]),
+        alpha=structure.bearing.alpha,
+        uplift_acceleration=structure.uplift_acceleration,
+        frequency_parameter=structure.rigid_frequency_parameter,
+        static_base_shear=structure.static_base_shear,
+        building=b"".join(
+            hashlib.sha256(
+                repr(each.damping).encode() + each.masses.tobytes() + each.stiffnesses.tobytes()
+            ).digest()
+            for each in buildings
+        ),
+        record=request,
+        scale=1.0 if case.record is None else case.record.scale,
+        limits=_limits(study, case, both=both),
+        lacking=lacking(study, case),
+        doubts=(*case.doubts, *doubts_of_directions(structure, both=both)),
+    )
+
+
+def _limits(study: Study, case: Case, *, both: bool) -> tuple[Condition, ...]:
+    """Limits of the study or, where it has none of its own, of the case; friction where given."""
+    own = study.file.limits
+    if own is not None:
+        limits = conditions_of(own, "limits of the study")
+    else:
+        limits = conditions_of(case.limits, "limits of the case")
+    for limit in limits:
+        if both and (why := no_bound(limit.name, case.structure)):
+            raise CaseError(f"{limit.source}: {why}")
+    return with_friction(limits, case.structure)
+
+
+def lacking(study: Study, case: Case) -> frozenset[str]:
+    """Names of the results that histories of this case will not have."""
+    sampled = () if study.file.whole_histories else SAMPLED
+    known = (*HISTORY, *SAMPLED)
+    return frozenset(
+        [q.name for q in known if q.needs and not HAS[q.needs](case.structure)]
+        + [q.name for q in sampled]
+    )
+
+
+def needs_of(name: str, which: str = "not every") -> str:
+    """What a study must have for a result, in words."""
+    needs = {q.name: NEEDS.get(q.needs, "") for q in (*HISTORY, *SAMPLED)}[name]
+    if name in {quantity.name for quantity in SAMPLED}:
+        alike = f", and in all systems {needs}" if needs else ""
+        return f"{name} needs `whole_histories: true`{alike}"
+    return f"{name} needs {needs}, which {which} system of the study has"
+
+
+def _device_with(result: str) -> Callable[[PodiumStructure], bool]:
+    return lambda structure: any(result in device.results for device in structure.devices)
+
+
+HAS: dict[str, Callable[[PodiumStructure], bool]] = {
+    "superstructure": lambda structure: structure.superstructure is not None,
+    "superstructure.storey_height": lambda structure: (
+        structure.superstructure is not None and structure.superstructure.storey_heights is not None
+    ),
+    "superstructure, flat part": lambda structure: structure.static_base_shear > 0.0,
+    "superstructure, devices": lambda structure: bool(structure.storeys and structure.devices),
+    "podium.friction": lambda structure: structure.friction is not None,
+    "columns": lambda structure: not structure.left_out_of_columns(both=False),
+    "contact": lambda structure: structure.bed is not None,
+    "plane contact": lambda structure: (
+        structure.contact.kind == "plane" and structure.bearing.is_flat
+    ),
+    "damper": _device_with("max_damper_force"),
+    "stop": _device_with("max_stop_force"),
+    "tendon": _device_with("lost_prestress"),
+}
+"""Whether a structure has what a result needs, by the names of `NEEDS`."""
+
+
+def _placed(
+    study: Study, context: StudyContext, values: Values, rows: Sequence[int], error: CaseError
+) -> list[str]:
+    """The lines of a message, at the places where the study wrote the values."""
+    plan, document = context.plan, study.document
+    places: list[Place] = [
+        axis.place(key, row)
+        for axis, row in zip(study.axes, rows, strict=False)
+        for key in range(len(axis.keys))
+    ]
+    sampled = plan.keys[len(places) :]
+    places += [document.value_place(("sample", "ranges", key)) for key in sampled]
+    written = [Override(*item) for item in zip(plan.keys, values, places, strict=True)]
+    without = unjudged(dict(zip(plan.keys, values, strict=True)))
+    written += [Override(limit, None, places[-1]) for limit in without]
+    try:
+        case_from_mapping(study.base, plan.base_name, study.base_folder, written)
+    except CaseError as placed:
+        return str(placed).splitlines()
+    return str(error).splitlines()
+
+
+def _refuse_restitution(study: Study, case: Case, members: Sequence[Change]) -> None:
+    """A perturbed impact must not gain energy by itself."""
+    largest = max(change.restitution for change in members)
+    e = case.structure.restitution
+    if e * largest > 1.0 and not case.structure.bearing.is_spherical:
+        text = (
+            f"perturb.restitution raises the restitution {e:.4g} of a system above 1; use less"
+            f" than {1.0 / e - 1.0:.3g}"
+        )
+        study.document.refuse([Fault(("perturb", "restitution"), text)])
+
+
+def _refuse_missing(study: Study, context: StudyContext, case: Case) -> None:
+    """What a point needs besides a valid case."""
+    if (plan := context.plan).analysis != "timehistory":
+        return
+    if not study.sources and case.record is None:
+        text = "no record: give the study `records`, or the case at its base a `record`"
+        study.document.refuse([Fault((), text)])
+    measure = plan.measure
+    own = None if case.record is None else case.record.scale_to
+    if own is not None and study.file.scale is None:
+        # The case at the base may scale its record, all of them as it does.
+        target = own.measure, (own.value,), own.period, own.of
+        same = measure and (measure.measure, measure.values, measure.period, measure.of) == target
+        if not same:
+            text = "record.scale_to cannot vary in a study; vary `scale: {measure: ..., values:"
+            study.document.refuse([Fault((), f"{text} [...]}}`")])
+    at_first_period = measure and needs_period(measure.measure) and measure.period is None
+    if measure and at_first_period and case.structure.superstructure is None:
+        text = (
+            f"scale.period is missing: without storeys {measure.measure} has no T1 to be taken at"
+        )
+        study.document.refuse([Fault(("scale",), text, at_key=True)])
