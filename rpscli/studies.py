@@ -100,31 +100,32 @@ class StudyInterrupted(KeyboardInterrupt):
         self.points = {"total": total, "stored": stored}
 
 
-def load_study(source: Path | str | Mapping[str, Any], overrides: Sequence[str] = ()) -> Study:
+def load_study(
+    source: Path | str | Mapping[str, Any],
+    overrides: Sequence[str] = (),
+    *,
+    conditions: Iterable[Condition] = (),
+    watched: Watched = iter,
+) -> Study:
     """A study from its file, or from what such a file would say; all its systems are checked.
 
     Parameters
     ----------
     source
-        A file, or a mapping; relative names in a mapping start at the working folder.
+        A file, ``-`` for the standard input, or a mapping; relative names in a mapping start at the
+        working folder.
     overrides
         Texts ``key=value`` over the study's own values, or over those of its base case.
+    conditions
+        Limits besides those of study and case.
+    watched
+        Goes through the numbers of the systems while they are checked.
 
     Raises
     ------
     CaseError
         If the study, one of its systems or what a report needs is not valid.
     """
-    return read_study(source, overrides)
-
-
-def read_study(
-    source: Path | str | Mapping[str, Any],
-    overrides: Sequence[str] = (),
-    conditions: Iterable[Condition] = (),
-    watched: Watched = iter,
-) -> Study:
-    """A study from a file, the standard input (``-``) or a mapping, whose systems are `watched`."""
     if isinstance(source, Mapping):
         text = text_of_values(source, "<study>")
         own, of_base = shared_out(overrides, StudyFile)
@@ -473,8 +474,7 @@ class StudyResult(Shown):
 
         Its `tables` are the columns of its CSV files, by what follows the name.
         """
-        request = self._request(name)
-        return self._made(request)
+        return self._made(self._request(name))
 
     def draw(self, name: str, target: Any = None) -> Target:
         """The figure of a report.

@@ -58,11 +58,11 @@ class SweepChoices:
 
 def read(request: CaseRequest, conditions: Iterable[Condition], terminal: Terminal) -> Study:
     """Read and check a study and all its systems."""
-    from rpscli.studies import read_study
+    from rpscli.studies import load_study
     from rpscli.sweep.systems import balance_note
 
     examined = partial(watched, "systems examined", terminal)
-    study = read_study(request.source, request.overrides, conditions, examined)
+    study = load_study(request.source, request.overrides, conditions=conditions, watched=examined)
     if (section := study.layout.study.file.sample) and (note := balance_note(section)):
         terminal.warn([note])
     return study

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -79,6 +79,26 @@ class Outcomes(Frozen):
         return frozen(np.char.startswith(self.outcomes, "overturned"))
 
 
+class Intensity(NamedTuple):
+    """A measure of the scaled records.
+
+    `values` are (points,), NaN where a record cannot be read; `period` is that of Sa and the like,
+    None for T1 of each system; `of` says what of pairs it is, None where no record is measured as
+    a pair.
+    """
+
+    measure: Measure
+    unit: str
+    period: float | None
+    values: Array
+    of: Of | None = None
+
+    @property
+    def name(self) -> str:
+        """As columns call it."""
+        return measure_label(self.measure, self.of)
+
+
 @dataclass(frozen=True, eq=False)
 class Table(Outcomes):
     """Those of all points of a study."""
@@ -119,6 +139,37 @@ class Table(Outcomes):
         if self.layout.plan.analysis != "timehistory":
             return None
         return self.layout.factors if self.layout.plan.measure is None else self.scale
+
+    def intensity(
+        self, measure: Measure | None = None, period: float | None = None, damping: float = 0.05
+    ) -> Intensity:
+        """A measure of the ground motion at every point.
+
+        By default the one that the study scales to, else PGV; at T1 of each system unless a period
+        is asked for.
+        """
+        layout, scaled = self.layout, self.layout.plan.measure
+        if measure is None and scaled is not None:
+            measure, period, damping = scaled.measure, scaled.period, scaled.damping
+        wanted = measure or "PGV", period, damping
+        target = scaled and (scaled.measure, scaled.period, scaled.damping) == wanted
+        measure, values = wanted[0], np.full(len(self), np.nan)
+        for point in layout:
+            assert point.record is not None, "points of histories have a record"
+            # Not by way of the factor, whose rounding would blur equal intensities.
+            unscaled, factor = point.scale, point.scale_change
+            if not target:
+                at = None
+                if needs_period(measure):
+                    at = period or layout.properties[point.system].period
+                    assert at is not None, "`measure_without_period` was asked before"
+                records, factor = layout.context.records, float(self.scale[point.number])
+                try:
+                    unscaled = records.intensity(point.record, measure, at, damping, layout.plan.of)
+                except RecordError:
+                    continue
+            values[point.number] = unscaled * abs(factor) ** MEASURES[measure].power
+        return Intensity(measure, MEASURES[measure].unit, period, values, layout.of)
 
 
 def names_of(layout: StudyPoints) -> list[str]:
@@ -237,76 +288,6 @@ def array(values: Iterable[Any]) -> NDArray[Any]:
     return objects
 
 
-class Asked(Protocol):
-    """Which measure is asked for, as options of a report say it."""
-
-    @property
-    def measure(self) -> Measure | None:
-        """The one that the study scales to by default, else PGV."""
-
-    @property
-    def period(self) -> float | None:
-        """Of Sa, AvgSa or FIV3; T1 of each system by default."""
-
-    @property
-    def damping(self) -> float:
-        """Of Sa, AvgSa or Housner."""
-
-
-class Intensity(NamedTuple):
-    """A measure of the scaled records.
-
-    `values` are (points,), NaN where a record cannot be read; `period` is that of Sa and the like,
-    None for T1 of each system; `of` says what of pairs it is, None where no record is measured as
-    a pair.
-    """
-
-    measure: Measure
-    unit: str
-    period: float | None
-    values: Array
-    of: Of | None = None
-
-    @property
-    def name(self) -> str:
-        """As columns call it."""
-        return measure_label(self.measure, self.of)
-
-
-def intensity(table: Table, options: Asked) -> Intensity:
-    """The measure that a report asks for; by default the one that the study scales to, else PGV."""
-    layout, scaled = table.layout, table.layout.plan.measure
-    measure, period, damping = options.measure, options.period, options.damping
-    if measure is None and scaled is not None:
-        measure, period, damping = scaled.measure, scaled.period, scaled.damping
-    measure = measure or "PGV"
-    target = scaled and (scaled.measure, scaled.period, scaled.damping) == (
-        measure,
-        period,
-        damping,
-    )
-    values, power = np.full(len(table), np.nan), MEASURES[measure].power
-    for point in layout:
-        assert point.record is not None, "points of histories have a record"
-        if target:
-            # Not by way of the factor, whose rounding would blur equal intensities.
-            unscaled, factor = point.scale, point.scale_change
-        else:
-            at = None
-            if needs_period(measure):
-                at = period or layout.properties[point.system].period
-                assert at is not None, "`measure_without_period` was asked before"
-            try:
-                unscaled = layout.context.records.intensity(
-                    point.record, measure, at, damping, layout.plan.of
-                )
-            except RecordError:
-                continue
-            factor = float(table.scale[point.number])
-        values[point.number] = unscaled * abs(factor) ** power
-    return Intensity(measure, MEASURES[measure].unit, period, values, layout.of)
-
-
 FixedBaseReferences = dict[tuple[int, RecordRequest], Array]
 """Largest storey shears (n,) [N] of a system on a fixed base, under an unscaled record."""
 
@@ -370,10 +351,6 @@ class StudyResults:
         """Storey shears on a fixed base; computed if they are not stored."""
         with self.store:
             return fixed_base_references(self.table.layout, self.store, self.jobs)
-
-    def intensity(self, options: Asked) -> Intensity:
-        """The intensity of the ground motion at every point."""
-        return intensity(self.table, options)
 
     def floor_spectra(self, number: int, damping: float) -> Array:
         """(2, 2, n, p): isolated and fixed base; pseudo-acceleration and displacement."""

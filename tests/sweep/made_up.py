@@ -11,7 +11,7 @@ import numpy as np
 from rpscli.report.study.report import Found
 from rpscli.sweep.evaluation import FAILED, MISSING, SCALARS, PointResults, at_path, stacked
 from rpscli.sweep.points import StudyPoints, lay_out
-from rpscli.sweep.table import StudyResults, Table, intensity, names_of
+from rpscli.sweep.table import StudyResults, Table, names_of
 from sweep.small_studies import STUDY, Make
 
 
@@ -75,7 +75,6 @@ def results_of(found: Table, rows: Iterable[Stored] = (), fixed: Any = None) -> 
         context=found.layout.context,
         stored=reader(rows),
         fixed_base=fixed,
-        intensity=lambda asked: intensity(found, asked),
     )
     return cast("StudyResults", results)
 

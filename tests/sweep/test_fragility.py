@@ -28,7 +28,6 @@ from rpscli.sweep.fits.lognormal import (
     separated,
 )
 from rpscli.sweep.points import lay_out
-from rpscli.sweep.table import intensity
 from sweep.made_up import Stored, cells, results_of, tabulate
 from sweep.small_studies import STUDY, Make
 
@@ -308,12 +307,12 @@ def test_intensities_follow_records_and_scales(study_of: Make) -> None:
     layout = lay_out(study_of())
     rows = [Stored("survived", None, {"scale": point.scale}) for point in layout]
     table = tabulate(layout, rows)
-    pga = intensity(table, FragilityOptions(measure="PGA"))
+    pga = table.intensity("PGA")
     assert pga.values[1] == pytest.approx(0.5 * 9.80665, rel=1e-9)
     assert pga.values[0] == pytest.approx(0.25 * 9.80665, rel=1e-9)
-    arias = intensity(table, FragilityOptions(measure="Arias"))
+    arias = table.intensity("Arias")
     assert arias.values[0] == pytest.approx(0.25 * arias.values[1], rel=1e-12)
-    assert intensity(table, FragilityOptions()).measure == "PGV"
+    assert table.intensity().measure == "PGV"
 
 
 def test_overturning_spectra_are_dimensionless(study_of: Make) -> None:

@@ -75,7 +75,8 @@ class Compared(NamedTuple):
 
 def comparison(study: StudyResults, options: ComparisonOptions) -> Found:
     """Compare every system with its observations."""
-    layout, intensity = study.table.layout, study.intensity(options)
+    layout = study.table.layout
+    intensity = study.table.intensity(options.measure, options.period, options.damping)
     observed = layout.study.observed
     assert observed is not None, "`unpaired` was asked before"
     pairs, systems = observed_pairs(layout, observed), grouping(study.table)

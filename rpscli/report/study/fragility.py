@@ -215,7 +215,8 @@ class Fragilities:
 
 def fragilities(study: StudyResults, options: FragilityOptions) -> Fragilities:
     """Fit every limit state of every group of systems; samples and records are pooled."""
-    measured, limits = study.intensity(options), tuple(limit_states(options.limits))
+    measured = study.table.intensity(options.measure, options.period, options.damping)
+    limits = tuple(limit_states(options.limits))
     systems = grouping(study.table, options.series, (INTENSITY,))
     curves = tuple(
         _fragility(measured, options, (place, group), limit)

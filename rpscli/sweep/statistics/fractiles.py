@@ -6,7 +6,7 @@ import math
 from bisect import bisect_left
 from collections.abc import Sequence
 from functools import lru_cache
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -154,11 +154,6 @@ def demand(table: Outcomes, values: Array, *, from_below: bool = False) -> Array
     return np.where(table.failed, np.nan, reached)
 
 
-def rank(fractile: float | Array, total: Any) -> Any:
-    """How many of so many ordered values, the fractile itself among them, do not exceed it."""
-    return np.maximum(np.ceil(fractile * total - ROUNDING), 1.0)
-
-
 def fractiles(demands: Array, shares: Sequence[float]) -> Array:
     """The least of the demands that so large shares do not exceed; NaN is left out."""
     known = np.sort(demands[~np.isnan(demands)])
@@ -169,8 +164,8 @@ def fractiles(demands: Array, shares: Sequence[float]) -> Array:
 
 @lru_cache(maxsize=4096)
 def _places(shares: tuple[float, ...], total: int) -> list[int]:
-    """Where fractiles stand among so many ordered values."""
-    return [int(rank(share, total)) - 1 for share in shares]
+    """Where the least of so many ordered values stand that so large shares do not exceed."""
+    return [max(math.ceil(share * total - ROUNDING), 1) - 1 for share in shares]
 
 
 def spread(demands: Array, *, from_below: bool = False) -> Spread:

@@ -7,7 +7,7 @@ are decided here once: a report names keys, and takes what it gets.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -143,19 +143,12 @@ def axis_keys(layout: StudyPoints, key: str) -> tuple[str, ...]:
 
 def pooled(layout: StudyPoints, keys: Sequence[str]) -> tuple[str, ...]:
     """In words, what differs within groups of these keys besides the record."""
-    return tuple(_pooled(layout, set(keys)))
-
-
-def _pooled(layout: StudyPoints, keys: set[str]) -> Iterator[str]:
-    for axis in layout.study.axes:
-        if len(axis.rows) > 1 and not keys & set(axis.keys):
-            yield f"{len(axis.rows)} values of {axis.keys[0]}"
-    if (samples := layout.samples) > 1:
-        yield f"{samples} samples"
-    if len(layout.scales) > 1 and INTENSITY not in keys:
-        yield f"{len(layout.scales)} intensities"
-    if len(layout.members) > 1:
-        yield f"{len(layout.members)} members"
+    axes = (axis for axis in layout.study.axes if not set(keys) & set(axis.keys))
+    counts = [(len(axis.rows), f"values of {axis.keys[0]}") for axis in axes]
+    counts += [(layout.samples, "samples")]
+    counts += [(len(layout.scales), "intensities")] * (INTENSITY not in keys)
+    counts += [(len(layout.members), "members")]
+    return tuple(f"{count} {what}" for count, what in counts if count > 1)
 
 
 def pooling_notes(layout: StudyPoints, differing: Sequence[str]) -> tuple[str, ...]:
