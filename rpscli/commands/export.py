@@ -64,8 +64,8 @@ def command(
     from rpscli.analyses.timehistory import time_history
     from rpscli.analyses.trace import prolonged
     from rpscli.commands.shell.waiting import announce_compilation
+    from rpscli.report.bundles import history_columns
     from rpscli.report.table import Column, csv_lines
-    from rpscli.report.tables.analyses import history_columns
 
     given = read_case(request, terminal)
     motions = list(single_motions(records, MotionRequest(), terminal.warn))

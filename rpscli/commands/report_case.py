@@ -6,7 +6,7 @@ import hashlib
 import json
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
+from math import isnan
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -16,11 +16,10 @@ from rpscli.commands.shell.options import CaseRequest, OutputRequest
 from rpscli.commands.shell.terminal import Terminal, concluded
 from rpscli.commands.shell.waiting import announce_compilation
 from rpscli.errors import UsageError
-from rpscli.report.documents import heading
+from rpscli.report.documents import as_text, heading, results_of
 from rpscli.report.figures.look import Look
 from rpscli.report.files import RUN_FILE
 from rpscli.report.html.page import Block, Notice, Section, page_look
-from rpscli.report.leaves import as_text, results_of
 from rpscli.report.table import Table
 
 if TYPE_CHECKING:
@@ -177,59 +176,79 @@ def case_page(
         set_error,
         set_tables,
     )
-    from rpscli.report.figures.planes import record_name
-    from rpscli.report.html.case_page import History, Several, case_sections
+    from rpscli.report.figures.history import record_name
+    from rpscli.report.html.case_page import (
+        case_input,
+        ground_section,
+        history_short,
+        horizontal,
+        limits_in_short,
+        motions_section,
+        page_sections,
+        response_section,
+    )
 
-    case, commands = given.case, _commands(given, asked, with_budget=with_budget)
-    made = partial(case_sections, case, given.request.overrides, commands, look)
-    if case.record is None and motions[0].record is None:
-        if with_budget:
-            raise UsageError(f"{case.source}: --budget needs a ground motion; add --record")
-        document = {**heading(), "case": case_heading(given), "warnings": list(case.warnings)}
-        sections, document = made(case.warnings), concluded(document, None)
-        return PageDone(
-            case.title, f"Structure{ends(case)}", sections, document, None, case.file.document
-        )
-    # A place for the files, which are not written there.
-    requests = history_requests([given], motions, OutputRequest(Path(), force=True))
-    announce_compilation(terminal)
-    if len(requests) > 1:
-        quiet = replace(look, formats=())
-        found = computed_set(requests, conditions, quiet, terminal, None, written=False)
-        error = set_error([found])
-        document = all_document([found], error)
-        terminal.warn(document["warnings"])
-        stored = () if earlier is None else _stored(earlier, requests, set_document(found))
-        import numpy as np  # the help of the command does without
-
-        # That of a history that failed is none, and counts as 0.
-        turned = [np.nan_to_num(each.demands["rotation_ratio"]) for each in found.histories]
-        first = int(np.argmax(turned))
+    case, title = given.case, f"Structure{ends(given.case)}"
+    document = {**heading(), "case": case_heading(given), "warnings": list(case.warnings)}
+    document, error, stored = concluded(document, None), None, list[Block]()
+    none = "The case names no ground motion: this page has only the results that need none."
+    short: Iterable[Block] = [none]
+    results, requests = list[Section](), list[HistoryRequest]()
+    if case.record is not None or motions[0].record is not None:
+        # A place for the files, which are not written there.
+        requests = history_requests([given], motions, OutputRequest(Path(), force=True))
+        announce_compilation(terminal)
+        first = 0
+        if len(requests) > 1:
+            quiet = replace(look, formats=())
+            found = computed_set(requests, conditions, quiet, terminal, None, written=False)
+            error = set_error([found])
+            document, now = all_document([found], error), set_document(found)
+            # That of a history that failed is none, and counts as 0.
+            turned = [each.demands["rotation_ratio"] for each in found.histories]
+            first = max(range(len(turned)), key=lambda n: 0.0 if isnan(turned[n]) else turned[n])
         worst = requests[first]
         done, result = compute(worst, conditions, page_look(look), terminal)
-        history = History(worst.ground, result, done.verdicts, _files(worst))
-        grounds = [request.ground for request in requests]
-        several = Several(grounds, found.verdicts, [*set_tables([found])][1:], history)
-        title = f"Time histories under {len(requests)} records{ends(case)}"
-        more = _budget(requests, motions, first, look, terminal) if with_budget else []
-        sections = made(document["warnings"], several, stored, more)
-        return PageDone(case.title, title, sections, document, error, case.file.document)
-    (request,) = requests
-    done, result = compute(request, conditions, page_look(look), terminal)
-    beside = look_beside(done, result)
-    warnings = done.document["warnings"]
-    terminal.warn(warnings)
-    stored = () if earlier is None else _stored(earlier, requests, done.document)
-    history = History(request.ground, result, done.verdicts, _files(request), beside)
-    more = _budget(requests, motions, 0, look, terminal) if with_budget else []
-    return PageDone(
+        files = [(path.name, content) for path, content in worst.folder.contents.items()]
+        if len(requests) > 1:
+            short = [limits_in_short(found.verdicts), *[*set_tables([found])][1:]]
+            motions_of = horizontal(*(request.ground for request in requests))
+            name, seen = f"{len(motions_of)} records", "as they were scaled"
+            about = f"with the largest rotation of the columns, {record_name(result)}"
+            results = [
+                motions_section(motions_of, [], name, look, seen),
+                response_section(
+                    result, files, f"Response to the record {about}",
+                    ("orbit", "rotation", "storey_shears"),
+                ),
+            ]  # fmt: skip
+            title = f"Time histories under {len(requests)} records{ends(case)}"
+        else:
+            short = history_short(result, done.verdicts, look_beside(done, result))
+            document, error, now = done.document, done.error, done.document
+            results = [
+                ground_section(worst.ground, result.structure, look),
+                response_section(result, files),
+            ]
+            title = f"Time history under {record_name(result)}{ends(case)}"
+        terminal.warn(document["warnings"])
+        stored = [] if earlier is None else _stored(earlier, requests, now)
+        results += _budget(requests, motions, first, look, terminal) if with_budget else []
+    elif with_budget:
+        raise UsageError(f"{case.source}: --budget needs a ground motion; add --record")
+    grounds = [request.ground for request in requests]
+    sections = page_sections(
+        case,
         case.title,
-        f"Time history under {record_name(result)}{ends(case)}",
-        made(warnings, history, stored, more),
-        done.document,
-        done.error,
-        case.file.document,
+        look,
+        short=short,
+        warnings=document["warnings"],
+        inputs=case_input(case, given.request.overrides, grounds),
+        results=results,
+        commands=_commands(given, asked, with_budget=with_budget),
+        stored=stored,
     )
+    return PageDone(case.title, title, sections, document, error, case.file.document)
 
 
 def _budget(
@@ -246,10 +265,6 @@ def _budget(
     grounds = [requests[n].ground for n in order]
     found = case_budget(given, [motions[n] for n in order], grounds, None, terminal)
     return [found.section(look, requests[first].label)]
-
-
-def _files(request: HistoryRequest) -> list[tuple[str, object]]:
-    return [(path.name, content) for path, content in request.folder.contents.items()]
 
 
 def subject_words(source: str, overrides: Iterable[str]) -> list[str]:

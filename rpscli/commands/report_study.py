@@ -23,11 +23,9 @@ from rpscli.report.documents import heading
 from rpscli.report.figures.look import Look
 from rpscli.report.html.case_page import (
     input_table,
+    listing,
     motions_section,
-    notices,
     page_sections,
-    programs,
-    repeated,
 )
 from rpscli.report.html.page import Block, Picture, Section, page_look, pictures
 from rpscli.report.study.labels import label
@@ -101,15 +99,25 @@ def _sections(
         f"Every point is stored in {folder}; points.csv there has them all, failed.csv the"
         " command that computes each failed point alone."
     )
-    short, inputs = (
-        _in_short(run, found, notes),
-        study_input(study, first, "The case" if systems == 1 else "Its first system"),
+    warnings = [*notes, *(str(error) for error in found.broken)]
+    warnings += [f"Point {f.point} failed: {f.message}" for f in found.failures[:FAILURES_SHOWN]]
+    if (failed := len(found.failures)) > FAILURES_SHOWN:
+        warnings.append(f"{failed} points failed; these are the first of them")
+    return page_sections(
+        first,
+        study.title,
+        look,
+        short=_in_short(run),
+        warnings=warnings,
+        inputs=study_input(study, first, "The case" if systems == 1 else "Its first system"),
+        results=results,
+        commands=[["rps", "sweep", *words], ["rps", "report", *words]],
+        stored=[stored],
+        which=which,
     )
-    repeat = [*repeated(["rps", "sweep", *words], ["rps", "report", *words]), stored]
-    return page_sections(first, study.title, look, short, inputs, results, repeat, which)
 
 
-def _in_short(run: StudyResult, found: Collected, notes: Sequence[str]) -> Iterator[Block]:
+def _in_short(run: StudyResult) -> Iterator[Block]:
     from rpscli.report.study.statistics import verdicts_in_short
 
     counts = {"points": len(run.table), **run.outcomes}
@@ -122,11 +130,6 @@ def _in_short(run: StudyResult, found: Collected, notes: Sequence[str]) -> Itera
         yield from cut([verdict_table(run.summary, run.judgements)])
     elif run.summary is not None:
         yield "No limits were set."
-    texts = [*notes, *(str(error) for error in found.broken)]
-    texts += [f"Point {f.point} failed: {f.message}" for f in found.failures[:FAILURES_SHOWN]]
-    if len(found.failures) > FAILURES_SHOWN:
-        texts.append(f"{len(found.failures)} points failed; these are the first of them")
-    yield from notices(texts)
 
 
 def motions_of(study: Study) -> tuple[list[GroundMotion], list[str]]:
@@ -152,16 +155,13 @@ def _caption(study: Study, stem: str) -> str:
 def study_input(study: Study, first: Case, which: str) -> Iterator[Block]:
     """The file as it is written, and a case of it."""
     checked, plan = study.layout.study, study.layout.plan
-    yield Table.listing(
-        [
-            ("file", checked.source),
-            ("SHA-256 of its text", checked.digest),
-            ("case at its base", str(checked.base_file) if checked.base_file else "in the study"),
-            ("overridden values", ", ".join(study.overrides)),
-            ("solver", plan.solver),
-            ("made by", programs()),
-        ]
-    )
+    yield listing([
+        ("file", checked.source),
+        ("SHA-256 of its text", checked.digest),
+        ("case at its base", str(checked.base_file) if checked.base_file else "in the study"),
+        ("overridden values", ", ".join(study.overrides)),
+        ("solver", plan.solver),
+    ])  # fmt: skip
     yield "What it says:"
     yield input_table(checked.document.content)
     yield f"{which}, as it is written and in SI units, with all defaults:"
@@ -197,11 +197,13 @@ def design_page(
         case,
         study.title,
         look,
-        [*short, *notices(notes)],
-        study_input(study, case, f"The case of {title}"),
-        results,
-        [*repeated(["rps", "design", *words], ["rps", "report", *words]), stored],
-        [f"Of {title}."],
+        short=short,
+        warnings=notes,
+        inputs=study_input(study, case, f"The case of {title}"),
+        results=results,
+        commands=[["rps", "design", *words], ["rps", "report", *words]],
+        stored=[stored],
+        which=[f"Of {title}."],
     )
     subtitle = f"Design: {len(done.answer.places)} examined{ends(case)}"
     signed = done.search.task.file.document

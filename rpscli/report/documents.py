@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import platform
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
@@ -90,7 +90,7 @@ def failure_document(kind: str, message: str, exit_code: int) -> Document:
 def timehistory_document(result: TimeHistoryResult) -> Document:
     """Scalar results, demands of each storey, energies [J], and what to be warned of."""
     # Every command begins a document, few need numpy for it.
-    from rpscli.report.tables.analyses import fixed_base_demands, isolated_demands
+    from rpscli.report.tables.timehistory import fixed_base_demands, isolated_demands
 
     isolated, fixed = isolated_demands(result), fixed_base_demands(result)
     return {
@@ -107,3 +107,31 @@ def timehistory_document(result: TimeHistoryResult) -> Document:
         "devices": [asdict(demand) for demand in result.devices],
         "warnings": result.warnings,
     }
+
+
+MADE_ANEW = frozenset(
+    ("files", "rps_version", "case", "verdicts", "passed", "exit_code", "command")
+)
+"""Keys of a document that are no results."""
+
+
+def leaves(value: object, name: str = "") -> Iterator[tuple[str, Any]]:
+    """Values of nested mappings and of lists of mappings under dotted names; other lists whole."""
+    if isinstance(value, list) and any(isinstance(item, dict) for item in value):
+        value = {str(index): item for index, item in enumerate(value)}
+    if not isinstance(value, dict) or not value:
+        yield name, value
+        return
+    for key, item in value.items():
+        yield from leaves(item, f"{name}.{key}" if name else key)
+
+
+def results_of(document: Mapping[str, Any]) -> dict[str, Any]:
+    """The results of a document by dotted name."""
+    return dict(leaves({key: document[key] for key in document if key not in MADE_ANEW}))
+
+
+def as_text(value: object) -> str:
+    """A value of a document for a table, cut where it is long."""
+    text = json.dumps(value, ensure_ascii=False)
+    return text if len(text) < 60 else f"{text[:57]}..."

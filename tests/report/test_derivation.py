@@ -10,8 +10,8 @@ from typing import Any
 import pytest
 
 from rpscli.case.case import Case, load_case, parse_case
-from rpscli.report.tables import derivation
-from rpscli.report.tables.derivation import FUNCTIONS, Derivation, derivations
+from rpscli.report.tables import derived
+from rpscli.report.tables.derived import FUNCTIONS, Derivation, derivations
 
 CASES = sorted((Path(__file__).parents[2] / "cases").glob("*.yaml"))
 SIX = next(path for path in CASES if path.stem == "six_storey")
@@ -53,7 +53,7 @@ def found(case: Case) -> list[Derivation]:
 def test_the_formula_with_its_numbers_gives_the_value(
     name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(derivation, "DIGITS", 17)  # all digits: what is left is rounding
+    monkeypatch.setattr(derived, "DIGITS", 17)  # all digits: what is left is rounding
     case = case_of(name)
     for row in found(case):
         if not row.numbers:

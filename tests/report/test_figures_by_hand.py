@@ -98,7 +98,7 @@ def test_what_a_rate_comes_from() -> None:
         limits=(drift, fall),
         curves=tuple(each.fragility for each in risks),
     )
-    figure = drawn(risk_figure, found, risks, 50.0)
+    figure = drawn(risk_figure(found, risks, 50.0))
     labelled(figure, "PGA [m/s²]", "share of the annual rate [%]")
     first = panels(figure)["lift of the building > 0.02 m"]
     second = panels(figure)["overturning"]

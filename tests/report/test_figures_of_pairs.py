@@ -20,9 +20,15 @@ from rpscli.errors import UsageError
 from rpscli.report.figures.animation import PlanView, Scene, history_film
 from rpscli.report.figures.film import FilmRequest
 from rpscli.report.figures.floors import draw_accelerations
-from rpscli.report.figures.history import displacement_figure, draw_moment, rotation_figure
+from rpscli.report.figures.history import (
+    component,
+    displacement_figure,
+    draw_moment,
+    in_plane,
+    lean_azimuth,
+    rotation_figure,
+)
 from rpscli.report.figures.orbit import orbit_figure
-from rpscli.report.figures.planes import component, in_plane, lean_azimuth
 from rpscli.report.html.case_page import MOST_ROWS, passes_blocks
 from rpscli.report.table import Table
 

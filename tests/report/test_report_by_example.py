@@ -3,151 +3,110 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
+import pytest
+
+from rpscli.report import table
+from rpscli.report.figures import floors, history, style
 from rpscli.report.figures.animation import _pace
-from rpscli.report.figures.floors import shown_floors
-from rpscli.report.figures.history import shown_floors as history_shown_floors
 from rpscli.report.figures.motions import _second_tick
-from rpscli.report.figures.style import _letters, engineering, in_rows, percent, typeset
-from rpscli.report.html.page import element, written
-from rpscli.report.study.fragility import LimitState, limit_name
+from rpscli.report.html.page import element
+from rpscli.report.study.fragility import LimitState
 from rpscli.report.study.labels import label, plain, symbol
 from rpscli.report.study.lines import _distinct, _staggered
 from rpscli.report.study.panels import over
 from rpscli.report.study.report import add_notes, with_band
-from rpscli.report.table import headed, large, measured, shown
-from rpscli.report.table import percent as table_percent
-from rpscli.report.tables.derivation import greek, numeric, symbolic
+from rpscli.report.tables.derived import greek, numeric, symbolic
+
+RHO = "podium.bearing.curvature_ratio"
+STOP = {"kind": "stop", "gap": 0.2, "stiffness": 1e6}
+EXAMPLES: dict[str, list[tuple[Any, Any]]] = {
+    "pace": [
+        (_pace(2.13), "2.1 times faster than real"),
+        (_pace(1.0), "in real time"),
+        (_pace(0.5), "2 times slower than real"),
+    ],
+    "floors": [
+        ([floors.shown_floors(n) for n in (1, 2, 6)], [[1], [1, 2], [1, 4, 6]]),
+        ([history.shown_floors(n) for n in (0, 2, 9)], [[], [2, 1], [9, 6, 3]]),
+    ],
+    "ticks": [([_second_tick(at) for at in (0.2, 0.4, 50.0)], ["0.2", "", "50"])],
+    "style": [
+        ([style.percent(share) for share in (0.05, 0.975)], ["5 %", "97.5 %"]),
+        (style.typeset("PGA [m/s2]"), "PGA [m/s²]"),
+        (style.in_rows("abcde", 3), ["a", "d", "b", "e", "c"]),
+        (style._letters(r"$\theta_{cr}$ = 0.3"), 9),
+        *((style.engineering(size), (1e-6, "M")) for size in (1e6, 3.2e6, 7e9)),
+        *((style.engineering(size), (1e-3, "k")) for size in (1e3, 4e4, 5e5)),
+        *((style.engineering(size), (1.0, "")) for size in (0.5, 15.0, 999.0)),
+    ],
+    "page": [
+        (
+            element("p", "a < b, ", element("b", "or not"), " & so on", class_="x"),
+            '<p class="x">a &lt; b, <b>or not</b> &amp; so on</p>',
+        )
+    ],
+    "limit states": [
+        (LimitState("rotation_ratio", 0.5).label, "rotation_ratio > 0.5"),
+        (LimitState("min_column_force", 1e5).label, "min_column_force < 100000"),
+        (LimitState("drift_ratio", 0.002).title, "drift ratio > 0.002"),
+        (LimitState("max_lift", 0.1).title, "lift of the building > 0.1 m"),
+    ],
+    "labels": [
+        (symbol("superstructure.storeys"), "n"),
+        (symbol("podium.impact.law"), "law"),
+        (label("superstructure.storeys", 3), "n = 3"),
+        (label(RHO, 0), "flat ends"),
+        (label("title", "tower A"), "tower A"),
+        (label("superstructure.period", 0.3), "T₁ = 0.3 s"),
+        (label("superstructure.period", "300 ms"), "T₁ = 300 ms"),
+        ([plain(value) for value in (0.25, [], [STOP])], ["0.25", "none", "stop 0.2 m"]),
+    ],
+    "lines": [
+        (_distinct(("rolling.ratio.0", "rocking.ratio.0")), ["rolling", "rocking"]),
+        (_staggered(0, 1), "--"),
+        (_staggered(1, 3), (2, (2, 4))),
+    ],
+    "remarks": [
+        (over(("3 intensities", "4 members")), "over 3 intensities and 4 members"),
+        (over(()), ""),
+        (with_band(0.25, 0.125, 0.5), "0.250 (0.12 to 0.50)"),
+        (with_band(0.25, math.nan, math.nan), "0.250 (no band)"),
+        (with_band(*[math.nan] * 3), "-"),
+    ],
+    "numbers": [
+        ([table.shown(value) for value in (0.10501282, 17321.4, 3)], ["0.1050", "17321", "3"]),
+        ([table.shown(value) for value in (None, 2.4e-9)], ["-", "2.400e-09"]),
+        (table.large(1.5e6, "N"), (1500.0, "kN")),
+        (table.large(0.1, "rad"), (0.1, "rad")),
+        (table.large(None, "s"), (None, "s")),
+        (table.large(0.2, "-"), (0.2, "")),
+        (table.headed("base shear", "N"), "base shear kN"),
+        (table.headed("rotation ratio", "-"), "rotation ratio"),
+        (table.measured(1.5e6, "N"), "1500 kN"),
+        (table.measured(None, "s"), "-"),
+        (table.measured(0.2, "-"), "0.2000"),
+        (table.percent(1.0, 3.0), "33.3 %"),
+        (table.percent(1.0, 0.0), "-"),
+    ],
+    "formulas": [
+        (symbolic("atan(tan_alpha / (1 - 2 * rho))"), "atan(tan α / (1 − 2 ρ))"),
+        (symbolic("sin(alpha)^2"), "sin(α)²"),
+        (numeric("2 * R * cos(alpha)", {"R": 1.5, "alpha": 0.1488899}), "2 · 1.5 · cos(0.14889)"),
+        (greek("gamma (1 + eta)"), "γ (1 + η)"),
+        (greek("alpha'"), "α′"),
+    ],
+}
 
 
-def test_figures_animation() -> None:
-    assert (_pace(2.13), _pace(1.0), _pace(0.5)) == (
-        "2.1 times faster than real",
-        "in real time",
-        "2 times slower than real",
-    )
+@pytest.mark.parametrize("of", EXAMPLES)
+def test_examples(of: str) -> None:
+    for found, wanted in EXAMPLES[of]:
+        assert found == wanted
 
 
-def test_figures_floors() -> None:
-    assert (shown_floors(1), shown_floors(2), shown_floors(6)) == ([1], [1, 2], [1, 4, 6])
-
-
-def test_figures_history() -> None:
-    assert (history_shown_floors(0), history_shown_floors(2), history_shown_floors(9)) == (
-        [],
-        [2, 1],
-        [9, 6, 3],
-    )
-
-
-def test_figures_motions() -> None:
-    assert (_second_tick(0.2), _second_tick(0.4), _second_tick(50.0)) == ("0.2", "", "50")
-
-
-def test_figures_style() -> None:
-    assert (percent(0.05), percent(0.975)) == ("5 %", "97.5 %")
-    assert typeset("PGA [m/s2]") == "PGA [m/s²]"
-    assert in_rows("abcde", 3) == ["a", "d", "b", "e", "c"]
-    assert _letters(r"$\theta_{cr}$ = 0.3") == 9
-    assert (engineering(3.2e6), engineering(15.0), engineering(4e4)) == (
-        (1e-06, "M"),
-        (1.0, ""),
-        (0.001, "k"),
-    )
-
-
-def test_html_page() -> None:
-    assert (
-        written(element("p", "a < b, ", element("b", "or not"), " & so on", class_="x"))
-        == '<p class="x">a &lt; b, <b>or not</b> &amp; so on</p>'
-    )
-
-
-def test_study_fragility() -> None:
-    assert (LimitState("rotation_ratio", 0.5).label, LimitState("min_column_force", 1e5).label) == (
-        "rotation_ratio > 0.5",
-        "min_column_force < 100000",
-    )
-    assert (
-        limit_name(LimitState("drift_ratio", 0.002)),
-        limit_name(LimitState("max_lift", 0.1)),
-    ) == ("drift ratio > 0.002", "lift of the building > 0.1 m")
-
-
-def test_study_labels() -> None:
-    assert (symbol("superstructure.storeys"), symbol("podium.impact.law")) == ("n", "law")
-    assert (label("superstructure.storeys", 3), label("podium.bearing.curvature_ratio", 0)) == (
-        "n = 3",
-        "flat ends",
-    )
-    assert label("title", "tower A") == "tower A"
-    assert (label("superstructure.period", 0.3), label("superstructure.period", "300 ms")) == (
-        "T₁ = 0.3 s",
-        "T₁ = 300 ms",
-    )
-    assert (plain(0.25), plain([]), plain([{"kind": "stop", "gap": 0.2, "stiffness": 1e6}])) == (
-        "0.25",
-        "none",
-        "stop 0.2 m",
-    )
-
-
-def test_study_lines() -> None:
-    assert _distinct(("rolling.frequency_ratio.0", "rocking.frequency_ratio.0")) == [
-        "rolling",
-        "rocking",
-    ]
-    assert (_staggered(0, 1), _staggered(1, 3)) == ("--", (2, (2, 4)))
-
-
-def test_study_panels() -> None:
-    assert (over(("3 intensities", "4 members")), over(())) == (
-        "over 3 intensities and 4 members",
-        "",
-    )
-
-
-def test_study_report() -> None:
-    assert (
-        with_band(0.25, 0.125, 0.5),
-        with_band(0.25, math.nan, math.nan),
-        with_band(*[math.nan] * 3),
-    ) == ("0.250 (0.12 to 0.50)", "0.250 (no band)", "-")
+def test_notes_of_several_reports_are_said_once() -> None:
     notes = ["fragility: the data are separated"]
     add_notes(notes, "risk", ["the data are separated", "the hazard curve is continued"])
     assert notes == ["fragility: the data are separated", "risk: the hazard curve is continued"]
-
-
-def test_table() -> None:
-    assert (shown(0.10501282), shown(17321.4), shown(3), shown(None), shown(2.4e-9)) == (
-        "0.1050",
-        "17321",
-        "3",
-        "-",
-        "2.400e-09",
-    )
-    assert (large(1.5e6, "N"), large(0.1, "rad"), large(None, "s"), large(0.2, "-")) == (
-        (1500.0, "kN"),
-        (0.1, "rad"),
-        (None, "s"),
-        (0.2, ""),
-    )
-    assert (headed("base shear", "N"), headed("rotation ratio", "-")) == (
-        "base shear kN",
-        "rotation ratio",
-    )
-    assert (measured(1.5e6, "N"), measured(None, "s"), measured(0.2, "-")) == (
-        "1500 kN",
-        "-",
-        "0.2000",
-    )
-    assert (table_percent(1.0, 3.0), table_percent(1.0, 0.0)) == ("33.3 %", "-")
-
-
-def test_tables_derivation() -> None:
-    assert (symbolic("atan(tan_alpha / (1 - 2 * rho))"), symbolic("sin(alpha)^2")) == (
-        "atan(tan α / (1 − 2 ρ))",
-        "sin(α)²",
-    )
-    assert numeric("2 * R * cos(alpha)", {"R": 1.5, "alpha": 0.1488899}) == "2 · 1.5 · cos(0.14889)"
-    assert (greek("gamma (1 + eta)"), greek("alpha'")) == ("γ (1 + η)", "α′")

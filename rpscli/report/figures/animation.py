@@ -15,7 +15,7 @@ from rpscli.report.figures import style
 from rpscli.report.figures.bearing import BearingView, frame_end, half_width, leaning_outline
 from rpscli.report.figures.devices import SceneDevices
 from rpscli.report.figures.film import MOST_FRAMES, FilmRequest, Motion, Progress, film
-from rpscli.report.figures.planes import in_plane, lean_azimuth
+from rpscli.report.figures.history import in_plane, lean_azimuth
 from rpscli.report.figures.structure import draw_modes, level_heights, modes_size
 
 Array = NDArray[np.float64]

@@ -17,8 +17,8 @@ from rpscli.analyses.result_quantities import (
 )
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.report.figures import style
-from rpscli.report.figures.planes import record_name
-from rpscli.report.tables.analyses import StoreyDemands, fixed_base_demands, isolated_demands
+from rpscli.report.figures.history import record_name
+from rpscli.report.tables.timehistory import StoreyDemands, fixed_base_demands, isolated_demands
 
 Array = NDArray[np.float64]
 

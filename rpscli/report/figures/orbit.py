@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.errors import UsageError
 from rpscli.report.figures import style
-from rpscli.report.figures.history import levels
-from rpscli.report.figures.planes import record_name
+from rpscli.report.figures.history import levels, record_name
 
 if TYPE_CHECKING:
     from matplotlib.collections import LineCollection

@@ -7,8 +7,7 @@ import math
 import shlex
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from importlib import resources
-from itertools import chain
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -23,17 +22,15 @@ from rpscli.records.ground_motion import GroundMotion, MotionComponents
 from rpscli.records.measures import intensity_measures
 from rpscli.records.spectrum import DAMPING, drawn_spectrum
 from rpscli.report.bundles import bearing_files
-from rpscli.report.documents import direction_note, versions
+from rpscli.report.documents import direction_note, leaves, versions
 from rpscli.report.figures import style
 from rpscli.report.figures.look import Draw, Look, figure_files
 from rpscli.report.figures.motions import record_figure, spectra_figure
-from rpscli.report.figures.planes import record_name
 from rpscli.report.figures.structure import structure_figure
 from rpscli.report.html.page import Block, Code, Notice, Picture, Section, page_look, pictures
-from rpscli.report.leaves import leaves
 from rpscli.report.study.statistics import verdicts_in_short
 from rpscli.report.table import Column, Table, shown
-from rpscli.report.tables.derivation import derivations, first_shape
+from rpscli.report.tables.derived import derivations, first_shape
 from rpscli.report.tables.motions import record_table
 from rpscli.report.tables.timehistory import (
     limits_table,
@@ -132,39 +129,41 @@ def page_sections(
     case: Case,
     title: str,
     look: Look,
+    *,
     short: Iterable[Block],
+    warnings: Iterable[str],
     inputs: Iterable[Block],
     results: Iterable[Section],
-    repeat: Iterable[Block],
+    commands: Iterable[Sequence[str]],
+    stored: Iterable[Block],
     which: Sequence[Block] = (),
 ) -> list[Section]:
-    """All of a page in its order; `which` says of which system structure and formulas are."""
+    """All of a page in its order; `which` says of which system structure and formulas are.
+
+    `commands` make the same again; `stored` says what there was before, and where it is.
+    """
     structure, podium = case.structure, case.document["podium"]
+    told = [Notice(f"Warning: {text}") for text in warnings]
+    repeat: list[Block] = [
+        "From the folder in which this page was made, with the same versions:",
+        Code("\n".join(map(shlex.join, commands))),
+        *stored,
+    ]
     return [
-        Section("In short", [*short]),
+        Section("In short", [*short, *told]),
         Section("The structure", [*which, *structure_blocks(structure, title, look)]),
         Section("Input", [*inputs]),
         Section("Derived quantities", [*which, *derived_blocks(structure, podium)]),
         *results,
         Section("Limits of the model", [hidden_table()]),
-        Section("How to repeat it", [*repeat]),
+        Section("How to repeat it", repeat),
     ]
 
 
-def notices(texts: Iterable[str]) -> Iterator[Block]:
-    """What must be read before the numbers are used."""
-    return (Notice(f"Warning: {text}") for text in texts)
-
-
-def programs() -> str:
-    """What made the numbers, with versions."""
-    return ", ".join(f"{name} {version}" for name, version in versions().items() if version)
-
-
-def repeated(*commands: Sequence[str]) -> Iterator[Block]:
-    """Commands that make the same again."""
-    yield "From the folder in which this page was made, with the same versions:"
-    yield Code("\n".join(map(shlex.join, commands)))
+def listing(rows: Iterable[tuple[str, str]]) -> Table:
+    """What stands above the input, and what made the numbers, with versions."""
+    made = ", ".join(f"{name} {version}" for name, version in versions().items() if version)
+    return Table.listing([*rows, ("made by", made)])
 
 
 def structure_blocks(structure: PodiumStructure, title: str, look: Look) -> list[Block]:
@@ -253,63 +252,59 @@ def _number(value: float | None) -> str:
     return "-" if value is None else f"{value:.{DIGITS}g}"
 
 
-class History(NamedTuple):
-    """What came of a case under a motion, the files of it by name, and histories beside it."""
-
-    ground: MotionComponents
-    result: TimeHistoryResult
-    verdicts: Sequence[Verdict]
-    files: Iterable[tuple[str, object]]
-    beside: Sequence[Neighbour] = ()
-
-    @property
-    def grounds(self) -> list[MotionComponents]:
-        """Its motion."""
-        return [self.ground]
-
-    def short(self) -> Iterator[Block]:
-        """Outcome and verdicts, and how much a single history says."""
-        yield f"Outcome: {outcome_text(self.result)}."
-        if self.result.failure:
-            yield Notice(self.result.failure)
-        if self.verdicts:
-            yield verdicts_in_short(self.verdicts, f"{len(self.verdicts)} limits")
-            yield limits_table(self.verdicts)
-        else:
-            yield "No limits were set."
-        yield restitution_text(self.result.structure)
-        yield from map(Notice, neighbours_texts(self.result, self.beside))
-        yield from filter(None, [direction_note([self.ground.y is not None])])
-
-    def sections(self, look: Look) -> list[Section]:
-        """Motion and response."""
-        result = self.result
-        structure = result.structure
-        building, across = structure.superstructure, structure.superstructure_y
-        motions = [
-            motion_pictures(each, look, (name == "y" and across) or building)
-            for name, each in self.ground.named.items()
-        ]
-        measured = [
-            record_table(each, intensity_measures(each)) for each in horizontal(self.ground)
-        ]
-        response = Section("Response", self.response(*CAPTIONS))
-        return [Section("Ground motion", [*measured, *motions]), response]
-
-    def response(self, *figures: str) -> list[Block]:
-        """Its tables, and some of its figures."""
-        drawn, storeys = pictures(self.files), self.result.structure.storeys
-        return [
-            outcome_table(self.result),
-            *([storeys_table(self.result)] if storeys else []),
-            *(Picture(files, CAPTIONS[stem]) for stem, files in drawn if stem in figures),
-            *passes_blocks(self.result.events, self.result.structure.bearing.alpha),
-        ]
+def history_short(
+    result: TimeHistoryResult,
+    verdicts: Sequence[Verdict],
+    beside: Sequence[Neighbour],
+) -> Iterator[Block]:
+    """Outcome and verdicts of one history, and how much it says."""
+    yield f"Outcome: {outcome_text(result)}."
+    if result.failure:
+        yield Notice(result.failure)
+    yield limits_in_short(verdicts)
+    if verdicts:
+        yield limits_table(verdicts)
+    yield restitution_text(result.structure)
+    yield from map(Notice, neighbours_texts(result, beside))
+    yield from filter(None, [direction_note([result.motion.y is not None])])
 
 
-def horizontal(ground: MotionComponents) -> list[GroundMotion]:
-    """Its horizontal components."""
-    return [motion for name, motion in ground.named.items() if name != "vertical"]
+def limits_in_short(verdicts: Sequence[Verdict]) -> str:
+    """How many limits are exceeded."""
+    if not verdicts:
+        return "No limits were set."
+    return verdicts_in_short(verdicts, f"{len(verdicts)} limits")
+
+
+def ground_section(ground: MotionComponents, structure: PodiumStructure, look: Look) -> Section:
+    """The motion of one history, and the periods of the building in its spectra."""
+    across = structure.superstructure_y
+    drawn = [
+        motion_pictures(each, look, (name == "y" and across) or structure.superstructure)
+        for name, each in ground.named.items()
+    ]
+    measured = [record_table(each, intensity_measures(each)) for each in horizontal(ground)]
+    return Section("Ground motion", [*measured, *drawn])
+
+
+def horizontal(*grounds: MotionComponents) -> list[GroundMotion]:
+    """Their horizontal components."""
+    named = (pair for ground in grounds for pair in ground.named.items())
+    return [motion for name, motion in named if name != "vertical"]
+
+
+def response_section(
+    result: TimeHistoryResult,
+    files: Iterable[tuple[str, object]],
+    title: str = "Response",
+    figures: Iterable[str] = (),
+) -> Section:
+    """The tables of a history, and all of its figures or some."""
+    drawn, wanted = pictures(files), {*figures} or CAPTIONS.keys()
+    storeys = [storeys_table(result)] if result.structure.storeys else []
+    shown = [Picture(each, CAPTIONS[stem]) for stem, each in drawn if stem in wanted]
+    passes = passes_blocks(result.events, result.structure.bearing.alpha)
+    return Section(title, [outcome_table(result), *storeys, *shown, *passes])
 
 
 def passes_blocks(events: Sequence[Event], alpha: float) -> Iterator[Block]:
@@ -334,59 +329,10 @@ def passes_blocks(events: Sequence[Event], alpha: float) -> Iterator[Block]:
     yield Table.of_texts(heads, rows)
 
 
-class Several(NamedTuple):
-    """What came of a case under several motions: their tables, and the history that turns most."""
-
-    grounds: Sequence[MotionComponents]
-    verdicts: Sequence[Verdict]
-    parts: Sequence[Block]
-    worst: History
-
-    def short(self) -> Iterator[Block]:
-        """Each record, mean and largest, and verdicts."""
-        if self.verdicts:
-            yield verdicts_in_short(self.verdicts, f"{len(self.verdicts)} limits")
-        else:
-            yield "No limits were set."
-        yield from self.parts
-
-    def sections(self, look: Look) -> list[Section]:
-        """Motions, and the response to the one that turns the columns most."""
-        name = record_name(self.worst.result)
-        motions = [motion for each in self.grounds for motion in horizontal(each)]
-        title = f"Response to the record with the largest rotation of the columns, {name}"
-        return [
-            motions_section(motions, [], f"{len(motions)} records", look, "as they were scaled"),
-            Section(title, self.worst.response("orbit", "rotation", "storey_shears")),
-        ]
-
-
-def case_sections(
-    case: Case,
-    overrides: Sequence[str],
-    commands: Sequence[Sequence[str]],
-    look: Look,
-    warnings: Sequence[str],
-    history: History | Several | None = None,
-    stored: Sequence[Block] = (),
-    more: Sequence[Section] = (),
-) -> list[Section]:
-    """Everything about a case, and its histories if there are any; `stored`: what was before."""
-    short: Iterable[Block] = [
-        "The case names no ground motion: this page has only the results that need none."
-    ]
-    results, grounds = list[Section](), list[MotionComponents]()
-    if history is not None:
-        short, grounds = history.short(), [*history.grounds]
-        results = [*history.sections(look), *more]
-    inputs, repeat = _input(case, overrides, grounds), [*repeated(*commands), *stored]
-    short = chain(short, notices(warnings))
-    return page_sections(case, case.title, look, short, inputs, results, repeat)
-
-
-def _input(
+def case_input(
     case: Case, overrides: Sequence[str], grounds: Sequence[MotionComponents]
 ) -> Iterator[Block]:
+    """Where case and motions come from, and every key of the case."""
     motions = {}
     for number, ground in enumerate(grounds, 1):
         for component, each in ground.named.items():
@@ -396,14 +342,11 @@ def _input(
             motions[name] = f"{each.source}, scaled by {ground.scale:.9g}"
             if len(grounds) == 1:
                 motions[f"SHA-256 of the scaled samples, {name}"] = each.digest
-    yield Table.listing(
-        [
-            ("case", case.source),
-            ("SHA-256 of its text", case.digest),
-            ("overridden values", ", ".join(overrides)),
-            *motions.items(),
-            ("made by", programs()),
-        ]
-    )
+    yield listing([
+        ("case", case.source),
+        ("SHA-256 of its text", case.digest),
+        ("overridden values", ", ".join(overrides)),
+        *motions.items(),
+    ])  # fmt: skip
     yield "The case as it is written and in SI units, with all defaults:"
     yield input_table(case.document, case.written)

@@ -1,4 +1,4 @@
-"""A page: HTML as a tree, figures drawn by the page itself or as images, sections; no scripts."""
+"""A page of HTML: sections, figures drawn by the page itself or as images; no scripts."""
 
 from __future__ import annotations
 
@@ -7,42 +7,37 @@ import io
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from html import escape
 from importlib import resources
 from unicodedata import category
-from xml.etree import ElementTree as ET
-from xml.etree.ElementTree import Element, tostring
 
 from rpscli.report.figures.look import Look
 from rpscli.report.table import Table
 
-Content = str | Element | None | Iterable["Content"]
+
+class Markup(str):
+    """Text that is HTML already."""
+
+    __slots__ = ()
 
 
-def element(tag: str, *content: Content, **attributes: str) -> Element:
+Content = str | None | Iterable["Content"]
+VOID = frozenset(("img", "meta"))
+
+
+def element(tag: str, *content: Content, **attributes: str) -> Markup:
     """An element with text and others in it; ``class_`` is the attribute `class`."""
-    made = Element(tag, {name.rstrip("_"): text for name, text in attributes.items()})
-    for part in content:
-        _append(made, part)
-    return made
+    pairs = (f' {name.rstrip("_")}="{escape(text)}"' for name, text in attributes.items())
+    begin = f"<{tag}{''.join(pairs)}>"
+    return Markup(begin if tag in VOID else f"{begin}{''.join(map(_inside, content))}</{tag}>")
 
 
-def written(root: Element) -> str:
-    """The element as HTML."""
-    return tostring(root, encoding="unicode", method="html")
-
-
-def _append(parent: Element, part: Content) -> None:
+def _inside(part: Content) -> str:
+    if part is None or isinstance(part, Markup):
+        return part or ""
     if isinstance(part, str):
-        last = parent[-1] if len(parent) else None
-        if last is None:
-            parent.text = (parent.text or "") + printable(part)
-        else:
-            last.tail = (last.tail or "") + printable(part)
-    elif isinstance(part, Element):
-        parent.append(part)
-    elif part is not None:
-        for each in part:
-            _append(parent, each)
+        return escape(printable(part), quote=False)
+    return "".join(map(_inside, part))
 
 
 def printable(text: str) -> str:
@@ -59,9 +54,6 @@ FORMATS = ("svg", "png")
 
 COLOURS = 256
 """Of an image: ours, and those of their edges."""
-
-_NUMBER = re.compile(r"-?\d+\.\d{3,}")
-_REFERENCE = re.compile(r"#([\w.-]+)")
 
 
 @dataclass(frozen=True)
@@ -87,21 +79,24 @@ def pictures(files: Iterable[tuple[str, object]]) -> Iterator[tuple[str, dict[st
     yield from found.items()
 
 
-def figures(shown: Sequence[Picture], room: int) -> list[Element]:
+def figures(shown: Sequence[Picture], room: int) -> list[Markup]:
     """Pictures above captions; the largest drawings become images until there is room [letters]."""
-    # Each drawing has names inside: a prefix keeps them apart from those of the others.
-    drawn = [_drawing(each.files["svg"], f"f{n}-", each.caption) for n, each in enumerate(shown, 1)]
-    sizes = [len(written(each)) for each in drawn]
-    for place in sorted(range(len(shown)), key=lambda place: -sizes[place]):
-        if sum(sizes) <= room:
+    drawn = [_drawing(each, f"f{number}-") for number, each in enumerate(shown, 1)]
+    for place in sorted(range(len(shown)), key=lambda place: -len(drawn[place])):
+        if sum(map(len, drawn)) <= room:
             break
         image = base64.b64encode(_few_colours(shown[place].files["png"])).decode()
-        if len(image) < sizes[place]:
-            source, caption = f"data:image/png;base64,{image}", shown[place].caption
-            drawn[place] = element("img", src=source, alt=caption)
-            sizes[place] = len(image)
-    pairs = zip(drawn, shown, strict=True)
-    return [_figure(each, of.caption, number) for number, (each, of) in enumerate(pairs, 1)]
+        if len(image) < len(drawn[place]):
+            source = f"data:image/png;base64,{image}"
+            drawn[place] = element("img", src=source, alt=shown[place].caption)
+    return [
+        element(
+            "figure",
+            element("div", each, class_="wide"),
+            element("figcaption", element("b", f"Figure {number}. "), of.caption),
+        )
+        for number, (each, of) in enumerate(zip(drawn, shown, strict=True), 1)
+    ]
 
 
 def _few_colours(image: bytes) -> bytes:
@@ -116,43 +111,26 @@ def _few_colours(image: bytes) -> bytes:
     return small.getvalue()
 
 
-def _figure(drawn: Element, caption: str, number: int) -> Element:
-    below = element("figcaption", element("b", f"Figure {number}. "), caption)
-    return element("figure", element("div", drawn, class_="wide"), below)
+def _drawing(of: Picture, prefix: str) -> Markup:
+    """One of our own drawings, so that it can stand in HTML beside others."""
+    text = printable(of.files["svg"].decode())
+    text = _UNWANTED.sub("", text[text.index("<svg") :])
+    root, rest = text.split(">", 1)
+    root = re.sub(r' (width|height|xmlns(:\w+)?)="[^"]*"', "", root)
+    text = f'{root} role="img" aria-label="{escape(of.caption)}">{rest}'
+    # Names inside are kept apart from those of other drawings, points are told to a hundredth.
+    text = _NAMES.sub(rf"\g<0>{prefix}", text.replace("xlink:href", "href"))
+    return Markup(_POINTS.sub(lambda at: _NUMBER.sub(_rounded, at[0]), text))
 
 
-def _drawing(data: bytes, prefix: str, label: str) -> Element:
-    """A drawing that can stand in HTML beside others."""
-    # Our own drawing, not something from elsewhere.
-    root = ET.fromstring(printable(data.decode()))  # noqa: S314
-    for parent in list(root.iter()):
-        for child in list(parent):
-            if _local(child.tag) in {"metadata", "style"}:
-                parent.remove(child)
-        parent.tag = _local(parent.tag)
-        parent.attrib = {
-            _local(name): _renamed(_local(name), value, prefix)
-            for name, value in parent.attrib.items()
-        }
-    for size in ("width", "height"):
-        root.attrib.pop(size, None)
-    root.attrib |= {"role": "img", "aria-label": label}
-    return root
+_UNWANTED = re.compile(r"<!--.*?-->|<(metadata|style)\b.*?</\1>", re.DOTALL)
+_NAMES = re.compile(r'(?<= id=")|(?<= href="#)|(?<=url\(#)')
+_POINTS = re.compile(r'(?<= )(d|x|y)="[^"]*"')
+_NUMBER = re.compile(r"-?\d+\.\d{3,}")
 
 
-def _local(name: str) -> str:
-    return name.rpartition("}")[2]
-
-
-def _renamed(name: str, value: str, prefix: str) -> str:
-    """An attribute with the names of its own drawing, and points to a hundredth."""
-    if name in {"d", "x", "y"}:
-        return _NUMBER.sub(lambda number: f"{float(number[0]):.2f}", value)
-    if name == "id":
-        return prefix + value
-    if name == "href" or "url(#" in value:
-        return _REFERENCE.sub(lambda found: f"#{prefix}{found[1]}", value)
-    return value
+def _rounded(number: re.Match[str]) -> str:
+    return f"{float(number[0]):.2f}"
 
 
 MOST_BYTES = 1_000_000
@@ -200,74 +178,65 @@ def page(
     kept = [section for section in sections if section.blocks]
     shown = [block for s in kept for block in s.blocks if isinstance(block, Picture)]
     drawn = iter(figures(shown, FOR_FIGURES))
-    links = [
-        element("li", element("a", section.title, href=f"#s{place}"))
-        for place, section in enumerate(kept, 1)
-    ]
-    body = element(
-        "body",
-        element("header", element("h1", title), element("p", subtitle), _signatures(signed or {})),
-        element("nav", element("ol", links)),
-        element("main", [_section(s, place, drawn) for place, s in enumerate(kept, 1)]),
+    links, written = [], []
+    for place, section in enumerate(kept, 1):
+        links.append(element("li", element("a", section.title, href=f"#s{place}")))
+        blocks = [_block(block, drawn) for block in section.blocks]
+        head = element("h2", f"{place}  {section.title}")
+        written.append(element("section", head, blocks, id=f"s{place}"))
+    sheet = resources.files(__package__).joinpath("page.css").read_text(encoding="utf-8")
+    # Nothing is fetched and nothing runs, whatever a title may say.
+    policy = "default-src 'none'; style-src 'unsafe-inline'; img-src data:"
+    root = element(
+        "html",
+        element(
+            "head",
+            element("meta", charset="utf-8"),
+            _mark(name),
+            element("meta", name="viewport", content="width=device-width, initial-scale=1"),
+            element("meta", **{"http-equiv": "Content-Security-Policy", "content": policy}),
+            element("title", title),
+            element("style", Markup(sheet)),
+        ),
+        element(
+            "body",
+            element(
+                "header", element("h1", title), element("p", subtitle), _signatures(signed or {})
+            ),
+            element("nav", element("ol", links)),
+            element("main", written),
+        ),
+        lang="en",
     )
-    root = element("html", _head(title, name), body, lang="en")
-    return ("<!DOCTYPE html>\n" + written(root) + "\n").encode("utf-8", "backslashreplace")
+    return f"<!DOCTYPE html>\n{root}\n".encode("utf-8", "backslashreplace")
 
 
-def _signatures(signed: Mapping[str, str | None]) -> Element | None:
+def _signatures(signed: Mapping[str, str | None]) -> Markup | None:
     """Who made and who checked the page, with room for dates and signatures; else on paper only."""
     if not signed:
         return None
-
-    def cells(name: str, text: str) -> list[Element]:
+    rows = []
+    for name, text in signed.items():
+        cells = [element("td", text or ""), element("td", "date, signature:")]
         if name == "project":
-            return [element("td", text, colspan="2")]
-        return [element("td", text), element("td", "date, signature:")]
-
-    rows = [
-        element("tr", element("th", name), cells(name, text or "")) for name, text in signed.items()
-    ]
+            cells = [element("td", text or "", colspan="2")]
+        rows.append(element("tr", element("th", name), cells))
     return element("table", rows, class_="signed" if any(signed.values()) else "signed paper")
 
 
 def is_about(content: bytes, name: str) -> bool:
     """Whether a file is a page about the case or the study of this name."""
-    return written(_mark(name)).encode("utf-8", "backslashreplace") in content[:MARK_WITHIN]
+    return _mark(name).encode("utf-8", "backslashreplace") in content[:MARK_WITHIN]
 
 
 MARK_WITHIN = 2000
 
 
-def _mark(name: str) -> Element:
+def _mark(name: str) -> Markup:
     return element("meta", name="generator", content=f"rps report of {name}")
 
 
-def _head(title: str, name: str) -> Element:
-    sheet = resources.files(__package__).joinpath("page.css").read_text(encoding="utf-8")
-    return element(
-        "head",
-        element("meta", charset="utf-8"),
-        _mark(name),
-        element("meta", name="viewport", content="width=device-width, initial-scale=1"),
-        # Nothing is fetched and nothing runs, whatever a title may say.
-        element(
-            "meta",
-            **{
-                "http-equiv": "Content-Security-Policy",
-                "content": "default-src 'none'; style-src 'unsafe-inline'; img-src data:",
-            },
-        ),
-        element("title", title),
-        element("style", sheet),
-    )
-
-
-def _section(section: Section, place: int, drawn: Iterator[Element]) -> Element:
-    blocks = [_block(block, drawn) for block in section.blocks]
-    return element("section", element("h2", f"{place}  {section.title}"), blocks, id=f"s{place}")
-
-
-def _block(block: Block, drawn: Iterator[Element]) -> Element:
+def _block(block: Block, drawn: Iterator[Markup]) -> Markup:
     match block:
         case Table():
             return _table(block)
@@ -281,8 +250,8 @@ def _block(block: Block, drawn: Iterator[Element]) -> Element:
             return element("p", block)
 
 
-def _table(table: Table) -> Element:
-    def row(tag: str, texts: Sequence[str]) -> Element:
+def _table(table: Table) -> Markup:
+    def row(tag: str, texts: Sequence[str]) -> Markup:
         cells = [
             element(tag, text, class_=_kind(text) if place < table.words else "number")
             for place, text in enumerate(texts)

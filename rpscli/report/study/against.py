@@ -16,9 +16,8 @@ from rpscli.report.figures import style
 from rpscli.report.study.labels import keyed, label
 from rpscli.report.study.panels import colour, in_panels, marker, noted
 from rpscli.report.study.report import Found, Report, without_uplift
-from rpscli.report.table import Column
 from rpscli.sweep.statistics.grouping import INTENSITY, Histories, grouping, own_keys
-from rpscli.sweep.table import Array, Group, Indices, StudyResults, Table, groups, leading_keys
+from rpscli.sweep.table import Group, Indices, StudyResults, groups, leading_keys
 
 
 class RotationOptions(ReportOptions):
@@ -32,20 +31,12 @@ class RotationOptions(ReportOptions):
 
 
 class Pairs(NamedTuple):
-    """Points (pairs,) in the same place of all axes but one, of which both were computed."""
+    """Points (pairs,) of a system and of the reference that differ in one key, all computed."""
 
     value: object
     points: Indices
     references: Indices
     failed: int
-
-
-def pairs_of(table: Table, system: Group, reference: Group, within: Indices) -> Pairs:
-    """Points of a system among some points, each with that of the reference."""
-    kept = np.isin(system.points, within)
-    mine, theirs = system.points[kept], reference.points[kept]
-    bad = table.failed[mine] | table.failed[theirs]
-    return Pairs(system.values[0], mine[~bad], theirs[~bad], int(bad.sum()))
 
 
 def rotation(study: StudyResults, options: RotationOptions) -> Found:
@@ -59,26 +50,26 @@ def rotation(study: StudyResults, options: RotationOptions) -> Found:
     # Each intensity has a panel, unless the study says else.
     keys = own_keys(layout, leading) if options.panels is None else options.panels
     found = grouping(table, keys, leading)
+
+    def paired(system: Group, within: Histories) -> Pairs:
+        kept = np.isin(system.points, within.every)
+        mine, theirs = system.points[kept], reference.points[kept]
+        bad = table.failed[mine] | table.failed[theirs]
+        return Pairs(system.values[0], mine[~bad], theirs[~bad], int(bad.sum()))
+
     panels = {
-        group: [
-            pairs_of(table, system, reference, group.every)
-            for system in systems
-            if system is not reference
-        ]
+        group: [paired(system, group) for system in systems if system is not reference]
         for group in found.groups
     }
     pairs = [each for group in panels.values() for each in group]
     alpha = np.array([properties.alpha for properties in layout.properties])
     ratio = table.columns["max_rotation"] / alpha[np.arange(len(table)) // layout.points_of_system]
     ratio = np.where(table.overturned, np.inf, ratio)
+    every = [[each.references for each in pairs], [each.points for each in pairs]]
     x_top, y_top = (
-        1.08 * float(ratio[points[np.isfinite(ratio[points])]].max(initial=0.0)) or 1.0
-        for points in (
-            np.concatenate([each.references for each in pairs]),
-            np.concatenate([each.points for each in pairs]),
-        )
+        1.08 * float(drawn[np.isfinite(drawn)].max(initial=0.0)) or 1.0
+        for drawn in (ratio[np.concatenate(points)] for points in every)
     )
-    against = label(key, reference.values[0])
 
     def draw(axes: style.Axes, group: Histories) -> None:
         for place, each in enumerate(panels[group]):
@@ -94,8 +85,23 @@ def rotation(study: StudyResults, options: RotationOptions) -> Found:
             )  # fmt: skip
         axes.plot([0.0, min(x_top, y_top)], [0.0, min(x_top, y_top)], "k--", lw=0.8)
 
+    # One row a pair; a rotation is empty where the structure overturned.
+    factors = len(layout.scales) > 1 and layout.plan.measure is None
+    rows, names = [], list[str]()
+    for each in pairs:
+        for mine, theirs in zip(each.points.tolist(), each.references.tolist(), strict=True):
+            named = layout.described(mine) | ({INTENSITY: layout[mine].scale} if factors else {})
+            names = list(named)
+            ours, other = ((table.outcomes[n], float(ratio[n])) for n in (mine, theirs))
+            rows.append((tuple(named.values()), *ours, reference.values[0], *other))
+    heads = (
+        "outcome", "rotation_over_alpha", f"reference {key}", "reference_outcome",
+        "reference_rotation_over_alpha",
+    )  # fmt: skip
+    against = label(key, reference.values[0])
+    failed = sum(each.failed for each in pairs)
     return Found(
-        {"": _pair_columns(table, ratio, pairs, key, reference.values[0])},
+        {"": keyed(names, dict.fromkeys(heads, "-"), rows)},
         in_panels(
             found.keys,
             found.groups,
@@ -103,32 +109,9 @@ def rotation(study: StudyResults, options: RotationOptions) -> Found:
             x_label=rf"$|\theta_{{max}}|/\alpha$ [-], {against}",
             y_label=r"$|\theta_{max}|/\alpha$ [-], the others",
             limits=lambda axes: axes.set(xlim=(0.0, x_top), ylim=(0.0, y_top)),
-            note=noted(
-                found, "open markers: overturned", failed=sum(each.failed for each in pairs)
-            ),
+            note=noted(found, "open markers: overturned", failed=failed),
         ),
     )
-
-
-def _pair_columns(
-    table: Table, ratio: Array, pairs: Sequence[Pairs], key: str, reference: object
-) -> list[Column]:
-    """One row a pair; a rotation is empty where the structure overturned."""
-    layout = table.layout
-    factors = len(layout.scales) > 1 and layout.plan.measure is None
-    rows = []
-    names: tuple[str, ...] = ()
-    for each in pairs:
-        for mine, theirs in zip(each.points.tolist(), each.references.tolist(), strict=True):
-            named = layout.described(mine) | ({INTENSITY: layout[mine].scale} if factors else {})
-            names = tuple(named)
-            ours, other = ((table.outcomes[n], float(ratio[n])) for n in (mine, theirs))
-            rows.append((tuple(named.values()), *ours, reference, *other))
-    heads = (
-        "outcome", "rotation_over_alpha", f"reference {key}", "reference_outcome",
-        "reference_rotation_over_alpha",
-    )  # fmt: skip
-    return keyed(names, dict.fromkeys(heads, "-"), rows)
 
 
 def unknown_reference(

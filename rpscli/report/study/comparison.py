@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -136,11 +136,9 @@ def _tables(
         "observed": "SI", "computed": "SI", "told": "-",
     }  # fmt: skip
 
-    def of(heads: Mapping[str, str], rows: Iterable[Sequence[Any]]) -> list[Column]:
-        return keyed(keys, heads, rows)
-
     return {
-        "": of(
+        "": keyed(
+            keys,
             dict.fromkeys(outcomes, "-"),
             [
                 (each.values, found.counted, share.number, share.fraction, share.low, share.high,
@@ -151,7 +149,8 @@ def _tables(
                 for share in [found.agreed]
             ],
         ),
-        "_maxima": of(
+        "_maxima": keyed(
+            keys,
             dict.fromkeys(ratios, "-"),
             [
                 (each.values, each.quantity, found.counted, found.overturned, found.median,
@@ -160,7 +159,7 @@ def _tables(
                 if isinstance(found := each.found, Maxima)
             ],
         ),
-        "_pairs": of(of_pair, _pair_rows(compared, intensity, layout)),
+        "_pairs": keyed(keys, of_pair, _pair_rows(compared, intensity, layout)),
     }  # fmt: skip
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from operator import attrgetter
 from typing import Annotated, Any, NamedTuple
@@ -24,7 +24,7 @@ from rpscli.case.study.schema import Option, PositiveNumber, PositiveNumbers, Se
 from rpscli.records.measures import MEASURES, measure_label, needs_period
 from rpscli.report.figures import style
 from rpscli.report.study.labels import keyed, labels
-from rpscli.report.study.panels import Layout, colour, left_out, marker, over, panel_figure, remarks
+from rpscli.report.study.panels import colour, left_out, marker, over, panel_figure, remarks
 from rpscli.report.study.report import Found, Report
 from rpscli.report.study.statistics import counted_columns, share_columns
 from rpscli.report.table import Column
@@ -53,6 +53,40 @@ class LimitStates(create_model("LimitStates", __base__=Section, **_THRESHOLDS)):
         default=True, description="whether overturning is a limit state itself"
     )
 
+    @property
+    def states(self) -> list[LimitState]:
+        """The limit states that a study asks for."""
+        found = [
+            LimitState(quantity.name, threshold)
+            for quantity in LIMITED
+            for threshold in getattr(self, quantity.name) or ()
+        ]
+        return [*found, *[LimitState("overturning", None)] * self.overturning]
+
+
+class LimitState(NamedTuple):
+    """Exceeded where a result is beyond a threshold; every overturned point exceeds it."""
+
+    result: str
+    threshold: float | None
+
+    @property
+    def label(self) -> str:
+        """The state in words."""
+        if self.threshold is None:
+            return self.result
+        sign = "<" if LIMITS[self.result].from_below else ">"
+        return f"{self.result} {sign} {self.threshold:g}"
+
+    @property
+    def title(self) -> str:
+        """The state in the words of the results, with its unit."""
+        if self.result not in LIMITS:
+            return self.label
+        known = LIMITS[self.result]
+        unit = f" {known.unit}" if known.unit not in {"", "-"} else ""
+        return self.label.replace(self.result, known.label, 1) + unit
+
 
 class MeasureOptions(ReportOptions):
     """Options of reports that need an intensity measure."""
@@ -64,23 +98,6 @@ class MeasureOptions(ReportOptions):
         None, description="of Sa, AvgSa or FIV3; T1 of each system by default"
     )
     damping: DampingRatio = Field(0.05, description="of Sa, AvgSa or Housner")
-
-
-class BandOptions(MeasureOptions):
-    """Options of reports whose curves have bands."""
-
-    resamples: Annotated[int, Whole(0, 10_000)] = Field(
-        400, description="bootstrap samples of the records for the bands; 0 = none"
-    )
-    confidence: Annotated[float, Quantity(above=0, below=1)] = Field(
-        CONFIDENCE, description="probability inside the bands, for the choice of records"
-    )
-    seed: Seed = Field(1, description="of the bootstrap")
-
-    @property
-    def bootstrap(self) -> Bootstrap:
-        """How the bands are had."""
-        return Bootstrap(self.resamples, self.confidence, self.seed)
 
 
 Dispersion = Annotated[float, Quantity(symbol="standard deviation of ln", at_least=0, at_most=2)]
@@ -109,9 +126,16 @@ class DispersionSection(Section):
         return np.sqrt(own**2 + self.design_requirements**2 + self.test_data**2 + self.modelling**2)
 
 
-class FragilityOptions(BandOptions):
+class FragilityOptions(MeasureOptions):
     """Probability of exceeding a limit state against an intensity measure."""
 
+    resamples: Annotated[int, Whole(0, 10_000)] = Field(
+        400, description="bootstrap samples of the records for the bands; 0 = none"
+    )
+    confidence: Annotated[float, Quantity(above=0, below=1)] = Field(
+        CONFIDENCE, description="probability inside the bands, for the choice of records"
+    )
+    seed: Seed = Field(1, description="of the bootstrap")
     limits: LimitStates = Field(LimitStates(), description="limit states")
     series: VariedKeys | None = Field(None, description="varied keys, one curve for each value")
     dispersion: DispersionSection = Field(
@@ -124,20 +148,17 @@ class FragilityOptions(BandOptions):
         1.0, description="factor SSF of FEMA P695 on collapse margin ratios, made for Sa(T1)"
     )
 
-
-class LimitState(NamedTuple):
-    """Exceeded where a result is beyond a threshold; every overturned point exceeds it."""
-
-    result: str
-    threshold: float | None
-
     @property
-    def label(self) -> str:
-        """The state in words."""
-        if self.threshold is None:
-            return self.result
-        sign = "<" if LIMITS[self.result].from_below else ">"
-        return f"{self.result} {sign} {self.threshold:g}"
+    def results(self) -> list[str]:
+        """Results that the limit states are about."""
+        return [limit.result for limit in self.limits.states]
+
+    def intensities(self, layout: StudyPoints) -> dict[str, float]:
+        """The intensities under `at` in SI; raises pydantic's error if one is none."""
+        scaled = layout.plan.measure
+        measure = self.measure or (scaled.measure if scaled else "PGV")
+        bounds = Quantity(MEASURES[measure].unit, symbol=measure, above=0)
+        return {name: float(bounds.number(value)) for name, value in self.at.items()}
 
 
 class Observed(NamedTuple):
@@ -190,22 +211,29 @@ class Fragilities:
         return [curve for curve in self.curves if curve.limit == limit and curve.fit.fitted]
 
     @property
-    def notes(self) -> list[str]:
-        """What is pooled, what overturning does to limits, and what keeps fits from being plain."""
-        return [
-            *self.systems.notes,
-            *self._overturned,
-            *told(self, ((curve, curve.fit.note) for curve in self.curves)),
-        ]
+    def axis(self) -> str:
+        """Label of the axis of intensities."""
+        return f"{measure_name(self.intensity)} [{self.intensity.unit}]"
 
     @property
-    def _overturned(self) -> Iterator[str]:
+    def notes(self) -> Iterator[str]:
+        """What is pooled, what overturning does to limits, and what keeps fits from being plain."""
+        yield from self.systems.notes
         limited = [curve for curve in self.curves if curve.limit.threshold is not None]
-        fallen = sum(curve.overturned for curve in limited)
-        if fallen:
+        if fallen := sum(curve.overturned for curve in limited):
             exceeded = sum(curve.exceeded for curve in limited)
             counts = f"{fallen} of {exceeded} histories beyond a limit"
             yield f"an overturned history exceeds every limit: {counts} overturned"
+        yield from self.told((curve, curve.fit.note) for curve in self.curves)
+
+    def told(self, notes: Iterable[tuple[Fragility, str | None]]) -> Iterator[str]:
+        """Notes on curves, each once with all that it is about."""
+        by_text: dict[str, list[str]] = {}
+        for curve, text in notes:
+            if text:
+                by_text.setdefault(text, []).append(self.named(curve))
+        for text, named in by_text.items():
+            yield f"{'; '.join(named)}: {text}"
 
     def named(self, curve: Fragility) -> str:
         """A curve's limit state with the values of its systems."""
@@ -216,7 +244,7 @@ class Fragilities:
 def fragilities(study: StudyResults, options: FragilityOptions) -> Fragilities:
     """Fit every limit state of every group of systems; samples and records are pooled."""
     measured = study.table.intensity(options.measure, options.period, options.damping)
-    limits = tuple(limit_states(options.limits))
+    limits = tuple(options.limits.states)
     systems = grouping(study.table, options.series, (INTENSITY,))
     curves = tuple(
         _fragility(measured, options, (place, group), limit)
@@ -226,25 +254,26 @@ def fragilities(study: StudyResults, options: FragilityOptions) -> Fragilities:
     return Fragilities(measured, options.confidence, systems, limits, curves)
 
 
-def limit_states(limits: LimitStates) -> Iterator[LimitState]:
-    """The limit states that a study asks for."""
-    for quantity in LIMITED:
-        for threshold in getattr(limits, quantity.name) or ():
-            yield LimitState(quantity.name, threshold)
-    if limits.overturning:
-        yield LimitState("overturning", None)
-
-
 def _fragility(
     measured: Intensity, options: FragilityOptions, placed: tuple[int, Histories], limit: LimitState
 ) -> Fragility:
     place, group = placed
-    table, points = group.table, group.points
+    table, layout, points = group.table, group.table.layout, group.points
     kept = points[measured.values[points] > 0.0]
     intensity = measured.values[kept]
     beyond = exceeds(table, limit.result, limit.threshold or 0.0)[kept]
-    grid = intensity_grid(intensity)
-    fit = fragility_fit(table, kept, intensity, beyond, grid, options.bootstrap)
+    # Some way beyond the data on both sides.
+    low, high = (intensity.min() / 1.5, intensity.max() * 1.5) if len(kept) else (1.0, 1.0)
+    grid = np.geomspace(low, high, CURVE_POINTS)
+    # Motions over points: directions, samples and members of an ensemble share a motion.
+    shaken = layout.recordings[kept] * len(layout.scales) + layout.places[2][kept]
+    weight = len(np.unique(shaken)) / max(len(kept), 1)
+    # Members of an ensemble perturb one intensity, and tell no others.
+    _, cell = np.unique(kept // len(layout.members), return_inverse=True)
+    means = np.bincount(cell, np.log(intensity)) / np.bincount(cell)
+    level = np.exp(np.round(means, 9))[cell] if len(means) < len(kept) else intensity
+    bootstrap = Bootstrap(options.resamples, options.confidence, options.seed)
+    fit = lognormal_fit(intensity, beyond, layout.clusters[kept], weight, grid, bootstrap, level)
     return Fragility(
         place=place,
         values=group.values,
@@ -259,34 +288,6 @@ def _fragility(
         overturned=int(table.overturned[kept].sum()),
         failed=len(group.every) - len(kept),
     )
-
-
-def fragility_fit(
-    table: Table,
-    points: Indices,
-    intensity: Array,
-    beyond: NDArray[np.bool_],
-    grid: Array,
-    bootstrap: Bootstrap,
-) -> Lognormal:
-    """A curve through what became of some points (m,) of a study under intensities (m,)."""
-    layout = table.layout
-    cluster = layout.clusters[points]
-    # Motions over points: directions, samples and members of an ensemble share a motion.
-    shaken = layout.recordings[points] * len(layout.scales) + layout.places[2][points]
-    weight = len(np.unique(shaken)) / max(len(points), 1)
-    # Members of an ensemble perturb one intensity, and tell no others.
-    _, cell = np.unique(points // len(table.layout.members), return_inverse=True)
-    means = np.bincount(cell, np.log(intensity)) / np.bincount(cell)
-    level = np.exp(np.round(means, 9))[cell] if len(means) < len(points) else intensity
-    return lognormal_fit(intensity, beyond, cluster, weight, grid, bootstrap, level)
-
-
-def intensity_grid(intensities: Array) -> Array:
-    """Intensities at which curves are drawn: some way beyond the data on both sides."""
-    if not len(intensities):
-        return np.ones(CURVE_POINTS)
-    return np.geomspace(intensities.min() / 1.5, intensities.max() * 1.5, CURVE_POINTS)
 
 
 def binned(table: Table, kept: Indices, intensity: Array, beyond: NDArray[np.bool_]) -> Observed:
@@ -307,36 +308,12 @@ def measure_without_period(layout: StudyPoints, options: MeasureOptions) -> Iter
         yield f"{options.measure} at T1 needs storeys; give the report a `period`"
 
 
-def named_intensities(layout: StudyPoints, options: FragilityOptions) -> dict[str, float]:
-    """The intensities under `at` in SI; raises pydantic's error if one is none."""
-    scaled = layout.plan.measure
-    measure = options.measure or (scaled.measure if scaled else "PGV")
-    bounds = Quantity(MEASURES[measure].unit, symbol=measure, above=0)
-    return {name: float(bounds.number(value)) for name, value in options.at.items()}
-
-
-def fragility_faults(layout: StudyPoints, options: FragilityOptions) -> Iterator[str]:
-    """What keeps a report from having its measure, or the intensities that it names."""
-    yield from measure_without_period(layout, options)
-    yield from wrong_intensities(layout, options)
-
-
 def wrong_intensities(layout: StudyPoints, options: FragilityOptions) -> Iterator[str]:
     """What is no intensity under `at`."""
     try:
-        named_intensities(layout, options)
+        options.intensities(layout)
     except PydanticCustomError as error:
         yield f"at: {error.message()}"
-
-
-def told(found: Fragilities, notes: Iterable[tuple[Fragility, str | None]]) -> Iterator[str]:
-    """Notes on curves, each once with all that it is about."""
-    by_text: dict[str, list[str]] = {}
-    for curve, text in notes:
-        if text:
-            by_text.setdefault(text, []).append(found.named(curve))
-    for text, named in by_text.items():
-        yield f"{'; '.join(named)}: {text}"
 
 
 def margins(study: StudyResults, options: FragilityOptions, found: Fragilities) -> list[Column]:
@@ -347,7 +324,7 @@ def margins(study: StudyResults, options: FragilityOptions, found: Fragilities) 
 
     factor, total = options.spectral_shape, options.dispersion.total
     rows = []
-    for name, value in named_intensities(study.table.layout, options).items():
+    for name, value in options.intensities(study.table.layout).items():
         for curve in found.curves:
             fit = curve.fit
             medians, betas = (
@@ -376,23 +353,26 @@ def fragility(study: StudyResults, options: FragilityOptions) -> Found:
     found = fragilities(study, options)
     keys, measure, unit = found.systems.keys, found.intensity.name, found.intensity.unit
     curves = [((curve.values, curve.limit.label), curve) for curve in found.curves]
-    counted = attrgetter("total", "exceeded", "counted", "overturned", "failed", "fit.note")
-    fits = [(*of, measure, *fit_cells(curve.fit), *counted(curve)) for of, curve in curves]
     counts = ("beta_total", "exceeded", "counted", "overturned_among_them", "failed", "note")
-    fit_heads = {"limit": "-", "intensity": "-", **fit_units(unit), **dict.fromkeys(counts, "-")}
+    counted = attrgetter("total", "exceeded", "counted", "overturned", "failed", "fit.note")
+    fit_heads = {"limit": "-", "intensity": "-", "method": "-"}
+    fit_heads |= dict.fromkeys(("median", "median_low", "median_high"), unit)
+    fit_heads |= dict.fromkeys(("beta", "beta_low", "beta_high", *counts), "-")
+    fits = [
+        (*of, measure, fit.method, fit.median, *fit.median_band, fit.beta, *fit.beta_band,
+         *counted(curve))
+        for of, curve in curves
+        for fit in [curve.fit]
+    ]  # fmt: skip
     lines = [
         (*of, *numbers)
         for of, curve in curves
         if curve.fit.fitted
         for numbers in zip(curve.grid, curve.fit.curve, *curve.fit.band, strict=True)
     ]
-    observed = [
-        ((*of, level), share)
-        for of, curve in curves
-        for level, share in zip(curve.observed.intensity, curve.observed.shares, strict=True)
-    ]
+    levels = [(*of, at) for of, curve in curves for at in curve.observed.intensity]
+    shares = [share for _, curve in curves for share in curve.observed.shares]
     line_heads = {"limit": "-", measure: unit, "probability": "-", "low": "-", "high": "-"}
-    levels, shares = [row for row, _ in observed], [share for _, share in observed]
     tables = {
         "": keyed(keys, fit_heads, fits),
         **({"_at": margins(study, options, found)} if options.at else {}),
@@ -403,16 +383,19 @@ def fragility(study: StudyResults, options: FragilityOptions) -> Found:
             *share_columns("exceeded", shares),
         ],
     }
-    drawable = any(curve.fit.fitted for curve in found.curves)
     main = dict.fromkeys((*keys, "limit", "median", "beta", *counts[:3]), "")
     if not options.dispersion.given:
         del main["beta_total"]
-    shown = {"": main} | ({"_at": {}} if options.at else {})
-    figure = (lambda title: fragility_figure(found, title)) if drawable else None
     remark = what_bands_hold(study.table.layout, options)
     if any(curve.fit.median > curve.largest for curve in found.curves):
         remark += "; a median beyond the largest intensity computed is extrapolated"
-    return Found(tables, figure, found.notes, shown=shown, remark=remark)
+    return Found(
+        tables,
+        fragility_figure(found) if any(curve.fit.fitted for curve in found.curves) else None,
+        list(found.notes),
+        shown={"": main} | ({"_at": {}} if options.at else {}),
+        remark=remark,
+    )
 
 
 def what_bands_hold(layout: StudyPoints, options: FragilityOptions) -> str:
@@ -425,87 +408,60 @@ def what_bands_hold(layout: StudyPoints, options: FragilityOptions) -> str:
     return f"{level} (bootstrap of {options.resamples}); {beyond}; -: not determined"
 
 
-def fit_units(unit: str) -> dict[str, str]:
-    """Columns of a fit, with their units."""
-    medians = dict.fromkeys(("median", "median_low", "median_high"), unit)
-    return {"method": "-", **medians, **dict.fromkeys(("beta", "beta_low", "beta_high"), "-")}
-
-
-def fit_cells(fit: Lognormal) -> tuple[object, ...]:
-    """A row of these columns."""
-    return (fit.method, fit.median, *fit.median_band, fit.beta, *fit.beta_band)
-
-
-def fragility_figure(report: Fragilities, title: str) -> bytes:
+def fragility_figure(report: Fragilities) -> Callable[[str], bytes]:
     """One panel a limit state with a fit; markers are observed shares, shades the bands."""
     from scipy.special import ndtr
 
-    groups = len(report.systems.groups)
     limits = [limit for limit in report.limits if report.fitted(limit)]
     panels = [report.fitted(limit) for limit in limits]
+    drawn = [curve for panel in panels for curve in panel]
 
     def draw(axes: style.Axes, curves: list[Fragility]) -> None:
         for curve in curves:
-            place, shade = curve.place, colour(curve.place, groups)
-            named, banded = labels(report.systems.keys, curve.values), len(curves) <= MOST_BANDS
-            data = curve.grid, curve.fit, curve.observed
-            draw_fit(axes, *data, shade, marker(place), named or None, banded=banded)
-            if curve.total != curve.fit.beta:
-                total = ndtr(np.log(curve.grid / curve.fit.median) / curve.total)
-                axes.plot(curve.grid, total, ":", color=shade, lw=1.0)
+            fit, grid, seen = curve.fit, curve.grid, curve.observed
+            look: dict[str, Any] = {
+                "color": colour(curve.place, len(report.systems.groups)),
+                "marker": marker(curve.place),
+                "ms": 3.2,
+            }
+            axes.plot(
+                grid, fit.curve, "--" if fit.method == "penalised" else "-", lw=1.4, markevery=[],
+                label=labels(report.systems.keys, curve.values) or None, **look,
+            )  # fmt: skip
+            if len(curves) <= MOST_BANDS:
+                axes.fill_between(grid, *fit.band, color=look["color"], alpha=0.15, lw=0)
+            axes.plot(seen.intensity, seen.share, ls="", alpha=0.8, **look)
+            if curve.total != fit.beta:
+                total = ndtr(np.log(grid / fit.median) / curve.total)
+                axes.plot(grid, total, ":", color=look["color"], lw=1.0)
         axes.set_ylim(-0.02, 1.02)
         axes.set_xlim(0.0, max(curve.grid[-1] for curve in curves))
         beyond_computed(axes, max(curve.largest for curve in curves), axes.get_xlim()[1])
 
-    drawn = [curve for panel in panels for curve in panel]
-    notes = ["markers: observed", band_words(report.confidence, (c.fit for c in drawn))]
-    if any(curve.total != curve.fit.beta for curve in drawn):
-        notes.append("dotted: with further dispersion")
-    notes.append(BEYOND_COMPUTED)
-    if any(c.fit.method == "penalised" for c in report.curves):
-        notes.append("dashed: separated data, penalised fit")
-    if any(limit.threshold is not None for limit in limits):
-        notes.append("overturning exceeds every limit")
-    if missing := sum(not c.fit.fitted for c in report.curves):
-        notes.append(f"{missing} of {len(report.curves)} curves without a fit, see CSV")
-    notes += [
-        over(report.systems.pooled),
-        left_out(sum(c.failed for c in panels[0]) if panels else 0),
-    ]
+    bands = any(np.isfinite(curve.fit.band[0]).any() for curve in drawn)
+    missing = sum(not curve.fit.fitted for curve in report.curves)
     return panel_figure(
-        limit_panels(limits),
+        [limit.title for limit in limits],
         panels,
         draw,
-        title=title,
-        x_label=f"{measure_name(report.intensity)} [{report.intensity.unit}]",
+        in_row=limits_in_row(limits),
+        x_label=report.axis,
         y_label="probability of exceedance",
-        note=remarks(*notes),
+        note=remarks(
+            "markers: observed",
+            f"bands: {style.percent(report.confidence)}, the choice of records"
+            if bands
+            else "no bands are determined",
+            "dotted: with further dispersion" * any(c.total != c.fit.beta for c in drawn),
+            BEYOND_COMPUTED,
+            "dashed: separated data, penalised fit"
+            * any(c.fit.method == "penalised" for c in report.curves),
+            "overturning exceeds every limit" * any(of.threshold is not None for of in limits),
+            f"{missing} of {len(report.curves)} curves without a fit, see CSV" * bool(missing),
+            over(report.systems.pooled),
+            left_out(sum(curve.failed for curve in panels[0]) if panels else 0),
+        ),
     )
-
-
-def draw_fit(
-    axes: style.Axes, grid: Array, fit: Lognormal, seen: Observed, shade: str, mark: str,
-    label: str | None, *, banded: bool = True,
-) -> None:  # fmt: skip
-    """A fragility, its band, and the shares that it goes through."""
-    if fit.fitted:
-        axes.plot(
-            grid, fit.curve, "--" if fit.method == "penalised" else "-", color=shade, lw=1.4,
-            marker=mark, ms=3.2, markevery=[], label=label,  # the legend shows both
-        )  # fmt: skip
-        if banded:
-            axes.fill_between(grid, *fit.band, color=shade, alpha=0.15, lw=0)
-        label = None
-    axes.plot(
-        seen.intensity, seen.share, ls="", color=shade, marker=mark, ms=3.2, alpha=0.8, label=label
-    )
-
-
-def band_words(confidence: float, fits: Iterable[Lognormal]) -> str:
-    """A remark on the bands of curves."""
-    if not any(np.isfinite(fit.band[0]).any() for fit in fits):
-        return "no bands are determined"
-    return f"bands: {style.percent(confidence)}, the choice of records"
 
 
 BEYOND_COMPUTED = "grey: stronger than computed"
@@ -517,19 +473,9 @@ def beyond_computed(axes: style.Axes, largest: float, end: float) -> None:
         axes.axvspan(largest, end, color=style.GREY, alpha=0.15, lw=0, zorder=0)
 
 
-def limit_name(limit: LimitState) -> str:
-    """The limit state in the words of the results."""
-    if limit.result not in LIMITS:
-        return limit.label
-    known = LIMITS[limit.result]
-    unit = f" {known.unit}" if known.unit not in {"", "-"} else ""
-    return limit.label.replace(limit.result, known.label, 1) + unit
-
-
-def limit_panels(limits: Sequence[LimitState]) -> Layout:
-    """A panel for each limit state, up to three in a row."""
-    in_row = 2 if len(limits) == 4 else max(1, min(3, len(limits)))
-    return Layout([limit_name(limit) for limit in limits], in_row)
+def limits_in_row(limits: Sequence[LimitState]) -> int:
+    """Panels of limit states side by side."""
+    return 2 if len(limits) == 4 else 3
 
 
 def measure_name(intensity: Intensity) -> str:
@@ -540,9 +486,12 @@ def measure_name(intensity: Intensity) -> str:
     return measure_label(intensity.measure, intensity.of, at)
 
 
-def limited_results(options: Any) -> list[str]:
-    """Results that the limit states of a report are about."""
-    return [limit.result for limit in limit_states(options.limits)]
-
-
-REPORT = Report(FragilityOptions, fragility, requires=fragility_faults, results=limited_results)
+REPORT = Report(
+    FragilityOptions,
+    fragility,
+    requires=lambda layout, options: [
+        *measure_without_period(layout, options),
+        *wrong_intensities(layout, options),
+    ],
+    results=lambda options: options.results,
+)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from textwrap import fill
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal
 
 from rpscli.report.figures import style
 from rpscli.report.study.labels import labels
@@ -46,75 +46,70 @@ def marker(place: int) -> str:
     return MARKERS[place % len(MARKERS)]
 
 
-class Layout(NamedTuple):
-    """Titles of the panels, and how many stand side by side."""
-
-    names: Sequence[str]
-    columns: int
-
-
-def by_values(keys: Sequence[str], panels: Sequence[Any]) -> Layout:
-    """Panels that have `values` of keys; the last key's stand side by side if they fill a table."""
-    across = len(dict.fromkeys(str(panel.values[-1]) for panel in panels)) if keys else 1
-    fills = 1 < across <= 5 and len(panels) % across == 0
-    columns = across if fills else max(1, min(4, len(panels)))
-    return Layout([labels(keys, panel.values) for panel in panels], columns)
-
-
-def panel_figure(
-    layout: Layout,
-    panels: Sequence[Any],
-    draw: Callable[[style.Axes, Any], None],
-    *,
-    title: str,
-    x_label: str,
-    y_label: str,
-    share: Literal["both", "x"] = "both",
-    limits: Callable[[style.Axes], object] | None = None,
-    note: str = "",
-) -> bytes:
-    """A figure with one panel for each group."""
-    width = style.room(style.WIDTH)
-    shown = panels[:MOST_PANELS]
-    narrow = 1 if len(shown) == 3 else 2  # three leave a hole
-    columns = layout.columns if width >= style.WIDTH else min(narrow, layout.columns)
-    names = _wrapped(layout.names, columns, min(width, style.WIDTH))
-    rows = max(1, math.ceil(len(shown) / columns))
-    if len(panels) > len(shown):
-        note = f"{note}; " * bool(note) + f"the first {len(shown)} of {len(panels)} panels"
-
-    def draw_all(figure: style.Figure) -> None:
-        style.heading(figure, title, note)
-        grid = figure.subplots(rows, columns, squeeze=False, sharex=True, sharey=share == "both")
-        for axes, panel, name in zip(grid.flat, shown, names, strict=False):
-            axes.locator_params(nbins=MOST_TICKS)
-            draw(axes, panel)
-            # Without a height matplotlib would look for ticks under the title, at great length.
-            axes.set_title(style.typeset(name), y=1.0)
-        _label_outside(grid, len(shown), x_label, y_label)
-        if limits is not None:
-            limits(grid.flat[0])
-        # Somebody's figure that lays itself out does so with what is drawn into it.
-        if figure.get_layout_engine() is not None:
-            _legend_lines(figure, grid, "outside lower center")
-            return
-        lines = _legend_lines(figure, grid, "lower center")
-        _arrange(figure, grid, lines, share_y=share == "both")
-
-    each = 2.6 if columns < 3 and width >= style.WIDTH else 2.1
-    height = 3.8 if rows == 1 and columns == 1 else 1.0 + each * rows
-    wide = style.WIDTH if layout.columns > 1 else 0.72 * style.WIDTH
-    return style.picture(draw_all, height, wide, None)
-
-
 def in_panels(
     keys: Sequence[str],
     panels: Sequence[Any],
     draw: Callable[[style.Axes, Any], None],
     **words: Any,
 ) -> Callable[[str], bytes]:
-    """A figure that waits for its title, with a panel for each of those with `values` of keys."""
-    return lambda title: panel_figure(by_values(keys, panels), panels, draw, title=title, **words)
+    """Panels that have `values` of keys; the last key's stand side by side if they fill a table."""
+    across = len(dict.fromkeys(str(panel.values[-1]) for panel in panels)) if keys else 1
+    fills = 1 < across <= 5 and len(panels) % across == 0
+    names = [labels(keys, panel.values) for panel in panels]
+    return panel_figure(names, panels, draw, in_row=across if fills else 4, **words)
+
+
+def panel_figure(
+    names: Sequence[str],
+    panels: Sequence[Any],
+    draw: Callable[[style.Axes, Any], None],
+    *,
+    in_row: int,
+    x_label: str,
+    y_label: str,
+    share: Literal["both", "x"] = "both",
+    limits: Callable[[style.Axes], object] | None = None,
+    note: str = "",
+) -> Callable[[str], bytes]:
+    """A figure that waits for its title: panels with titles, so many of them side by side."""
+    shown = panels[:MOST_PANELS]
+    if len(panels) > len(shown):
+        note = f"{note}; " * bool(note) + f"the first {len(shown)} of {len(panels)} panels"
+
+    def picture(title: str) -> bytes:
+        width = style.room(style.WIDTH)
+        widest = columns = max(1, min(in_row, len(panels)))
+        if width < style.WIDTH:
+            columns = min(1 if len(shown) == 3 else 2, widest)  # three leave a hole
+        wrapped = _wrapped(names, columns, min(width, style.WIDTH))
+        rows = max(1, math.ceil(len(shown) / columns))
+
+        def draw_all(figure: style.Figure) -> None:
+            style.heading(figure, title, note)
+            grid = figure.subplots(
+                rows, columns, squeeze=False, sharex=True, sharey=share == "both"
+            )
+            for axes, panel, name in zip(grid.flat, shown, wrapped, strict=False):
+                axes.locator_params(nbins=MOST_TICKS)
+                draw(axes, panel)
+                # Without a height matplotlib would look for ticks under the title, at great length.
+                axes.set_title(style.typeset(name), y=1.0)
+            _label_outside(grid, len(shown), x_label, y_label)
+            if limits is not None:
+                limits(grid.flat[0])
+            # Somebody's figure that lays itself out does so with what is drawn into it.
+            if figure.get_layout_engine() is not None:
+                _legend_lines(figure, grid, "outside lower center")
+            else:
+                lines = _legend_lines(figure, grid, "lower center")
+                _arrange(figure, grid, lines, share_y=share == "both")
+
+        each = 2.6 if columns < 3 and width >= style.WIDTH else 2.1
+        height = 3.8 if rows == 1 and columns == 1 else 1.0 + each * rows
+        wide = style.WIDTH if widest > 1 else 0.72 * style.WIDTH
+        return style.picture(draw_all, height, wide, None)
+
+    return picture
 
 
 def _label_outside(grid: Any, panels: int, x_label: str, y_label: str) -> None:

@@ -47,16 +47,14 @@ class Found:
 
     `figure` makes the file of its figure under a title; None where nothing can be drawn. `notes`
     are what the user should know about the numbers, `findings` the main ones in lines for the
-    terminal, `texts` further files, by what follows the report's name in the file's. `shown` has
-    labels of columns of tables that are for the terminal too, none if all are; `remark` stands
-    below them.
+    terminal. `shown` has labels of columns of tables that are for the terminal too, none if all
+    are; `remark` stands below them.
     """
 
     tables: Tables
     figure: Callable[[str], bytes] | None
     notes: Sequence[str] = ()
     findings: Sequence[tuple[str, str]] = ()
-    texts: Mapping[str, str] = field(default_factory=dict)
     shown: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
     remark: str = ""
 
@@ -81,8 +79,6 @@ class Found:
         """Names and contents of its files."""
         for suffix, columns in self.tables.items():
             yield f"{stem}{suffix}.csv", csv_text(columns)
-        for suffix, text in self.texts.items():
-            yield f"{stem}{suffix}", text
         if self.figure is not None:
             yield from figure_files({stem: partial(self.figure, title)}, look).items()
 

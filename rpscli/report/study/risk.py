@@ -24,11 +24,8 @@ from rpscli.report.study.fragility import (
     LimitState,
     beyond_computed,
     fragilities,
-    limit_panels,
-    limited_results,
+    limits_in_row,
     margins,
-    measure_name,
-    told,
     what_bands_hold,
     wrong_intensities,
 )
@@ -106,6 +103,10 @@ class Risk:
         """Share of the rate."""
         return float(self.rates[-1] / self.rate)
 
+    def probabilities(self, years: float) -> tuple[float, ...]:
+        """Of at least one excess within so many years, and of both ends of the band."""
+        return tuple(probability(rate, years) for rate in (self.rate, *self.band))
+
 
 def probability(rate: float, years: float) -> float:
     """Of at least one excess within so many years, if excesses are a Poisson process."""
@@ -125,27 +126,24 @@ def risk_faults(layout: StudyPoints, options: RiskOptions) -> Iterator[str]:
         yield f"a hazard curve of {measure} is for one period; give the report a `period`"
     yield from wrong_intensities(layout, options.model_copy(update={"measure": measure}))
     try:
-        hazard_of(layout, section)
+        read_hazard(layout.study.folder / section.file, section.measure)
     except CaseError as error:
         yield str(error)
 
 
-def hazard_of(layout: StudyPoints, section: HazardSection) -> Hazard:
-    """The hazard curve of a report or a study."""
-    return read_hazard(layout.study.folder / section.file, section.measure)
-
-
 def risk(study: StudyResults, options: RiskOptions) -> Found:
     """Fit the fragilities and integrate them over the hazard."""
-    section = options.hazard or study.table.layout.study.file.hazard
+    layout = study.table.layout
+    section = options.hazard or layout.study.file.hazard
     assert section is not None, "asked before"
-    hazard = hazard_of(study.table.layout, section)
+    hazard = read_hazard(layout.study.folder / section.file, section.measure)
     options = options.model_copy(update={"measure": section.measure})
     found = fragilities(study, options)
     risks = [risk_of(curve, hazard, options) for curve in found.curves]
     known = [each for each in risks if each.fragility.fit.fitted]
     keys, measured, unit = found.systems.keys, found.intensity.name, found.intensity.unit
-    life, total = f"probability_in_{options.years:g}_years", bool(options.dispersion.given)
+    years, total = options.years, bool(options.dispersion.given)
+    life = f"probability_in_{years:g}_years"
     # Name, unit, what readers see above it, if they see it, and value of each column.
     columns: list[tuple[str, str, str | None, Callable[[Risk], object]]] = [
         ("limit", "-", "limit", lambda r: r.fragility.limit.label),
@@ -153,9 +151,9 @@ def risk(study: StudyResults, options: RiskOptions) -> Found:
         ("return_period", "year", "return period", lambda r: 1.0 / r.rate if r.rate else math.nan),
         ("annual_rate_low", "1/year", None, lambda r: r.band[0]),
         ("annual_rate_high", "1/year", None, lambda r: r.band[1]),
-        (life, "-", f"P in {options.years:g} years", lambda r: probability(r.rate, options.years)),
-        (f"{life}_low", "-", None, lambda r: probability(r.band[0], options.years)),
-        (f"{life}_high", "-", None, lambda r: probability(r.band[1], options.years)),
+        (life, "-", f"P in {years:g} years", lambda r: r.probabilities(years)[0]),
+        (f"{life}_low", "-", None, lambda r: r.probabilities(years)[1]),
+        (f"{life}_high", "-", None, lambda r: r.probabilities(years)[2]),
         ("median", unit, "median", lambda r: r.fragility.fit.median),
         ("beta", "-", "beta", lambda r: r.fragility.fit.beta),
         ("beta_total", "-", "beta total" if total else None, lambda r: r.fragility.total),
@@ -177,8 +175,6 @@ def risk(study: StudyResults, options: RiskOptions) -> Found:
         ("share_beyond_hazard", "-", "from beyond hazard", lambda r: r.beyond_hazard),
         ("note", "-", None, lambda r: r.note),
     ]  # fmt: skip
-    heads = {name: of_unit for name, of_unit, *_ in columns}
-    readers = {name: label for name, _, label, _ in columns if label}
     rows = [(each.fragility.values, *(value(each) for *_, value in columns)) for each in risks]
     part_heads = {
         "limit": "-", f"{measured}_from": unit, f"{measured}_to": unit, "annual_rate": "1/year",
@@ -189,16 +185,19 @@ def risk(study: StudyResults, options: RiskOptions) -> Found:
         for each in known
         for low, high, rate in zip(each.edges, each.edges[1:], each.rates, strict=False)
     ]
-    tables = {"": keyed(keys, heads, rows), "_contributions": keyed(keys, part_heads, parts)}
-    if options.at:
-        tables["_at"] = margins(study, options, found)
+    tables = {
+        "": keyed(keys, {name: of_unit for name, of_unit, *_ in columns}, rows),
+        "_contributions": keyed(keys, part_heads, parts),
+        **({"_at": margins(study, options, found)} if options.at else {}),
+    }
+    readers = {name: label for name, _, label, _ in columns if label}
     return Found(
         tables,
-        (lambda title: risk_figure(found, known, options.years, title)) if known else None,
+        risk_figure(found, known, years) if known else None,
         [*_report_notes(found, known, section.component), *found.notes],
         shown={"": dict.fromkeys(keys, "") | readers} | ({"_at": {}} if options.at else {}),
-        remark=f"{what_bands_hold(study.table.layout, options)}; rate of shares: of the observed"
-        " ones, no lognormal",
+        remark=f"{what_bands_hold(layout, options)}; rate of shares: of the observed ones, no"
+        " lognormal",
     )
 
 
@@ -207,20 +206,17 @@ def risk_of(fragility: Fragility, hazard: Hazard, options: RiskOptions) -> Risk:
     low, high = hazard.intensity[[0, -1]]
     edges = np.append(np.geomspace(low, high, BINS + 1), math.inf)
     fit, total, observed = fragility.fit, fragility.total, fragility.observed
-    of_shares = (
-        rate_of_shares(hazard, observed.intensity, observed.share)
-        if observed.share.any()
-        else math.nan
-    )
+    nan, of_shares = math.nan, math.nan
+    if observed.share.any():
+        of_shares = rate_of_shares(hazard, observed.intensity, observed.share)
     if not fit.fitted:
-        none, nan = np.full(BINS + 1, math.nan), math.nan
-        lost = (nan,) * len(hazard.fractiles)
+        none, lost = np.full(BINS + 1, nan), (nan,) * len(hazard.fractiles)
         return Risk(fragility, nan, NOTHING, edges, none, nan, nan, of_shares, lost, nan, ())
     at = np.append(edges[:-1], max(fragility.largest, low))
     above = rates_above(hazard, fit.median, total, at)
     medians, betas = fit.resampled
     sampled = [
-        annual_rate(hazard, *pair) if 0.0 < pair[0] < math.inf else math.nan
+        annual_rate(hazard, *pair) if 0.0 < pair[0] < math.inf else nan
         for pair in zip(medians, options.dispersion.total(betas), strict=True)
     ]
     rate, curves = float(above[0]), [hazard.fractile(share) for share in hazard.fractiles]
@@ -281,24 +277,29 @@ def _report_notes(found: Fragilities, risks: Sequence[Risk], of: Of | None) -> I
         " slope; extend the curve",
     }
     for name, place in places.items():
-        far = [each for each in risks if getattr(each, name) > CLEARLY]
+        shares = [(float(getattr(each, name)), each) for each in risks]
+        far = [pair for pair in shares if pair[0] > CLEARLY]
         if far:
-            worst = max(far, key=lambda each: float(getattr(each, name)))
-            share = f"{'up to ' * (len(far) > 1)}{100.0 * getattr(worst, name):.0f} %"
+            most, worst = max(far, key=lambda pair: pair[0])
+            share = f"{'up to ' * (len(far) > 1)}{100.0 * most:.0f} %"
             which = f"({found.named(worst.fragility)}; above 5 % in {len(far)} of {len(risks)})"
             yield f"{share} of the annual rate {which} come from beyond {place}"
     yield from component_notes(of, found.intensity.of)
-    yield from told(found, ((each.fragility, "; ".join(each.notes)) for each in risks))
+    yield from found.told((each.fragility, "; ".join(each.notes)) for each in risks)
 
 
-def risk_figure(found: Fragilities, risks: Sequence[Risk], years: float, title: str) -> bytes:
+def risk_figure(found: Fragilities, risks: Sequence[Risk], years: float) -> Callable[[str], bytes]:
     """One panel a limit state: what share of its rate comes from which intensities."""
     limits = [limit for limit in found.limits if found.fitted(limit)]
     groups, (low, high) = len(found.systems.groups), _shown(risks)
     last = float(risks[0].edges[-2])
-    # Numbers stand above the steps: one line each, two where panels are narrow.
-    line = 0.075 if len(limits) == 3 else 0.075 * (1 + break_if_narrow().count("\n"))
-    room = 0.03 + line * min(groups, MOST_BANDS)
+
+    def line() -> float:
+        """Height of the numbers above the steps: two lines where panels are narrow."""
+        return 0.075 if len(limits) == 3 else 0.075 * (1 + break_if_narrow().count("\n"))
+
+    def room() -> float:
+        return 0.03 + line() * min(groups, MOST_BANDS)
 
     def draw(axes: style.Axes, limit: LimitState) -> None:
         of_limit = [each for each in risks if each.fragility.limit == limit]
@@ -309,14 +310,13 @@ def risk_figure(found: Fragilities, risks: Sequence[Risk], years: float, title: 
             axes.stairs(shares[:-1], each.edges[:-1], color=shade, lw=1.4, label=name or None)
             if high > last:
                 axes.stairs(shares[-1:], [last, high], color=shade, lw=1.4, ls=":")
-            axes.axvline(each.half, ymax=1.0 - room, color=shade, lw=0.8, ls="--")
+            axes.axvline(each.half, ymax=1.0 - room(), color=shade, lw=0.8, ls="--")
             if len(of_limit) <= MOST_BANDS:
-                chances = (probability(rate, years) for rate in (each.rate, *each.band))
-                words = f"P = {with_band(*chances)}"
-                if line > 0.1:
+                words = f"P = {with_band(*each.probabilities(years))}"
+                if line() > 0.1:
                     words = words.replace(" (", "\n(")
                 axes.text(
-                    0.02, 0.98 - line * row, words, color=shade, transform=axes.transAxes,
+                    0.02, 0.98 - line() * row, words, color=shade, transform=axes.transAxes,
                     va="top", fontsize=0.85 * style.small(),
                 )  # fmt: skip
         beyond_computed(axes, max(each.fragility.largest for each in of_limit), high)
@@ -325,14 +325,14 @@ def risk_figure(found: Fragilities, risks: Sequence[Risk], years: float, title: 
         axes.set_xscale("log")  # of all panels at the end: ticks of logarithms are of another kind
         log_ticks(axes.xaxis)
         axes.set_xlim(low, high)
-        axes.set_ylim(0.0, axes.get_ylim()[1] / (1.0 - room))
+        axes.set_ylim(0.0, axes.get_ylim()[1] / (1.0 - room()))
 
     return panel_figure(
-        limit_panels(limits),
+        [limit.title for limit in limits],
         limits,
         draw,
-        title=title,
-        x_label=f"{measure_name(found.intensity)} [{found.intensity.unit}]",
+        in_row=limits_in_row(limits),
+        x_label=found.axis,
         y_label="share of the annual rate [%]",
         limits=limit_axes,
         note=remarks(
@@ -357,4 +357,4 @@ def _shown(risks: Sequence[Risk]) -> tuple[float, float]:
     return 0.9 * min(lows), 1.1 * max(highs)
 
 
-REPORT = Report(RiskOptions, risk, requires=risk_faults, results=limited_results)
+REPORT = Report(RiskOptions, risk, requires=risk_faults, results=lambda options: options.results)

@@ -1,13 +1,22 @@
-"""What follows from a case before any analysis: the quantities of `rps check`."""
+"""What follows from a case before any analysis: the quantities of `rps check`, and their formulas.
+
+A formula is written once, as an expression that can be evaluated. Its letters become symbols in one
+column and numbers in another, so that a checker can follow with a pocket calculator.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+import re
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
-    from rpscli.model.podium import PodiumStructure
+    from rpscli.model.bearing import Bearing
+    from rpscli.model.podium import Array, PodiumStructure
+    from rpscli.model.superstructure import Superstructure
 
 
 class Derived(NamedTuple):
@@ -133,3 +142,261 @@ def derived_quantities(structure: PodiumStructure) -> dict[str, Any]:
         **({row.name: row.value(structure) for row in CONTACT} if structure.bed else {}),
         **{name: getattr(building, name) if building else [] for name in lists},
     }
+
+
+DIGITS = 6
+
+SYMBOLS = {
+    "alpha": "α", "alpha_w": "α′", "beta": "β", "rho": "ρ", "gamma": "γ", "eta": "η", "kappa": "κ",
+    "theta_cr": "θ_cr", "tan_alpha": "tan α", "tan_alpha_w": "tan α′", "rho_cr": "ρ_cr",
+    "height": "2H", "width": "2B", "radius": "r", "m_column": "m_c", "m_c": "N m_c", "M": "M_tot",
+    "gamma_t": "γ(1 + η)", "pi": "π", "sum_m": "Σ m_i φ_i²", "sum_k": "Σ k_i (φ_i − φ_i₋₁)²",
+    "phi_u": "φ_u", "sum_M": "Σ M_i / (1 − (ω/ω_i)²)",
+}  # fmt: skip
+"""Letters that are written otherwise than in an expression."""
+
+FUNCTIONS = ("sin", "cos", "tan", "asin", "atan", "sqrt")
+
+
+class Derivation(NamedTuple):
+    """One quantity: its words and symbol, value and unit, formula, and formula with numbers.
+
+    `formula` is empty for what the case gives.
+    """
+
+    name: str
+    label: str
+    symbol: str
+    value: float
+    unit: str
+    formula: str
+    numbers: str
+
+
+def derivations(structure: PodiumStructure, podium: Mapping[str, Any]) -> Iterator[Derivation]:
+    """All derived quantities that are numbers, in the order in which they follow."""
+    letters = _letters(structure)
+    formulas = _formulas(structure, podium)
+    derived = (*GEOMETRY, *DYNAMICS, FIRST_PERIOD, *(CONTACT if structure.bed else ()))
+    rows = [(*row[:4], row.value(structure)) for row in derived]
+    for row in rows:
+        for name, label, symbol, unit, value in (*_before(row[0], structure, letters), row):
+            if isinstance(value, float | int):
+                formula = formulas.get(name, "")
+                texts = symbolic(formula), numeric(formula, letters)
+                yield Derivation(name, label, greek(symbol), float(value), unit, *texts)
+
+
+Row = tuple[str, str, str, str, Any]
+
+
+def _before(name: str, structure: PodiumStructure, letters: Mapping[str, float]) -> Iterator[Row]:
+    """What is no result of its own, but stands in the next formula."""
+    if name == "restitution":
+        inertia = structure.bearing.inertia_ratio
+        yield "inertia_ratio", "I_o / (m_c R²) of a column", "I", "-", inertia
+        edge = letters.get("e_edge")
+        yield "e_edge", "restitution, impulse at the edges", "e_edge", "-", edge
+    if name == "uplift_force":
+        yield "weight", "weight that is lifted", "W", "N", structure.weight
+
+
+EDGES = {
+    "flexible": (
+        "(I - 2 * sin(alpha)^2 + 4 * gamma * cos(2 * alpha) - 4 * gamma * eta * sin(alpha)^2)"
+        " / (I + 4 * gamma + 4 * gamma * eta * sin(alpha)^2)"
+    ),
+    "rigid": "1 - 2 * sin(alpha)^2 * (1 + 4 * gamma_t) / (I + 4 * gamma_t)",
+}
+"""Restitution beside an impulse at the edges of the flat part (Theory (4.6), (4.8))."""
+
+
+def _formulas(structure: PodiumStructure, podium: Mapping[str, Any]) -> dict[str, str]:
+    """Expressions by the names of the quantities; empty for what the case gives."""
+    return {**_of_shape(structure.bearing, podium["bearing"]), **_of_masses(structure, podium)} | {
+        "restitution": "f * e_given"
+        if structure.impact_law.kind == "value"
+        else "f * (1 - kappa * (1 - e_edge))",
+        "uplift_acceleration": "g * tan_alpha",
+        "uplift_force": "W * tan_alpha",
+        "static_base_shear": "M * g * tan_alpha",
+        "initial_stiffness": "-W / (2 * R * cos(alpha)^3)"
+        if structure.bearing.is_flat
+        else "-W * (1 - 2 * rho * cos(alpha)^2) / (2 * R * cos(alpha)^3)",
+        "rolling_period": "2 * pi * sqrt((m_c * I / 4 + m_b + M) / K)",
+        "p_hat": "sqrt(g / R * (1 + 2 * gamma_t) / (I + 4 * gamma_t))",
+        "T1": "2 * pi * sqrt(sum_m / sum_k)",
+        "e_edge": EDGES.get(structure.impact_law.kind, ""),
+        "weight": "(m_c / 2 + m_b + M) * g",
+        **_of_bed(structure),
+    }
+
+
+def _of_bed(structure: PodiumStructure) -> dict[str, str]:
+    """Of compliant ends, whose phi_u is the root of its formula (Theory (12.8))."""
+    lost = "2 / 3 * sin(alpha)" if structure.contact.kind == "plane" else "0"
+    stiffness = f"W * (B_u - {lost}) / (2 * R * phi_u * C_u^2)"
+    return {
+        "period_ratio": "T_c / T_1",
+        "contact_period": "2 * pi * sqrt((m_0 + sum_M) / K_s)",
+        "contact_stiffness": stiffness,
+        "settlement": "phi_u * width / 2",
+        "joint_stiffness": "W / D_0",
+        "lifts_from": f"K_s = {stiffness}",
+        "lifts_from_ratio": "phi_u / alpha",
+        "contact_mass": "m_c * ((I - 1) / C_u^2 + 1 + 4 * gamma) / 4",
+        "contact_share": "sqrt(phi_u / (alpha / 10))",
+    }
+
+
+def _of_shape(bearing: Bearing, given: Mapping[str, Any]) -> dict[str, str]:
+    flat, sizes = bearing.is_flat, "dimensions" in given
+    first_order = "(1 - tan_alpha / tan_alpha_w) / 2"
+    return {
+        "semi_diagonal": "sqrt((height)^2 + (width)^2) / 2" if sizes else "",
+        "column_height": "" if sizes else "2 * R * cos(alpha)",
+        "flat_width": "" if sizes else "2 * R * sin(alpha)",
+        "arc_radius": "" if sizes else "rho * height",
+        "alpha": "atan(width / height)" if sizes else "atan(tan_alpha)",
+        "alpha_wedge": "atan(tan_alpha_w)",
+        "beta": "0" if flat else "asin((tan_alpha_w - tan_alpha) / (2 * rho))",
+        "curvature_ratio": "radius / height" if sizes else "",
+        "rho_cr_paper": first_order,
+        "rho_cr_exact": "0"
+        if flat
+        else "tan_alpha / (1 - 2 * rho_cr) = tan(asin((tan_alpha_w - tan_alpha) / (2 * rho_cr)))",
+        "critical_rotation": _critical(flat=flat, rolls=bearing.overturns_rolling),
+        "critical_rotation_paper": _critical(
+            flat=flat, rolls=bearing.curvature_ratio <= bearing.critical_curvature_ratio_of_paper
+        ),
+    } | ({"curvature_ratio": first_order} if given.get("curvature_ratio") == "critical" else {})
+
+
+def _of_masses(structure: PodiumStructure, podium: Mapping[str, Any]) -> dict[str, str]:
+    building, beam = structure.superstructure, structure.cap_beam_mass > 0.0
+    floors = [] if building is None else building.masses.tolist()
+    total = (
+        "n * m_i" if len(set(floors)) == 1 else " + ".join(f"m_{i + 1}" for i in range(len(floors)))
+    )
+    by_eta = building is not None and "superstructure_mass_ratio" in podium
+    by_gamma = beam and "column_mass" not in podium
+    return {
+        "columns_mass": "m_b / gamma" if by_gamma else "N * m_column",
+        "cap_beam_mass": "M / eta"
+        if by_eta
+        else ""
+        if "cap_beam_mass" in podium
+        else "gamma * m_c",
+        "superstructure_mass": total or "0",
+        "gamma": "" if "cap_beam_mass_ratio" in podium else "m_b / (m_c)",
+        "eta": "" if by_eta else "M / m_b" if beam else "0",
+        "gamma_total": "gamma * (1 + eta)",
+    }
+
+
+def _critical(*, flat: bool, rolls: bool) -> str:
+    if flat:
+        return "atan(tan_alpha)"
+    if rolls:
+        return "atan(tan_alpha / (1 - 2 * rho))"
+    return "atan(tan_alpha_w / (1 - 2 * rho * (1 - cos(beta))))"
+
+
+def _letters(structure: PodiumStructure) -> dict[str, float]:
+    """Numbers for the letters of all expressions, SI units."""
+    b, law, building = structure.bearing, structure.impact_law, structure.superstructure
+    flat = b.is_flat
+    letters = {
+        "R": b.semi_diagonal,
+        "height": 2.0 * b.half_height,
+        "width": 2.0 * b.half_width,
+        "radius": b.radius,
+        "N": structure.columns,
+        "m_column": structure.columns_mass / structure.columns,
+        "alpha": b.alpha,
+        "alpha_w": b.alpha_wedge,
+        "tan_alpha": b.slenderness,
+        "tan_alpha_w": b.slenderness if flat else b.wedge_slenderness,
+        "beta": b.beta,
+        "rho": b.curvature_ratio,
+        "rho_cr": b.critical_curvature_ratio,
+        "I": b.inertia_ratio,
+        "m_c": structure.columns_mass,
+        "m_b": structure.cap_beam_mass,
+        "M": structure.superstructure_mass,
+        "gamma": structure.gamma,
+        "eta": structure.eta,
+        "gamma_t": structure.gamma_total,
+        "g": structure.gravity,
+        "W": structure.weight,
+        "K": structure.initial_stiffness,
+        "f": law.factor,
+        "kappa": law.loss,
+    }
+    if law.kind == "value":
+        letters["e_given"] = structure.restitution / law.factor
+    else:
+        # With all of the loss and no factor, the law gives the restitution at the edges.
+        edges = replace(law, factor=1.0, loss=1.0)
+        letters["e_edge"] = edges.ratio(b, structure.gamma, structure.eta)
+    if (bed := structure.bed) is not None:
+        letters |= {
+            "phi_u": bed.uplift_rotation, "B_u": bed.lift_arm, "C_u": bed.height, "m_0": bed.mass,
+            "K_s": bed.stiffness, "D_0": bed.settlement or math.nan,
+        }  # fmt: skip
+    if bed is not None and building is not None and bed.period is not None:
+        w = 2.0 * math.pi / bed.period
+        shaken = building.participation**2 / (1.0 - (w / building.frequencies) ** 2)
+        letters |= {"T_c": bed.period, "sum_M": float(shaken.sum())}
+        letters["T_1"] = float(building.periods[0])
+    if building is not None:
+        shape = first_shape(building)
+        letters["n"] = building.storeys
+        letters |= {f"m_{i + 1}": mass for i, mass in enumerate(building.masses.tolist())}
+        letters["m_i"] = letters["m_1"]
+        letters["sum_m"] = float(building.masses @ shape**2)
+        letters["sum_k"] = float(
+            building.stiffnesses[0] * shape[0] ** 2
+            + building.stiffnesses[1:] @ (shape[1:] - shape[:-1]) ** 2
+        )
+    return letters
+
+
+def first_shape(building: Superstructure) -> Array:
+    """First mode on a fixed base, (n,), 1 at the roof."""
+    shape: Array = building.shapes[:, 0] / building.shapes[-1, 0]
+    return shape
+
+
+def symbolic(expression: str) -> str:
+    """An expression with its symbols."""
+    text = _LETTER.sub(lambda found: SYMBOLS.get(found[0], found[0]), expression)
+    return _printed(text.replace(" * ", " "))
+
+
+def numeric(expression: str, letters: Mapping[str, float]) -> str:
+    """An expression with numbers for its letters."""
+
+    def number(found: re.Match[str]) -> str:
+        name = found[0]
+        return name if name in FUNCTIONS else f"{letters.get(name, math.pi):.{DIGITS}g}"
+
+    return _printed(_LETTER.sub(number, expression).replace(" * ", " · "))
+
+
+def greek(text: str) -> str:
+    """Letters that are written out, as they are."""
+    return _printed(re.sub("alpha|beta|gamma|theta|rho|eta", lambda f: GREEK[f[0]], text))
+
+
+GREEK = {
+    "alpha": "α", "beta": "β", "gamma": "γ", "eta": "η", "rho": "ρ", "theta": "θ",
+}  # fmt: skip
+
+
+def _printed(text: str) -> str:
+    text = text.replace("'", "′").replace("^2", "²").replace("^3", "³")
+    return text.replace("sqrt", "√").replace(" - ", " − ").replace("-W", "−W")
+
+
+_LETTER = re.compile(r"[A-Za-z_]\w*")

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rpscli.analyses.neighbours import OTHER_LOSS, Neighbour
 from rpscli.analyses.result_quantities import HISTORY, PAIR, SAMPLED
@@ -15,7 +17,6 @@ from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.case.conditions import EVENTS
 from rpscli.model.podium import PodiumStructure
 from rpscli.report.table import Heading, Part, Table, measured, percent, shown
-from rpscli.report.tables.analyses import fixed_base_demands, isolated_demands
 from rpscli.sweep.statistics.verdicts import Verdict
 
 OUTCOMES = {
@@ -336,3 +337,38 @@ def limits_table(verdicts: Sequence[Verdict]) -> Table:
         numbers = ("", "not allowed") if condition.name in EVENTS else (value, condition.bound)
         rows.append((condition.name, verdict.word, condition.source, *numbers))
     return Table.of_texts(["limit", "", "from", "value", "requirement"], rows, words=3)
+
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class StoreyDemands:
+    """Largest absolute values in each storey from the bottom, arrays (n,): `STOREYS` of results.
+
+    Drift ratios are None where the case gives no storey heights.
+    """
+
+    storey_drifts: Array
+    storey_drift_ratios: Array | None
+    storey_shears: Array
+    floor_accelerations: Array
+    floor_velocities: Array
+
+
+def isolated_demands(result: TimeHistoryResult) -> StoreyDemands:
+    """Demands of the building on its bearings."""
+    return _demands(result, result.max_drifts, result)
+
+
+def fixed_base_demands(result: TimeHistoryResult) -> StoreyDemands | None:
+    """Demands of the same building on a fixed base; None without a building."""
+    fixed = result.fixed_base
+    return None if fixed is None else _demands(result, fixed.drifts, fixed)
+
+
+def _demands(result: TimeHistoryResult, drifts: Array, of: Any) -> StoreyDemands:
+    building = result.structure.superstructure
+    ratios = None if building is None else building.drift_ratios(drifts)
+    floors = of.floor_accelerations, of.floor_velocities
+    return StoreyDemands(drifts, ratios, of.storey_shears, *floors)
