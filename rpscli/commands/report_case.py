@@ -190,10 +190,12 @@ def case_page(
 
     case, title = given.case, f"Structure{ends(given.case)}"
     document = {**heading(), "case": case_heading(given), "warnings": list(case.warnings)}
-    document, error, stored = concluded(document, None), None, list[Block]()
+    document, error = concluded(document, None), None
     none = "The case names no ground motion: this page has only the results that need none."
     short: Iterable[Block] = [none]
-    results, requests = list[Section](), list[HistoryRequest]()
+    results: list[Section] = []
+    stored: list[Block] = []
+    requests: list[HistoryRequest] = []
     if case.record is not None or motions[0].record is not None:
         # A place for the files, which are not written there.
         requests = history_requests([given], motions, OutputRequest(Path(), force=True))
