@@ -117,10 +117,6 @@ def command(
         },
         "outcomes": result.outcomes,
         **result.documents(),
-        "findings": {
-            stem: [{"of": name, "found": sentence} for name, sentence in lines]
-            for stem, lines in found.findings.items()
-        },
         "reports": found.documents,
         "failures": [failure._asdict() for failure in found.failures],
         "notes": list(result.begin.notes),
@@ -164,9 +160,6 @@ def _tables(result: StudyResult, found: Collected, wanted: set[str] | None) -> I
         yield of_first_system(result.layout)
         if result.judgements:
             yield verdict_table(result.summary, result.judgements)
-    for stem, lines in found.findings.items():
-        yield Heading(stem)
-        yield Table.listing(lines)
     told: set[Part] = set()
     for part in found.parts:
         # What several reports remark is said once.

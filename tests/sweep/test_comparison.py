@@ -17,7 +17,7 @@ from rpscli.case.study.study import Study
 from rpscli.errors import CaseError
 from rpscli.report.study.comparison import ComparisonOptions, comparison, uncomparable
 from rpscli.report.study.report import Found
-from rpscli.report.table import records
+from rpscli.report.table import Table, records
 from rpscli.sweep.points import lay_out
 from sweep.made_up import ALPHA, place, results_of, stored, tabulate
 from sweep.small_studies import Make
@@ -75,8 +75,10 @@ def test_outcomes_are_counted_for_each_system(study_of: Make) -> None:
     assert [table["left", 0.2][cell] for cell in cells] == [2, 0, 2, 4]
     assert table["right", 0.2]["agreed"] == 4
     assert table["right", 0.10]["agreed_share"] == 1.0
-    lines = dict(found.findings)
-    assert lines["left, tan α = 0.15"].startswith("100.0 % agree, 8 of 8")
+    (shown, remark) = found.parts()
+    assert isinstance(shown, Table)
+    assert shown.rows[1][:5] == ("left", "0.15", "8", "1.00 (0.69 to 1.0)", "4")
+    assert "95 %" in str(remark)
 
 
 def test_maxima_have_ratios_and_a_distance(study_of: Make) -> None:
@@ -160,7 +162,7 @@ def test_sweep_leaves_tables_and_says_what_it_found(
     assert "not conservative" in document["note"]
     rows = _rows("out/comparison.csv")
     assert [row["title [-]"] for row in rows] == ["left"] * 3
-    assert len(document["findings"]["comparison"]) == len(rows)
+    assert len(document["reports"]["comparison"]["rows"]) == len(rows)
     pairs = _rows("out/comparison_pairs.csv")
     assert len(pairs) == 3 * RECORDS
     assert any("have no observation" in warning for warning in document["warnings"])

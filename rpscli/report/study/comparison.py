@@ -38,6 +38,11 @@ from rpscli.sweep.table import Array, Indices, Intensity, StudyResults
 
 MOST_PANELS = 16
 """In the figure; the CSV files have all."""
+SHOWN = {
+    "": ("counted", "agreed_share", "overturned_observed", "overturned_computed", "failed"),
+    "_maxima": ("quantity", "counted", "overturned_computed", "median_ratio", "dispersion"),
+}
+"""Columns for readers, by what follows the report's name in that of the file."""
 
 QUANTITIES = {quantity.name: quantity for quantity in LIMITED}
 
@@ -89,11 +94,14 @@ def comparison(study: StudyResults, options: ComparisonOptions) -> Found:
                 compared.append(
                     _compared(system, name, pairs.points[seen], values[seen], intensity)
                 )
+    kinds = {"": Outcomes, "_maxima": Maxima}
+    shown = [s for s, kind in kinds.items() if any(isinstance(c.found, kind) for c in compared)]
     return Found(
         _tables(systems.keys, compared, intensity, layout),
         partial(comparison_figure, systems.keys, compared, intensity) if compared else None,
         [*pairs.notes, *systems.notes],
-        [(labels(systems.keys, each.values), _sentence(each)) for each in compared],
+        shown={suffix: dict.fromkeys((*systems.keys, *SHOWN[suffix]), "") for suffix in shown},
+        remark="agreed: in brackets the 95 % interval of the share" * ("" in shown),
     )
 
 
@@ -257,21 +265,6 @@ def _draw_maxima(axes: style.Axes, each: Compared, found: Maxima) -> str:
         f" n = {found.counted}"
     )
     return line + f"\n{found.overturned} overturned (triangles)" * bool(found.overturned)
-
-
-def _sentence(each: Compared) -> str:
-    """The agreement in a line for the terminal."""
-    found = each.found
-    if isinstance(found, Outcomes):
-        agreed = found.agreement.agreed
-        percent = "-" if agreed.fraction is None else f"{100.0 * agreed.fraction:.1f} %"
-        outcomes = f"{found.agreement.computed} computed, {found.agreement.observed} observed"
-        return f"{percent} agree, {agreed}; overturned: {outcomes}"
-    return (
-        f"{each.quantity}: ratio {found.median:.3g} in the median, dispersion"
-        f" {found.dispersion:.3g}, Kolmogorov-Smirnov {found.distance:.3g}, n = {found.counted},"
-        f" {found.overturned} overturned"
-    )
 
 
 def uncomparable(layout: StudyPoints, options: ComparisonOptions) -> Iterator[str]:

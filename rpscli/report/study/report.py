@@ -46,15 +46,13 @@ class Found:
     """What a report found.
 
     `figure` makes the file of its figure under a title; None where nothing can be drawn. `notes`
-    are what the user should know about the numbers, `findings` the main ones in lines for the
-    terminal. `shown` has labels of columns of tables that are for the terminal too, none if all
-    are; `remark` stands below them.
+    are what the user should know about the numbers. `shown` has labels of columns of tables that
+    are for the terminal too, none if all are; `remark` stands below them.
     """
 
     tables: Tables
     figure: Callable[[str], bytes] | None
     notes: Sequence[str] = ()
-    findings: Sequence[tuple[str, str]] = ()
     shown: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
     remark: str = ""
 
@@ -107,8 +105,10 @@ def _readable(columns: Sequence[Column], labels: Mapping[str, str]) -> Table:
             words = len(heads)
             continue
         heads.append(own if own.endswith(unit) else f"{own} {unit}".removesuffix(" -"))
-        if name + ENDS[0] in known:
-            rows = zip(values, *(known[name + end] for end in ENDS), strict=True)
+        # The band of a count is that of its share.
+        stem = name.removesuffix("_share")
+        if f"{name}_share" not in known and stem + ENDS[0] in known:
+            rows = zip(values, *(known[stem + end] for end in ENDS), strict=True)
             cells.append([with_band(*row) for row in rows])
         elif name.startswith("share_"):
             cells.append(["-" if math.isnan(value) else percent(value, 1.0) for value in values])
