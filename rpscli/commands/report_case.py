@@ -65,7 +65,7 @@ class Earlier:
 
 
 def earlier_results(folder: Path) -> Earlier:
-    """What a folder holds."""
+    """Results that a folder holds."""
     command = None
     try:
         run = json.loads((folder / RUN_FILE).read_text(encoding="utf-8"))
@@ -260,7 +260,7 @@ def _budget(
     look: Look,
     terminal: Terminal,
 ) -> list[Section]:
-    """What `rps budget` says of one of the histories, the others as its records."""
+    """The section of `rps budget` on one of the histories, the others as its records."""
     from rpscli.commands.budget import case_budget
 
     given, order = requests[0].given, sorted(range(len(motions)), key=lambda n: n != first)
@@ -303,7 +303,7 @@ def _motion_words(records: Sequence[str], motion: MotionRequest) -> list[str]:
 def _stored(
     earlier: Earlier, requests: Sequence[HistoryRequest], document: Mapping[str, Any]
 ) -> list[Block]:
-    """Whether case, records and results are those of the stored results."""
+    """Differences of case, records and results from the stored ones."""
     found: list[Block] = []
     file = earlier.file
     for request, record in zip(requests, earlier.records, strict=True):
@@ -327,7 +327,7 @@ def _stored(
 
 
 def compared(folder: Path, document: Mapping[str, Any]) -> list[Block]:
-    """What became of the stored results: how many are the same, and those that are not."""
+    """Stored results beside new ones: how many are the same, and those that are not."""
     try:
         stored = json.loads((folder / SUMMARY).read_text(encoding="utf-8"))
         before = results_of(stored)

@@ -1,4 +1,4 @@
-"""Which files each analysis leaves behind: columns of its CSV files, and its figures."""
+"""Files that each analysis leaves behind: columns of the CSV files, and figures."""
 
 from __future__ import annotations
 

@@ -57,13 +57,13 @@ def installed(package: str) -> str | None:
 Document = dict[str, Any]
 
 OF_RECORD = ("name", "source", "npts", "dt", "pga")
-"""What the document of a history says of its record."""
+"""Attributes of its record in the document of a history."""
 
 ONE_DIRECTION = (
     "one horizontal direction at a time, which is not conservative: write ?both behind a pair, as"
     " in fema_p695:farfield/1?both, and both components act together"
 )
-"""What has to be known wherever results of histories are read."""
+"""Stands wherever results of histories are read."""
 
 
 def direction_note(pairs: Iterable[bool]) -> str:

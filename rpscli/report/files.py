@@ -71,7 +71,7 @@ def locked(folder: Path) -> Iterator[None]:
 
 
 def require_writable(folder: Path) -> None:
-    """Whether a folder can be made or written to: better known before the work than after."""
+    """Refuse a folder that cannot be made or written to: better before the work than after."""
     if "\0" in str(folder):
         raise OutputError(f"{str(folder)[:200]!r}: no path holds a zero byte; correct the name")
     with _writing(folder):
@@ -83,7 +83,7 @@ def require_writable(folder: Path) -> None:
 
 
 def require_writable_file(file: Path) -> None:
-    """Whether a file can be made or replaced."""
+    """Refuse a file that cannot be made or replaced."""
     require_writable(file.parent)
     with _writing(file):
         if stat.S_ISDIR(mode_of(file)):
@@ -95,7 +95,7 @@ RUN_FILE = "run.json"
 
 @dataclass(frozen=True)
 class Run:
-    """What a command was run on: what has no file is known by the SHA-256 of its text."""
+    """The subject of a command; one without a file is known by the SHA-256 of its text."""
 
     command: str
     name: str
@@ -122,12 +122,12 @@ class OutputFolder:
 
     @property
     def files(self) -> list[str]:
-        """What will be, or was, written: paths as the user would type them."""
+        """Paths of what will be, or was, written, as the user would type them."""
         return [str(path) for path in (*self.contents, self.folder / RUN_FILE)]
 
     @property
     def replaces_other_inputs(self) -> bool:
-        """Whether earlier results are there, and come from other inputs."""
+        """True if earlier results are there, and come from other inputs."""
         earlier = {key: self._earlier.get(key) for key in ("sha256", "inputs")}
         return bool(self._earlier) and earlier != json.loads(
             json_text({"sha256": self.run.digest, "inputs": self.run.inputs})

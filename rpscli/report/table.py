@@ -36,7 +36,7 @@ def shown(value: float | str | None, digits: int = 4) -> str:
 
 
 LARGE_UNITS = {"N": "kN", "J": "kJ", "kg": "t", "N/m": "kN/m"}
-"""What a thousand of an SI unit is called; other units are shown as they are."""
+"""Names for a thousand of an SI unit; other units are shown as they are."""
 
 
 def large(value: float | None, unit: str) -> tuple[float | None, str]:
@@ -47,7 +47,7 @@ def large(value: float | None, unit: str) -> tuple[float | None, str]:
 
 
 def headed(label: str, unit: str) -> str:
-    """What stands above values in the unit in which people read them."""
+    """The head of values in the unit in which people read them."""
     return f"{label} {large(None, unit)[1]}".strip()
 
 
@@ -85,7 +85,7 @@ class Column(NamedTuple):
         return f"{self.name} [{self.unit}]"
 
     def texts(self) -> list[str]:
-        """What readers see of the values: by default four digits, thousands of large units."""
+        """Texts of the values for readers: by default four digits, thousands of large units."""
         form = self.form or (lambda value: shown(large(value, self.unit)[0]))
         return [form(value) for value in _one_by_one(self.values)]
 
@@ -94,8 +94,9 @@ class Column(NamedTuple):
 class Table:
     """Columns as readers see them.
 
-    So many columns from the left hold words, which may be broken; those after them hold numbers. So
-    many say what a row is about, and are repeated where a table is too wide for a terminal.
+    The first `words` columns hold words, which may be broken; those after them hold numbers. The
+    first `keys` columns say what a row is about, and begin each part of a table that is too wide
+    for a terminal.
     """
 
     columns: Sequence[Column]
@@ -118,7 +119,7 @@ class Table:
 
     @property
     def heads(self) -> list[str]:
-        """What stands above the columns."""
+        """Labels of the columns."""
         return [column.label for column in self.columns]
 
     def __len__(self) -> int:
@@ -142,7 +143,7 @@ class Heading(str):
 
 
 Part = Table | Heading | str
-"""What a command shows: a plain text is a remark between tables."""
+"""A part of what a command shows: a plain text is a remark between tables."""
 
 
 def columns_of(heads: Mapping[str, str], rows: Iterable[Sequence[Any]]) -> list[Column]:
@@ -163,7 +164,7 @@ def csv_text(columns: Sequence[Column]) -> str:
 
 
 def csv_lines(columns: Sequence[Column]) -> Iterator[str]:
-    """The same in pieces of some lines, for tables that are too long to be in memory as text."""
+    """CSV in pieces of some lines, for tables that are too long to be in memory as text."""
     yield ",".join(_cell(column.title) for column in columns) + "\n"
     cells = [iter(_one_by_one(column.values)) for column in columns]
     while any(pieces := [list(islice(values, _PIECE)) for values in cells]):

@@ -51,6 +51,10 @@ def test_the_schema_is_json_and_nothing_else(rps: Invoke) -> None:
     assert plain.stdout == marked.stdout
     schema = json.loads(plain.stdout)
     assert "superstructure" in schema["properties"]
+    gone = rps("schema", "results")
+    assert gone.exit_code == 2
+    assert "schema results is gone: " in gone.stderr
+    assert "Compatibility of GUIDE.md" in gone.stderr
     assert plain.stderr == ""
 
 

@@ -15,7 +15,13 @@ from rpscli.analyses.pushover import pushover
 from rpscli.model.bearing import Bearing
 from rpscli.model.devices import FrictionDamper, Stop, Tendon
 from rpscli.model.podium import PodiumStructure
-from rpscli.report.figures.bearing import BearingView, bearing_figure, draw_bearing, draw_end
+from rpscli.report.figures.bearing import (
+    BearingView,
+    bearing_figure,
+    draw_bearing,
+    draw_end,
+    upright_outline,
+)
 from rpscli.report.figures.look import Look, put_in_force
 
 WIDE = Bearing(1.0, 0.75, 1.2, 0.5)
@@ -75,6 +81,9 @@ def test_a_column_leans_between_ground_and_cap_beam(bearing: Bearing, part: floa
     step = bearing.beta / 11
     sagitta = bearing.radius * (1.0 - math.cos(0.5 * step)) + 1e-12
     assert outline[:, 1].min() == pytest.approx(0.0, abs=sagitta)
+    assert outline[:, 1].max() == pytest.approx(view.height + v, abs=sagitta)
+    centre = [0.5 * u, 0.5 * (view.height + v)]
+    assert outline[:-1].mean(axis=0) == pytest.approx(centre, abs=1e-12)  # closed at its end
     near = outline[np.argmin(outline[:, 1]), 0]
     reach = bearing.half_width + bearing.radius * min(abs(rotation), bearing.beta)
     assert x0 == pytest.approx(math.copysign(reach, rotation))
@@ -161,3 +170,8 @@ def test_the_force_with_devices_returns_on_another_way(figures: list[Figure]) ->
     bearing_figure(pushover(made), "")
     x, y = curve(figures[0].axes[-1], "on the way back")
     assert len(x) == len(y) == 0  # its entry in the legend
+
+
+def test_an_upright_block_is_a_rectangle() -> None:
+    corners = upright_outline(Bearing(1.0, 0.75, 0.75, 0.0)).round(12).tolist()
+    assert sorted(corners) == [[-0.6, -0.8], [-0.6, 0.8], [0.6, -0.8], [0.6, 0.8]]

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from report.small_results import curve, legend
 from report.test_figures_of_studies import ALPHA, RHO, labelled, panels, same
+from rpscli.analyses.floor_spectra import PERIODS
 from rpscli.case.conditions import Condition
 from rpscli.case.design import Term
 from rpscli.case.study.observed import OVERTURNED
@@ -29,6 +30,7 @@ from rpscli.report.figures.motions import selection_figure
 from rpscli.report.figures.style import kept_figure
 from rpscli.report.study.comparison import Compared, Outcomes, comparison_figure
 from rpscli.report.study.fragility import Fragilities, Fragility, LimitState, Observed
+from rpscli.report.study.heights import Floors, floor_spectra_figure
 from rpscli.report.study.risk import Risk, risk_figure
 from rpscli.sweep.design import Answer, Requirement
 from rpscli.sweep.fits.lognormal import NOTHING, Lognormal
@@ -336,3 +338,23 @@ def test_the_region_that_passes() -> None:
     assert scale.get_ylabel() == "share of resamples of the records that pass"
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("tan α", "R [m]")
     assert legend(figure) == ["no valid case", "fails", "passes", "best design"]
+
+
+def test_spectra_of_the_lowest_floor_and_the_roof() -> None:
+    values = np.arange(1.0, 1.0 + 3 * 3 * len(PERIODS)).reshape(3, 3, -1)
+    fallen = np.where(np.arange(3)[:, None, None] == 2, np.inf, values)
+    states = np.array([fallen, values])
+    both = np.stack([states, states], axis=1)  # pseudo-accelerations and displacements
+    floors = [Floors((scale,), np.moveaxis(both, 2, 0)) for scale in (1.0, 2.0)]
+    figure = drawn(floor_spectra_figure(("scale",), floors, ""))
+    shown = [axes for axes in figure.axes if axes.axison]
+    assert [axes.get_title() for axes in shown] == [
+        f"scale = {scale}, floor {floor}" for scale in (1, 2) for floor in (1, 3)
+    ]
+    for axes, floor in zip(shown, (0, 2, 0, 2), strict=True):
+        assert axes.get_xscale() == "log"
+        assert axes.get_ylim()[0] == 0.0
+        lines = {line.get_label(): line.get_ydata() for line in axes.lines}
+        np.testing.assert_array_equal(lines["on bearings, median"], values[1, floor])
+        np.testing.assert_array_equal(lines["fixed base, 84 % fractile"], values[2, floor])
+        assert np.isnan(np.asarray(lines["on bearings, 84 % fractile"])).all()

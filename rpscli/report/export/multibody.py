@@ -53,7 +53,7 @@ class Bodies(NamedTuple):
 
 
 class Added(NamedTuple):
-    """What else may stand in the model: attributes, joints and sites, springs."""
+    """Further parts of the model: attributes, joints and sites, springs."""
 
     beam_joint: str = ""
     contacts: str = 'friction="3 0 0" condim="3"'

@@ -50,7 +50,7 @@ def by_mujoco(time: Any, ground: Any, up: Any, start: dict[str, float]) -> tuple
 
 
 def by_opensees(time: Any, ground: Any, _: Any, start: dict[str, float]) -> tuple[Any, Any, Any]:
-    """The same at the samples of the record, without vertical motion."""
+    """Time, displacement and drift at the samples of the record, without vertical motion."""
     model = runpy.run_path(str(HERE / "model.py"))
     ops, dt = model["ops"], float(time[1] - time[0])
     model["build"](ground.tolist(), dt, float(start["beam across"]))

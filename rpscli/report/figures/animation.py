@@ -64,7 +64,7 @@ class Scene:
 
     @property
     def moving(self) -> list[style.Artist]:
-        """What `show` moves."""
+        """Artists that `show` moves."""
         parts = [*self.columns, self.beam, *self.sides, *self.floors, *self.devices.moving]
         return [*parts, self.clock]
 
@@ -153,7 +153,7 @@ class PlanView:
 
 
 def _pace(speed: float) -> str:
-    """How fast a film runs, in words."""
+    """The speed of a film in words."""
     if f"{speed:.2g}" == "1":
         return "in real time"
     return f"{max(speed, 1.0 / speed):.2g} times {'faster' if speed > 1.0 else 'slower'} than real"
@@ -170,7 +170,7 @@ def _magnification(result: TimeHistoryResult, levels: Array) -> float:
 
 
 MEMORY = 2.0
-"""How long the way of a column's head is seen [s]."""
+"""Time for which the way of a column's head is seen [s]."""
 USUAL_LENGTH = 9.0
 """Of a film whose speed nobody asked for, at most [s]."""
 SWING = 2.0
@@ -178,7 +178,7 @@ SWING = 2.0
 
 
 class Plan(NamedTuple):
-    """Which samples become frames, and how much faster than in reality they follow."""
+    """Samples that become frames, and how much faster than in reality they follow."""
 
     samples: NDArray[np.int64]
     speed: float
@@ -252,7 +252,7 @@ def history_film(
 def _detail(
     axes: style.Axes, result: TimeHistoryResult
 ) -> tuple[Callable[[int], object], Sequence[style.Artist]]:
-    """What shows what stands beside the scene at a sample, and what of it moves."""
+    """The picture beside the scene: a function that shows it at a sample, and what of it moves."""
     if result.trace.y is not None:
         above = PlanView(axes, result)
         return above.show, above.moving

@@ -51,7 +51,7 @@ def leaning_outline(bearing: Bearing, rotation: float, displacement: float, lift
 
 
 def contact_points(bearing: Bearing, rotation: float, displacement: float, lift: float) -> Array:
-    """Where a leaning column touches ground and cap beam, (2, 2) [m]; arguments as above."""
+    """Contacts of a leaning column with ground and cap beam, (2, 2) [m]; arguments as above."""
     side = math.copysign(1.0, rotation)
     reach = side * (bearing.half_width + bearing.radius * min(abs(rotation), bearing.beta))
     return np.array([[reach, 0.0], [displacement - reach, 2.0 * bearing.half_height + lift]])
@@ -62,13 +62,13 @@ COLUMN, BEAM = "#DDDDDD", "#CCE3F0"
 ASPECT = 1.15
 """Largest height of the picture of a column over its width."""
 END_ASPECT = 1.0
-"""The same of the picture of an end."""
+"""Largest height of the picture of an end over its width."""
 LOWER_HEIGHT = 2.7
 """Of the end of a column and the restoring force [in]."""
 NARROW = 1.5
 """Width of a picture in which a title needs more lines [in]."""
 BESIDE = 0.35
-"""How far the cap beam is drawn to either side of the column, over the column's width."""
+"""Length of the cap beam to either side of the column, over the column's width."""
 ROOM = (0.16, 0.10, 0.03, 0.13)
 """For dimensions: left, right, below and above the column, as parts of the picture."""
 
@@ -95,7 +95,7 @@ class BearingView:
 
     @property
     def moving(self) -> list[style.Artist]:
-        """What `show` moves."""
+        """Artists that `show` moves."""
         beam = [] if self.beam is None else [self.beam]
         return [self.column, *beam, self.thrust, self.contacts, *self.devices.moving]
 
@@ -244,7 +244,7 @@ def half_width(bearing: Bearing) -> float:
 
 
 def _state(bearing: Bearing, critical: float, rotation: float, u: float, v: float) -> str:
-    """What a panel shows, in two lines."""
+    """The title of a panel, in two lines."""
     if rotation == 0.0:
         return f"at rest\n$\\alpha$ = {bearing.alpha:.3g} rad, $R$ = {bearing.semi_diagonal:.4g} m"
     name = f"$\\theta$ = {rotation:.3g} rad"

@@ -17,11 +17,11 @@ if TYPE_CHECKING:
     from matplotlib.lines import Line2D
 
 BRACE, POSTS, CABLES, NOWHERE = range(4)
-"""What stands for a device in a picture of the structure."""
+"""Signs for devices in pictures of the structure."""
 
 
 class Drawn(NamedTuple):
-    """How a law is drawn; resistance, the force on the cap beam turned round, has the sign -1."""
+    """The drawing of a law; resistance, the force on the cap beam turned round, has the sign -1."""
 
     scene: int
     force: str = "resistance"

@@ -37,7 +37,7 @@ Progress = Callable[[int, int], None]
 
 @dataclass(frozen=True)
 class FilmRequest:
-    """What is wanted of a film, whose ending says the format; it is refused before the work."""
+    """A film to be made, whose ending says the format; it is refused before the work."""
 
     file: Path
     size: int = USUAL_SIZE  # width [pixels]
@@ -78,7 +78,7 @@ class FilmRequest:
 
 
 class Motion(NamedTuple):
-    """How a figure moves: so many frames, what shows each of them, counted from 0, and what moves.
+    """A moving figure: so many frames, what shows each of them, counted from 0, and what moves.
 
     All that does not move is drawn once, below what does.
     """

@@ -18,7 +18,7 @@ WAYS: tuple[Way, ...] = get_args(Way)
 
 
 def record_name(result: TimeHistoryResult) -> str:
-    """What shook it horizontally."""
+    """The name of the horizontal motion."""
     name, y = result.record.name, result.motion.y
     pair, found, turned = name.partition("_both")
     if y is None or not found:
@@ -39,7 +39,7 @@ def lean_azimuth(trace: Trace) -> NDArray[np.float64]:
 
 
 def component(result: TimeHistoryResult, way: Way) -> TimeHistoryResult:
-    """What a history has in x or in y; rotation and energies stay those of both."""
+    """The part of a history in x or in y; rotation and energies stay those of both."""
     trace = result.trace
     in_y = {} if trace.y is None or way == "x" else vars(trace.y)
     return replace(result, trace=replace(trace, **in_y, azimuth=None, y=None))

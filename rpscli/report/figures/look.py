@@ -1,4 +1,4 @@
-"""How figures are written: formats, width, and what a user's own style file says."""
+"""The look of figures: formats, width, and what a user's own style file says."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ SMALL = 8.0 / 9.0
 
 @dataclass(frozen=True)
 class Look:
-    """How the figures of a command are written."""
+    """Formats, width and settings of the figures of a command."""
 
     formats: tuple[str, ...] | None = None  # none at all if empty, None if the user did not say
     columns: int | None = None  # of the page that a figure fills; None leaves it its own width
@@ -71,7 +71,7 @@ Draw: TypeAlias = Callable[[], bytes]
 """Makes the file of a figure."""
 
 USUAL = Look()
-"""What a user gets who asks for nothing."""
+"""The look for a user who asks for nothing."""
 
 
 @dataclass(frozen=True)
@@ -86,7 +86,7 @@ _in_force: ContextVar[InForce] = ContextVar("look")
 
 
 def in_force() -> InForce:
-    """What a figure that is drawn now must look like."""
+    """The look of a figure that is drawn now."""
     return _in_force.get(InForce())
 
 
@@ -170,7 +170,7 @@ NO_STYLE = frozenset(("backend", "backend_fallback", "interactive", "toolbar", "
 
 @contextmanager
 def complaints() -> Iterator[list[str]]:
-    """What matplotlib would print, and then go on."""
+    """Messages that matplotlib would print, and then go on."""
     from logging.handlers import BufferingHandler
 
     handler, texts = BufferingHandler(capacity=1000), list[str]()

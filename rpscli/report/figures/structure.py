@@ -11,7 +11,7 @@ from rpscli.report.figures import style
 from rpscli.report.figures.bearing import BEAM, COLUMN, leaning_outline, measure
 
 STOREY_HEIGHT = 3.0
-"""Where the case gives none [m]."""
+"""Drawn for a case that gives none [m]."""
 
 
 def level_heights(structure: PodiumStructure) -> NDArray[np.float64]:

@@ -79,7 +79,7 @@ SAVED: dict[str, dict[str, Any]] = {
     "svg": {"metadata": {"Date": None}},
     "pdf": {"metadata": dict.fromkeys(("CreationDate", "Creator", "Producer"))},
 }
-"""What is left out of files: all that matplotlib would say about itself and the time."""
+"""Options of each format, which leave out what matplotlib says of itself and the time."""
 
 
 def picture(
@@ -200,7 +200,7 @@ def room(usual: float) -> float:
 
 
 def narrow() -> bool:
-    """Whether the figure will be narrower than a page."""
+    """True if the figure will be narrower than a page."""
     return room(WIDTH) < WIDTH
 
 
@@ -237,7 +237,7 @@ def small() -> float:
 
 
 def heading(figure: Figure, *parts: str) -> None:
-    """What the figure belongs to and how to read it: a line, and a few below it."""
+    """Title and remarks above a figure: a line, and a few below it."""
     title, *others = [part for part in parts if part] or [""]
     width = inches(figure)[0]
     narrow, most = width < WIDTH, int(LETTERS_PER_INCH * width * 8.0 / small())
@@ -267,7 +267,7 @@ def in_rows(entries: Sequence[Entry], columns: int) -> list[Entry]:
 
 
 def entries(panels: Iterable[Axes]) -> dict[str, Any]:
-    """What the legends of several axes would show, by name, each once."""
+    """Entries of the legends of several axes by name, each once."""
     found: dict[str, Any] = {}
     for axes in panels:
         for handle, name in zip(*axes.get_legend_handles_labels(), strict=True):
@@ -296,7 +296,7 @@ def legend_above(axes: Axes, columns: int) -> None:
 
 
 def _letters(text: str) -> int:
-    """How many letters a text with formulas shows, about."""
+    """Number of letters that a text with formulas shows, about."""
     return len(re.sub(r"[${}_^]", "", re.sub(r"\\[A-Za-z]+", "x", text)))
 
 

@@ -161,7 +161,7 @@ def page_sections(
 
 
 def listing(rows: Iterable[tuple[str, str]]) -> Table:
-    """What stands above the input, and what made the numbers, with versions."""
+    """Rows above the input, and the versions of what made the numbers."""
     made = ", ".join(f"{name} {version}" for name, version in versions().items() if version)
     return Table.listing([*rows, ("made by", made)])
 
@@ -270,7 +270,7 @@ def history_short(
 
 
 def limits_in_short(verdicts: Sequence[Verdict]) -> str:
-    """How many limits are exceeded."""
+    """The number of limits that are exceeded."""
     if not verdicts:
         return "No limits were set."
     return verdicts_in_short(verdicts, f"{len(verdicts)} limits")
@@ -308,7 +308,7 @@ def response_section(
 
 
 def passes_blocks(events: Sequence[Event], alpha: float) -> Iterator[Block]:
-    """When a pair brought the columns nearest upright, how near, and what that took."""
+    """Passes of a pair near upright: when, how near, and what each took."""
     passes = [event for event in events if event.kind == "pass"]
     if not passes:
         return
@@ -332,7 +332,7 @@ def passes_blocks(events: Sequence[Event], alpha: float) -> Iterator[Block]:
 def case_input(
     case: Case, overrides: Sequence[str], grounds: Sequence[MotionComponents]
 ) -> Iterator[Block]:
-    """Where case and motions come from, and every key of the case."""
+    """Sources of case and motions, and every key of the case."""
     motions = {}
     for number, ground in enumerate(grounds, 1):
         for component, each in ground.named.items():

@@ -50,7 +50,7 @@ def printable(text: str) -> str:
 
 
 FORMATS = ("svg", "png")
-"""What a page asks for: the second where the first takes too much room."""
+"""Of the figures of a page: the second where the first takes too much room."""
 
 COLOURS = 256
 """Of an image: ours, and those of their edges."""
@@ -141,14 +141,14 @@ FOR_FIGURES = 840_000
 
 @dataclass(frozen=True)
 class Code:
-    """What is typed as it stands."""
+    """Text that is typed as it stands."""
 
     text: str
 
 
 @dataclass(frozen=True)
 class Notice:
-    """What must be read before the numbers are used."""
+    """A warning to be read before the numbers are used."""
 
     text: str
 
@@ -225,7 +225,7 @@ def _signatures(signed: Mapping[str, str | None]) -> Markup | None:
 
 
 def is_about(content: bytes, name: str) -> bool:
-    """Whether a file is a page about the case or the study of this name."""
+    """True if a file is a page about the case or the study of this name."""
     return _mark(name).encode("utf-8", "backslashreplace") in content[:MARK_WITHIN]
 
 
@@ -265,7 +265,7 @@ def _table(table: Table) -> Markup:
 
 
 def _kind(text: str) -> str:
-    """How a cell of words may be broken: long ones need room, very long words break anywhere."""
+    """The class of a cell of words: long ones need room, very long words break anywhere."""
     if any(len(word) > LONGEST_WORD for word in text.split()):
         return "long"
     return "sentence" if len(text) > LONG_TEXT and " " in text else "word"

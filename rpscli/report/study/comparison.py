@@ -55,7 +55,7 @@ class ComparisonOptions(MeasureOptions):
 
 
 class Outcomes(NamedTuple):
-    """How often outcomes agree, and the shares that overturned by intensity."""
+    """Counts of outcomes that agree, and the shares that overturned by intensity."""
 
     agreement: Agreement
     observed: Observed
@@ -268,7 +268,7 @@ def _draw_maxima(axes: style.Axes, each: Compared, found: Maxima) -> str:
 
 
 def uncomparable(layout: StudyPoints, options: ComparisonOptions) -> Iterator[str]:
-    """What keeps a study from this report."""
+    """Faults that keep a study from this report."""
     yield from unpaired(layout)
     yield from measure_without_period(layout, options)
 

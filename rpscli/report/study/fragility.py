@@ -217,7 +217,7 @@ class Fragilities:
 
     @property
     def notes(self) -> Iterator[str]:
-        """What is pooled, what overturning does to limits, and what keeps fits from being plain."""
+        """Notes on what is pooled, on overturning beyond limits, and on fits that are not plain."""
         yield from self.systems.notes
         limited = [curve for curve in self.curves if curve.limit.threshold is not None]
         if fallen := sum(curve.overturned for curve in limited):
@@ -302,14 +302,14 @@ def binned(table: Table, kept: Indices, intensity: Array, beyond: NDArray[np.boo
 
 
 def measure_without_period(layout: StudyPoints, options: MeasureOptions) -> Iterator[str]:
-    """What keeps a report from having the measure that it asks for."""
+    """The fault of a measure at T1 in a study with systems that have none."""
     at_first_period = needs_period(options.measure) and options.period is None
     if at_first_period and any(system.period is None for system in layout.properties):
         yield f"{options.measure} at T1 needs storeys; give the report a `period`"
 
 
 def wrong_intensities(layout: StudyPoints, options: FragilityOptions) -> Iterator[str]:
-    """What is no intensity under `at`."""
+    """The fault of a value under `at` that is no intensity."""
     try:
         options.intensities(layout)
     except PydanticCustomError as error:
@@ -399,7 +399,7 @@ def fragility(study: StudyResults, options: FragilityOptions) -> Found:
 
 
 def what_bands_hold(layout: StudyPoints, options: FragilityOptions) -> str:
-    """What stands below numbers with bands."""
+    """The remark below numbers with bands."""
     drawn = len(np.unique(layout.recordings))
     chosen = f"{drawn} {layout.independent}" if drawn > 1 else "histories under one record"
     level = f"in brackets: {style.percent(options.confidence)} bands of the choice of {chosen}"

@@ -87,7 +87,7 @@ def key_columns(keys: Sequence[str], rows: Sequence[Values]) -> list[Column]:
 
 
 def key_cells(column: Column, name: str) -> tuple[str, list[str]]:
-    """What stands above and in the column of a key: values as their file has them."""
+    """Head and cells of the column of a key: values as their file has them."""
     values = list(column.values)
     if any(isinstance(value, Written) for value in values):
         return name, [_with_unit(column.name, value) for value in values]

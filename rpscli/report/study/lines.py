@@ -143,7 +143,7 @@ def lines(study: StudyResults, options: LinesOptions) -> Found:
 
 
 def _left_out_of_means(panels: Sequence[Panel]) -> str:
-    """How many histories all means leave out."""
+    """The note on the histories that all means leave out."""
     first = {repr((p.values, line.values)): line for p in panels for line in reversed(p.lines)}
     overturned = sum(sum(line.overturned) for line in first.values())
     of = overturned + sum(sum(line.counted) for line in first.values())

@@ -189,7 +189,7 @@ def _wrapped(names: Sequence[str], columns: int, width: float) -> list[str]:
 
 
 def break_if_narrow() -> str:
-    """What stands between the parts of a text inside a panel: a new line in narrow figures."""
+    """The sign between parts of a text inside a panel: a new line in narrow figures."""
     return "\n" if style.narrow() else " "
 
 

@@ -64,7 +64,7 @@ def requirement_faults(layout: StudyPoints) -> Iterator[Fault]:
 
 
 def lacking(layout: StudyPoints, name: str, which: Callable[[Iterable[bool]], bool] = any) -> bool:
-    """Whether any, or all, systems of a study cannot have a result."""
+    """True if any, or all, systems of a study cannot have a result."""
     return which(name in properties.lacking for properties in layout.properties)
 
 

@@ -28,11 +28,11 @@ else:
 
 _WORDS = ("mean", "median", "largest")
 Statistic = Annotated[float | str, Quantity(symbol="a fractile", above=0, below=1, words=_WORDS)]
-"""What stands for several histories."""
+"""A statistic of several histories."""
 StatisticOrShare = Annotated[
     float | str, Quantity(symbol="a fractile", above=0, below=1, words=(*_WORDS, "overturned"))
 ]
-"""The same, or the share that overturned."""
+"""A statistic of several histories, or the share that overturned."""
 
 ENDS = ("_low", "_high")
 """Of names of columns that hold the ends of a band."""
@@ -43,7 +43,7 @@ Tables = Mapping[str, list[Column]]
 
 @dataclass(frozen=True)
 class Found:
-    """What a report found.
+    """Tables, figure and notes of a report.
 
     `figure` makes the file of its figure under a title; None where nothing can be drawn. `notes`
     are what the user should know about the numbers. `shown` has labels of columns of tables that
@@ -57,14 +57,14 @@ class Found:
     remark: str = ""
 
     def parts(self) -> Iterator[Part]:
-        """What a terminal and a page show of its tables."""
+        """Tables and remark for a terminal or a page."""
         for suffix, labels in self.shown.items():
             yield _readable(self.tables[suffix], labels)
         if self.remark:
             yield self.remark
 
     def document(self) -> dict[str, Any]:
-        """The same in JSON, with all columns."""
+        """Tables and remark in JSON, with all columns."""
         rows = {suffix.lstrip("_") or "rows": records(self.tables[suffix]) for suffix in self.shown}
         return {**rows, "remark": self.remark} if rows else {}
 
@@ -131,7 +131,7 @@ class Report(ReportKind[Options]):
 
 
 def without_uplift(layout: StudyPoints, _: object) -> Iterable[str]:
-    """What is wrong where results are shown over alpha, g tan(alpha) or V_st."""
+    """The fault of results over alpha, g tan(alpha) or V_st where these are 0."""
     if any(properties.alpha == 0.0 for properties in layout.properties):
         yield "it shows results over alpha, g tan(alpha) or V_st, which is 0 without a flat part"
 

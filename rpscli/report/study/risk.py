@@ -95,7 +95,7 @@ class Risk:
 
     @property
     def note(self) -> str | None:
-        """What is doubtful about the fragility and the rate."""
+        """Doubts about the fragility and the rate."""
         return "; ".join(filter(None, [self.fragility.fit.note, *self.notes])) or None
 
     @property
@@ -114,7 +114,7 @@ def probability(rate: float, years: float) -> float:
 
 
 def risk_faults(layout: StudyPoints, options: RiskOptions) -> Iterator[str]:
-    """What keeps a study from having a risk: its hazard curve, above all."""
+    """Faults that keep a study from having a risk: of its hazard curve, above all."""
     section = options.hazard or layout.study.file.hazard
     if section is None:
         yield "hazard is missing; name its curve, `hazard: {file: FILE, measure: PGV}`"
@@ -247,7 +247,7 @@ def _half(hazard: Hazard, median: float, beta: float) -> float:
 
 
 def _notes(fragility: Fragility, hazard: Hazard, rate: float, of_shares: float) -> Iterator[str]:
-    """What is doubtful about one rate, and about that of the shares."""
+    """Doubts about one rate, and about that of the shares."""
     fit, weakest = fragility.fit, fragility.observed.intensity[:1]
     unseen = fragility.observed.share[0] * (hazard.rate[0] - exceeded(hazard, weakest)[0])
     if unseen > CLEARLY * of_shares:
@@ -270,7 +270,7 @@ def _notes(fragility: Fragility, hazard: Hazard, rate: float, of_shares: float) 
 
 
 def _report_notes(found: Fragilities, risks: Sequence[Risk], of: Of | None) -> Iterator[str]:
-    """What comes from beyond what is known, and of which component the hazard is."""
+    """Shares of rates from beyond what is known, and the component that the hazard is of."""
     places = {
         "beyond_computed": "the largest intensity computed, by the fitted curve; add intensities",
         "beyond_hazard": "the last intensity of the hazard curve, which is continued with its last"

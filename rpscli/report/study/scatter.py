@@ -72,7 +72,7 @@ def scatter(study: StudyResults, options: ScatterOptions) -> Found:
 
 
 def demand(study: StudyResults, options: DemandOptions) -> Found:
-    """What lifted off and stood, with a curve in each panel."""
+    """Histories that lifted off and stood, with a curve in each panel."""
     leading = leading_keys(study.table.layout)
     series = options.series if options.series is not None else leading[1:-1]
     lifted = np.isin(study.table.outcomes, STOOD)

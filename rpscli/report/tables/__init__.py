@@ -1,1 +1,1 @@
-"""What the files and documents of each analysis hold, as columns and quantities."""
+"""Columns and quantities of the files and documents of each analysis."""

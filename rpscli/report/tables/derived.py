@@ -1,4 +1,4 @@
-"""What follows from a case before any analysis: the quantities of `rps check`, and their formulas.
+"""Quantities that follow from a case before any analysis, as `rps check` has them, and formulas.
 
 A formula is written once, as an expression that can be evaluated. Its letters become symbols in one
 column and numbers in another, so that a checker can follow with a pocket calculator.
@@ -191,7 +191,7 @@ Row = tuple[str, str, str, str, Any]
 
 
 def _before(name: str, structure: PodiumStructure, letters: Mapping[str, float]) -> Iterator[Row]:
-    """What is no result of its own, but stands in the next formula."""
+    """Rows of what is no result of its own, but stands in the next formula."""
     if name == "restitution":
         inertia = structure.bearing.inertia_ratio
         yield "inertia_ratio", "I_o / (m_c R²) of a column", "I", "-", inertia

@@ -36,7 +36,7 @@ Row = tuple[str, str, str, str]
 def timehistory_tables(
     result: TimeHistoryResult, verdicts: Sequence[Verdict], title: str, scaled_to: str = ""
 ) -> Iterator[Part]:
-    """What happened; the storeys, if there are any; the limits, if there are any."""
+    """Outcome and largest demands; storeys, devices and limits, if there are any."""
     yield Heading(f"{title}, {result.record.name}")
     if scaled_to:
         yield f"record scaled to {scaled_to}"
@@ -53,7 +53,7 @@ def timehistory_tables(
 
 
 def outcome_text(result: TimeHistoryResult) -> str:
-    """How the history ended, how near to overturning, and whether the columns slide."""
+    """The end of the history, its nearness to overturning, and sliding of the columns."""
     parts, passed = [OUTCOMES[result.outcome]], result.critical_passage_time
     if result.structure.bearing.is_spherical:
         parts = [parts[0].replace("uplifts", "rolls")]
@@ -72,7 +72,7 @@ def outcome_text(result: TimeHistoryResult) -> str:
 
 
 def overturned_text(structure: PodiumStructure, settings: TimeHistorySettings) -> str:
-    """What counts as overturned."""
+    """The rotation and the displacement that count as overturned."""
     limit = settings.overturning_limit * structure.critical_rotation
     path = structure.path(np.array([limit]))
     return (
@@ -82,7 +82,7 @@ def overturned_text(structure: PodiumStructure, settings: TimeHistorySettings) -
 
 
 def restitution_text(structure: PodiumStructure) -> str:
-    """What impacts leave, by which law, and what half of its loss would leave."""
+    """The restitution at impact, its law, and what half of its loss would leave."""
     law, e = structure.impact_law, structure.restitution
     if structure.bearing.is_spherical:
         return "no impacts: columns without a flat part roll through the upright position"
@@ -237,7 +237,7 @@ def _ways(result: TimeHistoryResult, name: str) -> str:
 
 
 def _passes(result: TimeHistoryResult) -> list[Row]:
-    """How often it passed near upright, how closely, and what that takes."""
+    """Passes near upright: their number, the closest, and the shortest."""
     rows = [("uplifts, passes", f"{result.uplifts}, {result.passes}", "", "")]
     if result.passes:
         rows.append(_row(result, "passes_as_impacts"))
@@ -249,7 +249,7 @@ def _passes(result: TimeHistoryResult) -> list[Row]:
 
 
 def passes_text(result: TimeHistoryResult) -> str | None:
-    """What the contact time, which is assumed, decided; None where one component acts."""
+    """The weight of the assumed contact time; None where one component acts."""
     if not result.passes:
         return None
     lost = 0 if result.passes_as_impacts is None else int(result.passes_as_impacts)
