@@ -132,18 +132,19 @@ def command(
     leave(error)
 
 
-def _shown(result: StudyResult, found: Collected, *, whole: bool) -> list[Part]:
+def _shown(result: StudyResult, found: Collected, *, whole: bool) -> Iterator[Part]:
     """All, or as many rows of each table as fit into some lines."""
     from rpscli.report.study.shown import asked, cut
 
     if whole:
-        return list(_tables(result, found, None))
+        yield from _tables(result, found, None)
+        return
     parts, rows = list(_tables(result, found, asked(result.layout))), MOST_ROWS
-    while True:
-        few = list(cut(parts, rows, "; --all prints them"))
-        if rows == 1 or rendered(few).count("\n") <= MOST_LINES:
-            return few
+    few = list(cut(parts, rows, "; --all prints them"))
+    while rows > 1 and rendered(few).count("\n") > MOST_LINES:
         rows = max(1, min(rows - 1, 3 * rows // 4))
+        few = list(cut(parts, rows, "; --all prints them"))
+    yield from few
 
 
 def _tables(result: StudyResult, found: Collected, wanted: set[str] | None) -> Iterator[Part]:

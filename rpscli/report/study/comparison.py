@@ -258,6 +258,8 @@ def _draw_maxima(axes: style.Axes, each: Compared, found: Maxima) -> str:
             fallen, np.full(len(fallen), 1.3 * span[1]), ls="", marker="^", ms=4, color=style.RED
         )
     axes.set(xscale="log", yscale="log")
+    for axis in (axes.xaxis, axes.yaxis):
+        log_ticks(axis)
     name = QUANTITIES[each.quantity].axis_label
     axes.set(xlabel=f"observed {name}", ylabel=f"computed {name}")
     line = (

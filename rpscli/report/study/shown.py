@@ -106,10 +106,13 @@ def of_first_system(layout: StudyPoints) -> str:
 
 
 def cut(parts: Iterable[Part], rows: int = MOST_ROWS, others: str = "") -> Iterator[Part]:
-    """The parts with so many rows of each table, and a remark on what is left out once."""
+    """The parts with so many rows of each table, and a remark on what is left out once.
+
+    Listings, which have no heads, stay whole.
+    """
     longest = 0
     for part in parts:
-        if isinstance(part, Table) and len(part) > rows:
+        if isinstance(part, Table) and any(part.heads) and len(part) > rows:
             longest = max(longest, len(part))
             yield part.first(rows)
         else:
