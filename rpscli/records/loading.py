@@ -21,7 +21,7 @@ from rpscli.errors import (
     require_visible,
 )
 from rpscli.machine import mode_of
-from rpscli.records import pulses, sets, synthetic
+from rpscli.records import made, sets
 from rpscli.records.ground_motion import GroundMotion, MotionComponents, is_usual, scale_warning
 from rpscli.records.pair import rotated, turned
 from rpscli.records.quantities import LIKENESS, canonical_unit, unit_factor
@@ -30,8 +30,8 @@ from rpscli.records.source import FILE, LIST, PAIRING, SET, Source, is_file, spl
 
 _MAKERS: dict[str, Callable[[Source], GroundMotion]] = {
     SET: sets.load_component,
-    "pulse": pulses.load_pulse,
-    "synthetic": synthetic.load_synthetic,
+    "pulse": made.load_pulse,
+    "synthetic": made.load_synthetic,
 }
 _REMARK = re.compile(r"(?:^|\s)#")
 

@@ -6,6 +6,7 @@ import numpy as np
 
 from rpscli.records.formats.record_text import printed_resolution
 from rpscli.records.ground_motion import Recording, is_usual, scale_warning
+from rpscli.records.made import envelope
 from rpscli.records.measures import (
     DIRECTIONS,
     factor_to,
@@ -18,7 +19,6 @@ from rpscli.records.recordings import _numbered, event_of
 from rpscli.records.selection import misfit
 from rpscli.records.sets import expand_set
 from rpscli.records.source import Source
-from rpscli.records.synthetic import envelope
 
 
 def test_events_of_recordings() -> None:
