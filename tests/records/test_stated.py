@@ -61,6 +61,11 @@ HEAD = "NUMBER OF DATA : 200\nSAMPLING INTERVAL (sec) : 0.005\nunits: g\n"
         (f"Time [s],Acceleration N [g],Acceleration E [g]\n{rows(TIMES, VALUES, VALUES / 2)}",
          "?channel=Acceleration N"),
         (f"Time [s],Acceleration [g]\n{TIMED}" + "\0" * 300, ""),
+        (f"Time,Acceleration\ns,g\n{TIMED}", ""),
+        (f"(s)   (g)\n{TIMED}", ""),
+        (f"Time, Acceleration in g\n{TIMED}", ""),
+        (f"Time [s],Acceleration (N-S)\n{TIMED}", "?units=g"),
+        (f"units: g\n{rows(TIMES, VALUES / 2, VALUES)}", "?channel=3"),
     ],
 )  # fmt: skip
 def test_units_steps_counts_and_columns(tmp_path: Path, text: str, options: str) -> None:
@@ -85,6 +90,9 @@ def test_units_steps_counts_and_columns(tmp_path: Path, text: str, options: str)
         (f"199 0.0050\n{ALONE}", "?units=g", "look like the number of values and their step"),
         (f"units: g\ndt: 5 ms\ndt: 0.01\n{ALONE}", "", "contradicts dt = 5 ms of line 2"),
         (f"Acceleration [g]\ndt: 0.005\n{ALONE}", "?units=gal", "contradicts the file"),
+        (f"Time [s],Acceleration [counts]\n{TIMED}", "?units=g", "'counts', which is not a unit"),
+        (f"Time [s],Acceleration [cm]\n{TIMED}", "?units=g", "'cm', which is not a unit"),
+        (f"units: g\n{rows(TIMES, VALUES, VALUES)}", "", "by its place, .channel=2"),
     ],
 )
 def test_refuses(tmp_path: Path, text: str, options: str, message: str) -> None:
@@ -96,6 +104,14 @@ def test_an_offset_is_a_warning(tmp_path: Path) -> None:
     (warning,) = load(tmp_path, f"units: g\ndt: 0.005\n{rows(VALUES + 1.0)}").warnings
     assert "of the peak: an offset of the instrument?" in warning
     assert load(tmp_path, f"units: g\ndt: 0.005\n{ALONE}").warnings == ()
+
+
+def test_a_peak_that_the_header_contradicts_is_a_warning(tmp_path: Path) -> None:
+    text = f"units: g\ndt: 0.005\nPeak acc (gal): {{}}\n{ALONE}"
+    assert load(tmp_path, text.format(f"{100.0 * STANDARD_GRAVITY * PEAK:.2f}")).warnings == ()
+    (warning,) = load(tmp_path, text.format("98.07")).warnings
+    assert "the values peak at 0.192696" in warning
+    assert "the header says 0.100004" in warning
 
 
 def at2(component: str, step: str = ".0050 SEC") -> str:

@@ -1,0 +1,152 @@
+"""Stations, earthquakes and directions that headers state, and what they decide."""
+
+from __future__ import annotations
+
+import pickle
+from pathlib import Path
+
+import pytest
+from small_records import cosmos, csmip, esm, geonet, knet, smc, write
+
+from rpscli.errors import RecordError
+from rpscli.records.ground_motion import Recording
+from rpscli.records.loading import expanded, load_components, load_record
+from rpscli.records.recordings import clusters
+from rpscli.records.source import Source
+
+STATED = {
+    "a.v1": (cosmos(), Recording(
+        "An Earthquake of Fri Nov 30, 2018 17:29 UTC", "NP-8040", magnitude=7.0,
+        origin="2018/11/30 17:29:29", direction="340 deg", start="2018/11/30 17:29:06.332",
+    )),
+    "a.v2": (csmip(), Recording(
+        "AN EARTHQUAKE", "36456", magnitude=6.5, origin="05/02/83, 23:42:38.5",
+        direction="90 DEG", start="05/02/83, 16:42:48.2",
+    )),
+    "a.v2a": (geonet(), Recording(
+        "", "WPWS", magnitude=4.17, origin="2018 February 12         21:15:54", direction="S16W",
+        start="20180212_211554",
+    )),
+    "a.NS": (knet(), Recording(
+        "", "CHB002", magnitude=5.1, origin="2014/12/31 23:49:00", direction="N-S",
+        start="2014/12/31 23:49:20",
+    )),
+    "a.asc": (esm(), Recording(
+        "AN EVENT", "DLFA", magnitude=4.6, origin="20190728 160908", direction="HNE",
+        start="20190728_160905.700",
+    )),
+    "a.smc": (smc(), Recording(
+        "Somewhere", "A Station", magnitude=7.1, origin="1989  10  18    0004", direction="360"
+    )),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", STATED)
+def test_what_headers_state_of_a_recording(tmp_path: Path, name: str) -> None:
+    text, recording = STATED[name]
+    path = write(tmp_path, text, name)
+    assert load_record(path).recording == recording
+    # A file of another name, of one station and one earthquake, is of the same recording.
+    again = write(tmp_path, text.replace("\n", "\n", 1), f"another_{name}")
+    other = write(tmp_path, text.replace(recording.station, "ELSEWHERE"), f"other_{name}")
+    assert clusters([path, again, other]) == (0, 0, 1)
+    assert clusters([path, again, other], by="events") == (0, 0, 0)
+
+
+@pytest.mark.parametrize(
+    ("direction", "vertical"),
+    [("U-D", True), ("up", True), ("HNZ", True), ("BHZ00", True), ("DWN", True), ("VERT", True),
+     ("360", False), ("N-S", False), ("HNE", False), ("S16W", False), ("", False)],
+)  # fmt: skip
+def test_directions_that_are_vertical(direction: str, vertical: bool) -> None:
+    assert Recording(direction=direction).is_vertical == vertical
+
+
+@pytest.fixture
+def stations(tmp_path: Path) -> Path:
+    """A file of three channels, three files of K-NET, three of which headers alone tell, others."""
+    write(tmp_path, csmip((1, 2, 3), names=("90 DEG", "UP", "360 DEG")), "three.v2")
+    for end, way, more in (("EW", "E-W", 1), ("NS", "N-S", 2), ("UD", "U-D", 3)):
+        text = knet().replace("N-S", way).replace("8500", f"850{more}")
+        write(tmp_path, text, f"CHB002.{end}")
+    for name, way, more in (("one", "360", 5), ("two", "270", 6), ("three", "up", 7)):
+        write(
+            tmp_path,
+            smc().replace("   360", way).replace("1.5000E", f"1.500{more}E"),
+            f"{name}.smc",
+        )
+    write(tmp_path, smc("1 UNCORRECTED ACCELEROGRAM"), "raw.smc")
+    write(tmp_path, cosmos("Uncorrected acceleration"), "raw.v1")
+    (tmp_path / "README").write_text("words\n", encoding="utf-8")
+    return tmp_path
+
+
+def test_a_folder_as_downloaded(stations: Path) -> None:
+    found = expanded(["."], folder=stations)
+    assert found.sources == [
+        "CHB002.EW", "CHB002.NS", "one.smc", "three.v2?channel=1", "three.v2?channel=3", "two.smc"
+    ]  # fmt: skip
+    *refused, upright = found.notes
+    assert upright.endswith("left out: CHB002.UD, three.smc, three.v2 channel 2")
+    assert [text[:25] for text in refused] == [
+        ".: raw.smc: left out: the",
+        ".: raw.v1: left out: the ",
+    ]
+    assert "'Uncorrected acceleration'; only corrected acceleration" in refused[1]
+    assert clusters(found.sources, stations) == (0, 0, 1, 2, 2, 1)
+    pairs = expanded([".?both&factor=2"], folder=stations).sources
+    assert pairs == [
+        "CHB002.EW?second=CHB002.NS&both&factor=2",
+        "one.smc?second=two.smc&both&factor=2",
+        "three.v2?channel=1,3&both&factor=2",
+    ]
+    for source in pairs:
+        assert load_components(source, "own", folder=stations).samples.shape == (3, 12)
+    with pytest.raises(RecordError, match=r"no record file .* only corrected acceleration can be"):
+        expanded(["raw*1"], folder=stations)
+
+
+@pytest.mark.parametrize(
+    ("source", "vertical"),
+    [("CHB002.EW?factor=3", "CHB002.UD?factor=3"), ("two.smc", "three.smc"),
+     ("three.v2?channel=3", "three.v2?channel=2")],
+)  # fmt: skip
+def test_the_vertical_of_a_recording_is_its_own(stations: Path, source: str, vertical: str) -> None:
+    own = load_components(source, "own", folder=stations).vertical
+    assert own is not None
+    assert own.digest == load_record(vertical, folder=stations).digest
+
+
+def test_a_recording_without_a_vertical(stations: Path) -> None:
+    for source in ("raw.v1", "pulse:sine?amplitude=1g&period=1", "fema_p695:farfield/1/a"):
+        with pytest.raises(RecordError, match="has no vertical component beside it"):
+            load_components(source, "own", folder=stations)
+    with pytest.raises(RecordError, match="is a vertical component; name two horizontal ones"):
+        load_components("CHB002.EW?second=CHB002.UD&both", folder=stations)
+
+
+@pytest.mark.parametrize(
+    ("start", "message"),
+    [("23:49:20", ""), ("23:49:22", "line them up"), ("23:59:20", "refused")],
+)
+def test_components_that_do_not_start_together(tmp_path: Path, start: str, message: str) -> None:
+    write(tmp_path, knet(), "A.NS")
+    text = knet().replace("N-S", "E-W").replace("8500", "8600")
+    write(tmp_path, text.replace("23:49:20", start), "A.EW")
+    source = "A.NS?second=A.EW&both"
+    if message == "refused":
+        with pytest.raises(RecordError, match=r"the start '2014/12/31 23:49:20' and '.* 23:59:20'"):
+            load_components(source, folder=tmp_path)
+    else:
+        warnings = load_components(source, folder=tmp_path).warnings
+        assert any("line them up" in text for text in warnings) == bool(message)
+
+
+def test_a_source_is_a_text_that_was_taken_apart() -> None:
+    written = "x.at2?both&dt=0.01&second=y.at2&factor=2"
+    of = Source.parse(written)
+    assert of == "x.at2?dt=0.01&second=y.at2&both&factor=2"
+    assert Source.parse(of) is of
+    copy = pickle.loads(pickle.dumps(of))  # noqa: S301 -- our own
+    assert (copy, copy.options, copy.place) == (of, of.options, of.place)
+    assert of.components == ("x.at2?dt=0.01&factor=2", "y.at2?dt=0.01&factor=2")
