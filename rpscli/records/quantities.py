@@ -199,14 +199,6 @@ class Query:
         return match[1], match[2]
 
 
-def split_option(source: str, name: str) -> tuple[str, str | None]:
-    """A source without one of its options, and the value of that: None without it, empty alone."""
-    match = re.search(rf"(?<=[?&]){name}(?:=([^&]*))?(?:&|$)", source)
-    if match is None:
-        return source, None
-    return (source[: match.start()] + source[match.end() :]).rstrip("?&"), match[1] or ""
-
-
 def parse_query(text: str, source: str, allowed: Sequence[str]) -> Query:
     """Split `key=value&key=value`."""
     values: dict[str, str] = {}

@@ -9,6 +9,7 @@ PGV normalisation factor.
 from __future__ import annotations
 
 import importlib.util
+from collections.abc import Mapping, Sequence
 from fnmatch import fnmatchcase
 from functools import lru_cache
 from pathlib import Path
@@ -20,7 +21,7 @@ from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import RecordError
 from rpscli.records.ground_motion import GroundMotion, Recording
 from rpscli.records.quantities import hint
-from rpscli.records.source import SET, Source
+from rpscli.records.source import Source
 
 _SETS = {
     "farfield": range(1, 23),
@@ -49,51 +50,48 @@ def expand_set(of: Source) -> list[Source]:
     """The single sources that a pattern such as `farfield/*` stands for."""
     of.query("normalised")
     known, word = (PAIRS, "pair") if of.of_pair else (COMPONENTS, "component")
-    found = [place for place in known if fnmatchcase(place, of.place)]
-    if not found:
-        behind = str(of).partition("?")[2]
-        options = f"?{behind}" if behind else ""
-        remedy = f"sets: {', '.join(_SETS)}" if _is_pattern(of) else hint(of.place, known)
-        if any(fnmatchcase(component, f"{of.place}/*") for component in known):
-            remedy = f"write {SET}:{of.place}/*{options}"
-        elif any(fnmatchcase(f"{pair}/a", of.place) for pair in known):
-            pairs = of.place.rpartition("/")[0]
-            remedy = f"a pair has no components; write {SET}:{pairs}{options}"
-        raise RecordError(f"{of}: no {word} of FEMA P695 fits {of.place[:60]!r}; {remedy}")
-    return [of.at(place) for place in found]
+    found = [of.at(place) for place in known if fnmatchcase(place, of.place)]
+    if found:
+        return found
+    remedy = f"sets: {', '.join(_SETS)}" if _is_pattern(of) else hint(of.place, known)
+    if any(fnmatchcase(component, f"{of.place}/*") for component in known):
+        remedy = f"write {of.at(f'{of.place}/*')}"
+    elif any(fnmatchcase(f"{pair}/a", of.place) for pair in known):
+        remedy = f"a pair has no components; write {of.at(of.place.rpartition('/')[0])}"
+    raise RecordError(f"{of}: no {word} of FEMA P695 fits {of.place[:60]!r}; {remedy}")
 
 
 def _is_pattern(of: Source) -> bool:
     return bool({"*", "["} & set(of.place))
 
 
+def _require(of: Source, known: Sequence[str], word: str, others: Mapping[str, str]) -> None:
+    """Refuse what is none of the known places; others have a remedy of their own."""
+    if of.place not in known:
+        remedy = f"load one {word} at a time" if _is_pattern(of) else hint(of.place, known)
+        remedy = others.get(of.place, remedy)
+        raise RecordError(f"{of}: FEMA P695 has no {word} {of.place[:60]!r}; {remedy}")
+
+
 def require_pair(of: Source) -> None:
     """Refuse what is no pair of the sets."""
-    if of.place in PAIRS:
-        return
-    remedy = "load one pair at a time" if _is_pattern(of) else hint(of.place, PAIRS)
-    if of.place in COMPONENTS:
-        pair = of.place[:-2]
-        remedy = f"both components: {pair}?both"
-        if of.angle is not None:
-            remedy = f"an angle turns a pair: {pair}?angle={of.angle:g}"
-    raise RecordError(f"{of}: FEMA P695 has no pair {of.place[:60]!r}; {remedy}")
+    pair = of.place[:-2]
+    remedy = f"both components: {pair}?both"
+    if of.angle is not None:
+        remedy = f"an angle turns a pair: {pair}?angle={of.angle:g}"
+    _require(of, PAIRS, "pair", dict.fromkeys(COMPONENTS, remedy))
 
 
 def load_component(of: Source) -> GroundMotion:
     """Read one component."""
     of.query("normalised")
     place = of.place
-    if place not in COMPONENTS:
-        remedy = "load one component at a time" if _is_pattern(of) else hint(place, COMPONENTS)
-        if place in PAIRS:
-            remedy = (
-                f"name {place}/a or {place}/b, or the pair: {place}?both for both components"
-                f" together, {place}?angle=30 for one direction"
-            )
-        raise RecordError(f"{of}: FEMA P695 has no component {place[:60]!r}; {remedy}")
-    normalised = ("normalised", None) in of.options
-    return _component(_package_folder(of), place, of, normalised=normalised)
+    remedy = (
+        f"name {place}/a or {place}/b, or the pair: {place}?both for both components together,"
+        f" {place}?angle=30 for one direction"
+    )
+    _require(of, COMPONENTS, "component", dict.fromkeys(PAIRS, remedy))
+    return _component(_package_folder(of), place, of, normalised="normalised" in of.values)
 
 
 def _package_folder(source: str) -> Path:

@@ -450,17 +450,14 @@ _COARSEST = 0.25
 def printed_resolution(printed: Array, numerals: Iterable[str]) -> Array:
     """The unit of the last digit of each time of a column, dropped zeros included."""
     # Of so many decimals or significant digits: one a decade, and growing by no more than ten.
-    times = np.abs(printed)
-    units = np.fromiter(map(last_digit, numerals), dtype=np.float64, count=times.size)
-    decades = np.floor(np.log10(np.maximum(times, 1e-12)))
-    result = np.empty_like(units)
+    units = np.fromiter(map(last_digit, numerals), dtype=np.float64, count=printed.size)
+    decades = np.floor(np.log10(np.maximum(np.abs(printed), 1e-12)))
     finest = math.inf
-    for decade in np.unique(decades[times > 0.0]):
+    for decade in np.unique(decades[printed != 0.0]):
         inside = decades == decade
-        finest = min(10.0 * finest, float(units[inside].min()))
-        result[inside] = finest
-    result[times == 0.0] = result[times > 0.0].min(initial=1.0)
-    return result
+        finest = units[inside] = min(10.0 * finest, float(units[inside].min()))
+    units[printed == 0.0] = units[printed != 0.0].min(initial=1.0)
+    return units
 
 
 def uniform_step(times: Array, resolution: Array | float) -> float:
