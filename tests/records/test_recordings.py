@@ -11,7 +11,7 @@ from small_records import cosmos, csmip, esm, geonet, knet, smc, write
 from rpscli.errors import RecordError
 from rpscli.records.ground_motion import Recording
 from rpscli.records.loading import expanded, load_components, load_record
-from rpscli.records.recordings import clusters
+from rpscli.records.recordings import clusters, event_of
 from rpscli.records.source import Source
 
 STATED = {
@@ -150,3 +150,9 @@ def test_a_source_is_a_text_that_was_taken_apart() -> None:
     copy = pickle.loads(pickle.dumps(of))  # noqa: S301 -- our own
     assert (copy, copy.options, copy.place) == (of, of.options, of.place)
     assert of.components == ("x.at2?dt=0.01&factor=2", "y.at2?dt=0.01&factor=2")
+
+
+def test_events_of_recordings() -> None:
+    assert event_of(Recording("NORTHRIDGE EQ 1/17/94, MULHOL, 009")) == "northridge 1994"
+    assert event_of(Recording("Northridge-01, 1/17/1994")) == "northridge 1994"
+    assert event_of(Recording("Northridge", origin="1994 01 17")) == "at 1994 01 17"

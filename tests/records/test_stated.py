@@ -6,13 +6,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from small_records import knet
 
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import RecordError
 from rpscli.records.formats.at2 import at2_text
 from rpscli.records.ground_motion import GroundMotion
-from rpscli.records.loading import expand_sources, expanded, load_record
-from rpscli.records.recordings import clusters
+from rpscli.records.loading import load_record
 from rpscli.report.tables.motions import two_column_text
 
 COUNT, DT = 200, 0.005
@@ -130,50 +130,6 @@ def test_a_step_of_an_at2_file_in_milliseconds(tmp_path: Path) -> None:
     assert (made.recording.station, made.recording.direction) == ("Station A", "0")
 
 
-def knet(station: str, direction: str, origin: str = "2001/01/02 03:03:00") -> str:
-    counts = np.round(VALUES * (5e4 if direction == "N-S" else 1e5)).astype(int)
-    body = "\n".join(
-        "".join(f"{value:9d}" for value in counts[i : i + 8]) for i in range(0, COUNT, 8)
-    )
-    head = {
-        "Origin Time": origin, "Lat.": "35.000", "Long.": "140.000", "Depth. (km)": "10",
-        "Mag.": "6.0", "Station Code": station, "Station Lat.": "35.1", "Station Long.": "140.1",
-        "Station Height(m)": "10", "Record Time": "2001/01/02 03:04:05",
-        "Sampling Freq(Hz)": "200Hz", "Duration Time(s)": "1", "Dir.": direction,
-        "Scale Factor": "2000(gal)/1000000", "Max. Acc. (gal)": "", "Last Correction": origin,
-        "Memo.": "",
-    }  # fmt: skip
-    return "\n".join(f"{key:18}{value}" for key, value in head.items()) + f"\n{body}\n"
-
-
-def test_stations_of_one_earthquake_are_one_event(tmp_path: Path) -> None:
-    names = []
-    for station in ("AAA001", "AAA002"):
-        for end, direction in (("EW", "E-W"), ("NS", "N-S"), ("UD", "U-D")):
-            (tmp_path / f"{station}.{end}").write_text(knet(station, direction), "utf-8")
-        names.append(f"{station}.EW?second={station}.NS&both")
-    late = tmp_path / "AAA003.EW"
-    late.write_text(knet("AAA003", "E-W", "2002/01/02 03:03:00"), encoding="utf-8")
-    found = expanded(["AAA00[12]*?both"], folder=tmp_path)
-    assert found.sources == names
-    assert "AAA001.UD, AAA002.UD" in found.notes[0]
-    every = [*names, late.name]
-    assert clusters(every, tmp_path, "events") == (0, 0, 1)
-    assert clusters(every, tmp_path) == (0, 1, 2)
-    told = load_record("AAA001.EW", folder=tmp_path).recording
-    assert (told.station, told.magnitude, told.direction) == ("AAA001", 6.0, "E-W")
-
-
-@pytest.mark.parametrize("component", ["UP", "DWN", "vertical", "UD"])
-def test_a_vertical_that_only_its_header_states(tmp_path: Path, component: str) -> None:
-    for name, of in (("one", "0"), ("two", "90"), ("three", component)):
-        (tmp_path / f"{name}.at2").write_text(at2(of), encoding="utf-8")
-    found = expanded(["."], folder=tmp_path)
-    assert sorted(found.sources) == ["one.at2", "two.at2"]
-    assert found.notes == [".: vertical components left out: three.at2"]
-    assert expand_sources(["three.at2"], folder=tmp_path) == ["three.at2"]
-
-
 def csmip(line: str) -> str:
     body = rows(*VALUES.reshape(-1, 8).T * 100.0 * STANDARD_GRAVITY, form="{:9.3f}", between=" ")
     return (
@@ -207,7 +163,7 @@ WRITTEN = {
     "columns": (f"units: gal, dt: 5 ms, npts: 200\n{GAL}", "x.txt"),
     "titles": (f"Time [ms],Acceleration [g]\n{rows(1e3 * TIMES, VALUES)}", "x.csv"),
     "at2": (at2("90"), "x.at2"),
-    "knet": (knet("AAA001", "E-W"), "x.EW"),
+    "knet": (knet(), "x.EW"),
     "csmip": (csmip("points of accel data equally spaced at  .005 sec, in cm/sec2."), "x.v2"),
     "pulse": ("", "pulse:sine?amplitude=0.2 g&period=1&dt=0.005"),
     "synthetic": ("", "synthetic:?pga=0.2g&seed=1&duration=1&dt=0.005"),
