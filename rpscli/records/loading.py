@@ -316,25 +316,32 @@ def _files(of: Source, folder: Path | None, notes: list[str]) -> list[Source]:
     held = {name: inside for name, file in files.items() if (inside := contents(file))}
     refused = {name: inside[0].refusal for name, inside in held.items() if inside[0].refusal}
     held = {name: inside for name, inside in held.items() if name not in refused}
-    why = [f"{PurePath(name).name}: left out: {text}" for name, text in refused.items()]
+    why = [
+        f"left out: {_some([name for name in refused if refused[name] == text])}: {text}"
+        for text in dict.fromkeys(refused.values())
+    ]
     if not held:
         raise RecordError("; ".join([f"{of}: no record file there that can be read", *why[:1]]))
     notes += [f"{of}: {text}" for text in why]
     upright = verticals({name: [each.recording for each in held[name]] for name in held})
-    left_out, single = [PurePath(name).name for name in sorted(upright)], list[Source]()
+    left_out, single = sorted(upright), list[Source]()
     for name in (each for each in held if each not in upright):
         several = held[name] if len(held[name]) > 1 and "channel" not in of.values else ()
         single += [] if several else [of.at(name)]
         for each in several:
             if each.recording.is_vertical:
-                left_out.append(f"{PurePath(name).name} channel {each.channel}")
+                left_out.append(f"{name} channel {each.channel}")
             else:
                 single.append(of.at(name).plus(channel=each.channel))
     if left_out:
-        more = f" and {len(left_out) - 3} more" if len(left_out) > 3 else ""
-        some = ", ".join(left_out[:3])
-        notes.append(f"{of}: vertical components left out: {some}{more}")
+        notes.append(f"{of}: vertical components left out: {_some(left_out)}")
     return single if of.second else _paired(of, [each.alone for each in single], folder)
+
+
+def _some(names: Sequence[str]) -> str:
+    """The first of some files, without their folders."""
+    more = f" and {len(names) - 3} more" if len(names) > 3 else ""
+    return f"{', '.join(PurePath(name).name for name in names[:3])}{more}"
 
 
 def _paired(of: Source, single: Iterable[Source], folder: Path | None) -> list[Source]:

@@ -88,10 +88,7 @@ def test_a_folder_as_downloaded(stations: Path) -> None:
     ]  # fmt: skip
     *refused, upright = found.notes
     assert upright.endswith("left out: CHB002.UD, three.smc, three.v2 channel 2")
-    assert [text[:25] for text in refused] == [
-        ".: raw.smc: left out: the",
-        ".: raw.v1: left out: the ",
-    ]
+    assert [text[:19] for text in refused] == [".: left out: raw.sm", ".: left out: raw.v1"]
     assert "'Uncorrected acceleration'; only corrected acceleration" in refused[1]
     assert clusters(found.sources, stations) == (0, 0, 1, 2, 2, 1)
     pairs = expanded([".?both&factor=2"], folder=stations).sources
