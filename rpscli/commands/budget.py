@@ -149,11 +149,22 @@ def _wishes(
     for factor in (0.99, 1.01):
         yield "1 % of the motion", (), _scaled(motion, factor * ground.scale)
     if ground.vertical is None:
-        yield "vertical motion", (), "not known: no vertical component is named"
+        yield "vertical motion", (), _with_own_vertical(case, motion)
     else:
         without = ("record.vertical=null",) if motion.record is None else ()
         yield "without vertical motion", without, replace(motion, vertical=None)
     yield from _records(case, motions, grounds)
+
+
+def _with_own_vertical(case: Case, motion: MotionRequest) -> MotionRequest | str:
+    """The motion with the vertical component of its recording, if that lies beside it."""
+    from rpscli.records.loading import OWN
+
+    try:
+        load_motion(case, both := replace(motion, vertical=OWN))
+    except RpsError:
+        return "not known: no vertical component is named"
+    return both
 
 
 def _values(case: Case, ratio: float) -> Iterator[tuple[str, str]]:
