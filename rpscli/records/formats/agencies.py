@@ -84,8 +84,10 @@ class Layout:
         if not self.label:
             return [Channel(1, 0, self.name)]
         found = list[Channel]()
+        titles = (self.begins, self.corrected)
         for start, line in enumerate(text.heads):
-            if all(re.match(each, line, re.IGNORECASE) for each in (self.begins, self.corrected)):
+            # Few of the many lines begin with a letter.
+            if line[:1].isalpha() and all(re.match(of, line, re.IGNORECASE) for of in titles):
                 lines = text.heads[start : start + 20]
                 matches = (re.search(self.label, each, re.IGNORECASE) for each in lines)
                 match = next(filter(None, matches), None)
@@ -203,7 +205,11 @@ def _cosmos_numbers(text: RecordText, end: int, said: Said) -> int:
     """Interval and peak are real-header values 62 and 64."""
     reals: list[float] = []
     for index in range(end, -1, -1):
-        if announced := re.match(r"\s*(\d+)\s+Real-header values follow", text.heads[index]):
+        line = text.heads[index]
+        if re.match(COSMOS.begins, line, re.IGNORECASE):
+            break
+        announced = re.match(r"\s*(\d+)\s+Real-header values follow", line, re.IGNORECASE)
+        if announced:
             count = text.count(Statement("real-header values", announced[1], index))
             words = re.compile(r"\s*(?:\|.*|.*[A-Za-z]{3})")
             reals = text.series(index + 1, count, closed_by=words).tolist()
