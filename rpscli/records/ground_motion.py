@@ -181,17 +181,12 @@ class GroundMotion(Shown):
         """The same motion, linear between its samples, sampled every `dt` seconds.
 
         A step that is a whole part of the old one changes nothing but the number of samples; a
-        longer one loses what is between, and says so.
-
-        Parameters
-        ----------
-        dt : float [s]
-            Positive, and at most the duration.
+        longer one, up to the duration, loses what is between, and says so.
 
         Raises
         ------
         RecordError
-            If it is not.
+            If the step is not positive, or longer than the motion.
 
         Examples
         --------
@@ -206,15 +201,16 @@ class GroundMotion(Shown):
             )
         # A sample that rounding puts just behind the end is the last one.
         count = int(np.floor(self.duration / dt * (1.0 + 1e-12))) + 1
-        times = np.minimum(np.arange(count) * dt, self.duration)
-        lost = dt > self.dt * (1.0 + 1e-12)
+        values = np.interp(
+            np.minimum(np.arange(count) * dt, self.duration), self.time, self.acceleration
+        )
         text = f"resampled from {self.dt:g} s to {dt:g} s: what was between the samples is lost"
         return replace(
             self,
-            acceleration=np.interp(times, self.time, self.acceleration),
+            acceleration=values,
             dt=dt,
             description=f"{self.description}; resampled from {self.dt:g} s".lstrip("; "),
-            warnings=(*self.warnings, text) if lost else self.warnings,
+            warnings=(*self.warnings, *[text] * (dt > self.dt * (1.0 + 1e-12))),
         )
 
     def finer(self, parts: int) -> GroundMotion:
@@ -227,12 +223,8 @@ class GroundMotion(Shown):
         """The same motion times `factor`, with a description that says so."""
         if not is_number(factor):
             raise RecordError(f"{self.source}: the factor {factor!r} must be a finite number")
-        note = f"scaled by {factor:g}"
-        return replace(
-            self,
-            acceleration=self.acceleration * factor,
-            description=f"{self.description}; {note}" if self.description else note,
-        )
+        note = f"{self.description}; scaled by {factor:g}".lstrip("; ")
+        return replace(self, acceleration=self.acceleration * factor, description=note)
 
     def scaled_to(
         self,
@@ -274,30 +266,23 @@ class GroundMotion(Shown):
         >>> motion.scaled_to("PGA", 1.5).acceleration.tolist()
         [0.0, 1.0, -1.5]
         """
-        from rpscli.records.measures import (  # measures measure motions
-            MEASURES,
-            factor_to,
-            measured,
-            needs_period,
-            pair_measure,
-        )
+        from rpscli.records import measures  # which measure motions
 
-        if measure not in MEASURES and measure not in (names := MEASURES.names()):
-            known = ", ".join(names)
-            raise RecordError(f"{self.source}: {measure} is not a measure; there are {known}")
-        if needs_period(measure) and period is None:
-            text = f"{self.source}: {measure} is scaled to at a period; give period=... in s"
-            raise RecordError(text)
-        if not (is_number(value) and value > 0.0):
-            text = (
-                f"{self.source}: {measure} = {value!r} must be a number > 0, in SI, to scale to it"
-            )
-            raise RecordError(text)
+        known = measures.MEASURES
+        fault = ""
+        if measure not in known and measure not in (names := known.names()):
+            fault = f"{measure} is not a measure; there are {', '.join(names)}"
+        elif measures.needs_period(measure) and period is None:
+            fault = f"{measure} is scaled to at a period; give period=... in s"
+        elif not (is_number(value) and value > 0.0):
+            fault = f"{measure} = {value!r} must be a number > 0, in SI, to scale to it"
+        if fault:
+            raise RecordError(f"{self.source}: {fault}")
         if second is None:
-            unscaled = measured(self, measure, period, damping)
+            unscaled = measures.measured(self, measure, period, damping)
         else:
-            unscaled = pair_measure(self, second, measure, of, period, damping)
-        return self.scaled(factor_to(value, unscaled, measure, self.source))
+            unscaled = measures.pair_measure(self, second, measure, of, period, damping)
+        return self.scaled(measures.factor_to(value, unscaled, measure, self.source))
 
 
 @dataclass(frozen=True, eq=False)
@@ -364,13 +349,10 @@ class MotionComponents(Frozen):
     @cached_property
     def samples(self) -> NDArray[np.float64]:
         """Accelerations (components, npts) [m/s2]; shorter ones go on as zero."""
-        motions = self.named.values()
+        motions = [motion.acceleration for motion in self.named.values()]
         if len(motions) == 1:
-            return self.horizontal.acceleration[None, :]
-        found = np.zeros((len(motions), self.npts))
-        for row, motion in zip(found, motions, strict=True):
-            row[: motion.npts] = motion.acceleration
-        return frozen(found)
+            return motions[0][None, :]
+        return frozen(np.array([np.pad(each, (0, self.npts - each.size)) for each in motions]))
 
     def row(self, name: str) -> int | None:
         """Of a component among the samples; None if it is not known."""
@@ -380,8 +362,8 @@ class MotionComponents(Frozen):
     @property
     def digest(self) -> bytes:
         """Of the samples of all components."""
-        parts = [self.horizontal.digest, self.vertical.digest if self.vertical else ""]
-        parts += [self.y.digest] if self.y else []
+        above, across = (each.digest if each else "" for each in (self.vertical, self.y))
+        parts = [self.horizontal.digest, above, *filter(None, [across])]
         return hashlib.sha256("|".join(parts).encode()).digest()
 
     def finer(self, parts: int) -> MotionComponents:
@@ -401,11 +383,10 @@ class MotionComponents(Frozen):
     @property
     def warnings(self) -> tuple[str, ...]:
         """What to say besides of the horizontal one: of the others, and of the factor."""
-        others = [motion for name, motion in self.named.items() if name != "horizontal"]
-        found = [warning for motion in others for warning in motion.warnings]
+        doubts = [text for each in (self.y, self.vertical) if each for text in each.warnings]
         if self.horizontal.format != "pulse" and not is_usual(self.scale):
-            found.append(scale_warning(self.horizontal.name, self.scale))
-        return tuple(found)
+            doubts.append(scale_warning(self.horizontal.name, self.scale))
+        return tuple(doubts)
 
 
 def require_one_step(one: GroundMotion, other: GroundMotion, name: str) -> None:

@@ -80,7 +80,10 @@ def response_spectrum(
         )
     if not 0.0 <= damping < 1.0:
         raise RecordError(f"the damping of a response spectrum, {damping}, must be in [0, 1)")
-    peaks = np.array([_peaks(motion, float(period), damping) for period in wanted]).reshape(-1, 2)
+    peaks = np.tile([0.0, motion.pga], (wanted.size, 1))
+    for place in np.flatnonzero(wanted):
+        histories = _histories(motion, float(wanted[place]), damping)
+        peaks[place] = [np.max(np.abs(each)) for each in histories]
     with np.errstate(divide="ignore"):
         stiffness = (2.0 * np.pi / wanted) ** 2
     pseudo = np.full(wanted.shape, motion.pga)
@@ -100,14 +103,6 @@ def pseudo_acceleration_history(
     if period == 0.0:
         return motion.acceleration
     return (2.0 * math.pi / period) ** 2 * _histories(motion, period, damping)[0]
-
-
-def _peaks(motion: GroundMotion, period: float, damping: float) -> tuple[float, float]:
-    """Peak displacement [m] and total acceleration [m/s2] of one oscillator."""
-    if period == 0.0:
-        return 0.0, motion.pga
-    relative, total = (float(np.max(np.abs(h))) for h in _histories(motion, period, damping))
-    return relative, total
 
 
 def _histories(motion: GroundMotion, period: float, damping: float) -> list[NDArray[np.float64]]:
