@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 from small_records import cosmos, csmip, esm, geonet, knet, smc, write
 
-from rpscli.errors import RecordError
+from rpscli.commands.inputs import MotionRequest, single_motions
+from rpscli.errors import RecordError, UsageError
 from rpscli.records.ground_motion import Recording
 from rpscli.records.loading import expanded, load_components, load_record
 from rpscli.records.recordings import clusters, event_of
@@ -112,6 +113,19 @@ def test_the_vertical_of_a_recording_is_its_own(stations: Path, source: str, ver
     own = load_components(source, "own", folder=stations).vertical
     assert own is not None
     assert own.digest == load_record(vertical, folder=stations).digest
+
+
+def test_each_of_several_records_has_a_vertical_of_its_own(
+    stations: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(stations)
+    motions = [*single_motions(("*.smc", "*.v2"), MotionRequest(vertical="own"))]
+    assert [each.record for each in motions][2:] == ["three.v2?channel=1", "three.v2?channel=3"]
+    for each in motions:
+        assert each.record is not None
+        assert load_components(each.record, each.vertical).vertical is not None
+    with pytest.raises(UsageError, match="belongs to one record, not 4"):
+        [*single_motions(("*.smc", "*.v2"), MotionRequest(vertical="three.smc"))]
 
 
 def test_a_recording_without_a_vertical(stations: Path) -> None:

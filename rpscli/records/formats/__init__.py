@@ -7,7 +7,7 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import PluginError, RecordError
@@ -47,21 +47,14 @@ _FINEST, _COARSEST = 1e-4, 0.1  # s
 _OFFSET, _MANY = 0.1, 100  # of the peak, samples
 
 
-def read_record(
-    path: Path,
-    source: str,
-    *,
-    dt: float | None = None,
-    units: str | None = None,
-    channel: str | None = None,
-) -> GroundMotion:
-    """Read one record file of any known format."""
+def read_record(path: Path, source: str, **stated: Any) -> GroundMotion:
+    """Read one record file of any known format, with the options of `read_text`."""
     if quantity := _OTHER_QUANTITIES.get(path.suffix.lower()):
         raise RecordError(
             f"{path}: {path.suffix} files hold {quantity}; give the acceleration record of the "
             f"same station, {path.with_suffix('.AT2').name}"
         )
-    text = read_text(path, source, dt=dt, units=units, channel=channel)
+    text = read_text(path, source, **stated)
     form = _by_content(text)
     try:
         # By its extension, the format of that name says what is missing.

@@ -323,7 +323,14 @@ class RecordText:
         tolerance = 0.51 * stated.resolution / stated.step if stated.step else 0.0
         dt = self.agreed_dt(stated.step, max(tolerance, 1e-9))
         if stated.duration is not None:
-            self._refuse_other_duration(stated.duration, values.size, dt)
+            name_of, spelled, line = stated.duration
+            duration, rounding = self.number(stated.duration), last_digit(spelled)
+            if abs(duration - (values.size - 0.5) * dt) > 0.51 * dt + rounding:
+                raise self.fault(
+                    f"{name_of} = {spelled[:_SHOWN]} s, but {values.size} values {dt:g} s apart"
+                    f" last {values.size * dt:g} s; correct the header, or fetch the file again",
+                    line,
+                )
         if stated.peak is not None:
             of_peak = unit_factor(stated.peak_unit or unit) / factor
             peak, said = float(np.max(np.abs(values))), of_peak * abs(self.number(stated.peak))
@@ -340,16 +347,6 @@ class RecordText:
             doubts,
             recording=stated.recording,
         )
-
-    def _refuse_other_duration(self, stated: Statement, count: int, dt: float) -> None:
-        """Refuse a duration [s] that is not that of the values, give or take an interval."""
-        duration, rounding = self.number(stated), last_digit(stated.value.strip())
-        if abs(duration - (count - 0.5) * dt) > 0.51 * dt + rounding:
-            raise self.fault(
-                f"{stated.name} = {stated.value.strip()[:_SHOWN]} s, but {count} values {dt:g} s"
-                f" apart last {count * dt:g} s; correct the header, or fetch the file again",
-                stated.line,
-            )
 
 
 def steps_in(name: str, pattern: re.Pattern[str], line: str, place: int) -> list[Statement]:
