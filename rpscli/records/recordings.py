@@ -92,7 +92,7 @@ _YEAR = re.compile(r"\b((?:19|20)\d\d)\b|\d/\d+/(\d\d)\b")
 
 def _stated_name(recording: Recording) -> set[str]:
     """The name of a recording by its station, its earthquake or start, and its instrument."""
-    when = recording.origin or recording.start
+    when = recording.origin or recording.start or earthquake(recording.event)
     kind = recording.direction[:2] if _SEED.fullmatch(recording.direction) else ""
     return {f"{recording.station} {kind} at {when}"} if recording.station and when else set()
 

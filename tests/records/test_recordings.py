@@ -42,6 +42,30 @@ STATED = {
 }  # fmt: skip
 
 
+AT2 = """PEER NGA STRONG MOTION DATABASE RECORD
+Loma Prieta, 10/18/1989, Gilroy - Gavilan Coll., {}
+ACCELERATION TIME SERIES IN UNITS OF G
+NPTS=  5, DT=   .0050 SEC
+ 0.0 0.1 -0.2 {} 0.0
+"""
+
+
+def test_titles_of_at2_files_tell_a_pair(tmp_path: Path) -> None:
+    for name, direction in (("one", "67"), ("two", "337"), ("up", "UP")):
+        write(tmp_path, AT2.format(direction, len(direction) / 10), f"{name}.at2")
+    recording = load_record("one.at2", folder=tmp_path).recording
+    assert recording == Recording(
+        "Loma Prieta, 10/18/1989", "Gilroy - Gavilan Coll.", direction="67"
+    )
+    assert clusters(["one.at2", "two.at2", "x.at2"], tmp_path) == (0, 0, 1)
+    assert clusters(["one.at2", "two.at2"], tmp_path, "events") == (0, 0)
+    (pair,) = expanded([".?both"], folder=tmp_path).sources
+    assert pair == "one.at2?second=two.at2&both"
+    up = load_components(pair, "own", folder=tmp_path).vertical
+    assert up is not None
+    assert up.source == "up.at2"
+
+
 @pytest.mark.parametrize("name", STATED)
 def test_what_headers_state_of_a_recording(tmp_path: Path, name: str) -> None:
     text, recording = STATED[name]
