@@ -87,7 +87,7 @@ def record_folder(
 def _result(
     command: str, motions: Sequence[GroundMotion], terminal: Terminal, **more: Sequence[str]
 ) -> None:
-    """What was read and how strong it is, as document or table."""
+    """The motion that was read and its strength, as document or table."""
     from rpscli.records.measures import intensity_measures
     from rpscli.report.tables.motions import record_document, record_table
 

@@ -256,7 +256,7 @@ def _range(
 
 
 def _pgv(scale_by: str, pgv: float | None, target: TargetSpectrum) -> float | None:
-    """What every motion is brought to; None for factors that fit the spectrum."""
+    """The PGV of every motion; None for factors that fit the spectrum."""
     if scale_by == "spectrum":
         if pgv is not None:
             raise UsageError("--pgv: belongs to --scale-by PGV")

@@ -1,4 +1,4 @@
-"""What a recording must be like to be a candidate: `magnitude=6.5..7.5`, `pulse=no`."""
+"""Conditions that a recording must meet to be a candidate: `magnitude=6.5..7.5`, `pulse=no`."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ UNITS = {
     "d5_75": "s",
     "d5_95": "s",
 }
-"""What has a range, with its SI unit: of the recording, and significant durations of the motion."""
+"""Quantities that have a range, with SI units; significant durations are those of the motion."""
 
 PULSE = {"yes": 1.0, "no": 0.0}
 
@@ -33,7 +33,7 @@ class Filter(NamedTuple):
     high: float
 
     def keeps(self, motion: GroundMotion) -> bool | None:
-        """Whether a motion may be a candidate; None if the quantity is not known of it."""
+        """True if a motion may be a candidate; None if the quantity is not known of it."""
         if self.name.startswith("d5"):
             value = getattr(intensity_measures(motion), self.name)
         else:

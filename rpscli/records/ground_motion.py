@@ -43,7 +43,7 @@ class Recording(NamedTuple):
 
     @property
     def is_vertical(self) -> bool:
-        """Whether the component is stated to be a vertical one."""
+        """True if the component is stated to be a vertical one."""
         return _VERTICAL.fullmatch(self.direction) is not None
 
 
@@ -56,12 +56,12 @@ LEAST, MOST = 0.25, 4.0
 
 
 def is_usual(factor: float) -> bool:
-    """Whether a factor on a recorded motion is usual; its sign does not matter."""
+    """True for a usual factor on a recorded motion; its sign does not matter."""
     return LEAST <= abs(factor) <= MOST
 
 
 def scale_warning(name: str, factor: float) -> str:
-    """What to say of a record under a factor that is not usual."""
+    """The warning for a record under a factor that is not usual."""
     return (
         f"{name} is scaled by {factor:.4g}, beyond the usual {LEAST:g} to {MOST:g}: records of"
         " another size differ in more than their amplitude"
@@ -382,7 +382,7 @@ class MotionComponents(Frozen):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What to say besides of the horizontal one: of the others, and of the factor."""
+        """Warnings besides those of the horizontal one: of the others, and of the factor."""
         doubts = [text for each in (self.y, self.vertical) if each for text in each.warnings]
         if self.horizontal.format != "pulse" and not is_usual(self.scale):
             doubts.append(scale_warning(self.horizontal.name, self.scale))

@@ -270,7 +270,7 @@ def expand_sources(sources: Sequence[str], *, folder: Path | None = None) -> lis
 
 
 def repeated(sources: Sequence[str]) -> list[str]:
-    """What is to be said of sources that are given more than once, if there are any."""
+    """A note on sources that are given more than once, if there are any."""
     again = [source for source, count in Counter(sources).items() if count > 1]
     others = f" and {len(again) - 1} more" if len(again) > 1 else ""
     return [f"{first}{others}: given more than once, taken once" for first in again[:1]]
@@ -384,7 +384,7 @@ def _listed(of: Source, folder: Path | None, notes: list[str]) -> Iterator[Sourc
 
 
 def _without_remark(line: str, folder: Path) -> str:
-    """What a line names; the name of a file that is there may hold the mark of a remark."""
+    """The source in a line; the name of a file that is there may hold the mark of a remark."""
     whole = line.strip()
     named = 0
     if "#" in whole:

@@ -1,4 +1,4 @@
-"""What a ground motion measures, and a pair of them: velocity, intensities; scaling to one.
+"""Measures of a ground motion, and of a pair of them: velocity, intensities; scaling to one.
 
 A measure of one component depends on how the sensors stood. Of a pair it is taken over the 180
 directions 0, 1, ... 179 deg from the first component towards the second: `over_directions` has a
@@ -178,7 +178,7 @@ class IntensityMeasure:
     of: Callable[[GroundMotion, float, float], float]
     """Of a motion, a period [s] and a share of critical damping; SI units."""
     at_period: bool = False
-    """Whether it depends on the period, which is NaN otherwise."""
+    """True if it depends on the period, which is NaN otherwise."""
     power: float = 1.0
     """Of the factor on a motion, by which the measure grows."""
 
@@ -207,7 +207,7 @@ MEASURES = Registry(
 
 
 def needs_period(measure: Measure | None) -> bool:
-    """Whether a measure is taken at a period."""
+    """True for a measure that is taken at a period."""
     return measure is not None and MEASURES[measure].at_period
 
 
@@ -228,7 +228,7 @@ def factor_to(value: float, unscaled: float, measure: Measure, source: str) -> f
 
 
 Of = Literal["rotd50", "geomean", "rotd100", "larger", "x", "component"]
-"""What a measure may be of."""
+"""Names of what a measure may be of."""
 
 OF: tuple[Of, ...] = get_args(Of)
 
@@ -304,7 +304,7 @@ _LINEAR: tuple[Measure, ...] = ("PGA", "PGV", "PGD", "Sa")
 
 
 def _linear(motion: GroundMotion, measure: Measure, period: float | None, damping: float) -> Array:
-    """What is linear in a motion and has the measure as its largest magnitude."""
+    """The history, linear in a motion, whose largest magnitude is the measure."""
     if measure == "Sa":
         assert period is not None, "Sa is asked for at a period"
         return pseudo_acceleration_history(motion, period, damping)

@@ -31,7 +31,7 @@ def turned(motion: MotionComponents, rotation: float) -> MotionComponents:
 
 
 def rotated(first: GroundMotion, second: GroundMotion, angle: float) -> GroundMotion:
-    """What a structure sees whose plane stands at an angle to the first component."""
+    """The motion in a plane that stands at an angle to the first component."""
     require_one_step(first, second, "second")
     cosine, sine = _exact_at_right_angles(angle)
     values = np.zeros(max(first.npts, second.npts))

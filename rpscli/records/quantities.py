@@ -62,7 +62,7 @@ def numbers_in(line: str) -> list[float] | None:
 
 
 def why_no_numbers(line: str) -> str:
-    """What keeps a line from being read as numbers, if that is its punctuation; else nothing."""
+    """The punctuation that keeps a line from being read as numbers, in words; else nothing."""
     if re.fullmatch(r"[-+.,0-9EeDd;\s]*[0-9][-+.,0-9EeDd;\s]*", line):
         if re.search("[0-9],[0-9]", line) and ";" in line:
             return " (decimal commas and semicolons: write points, and commas or blanks between)"
@@ -126,7 +126,7 @@ EXAMPLES = {
     "amplitude": "0.3g",
     "period": "0.8",
 }
-"""What options look like."""
+"""Examples of options."""
 
 LIKENESS = 0.5
 """Of a name to the one that was meant: names of records are long, and made of parts."""
@@ -136,7 +136,7 @@ SOME = 12
 
 
 def hint(word: str, known: Sequence[str]) -> str:
-    """What might have been meant: the nearest known word, or else all of them, or some of many."""
+    """The nearest known word that might have been meant, or else all of them, or some of many."""
     rest = f" and {len(known) - SOME} more" if len(known) > 2 * SOME else ""
     some = ", ".join(known[:SOME] if rest else known)
     return errors.hint(word, known, f"known: {some}{rest}", LIKENESS)

@@ -1,4 +1,4 @@
-"""Which sources are of one recording, and of one earthquake: what statistics draw as a whole.
+"""Recordings and earthquakes that sources are of: statistics draw them as a whole.
 
 Histories under motions that hang together do not tell as much as so many motions would. `clusters`
 numbers sources so that those that hang together have one number, by their *recordings* or by their
@@ -35,7 +35,7 @@ from rpscli.records.measures import Of
 from rpscli.records.source import FILE, SET, Source
 
 By = Literal["recordings", "events"]
-"""What statistics take to be independent."""
+"""Units that statistics take to be independent."""
 
 Pair = tuple[str, str]
 """Sources of two components."""
@@ -55,7 +55,7 @@ _SEED = re.compile(r"[A-Z]{2}[A-Z\d]\d*")  # of a direction: band, instrument, c
 
 
 def stated(of: Source, folder: Path | None) -> Recording:
-    """What is stated of the recording of a source, by its header or by the table of its set."""
+    """The recording of a source, as its header or the table of its set states it."""
     try:
         if of.scheme == SET and of.components is not None:
             return sets.load_component(of.components[0]).recording
@@ -98,7 +98,7 @@ def _stated_name(recording: Recording) -> set[str]:
 
 
 def _right_angles(files: Iterable[str]) -> set[str]:
-    """What the names of two files begin with that end with azimuths of 90 deg between them."""
+    """Beginnings of the names of two files that end with azimuths of 90 deg between them."""
     by_azimuth: dict[str, list[int]] = {}
     for match in filter(None, map(_AZIMUTH.fullmatch, sorted(set(files)))):
         azimuth = _COMPASS.get(match[2].upper())
@@ -257,7 +257,7 @@ ONE_FACTOR = (
 
 
 def pairs(sources: Sequence[str], of: Of | None = None) -> tuple[Pair | None, ...]:
-    """What each source is measured by: both components of its recording, or None for itself."""
+    """Both components by which each source is measured, or None where it is by itself."""
     # Without `of` it is the pair where its recording stands in several directions among the
     # sources, at an angle or as both components: one factor then suits all of them. A measure `of`
     # a pair is that of every source.

@@ -1,4 +1,4 @@
-"""What codes ask of a set of ground motions, and whether a set has it.
+"""Requirements of codes on a set of ground motions, and verdicts on a set.
 
 Each entry says against what it was checked. None of the codes' own texts was at hand: whoever needs
 a clause reads it there.
@@ -13,10 +13,10 @@ from typing import Literal, NamedTuple
 from rpscli.records.measures import Of
 
 Component = Of | Literal["srss"]
-"""What a spectrum is of: a measure of pairs, or the root of the sum of both squared spectra."""
+"""Kinds of spectra: measures of pairs, or the root of the sum of both squared spectra."""
 
 NOT_VERIFIED = "NOT VERIFIED"
-"""How statements begin that nothing was found to check."""
+"""The beginning of statements that nothing was found to check."""
 
 COMPONENTS: dict[Component, str] = {
     "component": "single components",
@@ -53,7 +53,7 @@ class Rule(NamedTuple):
 
 @dataclass(frozen=True)
 class Requirements:
-    """What a code asks of a set: at least `count` motions or pairs, `least` of the target.
+    """The demands of a code on a set: at least `count` motions or pairs, `least` of the target.
 
     `span` are multiples of T1, or of T_M where it is `isolated`, between which that is.
     """

@@ -30,7 +30,7 @@ SHORT = 10.0
 
 
 class Pool(NamedTuple):
-    """What may be chosen: `spectra` (m, 1 + n) under `factors` (m,), the PGA before the periods.
+    """Candidates: `spectra` (m, 1 + n) under `factors` (m,), the PGA before the periods.
 
     Of one of the `recordings` (m,) one is chosen at most; `events` (m,) number the earthquakes.
     """
@@ -43,7 +43,7 @@ class Pool(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Goal:
-    """What the mean of a set is to have; or the mean and the deviation of ln Sa.
+    """The aim of the mean of a set, or of the mean and the deviation of ln Sa.
 
     `wanted` is (1 + n,), `deviation` (n,). Of the mean over `wanted` at least `least` is required
     at all periods, and 1 of the `pga`. One common factor may bring the set there, within the
@@ -141,7 +141,7 @@ class _Search:
 
     @staticmethod
     def _repeats(numbers: Numbers) -> Numbers:
-        """How often the commonest number of each row (..., size) comes."""
+        """Count of the commonest number of each row (..., size)."""
         same = numbers[:, :, None] == numbers[:, None, :]
         return np.asarray(same.sum(axis=2).max(axis=1))
 

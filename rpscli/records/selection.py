@@ -99,7 +99,7 @@ class Selection:
     requirements: Requirements | None = None
     rules: tuple[Rule, ...] = ()
     whole: bool = False
-    """Whether all sets were looked at."""
+    """True if all sets were looked at."""
 
     @property
     def least_ratio(self) -> float:
@@ -108,7 +108,7 @@ class Selection:
 
     @property
     def clamped(self) -> int:
-        """How many factors are at a bound."""
+        """Number of factors at a bound."""
         return sum(one.clamped for one in self.chosen)
 
     @property
@@ -132,7 +132,7 @@ class Selection:
 
 @dataclass(frozen=True)
 class SelectionRequest:
-    """What is wanted of a choice."""
+    """The wishes for a choice."""
 
     count: int
     """Number of motions, or pairs."""
@@ -146,7 +146,7 @@ class SelectionRequest:
     """Bring every motion to this peak velocity, in place of the factor that fits it best
     [m/s]."""
     of: Component = "component"
-    """What spectra are of: of single components, or of pairs."""
+    """Kind of the spectra: of single components, or of pairs."""
     rules: str | None = None
     """Name of what a code asks of the set, enforced and judged; None for what the target's asks."""
     structure: Periods | None = None

@@ -29,7 +29,7 @@ _SETS = {
     "nearfield_no_pulse": range(15, 29),
 }
 PULSES = {"nearfield_pulse": True, "nearfield_no_pulse": False}
-"""Whether records have a velocity pulse, where the set was made by that."""
+"""True for records with a velocity pulse, where the set was made by that."""
 
 WHOLE = tuple(f"{name}/*" for name in _SETS)
 """Patterns of whole sets."""
@@ -137,7 +137,7 @@ def _component(folder: Path, component: str, source: str, *, normalised: bool) -
 
 
 def _recording(file: Any, component: str) -> tuple[Recording, str]:
-    """What the table of the set says of a record, and the name of the component."""
+    """The entry of a record in the table of the set, and the name of the component."""
     name, record, side = component.split("/")
     table = file["records/table"][()]
     row = table[table["index"] == int(record)][0]

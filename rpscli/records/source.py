@@ -1,4 +1,4 @@
-"""What a user writes for a ground motion, as a value: parsed once, written back as it reads.
+"""Sources: the text that a user writes for a ground motion, parsed once, written back alike.
 
 A source is `place?options` or `scheme:place?options`. Options of every kind, in any order, are
 
@@ -68,7 +68,7 @@ class Source(str):  # noqa: SLOT000 -- parts are kept beside the text
         return made
 
     def __getnewargs__(self) -> tuple[str, str, Options]:  # type: ignore[override]
-        """What a copy in another process is made of."""
+        """The parts of which a copy in another process is made."""
         return self.scheme, self.place, self.options
 
     @classmethod
@@ -126,7 +126,7 @@ class Source(str):  # noqa: SLOT000 -- parts are kept beside the text
 
     @property
     def both(self) -> bool:
-        """Whether both components act together."""
+        """True if both components act together."""
         return "both" in self.values
 
     @property
@@ -146,7 +146,7 @@ class Source(str):  # noqa: SLOT000 -- parts are kept beside the text
 
     @property
     def of_pair(self) -> bool:
-        """Whether two components are wanted: together, or one direction between them."""
+        """True if two components are wanted: together, or one direction between them."""
         return self.both or "angle" in self.values
 
     @property
@@ -241,7 +241,7 @@ def split_options(text: str) -> tuple[str, str]:
 
 
 def is_file(place: str, folder: Path | None) -> bool:
-    """Whether there is such a file."""
+    """True if there is such a file."""
     try:
         return ((folder or Path()) / Path(place).expanduser()).is_file()
     except (OSError, ValueError, RuntimeError):  # too long, a zero byte, no such user

@@ -161,6 +161,6 @@ DAMPING = 0.05
 
 
 def drawn_spectrum(motion: GroundMotion) -> ResponseSpectrum:
-    """What figures show: up to 4 s, at 5 % of critical damping."""
+    """The spectrum of figures: up to 4 s, at 5 % of critical damping."""
     periods = np.concatenate([np.arange(0.0, 1.0, 0.02), np.arange(1.0, 4.01, 0.05)])
     return response_spectrum(motion, periods, DAMPING)

@@ -57,15 +57,15 @@ class TargetSpectrum:
     checked: str = "the user's own"
     """Against what its formulae were compared."""
     rules: str = "mean90"
-    """What its code asks of a set of motions, a name of `requirements.RULES`."""
+    """Rules of its code for a set of motions, a name of `requirements.RULES`."""
     of: Component | None = None
-    """What its ordinates are of; None if it is not said."""
+    """Kind of its ordinates; None if it is not said."""
     parameters: str = ""
     """Those of a code, with their units."""
     level: str = ""
-    """What the code calls its level of shaking."""
+    """Its level of shaking, as the code calls it."""
     pgv_by: str = CONVENTION
-    """How its PGV is found."""
+    """Origin of its PGV."""
     deviation: Shape | None = None
     """Standard deviation of ln Sa at periods (n,); None if motions need not scatter."""
     pinned: float | None = None

@@ -23,11 +23,11 @@ from rpscli.records.ground_motion import GroundMotion, Recording
 from rpscli.records.quantities import KNOWN_UNITS, NUMBER_PATTERN, UNIT_PATTERN, canonical_unit
 
 Said = dict[str, Statement]
-"""What a header says, by the names of `Layout.says`."""
+"""Statements of a header, by the names of `Layout.says`."""
 
 
 class Words(NamedTuple):
-    """How a header says one thing: its name in messages, and the pattern of the line."""
+    """The words of a header for one thing: its name in messages, and the pattern of the line."""
 
     name: str
     pattern: str
@@ -44,7 +44,7 @@ class Layout:
     corrected: str
     """That of a channel that can be read."""
     refusal: str
-    """What is said of other titles."""
+    """The message for other titles."""
     header: int | str
     """Number of its lines, or the line that announces the values, its last one."""
     says: Mapping[str, Words]
@@ -61,19 +61,19 @@ class Layout:
     series: int = 1
     """Series of one length, without a line between; the first one is acceleration."""
     ends: str | None = None
-    """What follows the values."""
+    """The line behind the values."""
     numbers: Callable[[RecordText, int, Said], int] | None = None
     """Reads the blocks of numbers before or behind the last line of the header, adds what they say,
     and tells where the values begin."""
     centred: bool = False
-    """Whether the values have the offset of the sensor, which is removed, and that is said."""
+    """True if values have the offset of the sensor, which is removed, and that is said."""
 
     def recognises(self, text: RecordText) -> bool:
-        """Whether the file begins like one of this format."""
+        """True for a file that begins like one of this format."""
         return re.match(self.begins, "\n".join(text.heads[:80]), re.IGNORECASE) is not None
 
     def refused(self, text: RecordText) -> str:
-        """What is said of a file that holds no channel that can be read; else nothing."""
+        """The message for a file that holds no channel that can be read; else nothing."""
         found = self.channels(text)
         if found and re.match(self.corrected, text.heads[found[0].line], re.IGNORECASE):
             return ""
@@ -97,7 +97,7 @@ class Layout:
         return found
 
     def stated(self, text: RecordText, channel: Channel) -> tuple[Stated, int, Said]:
-        """What the header of a channel says, and the line where its values begin."""
+        """The statements of the header of a channel, and the line where its values begin."""
         start = channel.line
         end = start + self.header if isinstance(self.header, int) else self._announced(text, start)
         said = Said()

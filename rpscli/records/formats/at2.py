@@ -72,7 +72,7 @@ class _Header(NamedTuple):
 
 
 def recognises_at2(text: RecordText) -> bool:
-    """Whether the text has a line that announces NPTS, with DT on it or beside it."""
+    """True for a text with a line that announces NPTS, with DT on it or beside it."""
     return _header(text) is not None
 
 
@@ -90,7 +90,7 @@ def read_at2(text: RecordText) -> GroundMotion:
 
 
 def recording_of_at2(text: RecordText) -> Recording:
-    """What the titles say: earthquake, date, station and direction."""
+    """Earthquake, date, station and direction, as far as the titles say them."""
     header = _header(text)
     return Recording() if header is None else _recording(_title(text, header))
 
@@ -146,7 +146,7 @@ def _header(text: RecordText) -> _Header | None:
 
 
 def _stated(text: RecordText, header: _Header) -> tuple[Stated, list[str]]:
-    """What the header says, once or alike, and a note on a step that may be rounded."""
+    """Statements of the header, each once or alike, and a note on a step that may be rounded."""
     counts, steps = [header.npts], [header.step]
     for index, line in enumerate(text.heads[: header.start]):
         if other := _OTHER_SERIES.search(line):

@@ -67,11 +67,11 @@ _ANY_UNIT = re.compile(rf"{UNIT_PATTERN}|{_OTHER_UNIT.pattern}|m?s(?:ec)?|-", re
 _NO_UNIT = re.compile(
     r"(?:[NSEWUDXYZHV]\W?){1,3}\d?|\d+(?:\s*deg)?|\w*(?:corr|filt|proc|ground)\w*", re.IGNORECASE
 )
-"""What stands in brackets behind a name and is a direction, or a remark."""
+"""Words in brackets behind a name that are a direction, or a remark."""
 
 
 class _Title(NamedTuple):
-    """What stands over a column: its name, the unit in brackets, the line."""
+    """The title of a column: its name, the unit in brackets, the line."""
 
     name: str
     unit: str
@@ -97,7 +97,7 @@ class _Table:
     lines: NDArray[np.int64]  # (rows,) of the file
 
     def found(self, name: str, pattern: re.Pattern[str]) -> list[Statement]:
-        """What lines of the header state."""
+        """Statements in lines of the header."""
         return [
             Statement(name, match[match.lastindex or 0], line.line)
             for line in self.header
@@ -106,7 +106,7 @@ class _Table:
 
 
 def recognises_columns(text: RecordText) -> bool:
-    """Whether most lines, and the last that is no comment, hold nothing but numbers."""
+    """True if most lines, and the last that is no comment, hold nothing but numbers."""
     body = [_plain(line) for line in text.lines if line.strip() and not _is_comment(line)]
     numeric = sum(1 for line in body if numbers_in(line))
     return numeric >= 2 and 2 * numeric > len(body) and bool(numbers_in(body[-1]))
@@ -305,7 +305,7 @@ def _sequence(text: RecordText, table: _Table, title: _Title | None, *doubts: st
 
 
 def _wrapped(text: RecordText, table: _Table) -> str:
-    """What is said of rows that were read one after the other; refuses what looks otherwise."""
+    """A note on rows that were read one after the other; refuses rows that look otherwise."""
     width = int(table.widths[0])
     ragged = np.flatnonzero(table.widths[:-1] != width)
     if ragged.size or table.widths[-1] > width:
@@ -331,7 +331,7 @@ def _wrapped(text: RecordText, table: _Table) -> str:
 
 
 def _stated(text: RecordText, table: _Table, title: _Title | None) -> tuple[Stated, str]:
-    """What the header and the title of the column say; two units, or steps, are refused."""
+    """Statements of the header and of the title; two units, or steps, are refused."""
     units: set[str] = set()
     for line in table.header:
         for key in _UNITS_KEY.finditer(line.value):

@@ -35,7 +35,7 @@ STEP_PATTERN = (
     r"\s*(?:[\[(]\s*([A-Za-z]+)\.?\s*[\])])?\s*[=:]?\s*"
     rf"({STATED_PATTERN}[.0-9]*)\s*((?!(?:dt|npts)\b)[A-Za-z]+)?"
 )
-"""What follows the name of a time step: a unit in brackets, the number, a unit behind it."""
+"""The words behind the name of a time step: a unit in brackets, the number, a unit behind it."""
 
 _TIME_UNITS = {
     **dict.fromkeys(("", "s", "sec", "secs", "second", "seconds"), 1.0),
@@ -53,7 +53,7 @@ _SHORTEST_STEP, _LONGEST_STEP = 1e-6, 100.0  # s
 
 
 class Statement(NamedTuple):
-    """What a header says: the name of the quantity, its value as printed, the line (from zero)."""
+    """One thing that a header says: its name, its value as printed, the line (from zero)."""
 
     name: str
     value: str
@@ -70,7 +70,7 @@ class Channel(NamedTuple):
 
 @dataclass(frozen=True)
 class Stated:
-    """What a file says of its values; None where it is silent.
+    """All that a file says of its values; None where it is silent.
 
     `unit` is a canonical one of acceleration, `step` [s] that of the samples, `resolution` [s] what
     its printing leaves open, `peak` in `peak_unit` or in the unit of the values.
@@ -91,7 +91,7 @@ class RecordText:
     """Lines of a record file, and the options that came with its source."""
 
     path: Path
-    """Where the lines were read."""
+    """The file that was read."""
     source: str
     """The source as the user wrote it."""
     lines: tuple[str, ...]
