@@ -25,8 +25,8 @@ STATED = {
         direction="90 DEG", start="05/02/83, 16:42:48.2",
     )),
     "a.v2a": (geonet(), Recording(
-        "", "WPWS", magnitude=4.17, origin="2018 February 12         21:15:54", direction="S16W",
-        start="20180212_211554",
+        "6 km south of Waipukurau", "WPWS", magnitude=4.17, direction="S16W",
+        origin="2018 February 12         21:15:54", start="20180212_211554",
     )),
     "a.NS": (knet(), Recording(
         "", "CHB002", magnitude=5.1, origin="2014/12/31 23:49:00", direction="N-S",

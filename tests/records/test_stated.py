@@ -85,6 +85,7 @@ def test_units_steps_counts_and_columns(tmp_path: Path, text: str, options: str)
         (f"time,displacement\n{TIMED}", "?units=g", "this is a displacement record"),
         (f"time;velocity\n{rows(TIMES, VALUES, between=' ')}", "?units=g", "a velocity record"),
         (f"{HEAD}   N-S   E-W   U-D\n{THREE}", "", r"3 channels; .*\?channel=1.*1: N-S; 2: E-W"),
+        (f"units: g\n  N00E  N90E  V\n---+---+---\n{THREE}", "?dt=0.005", "1: N00E; 2: N90E; 3: V"),
         (f"{HEAD}{THREE}", "", "as many as there are rows of 3 numbers"),
         (f"{HEAD}   N-S   E-W   U-D\n{THREE}", "?channel=north", "there is no channel north"),
         (f"199 0.0050\n{ALONE}", "?units=g", "look like the number of values and their step"),

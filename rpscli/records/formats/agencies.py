@@ -49,7 +49,7 @@ class Layout:
     """Number of its lines, or the line that announces the values, its last one."""
     says: Mapping[str, Words]
     """`count`, `step` [s], `rate` [1/s], `duration` [s], `unit`, `peak`, `quantity`, `scale`, which
-    may all be said again, alike; and what a `Recording` has."""
+    may all be said again, alike; the `place` of the station, and what a `Recording` has."""
     needed: tuple[str, ...]
     lacks: str = "the header lacks {}; fetch the file again"
     label: str = ""
@@ -168,8 +168,8 @@ class Layout:
             text.series(start, count, width=width, stop=stop, closed_by=ends or None)
             for start, stop in zip(begin, [*begin[1:], None], strict=True)
         )
-        words = [stated.recording.event, stated.recording.origin]
-        words.append(f"{stated.recording.station} {stated.recording.direction}".strip())
+        of, place = stated.recording, said["place"].value if "place" in said else ""
+        words = [of.event, of.origin, " ".join(filter(None, (of.station, place, of.direction)))]
         if self.label:
             words.append(f"channel {channel.number}, {channel.label}")
         name = ""
@@ -288,6 +288,7 @@ COSMOS = Layout(
         "width": Words("Format", r"acceleration p.*Format\s*=\s*\(\s*([1-9]\d?)[A-Z]"),
         "duration": Words("approx", rf"acceleration p.*\bapprox\s+{_NUMBER}\s*secs"),
         "station": Words("Code", r"^Statn No:.*?\bCode:\s*(\S+)"),
+        "place": Words("place", r"^Statn No:.*?\bCode:\s*\S+\s+(\S.*)"),
         "event": Words("event", r"^(?:Rcrd|Record) of\s+(\S.*?\bEarthquake\b.*?)\s*$"),
         "origin": Words("Origin", r"^Origin:\s*(\d[\d/, :.]*)"),
         "start": Words("start time", r"^Rcrd start time:\s*(\d[\d/, :.]*)"),
@@ -316,6 +317,7 @@ CSMIP = Layout(
         "unit": Words("UNITS", rf"{_ACCEL}.*?(?:UNITS:|,\s*IN)\s*{_UNIT}"),
         "peak": Words("PEAK ACCELERATION", rf"PEAK ACCELERATION\s*=\s*{_NUMBER}"),
         "station": Words("STATION", r"^STATION (?:NO|ID)\.\s*(\S+)"),
+        "place": Words("place", r"^\d\S*\s+(\S.*?)\s+CHAN\s+\d+:"),
         "event": Words("event", r"^((?!UNCORRECTED).*\bEARTHQUAKE\b.*?)\s*$"),
         "origin": Words("ORIGIN", r"\(ORIGIN[^:]*:\s*(\d[\d/, :.]*)"),
         "start": Words("start time", r"(?:TRIGGER|START) TIME:\s*(\d[\d/, :.-]*)"),
@@ -343,6 +345,7 @@ GEONET = Layout(
         "peak": Words("peak", rf"^Acceleration:\s*peak\s+{_NUMBER}"),
         "unit": Words("unit", rf"^Acceleration:\s*peak\s+{NUMBER_PATTERN}\s*{_UNIT}"),
         "station": Words("Site", r"^Site\s+(\S+)"),
+        "event": Words("event", r"^(\d+ km [\w-]+ of \S.*?)\s*$"),
         "origin": Words("origin", r"^(\d{4}\s+[A-Z][a-z]+\s+\d+\s+\d+:\d+:\d+)\s+UT"),
         "start": Words("Accelerogram", r"^Accelerogram\s+(\d{8}_\d{6})"),
         "magnitude": Words("Mw", rf"\bMw\s+{_NUMBER}\s*$"),

@@ -95,6 +95,7 @@ class _Table:
     values: Array  # (numbers,) of all rows, one after the other
     widths: NDArray[np.int64]  # (rows,) numbers of each
     lines: NDArray[np.int64]  # (rows,) of the file
+    above: int  # line of the words above the first number, but for rulers
 
     def found(self, name: str, pattern: re.Pattern[str]) -> list[Statement]:
         """Statements in lines of the header."""
@@ -154,7 +155,7 @@ def _titles(table: _Table, width: int) -> list[_Title]:
             titles = [_title(cell, line.line) for cell in cells]
             if units:
                 titles = [t._replace(unit=t.unit or u) for t, u in zip(titles, units, strict=True)]
-            last = line.line == table.lines[0] - 1 and width > 2
+            last = line.line == table.above and width > 2
             spectrum = width > 1 and any(_SPECTRUM.search(each.name) for each in titles)
             if last or spectrum or any(each.is_acceleration for each in titles):
                 return titles
@@ -172,6 +173,7 @@ def _title(cell: str, line: int) -> _Title:
 def _table(text: RecordText) -> _Table:
     header: list[Statement] = []
     values, widths, lines = array("d"), array("q"), array("q")  # of records there may be millions
+    above = -1
     for index, line in enumerate(text.lines):
         row = numbers_in(_plain(line))
         if row:
@@ -181,6 +183,7 @@ def _table(text: RecordText) -> _Table:
         elif not widths:
             words = text.heads[index].strip().lstrip("#%!/*|").strip()
             header.append(Statement("header", words, index))
+            above = index if any(map(str.isalpha, words)) else above if line.strip() else -1
         elif row is None and not _is_comment(line):
             raise text.fault(
                 f"{line.strip()[:40]!r} stands among the values and is not a row of finite "
@@ -206,7 +209,7 @@ def _table(text: RecordText) -> _Table:
             f"record as PEER AT2, or as columns of time and acceleration"
         )
     kept = tuple(line for line in header if line.value)
-    return _Table(kept, np.array(values), np.array(widths), np.array(lines))
+    return _Table(kept, np.array(values), np.array(widths), np.array(lines), above)
 
 
 def _check_count(text: RecordText, table: _Table) -> None:
