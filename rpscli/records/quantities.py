@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from rpscli import errors
@@ -199,15 +199,23 @@ class Query:
         return match[1], match[2]
 
 
+def options_in(text: str, source: str) -> Iterator[tuple[str, str | None]]:
+    """Names and values of `key=value&flag`; a value is None without `=`, and none comes twice."""
+    seen = set[str]()
+    for item in filter(None, map(str.strip, text.split("&"))):
+        name, mark, value = map(str.strip, item.partition("="))
+        if name in seen:
+            raise RecordError(f"{source}: {name} is given twice; keep one")
+        seen.add(name)
+        yield name, value if mark else None
+
+
 def parse_query(text: str, source: str, allowed: Sequence[str]) -> Query:
     """Split `key=value&key=value`."""
     values: dict[str, str] = {}
-    for item in filter(None, text.split("&")):
-        key, _, value = (part.strip() for part in item.partition("="))
+    for key, value in options_in(text, source):
         if key not in allowed:
             raise RecordError(f"{source}: option {key!r} is not known; {hint(key, allowed)}")
-        if key in values:
-            raise RecordError(f"{source}: {key} is given twice; keep one")
         if not value:
             raise RecordError(f"{source}: {key} has no value; write {key}=...")
         values[key] = value

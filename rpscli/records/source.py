@@ -15,13 +15,13 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from functools import cached_property
 from pathlib import Path, PurePath
 from typing import Self
 
 from rpscli.errors import RecordError
-from rpscli.records.quantities import Query, hint
+from rpscli.records.quantities import Query, hint, options_in
 
 FILE, LIST, SET = "", "list", "fema_p695"
 SCHEMES = (SET, "pulse", "synthetic", LIST)
@@ -95,11 +95,15 @@ class Source(str):  # noqa: SLOT000 -- parts are kept beside the text
             place, _, options = rest.partition("?")
             if scheme == LIST:
                 place, options = split_options(rest)
-        found = cls(scheme, place, _each(options, text))
-        found._check()
-        return found
+        each = ((SPELLINGS.get(name, name), value) for name, value in options_in(options, text))
+        source = cls(scheme, place, each)
+        source._check()
+        return source
 
     def _check(self) -> None:
+        for name in FLAGS:
+            if self.values.get(name) is not None:
+                raise RecordError(f"{self}: {name} takes no value; write {name} alone")
         if "rotation" in self.values and not self.both:
             raise RecordError(
                 f"{self}: rotation turns both components together; write both&rotation"
@@ -219,19 +223,6 @@ class Source(str):  # noqa: SLOT000 -- parts are kept beside the text
                 f"{self}: {word} two components: a pair of a set, fema_p695:farfield/1?both,"
                 " or second=FILE, seen from the folder of the first one"
             )
-
-
-def _each(options: str, text: str) -> Iterator[tuple[str, str | None]]:
-    seen = set[str]()
-    for item in filter(None, (part.strip() for part in options.split("&"))):
-        name, mark, value = (part.strip() for part in item.partition("="))
-        name = SPELLINGS.get(name, name)
-        if name in seen:
-            raise RecordError(f"{text}: {name} is given twice; keep one")
-        seen.add(name)
-        if name in FLAGS and mark:
-            raise RecordError(f"{text}: {name} takes no value; write {name} alone")
-        yield name, value if mark else None
 
 
 def split_options(text: str) -> tuple[str, str]:
