@@ -6,21 +6,25 @@ records on 3, 6 and 9 storeys and three curvatures of the bearings, those that o
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
-from typing import NamedTuple
+from collections.abc import Callable
 
 import numpy as np
 
-from benchmarks.agreement import agreeing, share
-from benchmarks.measure import seconds
+from benchmarks.common import (
+    STEP,
+    agreeing,
+    installed,
+    motions,
+    seconds,
+    settings,
+    share,
+    show,
+    structure,
+)
 from benchmarks.peers.heyoka_history import HeyokaRocking
-from benchmarks.peers.installed import installed
 from benchmarks.peers.rocking import rocking_of
-from benchmarks.structures import STEP, motions, structure
-from benchmarks.tables import show
 from rpscli.analyses.demand import Request, demands
 from rpscli.analyses.kernels.history import sampled_history
-from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.model.podium import PodiumStructure
 from rpscli.physics.state import LANES
 from rpscli.records.ground_motion import GroundMotion, MotionComponents
@@ -40,25 +44,14 @@ COLUMNS = (
     "steps/sample",
 )
 
-Ensemble = dict[int, list[PodiumStructure]]
+Answer = tuple[list[float], float]
+"""Largest rotations of one number of storeys, and seconds for all."""
+
+Buildings = list[PodiumStructure]
 
 
-class Answer(NamedTuple):
-    """Largest rotations of one number of storeys, and seconds for all."""
-
-    rotations: list[float]
-    spent: float
-
-
-def settings(accuracy: float) -> TimeHistorySettings:
-    """Without free vibration, so that every history is as long as its record."""
-    return TimeHistorySettings(free_vibration=0.0, accuracy=accuracy)
-
-
-def rps(
-    buildings: Iterable[PodiumStructure], records: list[GroundMotion], accuracy: float
-) -> Answer:
-    """All histories of one number of storeys, in lanes of one core."""
+def rps(buildings: Buildings, records: list[GroundMotion], accuracy: float) -> Answer:
+    """In lanes of one core."""
     requests = [
         Request(b, MotionComponents(r), settings(accuracy)) for b in buildings for r in records
     ]
@@ -67,30 +60,18 @@ def rps(
     def work() -> None:
         found[:] = [d.max_rotation for d in demands(requests, worth_lanes=1)]
 
-    return Answer(found, seconds(work, repeats=2))
+    return found, seconds(work, repeats=2)
 
 
-def heyoka(buildings: Iterable[PodiumStructure], records: list[GroundMotion], tol: float) -> Answer:
-    """The same by heyoka, one after the other."""
+def heyoka(buildings: Buildings, records: list[GroundMotion], tol: float) -> Answer:
+    """One after the other."""
     peers = [HeyokaRocking(rocking_of(b), STEP, tol) for b in buildings]
     found: list[float] = []
 
     def work() -> None:
         found[:] = [p.history(r.acceleration).max_rotation for p in peers for r in records]
 
-    return Answer(found, seconds(work, repeats=1))
-
-
-def steps(ensemble: Ensemble, records: list[GroundMotion], accuracy: float) -> float:
-    """Steps a sample, over the whole histories."""
-    histories = [
-        sampled_history(b, MotionComponents(r), settings(accuracy)).history
-        for buildings in ensemble.values()
-        for b in buildings
-        for r in records[:COUNTED]
-    ]
-    samples = sum(h.intervals for h in histories)
-    return float(sum(h.steps for h in histories) / samples)
+    return found, seconds(work, repeats=1)
 
 
 def main() -> None:
@@ -98,35 +79,37 @@ def main() -> None:
     with_heyoka = installed("heyoka")
     records = motions(RECORDS)
     ensemble = {n: [structure(n, rho) for rho in CURVATURES] for n in STOREYS}
-    reference = {n: rps(ensemble[n], records, TIGHT).rotations for n in STOREYS}
+    reference = {n: rps(ensemble[n], records, TIGHT)[0] for n in STOREYS}
     limits = {
         n: np.repeat([2.0 * b.critical_rotation for b in ensemble[n]], RECORDS) for n in STOREYS
     }
 
-    def line(name: str, answer: Callable[[int], Answer], counted: str) -> list[str]:
-        answers = {n: answer(n) for n in STOREYS}
-        counts = [agreeing(answers[n].rotations, reference[n], limits[n]) for n in STOREYS]
+    def line(name: str, answer: Callable[[Buildings], Answer], counted: str) -> list[str]:
+        answers = {n: answer(ensemble[n]) for n in STOREYS}
+        counts = [agreeing(answers[n][0], reference[n], limits[n]) for n in STOREYS]
         whole = share(sum(c for c, _ in counts), sum(of for _, of in counts))
         histories = RECORDS * len(CURVATURES) * len(STOREYS)
-        spent = 1e3 * sum(a.spent for a in answers.values()) / histories
+        spent = 1e3 * sum(time for _, time in answers.values()) / histories
         return [name, whole, *(share(*c) for c in counts), f"{spent:.3g}", counted]
 
+    def steps(accuracy: float) -> float:
+        """A sample, over whole histories."""
+        histories = [
+            sampled_history(b, MotionComponents(r), settings(accuracy)).history
+            for buildings in ensemble.values()
+            for b in buildings
+            for r in records[:COUNTED]
+        ]
+        return float(sum(h.steps for h in histories) / sum(h.intervals for h in histories))
+
     lines = [
-        line(
-            f"rps, accuracy {accuracy:g}",
-            lambda n, a=accuracy: rps(ensemble[n], records, a),  # type: ignore[misc]
-            f"{steps(ensemble, records, accuracy):.2f}",
-        )
-        for accuracy in ACCURACIES
+        line(f"rps, accuracy {a:g}", lambda b, a=a: rps(b, records, a), f"{steps(a):.2f}")  # type: ignore[misc]
+        for a in ACCURACIES
     ]
     if with_heyoka:
         lines += [
-            line(
-                f"heyoka, tol {tol:.0e}",
-                lambda n, t=tol: heyoka(ensemble[n], records, t),  # type: ignore[misc]
-                "",
-            )
-            for tol in (1e-4, 1e-12)
+            line(f"heyoka, tol {t:.0e}", lambda b, t=t: heyoka(b, records, t), "")  # type: ignore[misc]
+            for t in (1e-4, 1e-12)
         ]
     title = (
         f"Histories within 1e-4 in max|theta| of rps at accuracy {TIGHT:g}; rps in {LANES} lanes"

@@ -6,27 +6,31 @@ measured in one run on one core, so that the ratios mean something; accuracy sta
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import replace
+import time
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from benchmarks.agreement import agreeing, share
-from benchmarks.contestants import Contest, run, taylor, taylor_lanes
-from benchmarks.measure import seconds
+from benchmarks.common import (
+    ALONE,
+    STEP,
+    agreeing,
+    installed,
+    motions,
+    say,
+    seconds,
+    settings,
+    share,
+    show,
+    structure,
+)
 from benchmarks.peers.heyoka_history import HeyokaRocking
-from benchmarks.peers.installed import installed
-from benchmarks.peers.opensees_building import OpenSeesBuilding
 from benchmarks.peers.rocking import PeerHistory, rocking_of
 from benchmarks.peers.scipy_history import ScipyRocking, compiled_rates, python_rates
-from benchmarks.structures import STEP, motions, structure
-from benchmarks.tables import figure, say, show
 from rpscli.analyses.demand import Request, demands, histories
-from rpscli.analyses.fixed_base import fixed_base_response
 from rpscli.analyses.kernels.history import sampled_history
-from rpscli.analyses.largest_demands import Demand
 from rpscli.analyses.result_quantities import HISTORY
-from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.model.podium import PodiumStructure
 from rpscli.physics.state import IMPACT, LANES
 from rpscli.records.ground_motion import GroundMotion, MotionComponents
@@ -36,10 +40,8 @@ TIMES = 10
 """Each record is followed so often in lanes: of few histories, lanes are idle near the end."""
 FEW = 8
 """Records for scipy, which takes seconds each."""
-ALONE = 1_000_000_000
-"""Histories from which on lanes would be worth while: never."""
-SETTINGS = TimeHistorySettings(free_vibration=0.0)
-TIGHT = TimeHistorySettings(free_vibration=0.0, accuracy=8.0)
+TIGHT = 8.0
+"""Accuracy of the reference."""
 COLUMNS = (
     "storeys",
     "program",
@@ -51,135 +53,130 @@ COLUMNS = (
 )
 
 
-def many(
-    building: PodiumStructure, records: Sequence[GroundMotion], settings: TimeHistorySettings
-) -> list[Demand]:
-    """All records in lanes of one core."""
-    return demands(
-        [Request(building, MotionComponents(r), settings) for r in records], worth_lanes=1
-    )
+@dataclass(frozen=True)
+class Contest:
+    """One program: seconds, largest rotation and impacts of each of its records."""
+
+    name: str
+    times: list[float]
+    rotations: list[float]
+    impacts: list[int]
+
+    def times_faster(self, other: Contest) -> float:
+        """How many times faster the other one is, under the records that both have run."""
+        common = min(len(self.times), len(other.times))
+        return float(np.sum(self.times[:common]) / np.sum(other.times[:common]))
 
 
-def rps_alone(building: PodiumStructure, record: GroundMotion) -> PeerHistory:
-    """One history by itself, without its samples."""
-    found = demands([Request(building, MotionComponents(record), SETTINGS)], worth_lanes=ALONE)[0]
-    return PeerHistory(found.max_rotation, found.impacts)
-
-
-def rps_sampled(building: PodiumStructure, record: GroundMotion) -> PeerHistory:
-    """One history with all of its samples and its log of events."""
-    history = sampled_history(building, MotionComponents(record), SETTINGS).history
-    return PeerHistory(float(history.max_theta), int(history.events[IMPACT]))
-
-
-def rps_lanes(building: PodiumStructure, records: Sequence[GroundMotion]) -> Contest:
-    """Side by side: only the time of all is known."""
-    found, often = many(building, records, SETTINGS), [*records] * TIMES
-    spent = seconds(lambda: many(building, often, SETTINGS), repeats=3) / len(often)
-    return Contest(
-        f"rps, {len(often)} in {LANES} lanes",
-        [spent] * len(records),
-        [d.max_rotation for d in found],
-        [d.impacts for d in found],
-    )
-
-
-def rps_study(
-    building: PodiumStructure, records: Sequence[GroundMotion], lanes: Contest
+def run(
+    name: str,
+    program: Callable[[GroundMotion], PeerHistory],
+    records: Sequence[GroundMotion],
+    repeats: int = 5,
 ) -> Contest:
-    """The same with every result of every history as a column, which is what studies keep."""
-    often = [Request(building, MotionComponents(r), SETTINGS) for r in [*records] * TIMES]
+    """Each record by itself, the least time of some rounds through all of them."""
+    program(records[0])  # may compile
+    found: dict[int, PeerHistory] = {}
+    times = [np.inf] * len(records)
+    for _ in range(repeats):
+        for i, record in enumerate(records):
+            start = time.perf_counter()
+            found[i] = program(record)
+            times[i] = min(times[i], time.perf_counter() - start)
+    answers = [found[i] for i in range(len(records))]
+    return Contest(name, times, [a.max_rotation for a in answers], [a.impacts for a in answers])
+
+
+def requests(
+    building: PodiumStructure, records: Sequence[GroundMotion], accuracy: float = 1.0
+) -> list[Request]:
+    return [Request(building, MotionComponents(r), settings(accuracy)) for r in records]
+
+
+def ours(building: PodiumStructure, records: Sequence[GroundMotion]) -> list[Contest]:
+    """One history with its samples, one without; in lanes; with all results, as studies keep."""
+
+    def sampled(record: GroundMotion) -> PeerHistory:
+        history = sampled_history(building, MotionComponents(record), settings()).history
+        return PeerHistory(float(history.max_theta), int(history.events[IMPACT]))
+
+    def alone(record: GroundMotion) -> PeerHistory:
+        (found,) = demands(requests(building, [record]), worth_lanes=ALONE)
+        return PeerHistory(found.max_rotation, found.impacts)
+
+    found = demands(requests(building, records), worth_lanes=1)
+    often = requests(building, [*records] * TIMES)
 
     def columns() -> None:
         for _, together in histories(often):
             together.columns(HISTORY)
 
-    spent = seconds(columns, repeats=3) / len(often)
-    return replace(lanes, name=f"{lanes.name}, results as in studies", times=[spent] * len(records))
+    def together(name: str, work: Callable[[], object]) -> Contest:
+        spent = [seconds(work) / len(often)] * len(records)
+        return Contest(name, spent, [d.max_rotation for d in found], [d.impacts for d in found])
+
+    name = f"rps, {len(often)} in {LANES} lanes"
+    return [
+        run("rps, one with all samples", sampled, records),
+        run("rps, one", alone, records),
+        together(name, lambda: demands(often, worth_lanes=1)),
+        together(f"{name}, results as in studies", columns),
+    ]
 
 
 def peers(
     building: PodiumStructure, records: Sequence[GroundMotion], *, heyoka: bool
-) -> list[Contest]:
+) -> Iterator[Contest]:
     """Those that can follow the whole history."""
     podium = rocking_of(building)
-    contests = []
-    for name, rates, repeats in (
-        ("scipy RK45", python_rates, 1),
-        ("scipy RK45, compiled rates", compiled_rates, 1),
+    for name, rates in (
+        ("scipy RK45", python_rates),
+        ("scipy RK45, compiled rates", compiled_rates),
     ):
         scipy = ScipyRocking(podium, STEP, rates(podium))
-        contests.append(
-            run(name, lambda r, s=scipy: s.history(r.acceleration), records[:FEW], repeats)  # type: ignore[misc]
-        )
-    if heyoka:
-        contests += [*taylor(podium, records), *taylor_lanes(podium, records)]
-    return contests
+        yield run(name, lambda r, s=scipy: s.history(r.acceleration), records[:FEW], 1)  # type: ignore[misc]
+    for name, alone in (
+        ("heyoka alone, tol 1e-4", True),
+        ("heyoka, tol 1e-4, full contact given", False),
+    ):
+        if heyoka:
+            peer = HeyokaRocking(podium, STEP, alone=alone)
+            yield run(name, lambda r, p=peer: p.history(r.acceleration), records)  # type: ignore[misc]
 
 
-def linear_row(
-    building: PodiumStructure, records: Sequence[GroundMotion], alone: Contest, lanes: float
-) -> list[str]:
-    """OpenSees, whose building stands on a fixed base and is not to be compared in accuracy."""
-    opensees = OpenSeesBuilding(rocking_of(building))
-    times = [
-        seconds(lambda r=r: opensees.base_shear(r.acceleration, r.dt, look=False))  # type: ignore[misc]
-        for r in records[:FEW]
-    ]
-    record = records[0]
-    shear = opensees.base_shear(record.acceleration, record.dt, look=True)
-    exact = fixed_base_response(building, MotionComponents(record), record.npts - 1).base_shear
-    linear = Contest("OpenSees, linear, no bearings", times)
-    faster = linear.times_faster(alone)
-    accuracy = f"(shear {shear / exact - 1.0:+.1e})"
-    return row(building, linear, faster, faster * lanes, accuracy, "")
+def figure(value: float) -> str:
+    """Three figures, without an exponent."""
+    return f"{value:,.0f}" if abs(value) >= 100.0 else f"{value:.3g}"
 
 
-def row(
-    building: PodiumStructure, c: Contest, alone: float, lanes: float, close: str, impacts: str
-) -> list[str]:
-    """One line of the table."""
-    numbers = map(figure, (alone, lanes, c.milliseconds))
-    return [str(building.storeys), c.name, *numbers, close, impacts]
-
-
-def rows(
-    storeys: int, records: Sequence[GroundMotion], *, heyoka: bool, opensees: bool
-) -> list[list[str]]:
+def rows(storeys: int, records: Sequence[GroundMotion], *, heyoka: bool) -> Iterator[list[str]]:
     """All lines for one building."""
     building = structure(storeys)
-    limit = TIGHT.overturning_limit * building.critical_rotation
-    exact = [d.max_rotation for d in many(building, records, TIGHT)]
-    alone = run("rps, one", lambda r: rps_alone(building, r), records)
-    sampled = run("rps, one with all samples", lambda r: rps_sampled(building, r), records)
-    lanes = rps_lanes(building, records)
-    gain = float(np.sum(alone.times) / np.sum(lanes.times))
-    ours = (sampled, alone, lanes, rps_study(building, records, lanes))
-    lines = []
-    for c in (*peers(building, records, heyoka=heyoka), *ours):
-        faster = c.times_faster(alone)
+    limit = settings().overturning_limit * building.critical_rotation
+    tight = demands(requests(building, records, TIGHT), worth_lanes=1)
+    exact = [d.max_rotation for d in tight]
+    own = ours(building, records)
+    _, alone, lanes, _ = own
+    gain = alone.times_faster(lanes)
+    for c in (*peers(building, records, heyoka=heyoka), *own):
+        faster, spent = c.times_faster(alone), 1e3 * float(np.mean(c.times))
         close = share(*agreeing(c.rotations, exact, limit))
-        lines.append(row(building, c, faster, faster * gain, close, f"{np.mean(c.impacts):.0f}"))
-    if opensees:
-        lines.insert(-len(ours), linear_row(building, records, alone, gain))
+        numbers = map(figure, (faster, faster * gain, spent))
+        yield [str(storeys), c.name, *numbers, close, f"{np.mean(c.impacts):.0f}"]
     if heyoka:
-        tight = HeyokaRocking(rocking_of(building), STEP, tol=1e-12)
-        other = [tight.history(r.acceleration).max_rotation for r in records]
-        agrees = share(*agreeing(other, exact, limit))
+        other = HeyokaRocking(rocking_of(building), STEP, tol=1e-12)
+        found = [other.history(r.acceleration).max_rotation for r in records]
+        agrees = share(*agreeing(found, exact, limit))
         say(f"{storeys} storeys: heyoka at tol 1e-12 agrees with the reference in {agrees}")
-    return lines
 
 
 def main() -> None:
     """Measure, and print one table."""
-    heyoka, opensees = installed("heyoka"), installed("openseespy.opensees")
+    heyoka = installed("heyoka")
     records = motions(RECORDS)
-    lines = [line for n in (3, 9) for line in rows(n, records, heyoka=heyoka, opensees=opensees)]
-    show(
-        "One history of 40 s at 200 Hz on one core; ratios: times that rps is faster",
-        COLUMNS,
-        lines,
-    )
+    lines = [line for n in (3, 9) for line in rows(n, records, heyoka=heyoka)]
+    title = "One history of 40 s at 200 Hz on one core; ratios: times that rps is faster"
+    show(title, COLUMNS, lines)
 
 
 if __name__ == "__main__":

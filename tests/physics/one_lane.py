@@ -9,7 +9,6 @@ from rpscli.analyses.kernels.systems import stacked_systems
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.model.podium import PodiumStructure
 from rpscli.physics.bed import load_bed
-from rpscli.physics.demands import observe_floors
 from rpscli.physics.devices import load_devices
 from rpscli.physics.follow import clear_results, load_modes, load_system
 from rpscli.physics.laws import Place, beam_now, place_of, total_energy
@@ -122,7 +121,3 @@ class OneLane:
         before = self.s.energy_lost[0]
         come_to_rest(self.s, 0, self.system, self.log)
         return float(self.s.energy_lost[0] - before)
-
-    def observe(self) -> None:
-        """Look at the end of the step."""
-        observe_floors(self.s)

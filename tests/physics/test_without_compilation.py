@@ -1,52 +1,159 @@
-"""The kernels as plain Python do what they do as machine code."""
+"""The kernels as plain Python do what they do as machine code, to the last bit."""
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, TypeAlias
 
+import numba
 import numpy as np
 import pytest
-from paper_structures import needs_compiled_kernels
+from paper_structures import FLAT, needs_compiled_kernels, podium, waves
+from two_components import followed, frame, pair, two_pulses
 
+from rpscli.analyses.kernels.history import Request, run_of
+from rpscli.analyses.kernels.systems import stacked_systems
+from rpscli.analyses.settings import TimeHistorySettings
+from rpscli.model.devices import FrictionDamper, RollingResistance, Stop, Tendon, ViscousDamper
+from rpscli.model.impact import ImpactLaw
+from rpscli.physics.compile import OPTIONS, fma, kernel
+from rpscli.physics.follow import integrate
+from rpscli.physics.run import Run
 from rpscli.physics.state import (
     IMPACT,
     LANES,
     RECONTACT,
     SLIDING,
+    STATE,
     STICKING,
     STOP_LEFT,
     STOP_MET,
     TENDON_YIELDING,
     UPLIFT,
+    Record,
+    records,
 )
-
-from . import history_without_compilation
+from rpscli.physics.step import accelerate
+from rpscli.records.ground_motion import MotionComponents
 
 Histories: TypeAlias = dict[str, list[dict[str, Any]]]
 
-TESTS = Path(__file__).parents[1]
+STOREYS = 2
+DT = 0.02
+ONE, TWO = waves(0.7, DT, 4.0, seed=5), waves(0.7, DT, 3.0, seed=8)
+MOTIONS = [
+    MotionComponents(ONE),
+    MotionComponents(TWO),
+    MotionComponents(ONE, TWO),
+    MotionComponents(TWO, ONE),
+]
+SETTINGS = TimeHistorySettings(free_vibration=0.3, recontact_tolerance=1e-3)
+STRUCTURES = [
+    podium(STOREYS, 0.10, 0.5, R=0.4),
+    podium(STOREYS, 0.15, FLAT, R=0.4, law=ImpactLaw("flexible")),
+    replace(
+        podium(STOREYS, 0.10, 0.5, R=0.4),
+        devices=(
+            FrictionDamper(6e5),
+            Tendon(1e4, 2e6, 2e4),
+            ViscousDamper(5e4, 0.5),
+            Stop(0.02, 1e7, 1e5),
+            RollingResistance(1e-4),
+        ),
+        columns=4,
+    ),
+]
+REQUESTS = [
+    Request(2, 0),
+    Request(0, 0),
+    Request(0, 2),
+    Request(1, 0, scale=0.25),
+    Request(0, 1, scale=0.35),
+    Request(1, 3, scale=0.3),
+    Request(1, 1, scale=0.01),
+]
+ROWS = 256
+
+
+def integrated(requests: list[Request], lanes: int, rows: int = 0) -> Run:
+    systems = stacked_systems([(structure, SETTINGS) for structure in STRUCTURES])
+    run = run_of(systems, MOTIONS, requests, rows=rows, events=rows)
+    # lanes without a history make empty steps, of zeros
+    with np.errstate(all="ignore"):
+        integrate(run, lanes)
+    return run
+
+
+def demands_of_all(lanes: int) -> list[dict[str, Any]]:
+    """What every history leaves behind."""
+    return [
+        {name: np.ravel(result[name]).tolist() for name in result.dtype.names}
+        for result in integrated(REQUESTS, lanes).results
+    ]
+
+
+def sampled_history() -> dict[str, Any]:
+    """The first one, with devices, with its samples and events."""
+    run = integrated(REQUESTS[:1], lanes=1, rows=ROWS)
+    kept = int(run.results.intervals[0]) + 1
+    samples, log = run.output.samples[:kept], run.output.log[: int(run.results.events[0].sum())]
+    found = {f"sampled {name}": samples[name].tolist() for name in samples.dtype.names}
+    found |= {f"event {name}": log[name].tolist() for name in log.dtype.names}
+    count = len(STRUCTURES[-1].devices)
+    found |= {"devices": run.output.devices[:kept, :, :count].ravel().tolist()}
+    return found | {"floors": run.output.floors[:kept].ravel().tolist()}
+
+
+def everything(lanes: int = 3) -> Histories:
+    """The same histories one after the other and side by side, and the sampled one.
+
+    Python takes its time for each lane: with few of them, they take several histories each.
+    """
+    one, several = demands_of_all(1), demands_of_all(lanes)
+    return {"one": one, "several": several, "sampled": [sampled_history()]}
+
+
+def digest_of_a_pair() -> str:
+    """Of a storey that uplifts under two pulses, and passes near upright; samples included."""
+    x, y = two_pulses()[:, 80:190]
+    x[0] = y[0] = 0.0
+    structure = frame(1, 1.0, tan_wedge=0.3, rho=0.5, contact_time=2e-3)
+    history = followed(structure, pair(x, y, 0.01))
+    assert len(history.passes)
+    kept = history.left, history.samples, history.floors, history.log
+    return hashlib.sha256(b"".join(of.tobytes() for of in kept)).hexdigest()
+
+
+def as_python(function: str, **environment: str) -> Any:
+    """What a function of this module gives where nothing is compiled."""
+    paths = [str(Path(__file__).parents[1]), str(Path(__file__).parents[2]), *sys.path]
+    variables = {"NUMBA_DISABLE_JIT": "1", "PYTHONPATH": os.pathsep.join(paths)} | environment
+    script = f"import json; from physics import {__name__.rpartition('.')[2]} as here\n"
+    script += f"print(json.dumps(here.{function}()))"
+    command = [sys.executable, "-P", "-W", "error", "-c", script]
+    done = subprocess.run(
+        command, env=os.environ | variables, check=True, capture_output=True, text=True
+    )
+    return json.loads(done.stdout)
 
 
 @pytest.fixture(scope="module")
 def interpreted() -> Histories:
-    paths = [str(TESTS), str(TESTS.parent), os.environ.get("PYTHONPATH", "")]
-    environment = os.environ | {"NUMBA_DISABLE_JIT": "1", "PYTHONPATH": os.pathsep.join(paths)}
-    command = [sys.executable, "-W", "error", str(history_without_compilation.__file__)]
-    done = subprocess.run(command, env=environment, check=True, capture_output=True, text=True)
-    found: Histories = json.loads(done.stdout)
+    found: Histories = as_python("everything")
     return found
 
 
 @needs_compiled_kernels
 @pytest.mark.parametrize("kind", ["one", "several", "sampled"])
 def test_python_and_machine_code_agree(interpreted: Histories, kind: str) -> None:
-    """To the last bit: machine code in as many lanes as it has, Python in few."""
-    compiled = history_without_compilation.everything(LANES)[kind]
+    """Machine code in as many lanes as it has, Python in few."""
+    compiled = everything(LANES)[kind]
     assert len(interpreted[kind]) == len(compiled)
     for slow, fast in zip(interpreted[kind], compiled, strict=True):
         assert slow.keys() == fast.keys()
@@ -60,9 +167,7 @@ def test_lanes_side_by_side_give_the_bits_of_one_without_compilation(
     assert json.dumps(interpreted["one"]) == json.dumps(interpreted["several"])
 
 
-def test_the_histories_compared_are_not_trivial(
-    interpreted: Histories,
-) -> None:
+def test_the_histories_compared_are_not_trivial(interpreted: Histories) -> None:
     events = np.array([found["events"] for found in interpreted["one"]])
     assert np.count_nonzero(events[:, UPLIFT]) >= 4
     assert np.count_nonzero(events[:, IMPACT]) >= 4
@@ -71,3 +176,33 @@ def test_the_histories_compared_are_not_trivial(
     for kind in (STICKING, SLIDING, STOP_MET, STOP_LEFT, TENDON_YIELDING):
         assert events[0, kind] > 0
     assert not events[-1].any()  # one stays in full contact
+
+
+@needs_compiled_kernels
+def test_python_and_machine_code_agree_under_both_components(tmp_path: Path) -> None:
+    assert as_python("digest_of_a_pair", RPS_CACHE_DIR=str(tmp_path)) == digest_of_a_pair()
+    assert not [*tmp_path.rglob("*.compiled")]  # which would tell others that they have it
+
+
+@kernel
+def fused(a: float, b: float, c: float) -> float:
+    return fma(a, b, c)
+
+
+def test_a_product_and_a_sum_are_rounded_once() -> None:
+    for a, b, c in ((1.0 + 2.0**-30, 1.0 - 2.0**-30, -1.0), (0.1, 10.0, -1.0), (3.0, 4.0, 5.0)):
+        assert fma(a, b, c) == fused(a, b, c)
+    assert fused(1.0 + 2.0**-30, 1.0 - 2.0**-30, -1.0) == -(2.0**-60)
+
+
+@needs_compiled_kernels
+@pytest.mark.parametrize("ways", [1, 2])
+def test_loops_over_lanes_become_vector_instructions(ways: int) -> None:
+    def accelerate_all(state: Record) -> None:
+        accelerate(state[0], 0.5)
+
+    fresh: Any = numba.njit(accelerate_all, **OPTIONS)
+    fresh(records(STATE, 1, ways, LANES))
+    ((_, code),) = fresh.inspect_llvm().items()
+    assert "x double>" in code
+    assert "= load double" not in code  # nothing is left that goes lane by lane

@@ -1,1 +1,1 @@
-"""What others would run: one history by scipy, by heyoka, and a linear building by OpenSeesPy."""
+"""What others would run: one history by scipy and by heyoka."""

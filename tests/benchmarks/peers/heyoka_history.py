@@ -1,4 +1,4 @@
-"""One history by heyoka's Taylor integrator; full contact is `standing`, or heyoka's too.
+"""One history by heyoka's Taylor integrator; full contact is given, or heyoka's too.
 
 The ground acceleration is linear between samples, so the integrator stops at each of them and gets
 two new parameters; constants of the phase are parameters too, and one compiled integrator serves
@@ -7,17 +7,20 @@ both phases and both sides. theta = 0 and theta = beta are its terminal events.
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
-from benchmarks.measure import seconds
-from benchmarks.peers.heyoka_standing import HeyokaStanding
-from benchmarks.peers.landing import Landing
-from benchmarks.peers.rocking import Floats, PeerHistory, Phase, Rocking
-from benchmarks.peers.standing import fixed_base_of, stand
+from benchmarks.peers.rocking import (
+    FixedBase,
+    Floats,
+    Landing,
+    PeerHistory,
+    Phase,
+    Rocking,
+    fixed_base_of,
+    stand,
+)
 
 ACROSS, SLOPE, P, Q, CURVE, SHIFT, SQUARE, LEVEL = range(8)  # parameters
 IMPACT, ARC_END = -1, -2
@@ -26,6 +29,8 @@ ASIDE = 1e-14
 """Where rocking begins: of a root at the start and one behind it, heyoka sees only the first."""
 GOOD = (-4294967297, -4294967299)
 """What it returns else: the step of its own choice, or cut at the sample."""
+UPLIFTS = {-1: 1.0, -2: -1.0}
+"""Side of the uplift for the number of the event that ends full contact."""
 
 
 def equations(podium: Rocking) -> list[tuple[Any, Any]]:
@@ -64,6 +69,57 @@ def equations(podium: Rocking) -> list[tuple[Any, Any]]:
     return list(zip(y, [*speeds, -(weight + C * push + D * w * w) / A, *bends], strict=True))
 
 
+class HeyokaStanding:
+    """A compiled integrator of the building on a fixed base, with uplift as its terminal event."""
+
+    def __init__(self, base: FixedBase, tol: float) -> None:
+        import heyoka as hy
+
+        n = len(base.push) // 2
+        self.dt = base.dt
+        names = [f"{kind}{i}" for kind in "uv" for i in range(n)]
+        z = hy.make_vars(*names) if n > 0 else []
+        across = hy.par[ACROSS] + hy.par[SLOPE] * hy.time
+
+        def weighted(row: Floats) -> Any:
+            return hy.sum([float(w) * x for w, x in zip(row, z, strict=True) if w != 0.0])
+
+        rates = [*z[n:], *(weighted(base.flow[n + i]) - across for i in range(n))]
+        push = weighted(base.push) - base.own * across
+        self.integrator = hy.taylor_adaptive(
+            list(zip(z, rates, strict=True)),
+            np.zeros(2 * n),
+            pars=np.zeros(2),
+            tol=tol,
+            t_events=[
+                hy.t_event(base.lift - sign * push, direction=hy.event_direction.negative)
+                for sign in UPLIFTS.values()
+            ],
+        )
+
+    def stand(
+        self, z: Floats, slopes: list[float], intercepts: list[float], interval: int, after: float
+    ) -> tuple[int, float, float]:
+        """As `rocking.stand`, for a record of given slopes and values at time zero."""
+        ta, dt = self.integrator, self.dt
+        step, pars = ta.step, ta.pars
+        ta.state[:] = z
+        ta.time = interval * dt + after
+        ta.reset_cooldowns()
+        left = dt - after
+        for i in range(interval, len(slopes)):
+            pars[ACROSS], pars[SLOPE] = intercepts[i], slopes[i]
+            while left > 0.0:
+                outcome, h = step(left)
+                left -= h
+                if left > 0.0 and (side := UPLIFTS.get(int(outcome), 0.0)) != 0.0:
+                    z[:] = ta.state
+                    return i, dt - left, side
+            left = dt
+        z[:] = ta.state
+        return len(slopes), 0.0, 0.0
+
+
 class HeyokaRocking:
     """A compiled integrator for one podium; `alone` if it follows full contact as well."""
 
@@ -88,10 +144,6 @@ class HeyokaRocking:
             ],
         )
         self.integrator.pars[LEVEL] = podium.level
-        self.clocked = False
-        """Whether to add up the seconds inside the integrator's steps."""
-        self.inside = 0.0
-        self.steps = 0
         self._peak, self._impacts = 0.0, 0
         self._slopes: list[float] = []
         self._intercepts: list[float] = []
@@ -102,7 +154,7 @@ class HeyokaRocking:
         slopes = np.diff(record) / dt
         self._slopes = slopes.tolist()
         self._intercepts = (record[:-1] - slopes * np.arange(len(slopes)) * dt).tolist()
-        self._peak, self._impacts, self.inside, self.steps = 0.0, 0, 0.0, 0
+        self._peak, self._impacts = 0.0, 0
         y, z = self.integrator.state, np.zeros(2 * n)
         interval, after = 0, 0.0
         while interval < len(slopes):
@@ -125,20 +177,18 @@ class HeyokaRocking:
         """From an uplift to re-contact: interval, time into it, and side of the state."""
         ta, podium, dt = self.integrator, self.podium, self.dt
         n = len(podium.masses)
-        step = self._step if self.clocked else ta.step
-        land = self.landing.land
+        step, land = ta.step, self.landing.land
         y, pars, slopes, intercepts = ta.state, ta.pars, self._slopes, self._intercepts
         value = y.item  # Python's own floats: numpy's would double the time of this loop
         self._enter(podium.rolling)
         ta.time = interval * dt + after
         ta.reset_cooldowns()
-        peak, steps, left, before, w = self._peak, 0, dt - after, 0.0, 0.0
+        peak, left, before, w = self._peak, dt - after, 0.0, 0.0
         for i in range(interval, len(slopes)):
             across, slope = side * intercepts[i], side * slopes[i]
             pars[ACROSS], pars[SLOPE] = across, slope
             while left > 0.0:
                 outcome, h = step(left)
-                steps += 1
                 left -= h
                 x, w = value(0), value(n + 1)
                 if x > peak:  # noqa: PLR1730 -- max takes longer than the step's bookkeeping
@@ -154,7 +204,7 @@ class HeyokaRocking:
                     stays = land(y, across + slope * ta.time)
                     side, across, slope, before = -side, -across, -slope, value(n + 1)
                     if stays:
-                        self._peak, self.steps = float(peak), self.steps + steps
+                        self._peak = float(peak)
                         return i, dt - left, side
                     y[0], pars[ACROSS], pars[SLOPE] = ASIDE, across, slope
                 elif code == ARC_END:
@@ -166,7 +216,7 @@ class HeyokaRocking:
             if y[0] > podium.limit:
                 peak = np.inf
                 break
-        self._peak, self.steps = float(peak), self.steps + steps
+        self._peak = float(peak)
         return len(slopes), 0.0, side
 
     def _enter(self, phase: Phase) -> None:
@@ -186,33 +236,8 @@ class HeyokaRocking:
                 high = middle
         return float(ta.update_d_output(low)[0])
 
-    def _step(self, limit: float) -> tuple[int, float]:
-        start = time.perf_counter()
-        answer: tuple[int, float] = self.integrator.step(limit)
-        self.inside += time.perf_counter() - start
-        return answer
-
 
 def refuse_failure(code: int) -> None:
     """Stop if a step did not end well."""
     if code not in GOOD:
         raise RuntimeError(f"heyoka stopped with {code}")
-
-
-def empty_step_seconds() -> float:
-    """What one call of `step` costs if there is next to nothing to integrate."""
-    import heyoka as hy
-
-    x = hy.make_vars("x")
-    return seconds_a_call(hy.taylor_adaptive([(x, 0.0 * x)], [0.0], tol=1e-4).step, 1e-3)
-
-
-def seconds_a_call(step: Callable[[Any], object], limit: object) -> float:
-    """The least mean of a thousand calls, of many rounds: what is subtracted must not be noise."""
-    calls = 1000
-
-    def many() -> None:
-        for _ in range(calls):
-            step(limit)
-
-    return seconds(many, repeats=500) / calls

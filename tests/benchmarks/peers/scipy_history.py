@@ -1,6 +1,6 @@
 """One history by `solve_ivp`, as it is usually written: RK45, steps of a sample or less, events.
 
-Full contact is `standing`, exact and compiled, so that what is timed is the uplifted motion. One
+Full contact is exact and compiled, so that what is timed is the uplifted motion. One
 pitfall is avoided: behind an impact the first step is shorter than the excursion, since `solve_ivp`
 takes a state that begins at theta = 0 and ends below it for an event at the start.
 """
@@ -13,10 +13,17 @@ from typing import Any
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from benchmarks.peers.compiled import compiled
-from benchmarks.peers.landing import Landing
-from benchmarks.peers.rocking import Floats, PeerHistory, Phase, Rocking, rates
-from benchmarks.peers.standing import fixed_base_of, stand
+from benchmarks.peers.rocking import (
+    Floats,
+    Landing,
+    PeerHistory,
+    Phase,
+    Rocking,
+    compiled,
+    fixed_base_of,
+    rates,
+    stand,
+)
 
 RightHandSide = Callable[[float, Floats, Floats, float, float, Phase], Floats]
 """Of time, state, record, its time step, the side of the tilt, and the phase's constants."""

@@ -2,10 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import subprocess
-import sys
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -20,8 +16,6 @@ from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import PodiumStructure
 from rpscli.records.ground_motion import MotionComponents
-
-from . import short_history
 
 pytestmark = needs_compiled_kernels
 
@@ -188,16 +182,6 @@ def test_alone_and_in_company() -> None:
     assert len({one.max_rotation for one in together}) > len(requests) / 2  # some overturn
     for one, other in zip(together, alone, strict=True):
         assert one.history.tobytes() == other.history.tobytes()
-
-
-def test_python_and_machine_code_agree_to_the_last_bit(tmp_path: Path) -> None:
-    script = str(short_history.__file__)
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path), "NUMBA_DISABLE_JIT": "1"}
-    environment["RPS_CACHE_DIR"] = str(tmp_path)
-    command = [sys.executable, "-P", "-W", "error", script]
-    done = subprocess.run(command, env=environment, check=True, capture_output=True, text=True)
-    assert done.stdout.strip() == short_history.digest()
-    assert not [*tmp_path.rglob("*.compiled")]  # which would tell others that they have it
 
 
 def test_more_instants_change_nothing() -> None:
