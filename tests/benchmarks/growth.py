@@ -68,7 +68,8 @@ def of_single_histories() -> None:
     works = [work_of(structure(n, period=min(n / 10, 1.0)), records) for n in STOREYS]
     costs = [w.milliseconds for w in works]
     each = [1e6 * w.milliseconds / (w.steps * SECONDS / STEP) for w in works]
-    columns: tuple[str, ...] = ("storeys", "ns/step", "exponent", "steps/sample", "ms/history", "exponent")
+    columns: tuple[str, ...]
+    columns = ("storeys", "ns/step", "exponent", "steps/sample", "ms/history", "exponent")
     rows = zip(
         map(str, STOREYS),
         texts(".0f", each),

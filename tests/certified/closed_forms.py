@@ -16,6 +16,7 @@ from typing import NamedTuple
 import numpy as np
 from oracles.crossings import Array
 from oracles.devices import Friction, OracleDevice, RollingResistance, Stop, Tendon
+from oracles.full_contact import FullContact
 from oracles.storey_lagrangian import OracleSystem, StoreyLagrangian
 from scipy.linalg import expm
 from scipy.optimize import brentq
@@ -183,14 +184,8 @@ def uplifted_roots(system: OracleSystem) -> Array:
 def uplift_time(system: OracleSystem, a_g: Array, dt: float) -> float:
     """First uplift under a polygon, by matrix exponentials."""
     motion, n = StoreyLagrangian(system), len(system.masses)
-    flow = np.zeros((2 * n + 2, 2 * n + 2))
-    flow[:n, n : 2 * n] = np.eye(n)
-    forces = np.column_stack((np.diag(system.stiffnesses), motion.drift_damping))
-    flow[n : 2 * n, : 2 * n] = -np.linalg.solve(motion.drift_mass, forces)
-    flow[n, 2 * n], flow[2 * n, 2 * n + 1] = -1.0, 1.0
-    push = np.zeros(2 * n + 2)
-    push[0], push[n : 2 * n] = system.stiffnesses[0], motion.drift_damping[0]
-    push[2 * n] = -motion.pushed_mass
+    contact = FullContact(motion)
+    flow, push = contact.flow, contact.taylor[0]
     hold = motion.lifted_mass * system.gravity * system.tan_alpha
     state = np.zeros(2 * n + 2)
 

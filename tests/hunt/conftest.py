@@ -1,8 +1,9 @@
-"""Kernels are compiled before the hunt: that takes longer than any trial may."""
+"""A place for each hunt, and kernels, whose compilation takes longer than any trial may."""
 
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -16,16 +17,19 @@ from rpscli.model.impact import ImpactLaw
 from rpscli.records.ground_motion import MotionComponents
 
 
+@pytest.fixture(autouse=True)
+def _workplace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
 @pytest.fixture(scope="session", autouse=True)
 def _compiled() -> None:
     record, settings = ground(np.zeros(2), 0.01), TimeHistorySettings(0.0)
     for storeys, devices in ((1, ()), (40, ()), (1, (FrictionDamper(1e5),))):
         structure = replace(podium(storeys), devices=devices)
         for worth_lanes in (1, 2):
-            demands(
-                [Request(structure, MotionComponents(record), settings)],
-                worth_lanes=worth_lanes,
-            )
+            request = Request(structure, MotionComponents(record), settings)
+            demands([request], worth_lanes=worth_lanes)
     soft = replace(podium(1), impact_law=ImpactLaw(), contact=Contact("plane", period_ratio=1.2))
     demands([Request(soft, MotionComponents(record), settings)])
     both = MotionComponents(record, y=record)

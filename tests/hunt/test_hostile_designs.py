@@ -39,11 +39,6 @@ DESIGN_KEYS = [".".join(map(str, path)) for path in known_paths(DesignFile)]
 HUGE = 10**390
 
 
-@pytest.fixture(autouse=True)
-def _workplace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
-
-
 def test_the_design_is_sound() -> None:
     Path("design.yaml").write_text(DESIGN, encoding="utf-8")
     assert judged("design", "design.yaml", "--dry-run") == "done"

@@ -52,11 +52,6 @@ COLUMNS = "Time (s)  Acceleration (m/s2)\n" + "\n".join(
 )
 
 
-@pytest.fixture(autouse=True)
-def _workplace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
-
-
 def written(name: str, text: str, random: Random) -> str:
     """Write a text in some encoding; what can be read of it again."""
     encoding = random.choice(["utf-8", "utf-8", "utf-8", "latin-1", "utf-16"])

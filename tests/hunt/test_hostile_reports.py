@@ -71,7 +71,6 @@ def test_pages_of_damaged_results(
     stored: Path, long: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("rpscli.report.figures.style.picture", lambda *_: EMPTY)
-    monkeypatch.chdir(tmp_path)
 
     def trial(random: Random) -> str:
         folder = tmp_path / "copy"

@@ -13,13 +13,7 @@ from paper_structures import FLAT, oracle_devices, oracle_system, podium
 
 from rpscli.analyses.modal import linearised_matrices, modal
 from rpscli.analyses.pushover import pushover
-from rpscli.model.devices import (
-    FrictionDamper,
-    RollingResistance,
-    Stop,
-    Tendon,
-    ViscousDamper,
-)
+from rpscli.model.devices import FrictionDamper, RollingResistance, Stop, Tendon, ViscousDamper
 from rpscli.model.podium import Device, PodiumStructure
 from rpscli.model.statics import device_consequences, returns, secant_period, uplift_force
 from rpscli.model.uplifted_state import uplifted_state

@@ -2,12 +2,18 @@
 
 The model is text that can be read by itself; nothing of it comes from the equations of the program.
 What it cannot do: a sphere goes on rolling where an arc would end, so tilts must stay below beta.
+
+Of devices a linear damper and friction act in the joint along which the cap beam slides, a stop is
+a spring with a dead band there. A tendon is a cable from the ground through the middle of both ends
+of a column to the beam, which pulls beyond its own length; rolling resistance is a coefficient of
+the contacts, which takes the normal force as it is at each instant. Exponents and yielding the
+engine has not. What bodies do otherwise than the model assumes are changes of the compiled text.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.report.export.multibody import (
+    SPACING,
     STIFF_FRICTION,
     THICKNESS,
     TIME_STEP,
@@ -25,23 +32,79 @@ from rpscli.report.export.multibody import (
 )
 
 from .crossings import Array
-from .devices import OracleDevice, RollingResistance
-from .multibody_departures import NO_DEPARTURES, Departures
-from .multibody_devices import (
-    anchors,
-    beam_joint,
-    contact_friction,
-    ducts,
-    holds,
-    springs,
-)
+from .devices import Friction, OracleDevice, RollingResistance, Stop, Tendon, Viscous
 from .storey_lagrangian import Contact, OracleSystem, StoreyLagrangian
 
 STEPS_TOGETHER = 10
 """Steps under one value of the ground acceleration, that of their middle."""
 
+ANCHORED = 1e-5
+"""Depth of a cable's ends beyond the joints [m]: without it it has no direction at rest."""
+
 SETTLING = 0.02
 """Time at rest before the ground moves [s], in which contacts take up the weight."""
+
+
+LOWER, UPPER = 1, 2
+"""Bits of the spheres at both ends of a column in the description."""
+
+BOX = 6
+"""`mjGEOM_BOX` of the engine."""
+
+FOOTING = 2.0
+"""Half size of the block under a column [m], more than any column travels."""
+
+
+@dataclass(frozen=True)
+class Departures:
+    """Lengths in metres; without any, the description stays as it is.
+
+    Contacts slide by Coulomb's law with `friction` in place of 3. A beam that is free to tilt takes
+    floors with it that stand `storey_height` above each other. Columns stand `spacing` apart, and
+    each is so much `longer` than said, with the same ends and mass, on a footing as much lower.
+    """
+
+    friction: float | None = None
+    storey_height: float = 0.0
+    spacing: float = SPACING
+    longer: tuple[float, ...] = ()
+
+    def apply(self, specification: Any, columns: int, storeys: int) -> None:
+        """Change the engine's specification."""
+        for geom in specification.geoms if self.friction else ():
+            geom.friction = self.friction, 0.0, 0.0
+        for i in range(storeys):
+            height = 0.5 * THICKNESS + (i + 1) * self.storey_height
+            floor = specification.joint(f"floor {i}").parent
+            floor.pos = 0.0, 0.0, height if self.storey_height else 0.0
+        if self.spacing != SPACING:
+            self._space(specification, columns)
+        if any(self.longer):
+            self._lengthen(specification)
+
+    def _space(self, specification: Any, columns: int) -> None:
+        """The beam grows with the distance of the columns, and keeps its mass."""
+        for c in range(columns):
+            specification.joint(f"tilt {c}").parent.pos[0] *= self.spacing / SPACING
+        beam = specification.joint("beam across").parent
+        box = beam.geoms[0]
+        box.size[0] *= self.spacing / SPACING
+        beam.inertia = [beam.mass * (box.size[0] ** 2 + box.size[2] ** 2) / 3.0] * 3
+
+    def _lengthen(self, specification: Any) -> None:
+        """All tops stay level; nothing stands on the ground itself any more."""
+        world = specification.worldbody
+        world.geoms[0].pos = 0.0, 0.0, -FOOTING
+        for c, more in enumerate(self.longer):
+            column = specification.joint(f"tilt {c}").parent
+            column.pos[2] -= 0.5 * more
+            for geom in column.geoms:
+                geom.pos[2] += 0.5 * more * (1.0 if geom.contype == UPPER else -1.0)
+            place = column.pos[0], 0.0, -more - FOOTING
+            world.add_geom(type=BOX, pos=place, size=[FOOTING] * 3, contype=0, conaffinity=LOWER)
+
+
+NO_DEPARTURES = Departures()
 
 
 @dataclass(frozen=True, eq=False)
@@ -222,3 +285,57 @@ def _longest(flags: NDArray[np.bool_]) -> int:
     """Length of the longest run of true values."""
     edges = np.flatnonzero(np.diff(np.concatenate(([0], flags, [0]))))
     return int(np.max(edges[1::2] - edges[::2], initial=0))
+
+
+def beam_joint(devices: Sequence[OracleDevice], time_step: float) -> str:
+    """Attributes of the joint along which the beam slides."""
+    damping = sum(d.coefficient for d in devices if isinstance(d, Viscous) and d.exponent == 1.0)
+    friction = sum(d.force for d in devices if isinstance(d, Friction))
+    return (
+        f'damping="{damping}" frictionloss="{friction}"'
+        f' solreffriction="{2.0 * time_step} 1" solimpfriction="0.9999 0.9999 0.001"'
+    )
+
+
+def contact_friction(devices: Sequence[OracleDevice]) -> str:
+    """Attributes of all contacts: they do not slide; six dimensions if they resist rolling."""
+    lever = sum(d.lever for d in devices if isinstance(d, RollingResistance))
+    return f'friction="3 0 {lever}" condim="{6 if lever else 3}"'
+
+
+def anchors(column: int, place: float) -> str:
+    """Where a cable begins in the ground."""
+    return f'<site name="ground {column}" pos="{place} 0 {-ANCHORED}"/>'
+
+
+def ducts(column: int, H: float) -> str:
+    """The middle of both ends of a column."""
+    return f'<site name="foot {column}" pos="0 0 {-H}"/><site name="head {column}" pos="0 0 {H}"/>'
+
+
+def holds(column: int, place: float, underside: float) -> str:
+    """Where it ends in the beam."""
+    return f'<site name="beam {column}" pos="{place} 0 {underside + ANCHORED}"/>'
+
+
+def springs(devices: Sequence[OracleDevice], columns: int, H: float) -> Iterator[str]:
+    """Stops and cables."""
+    length = 2.0 * (H + ANCHORED)
+    for device in devices:
+        if isinstance(device, Stop):
+            yield (
+                f'<fixed stiffness="{device.stiffness}"'
+                f' springlength="{-device.gap} {device.gap}">'
+                '<joint joint="beam across" coef="1"/></fixed>'
+            )
+        elif isinstance(device, Tendon):
+            slack = length - device.prestress / device.stiffness
+            each = device.columns / columns
+            for c in range(columns):
+                sites = "".join(
+                    f'<site site="{name} {c}"/>' for name in ("ground", "foot", "head", "beam")
+                )
+                yield (
+                    f'<spatial stiffness="{each * device.stiffness}" springlength="0 {slack}">'
+                    f"{sites}</spatial>"
+                )

@@ -13,18 +13,41 @@ from .storey_lagrangian import OracleSystem
 GRAVITY = 9.80665
 
 
-def podium(storeys: int, tan_alpha: float, rho: float) -> OracleSystem:
-    """Equal floors of 1 kg, T_1 = n/10 s, half a sine as first mode, 5 % in modes 1 and 2."""
-    masses = np.ones(storeys)
-    shape = np.sin(math.pi * np.arange(storeys + 1) / (2 * storeys))
-    first = 2.0 * math.pi / (storeys / 10.0)
-    stiffnesses = first**2 * np.cumsum(shape[:0:-1])[::-1] / np.diff(shape)
+def _system(
+    tan_alpha: float, rho: float, stiffnesses: Array, period: float, damping: float
+) -> OracleSystem:
+    """Floors of 1 kg on storeys in this proportion; damped in modes 1 and 2, or by stiffness."""
+    storeys = len(stiffnesses)
     between = np.eye(storeys) - np.eye(storeys, k=-1)
-    stiffness_matrix = between.T @ np.diag(stiffnesses) @ between
-    one, two = np.sqrt(np.linalg.eigvalsh(stiffness_matrix)[:2])
-    damping = 0.1 / (one + two) * (one * two * np.eye(storeys) + stiffness_matrix)
+    damping_matrix = np.zeros((storeys, storeys))
+    if storeys:
+        matrix = between.T @ np.diag(stiffnesses) @ between
+        scale = (2.0 * math.pi / period) ** 2 / np.linalg.eigvalsh(matrix)[0]
+        stiffnesses, matrix = scale * stiffnesses, scale * matrix
+        one, *others = np.sqrt(np.linalg.eigvalsh(matrix)[:2])
+        damping_matrix = 2.0 * damping / one * matrix
+        for two in others:
+            mass_part = one * two * np.eye(storeys)
+            damping_matrix = 2.0 * damping / (one + two) * (mass_part + matrix)
     wedge = 2.0 * tan_alpha if rho else tan_alpha
-    return OracleSystem(1.5, tan_alpha, wedge, rho, 4 / 3, 0.1, 1.0, masses, stiffnesses, damping)
+    masses = np.ones(storeys)
+    return OracleSystem(
+        1.5, tan_alpha, wedge, rho, 4 / 3, 0.1, 1.0, masses, stiffnesses, damping_matrix
+    )
+
+
+def podium(storeys: int, tan_alpha: float, rho: float) -> OracleSystem:
+    """T_1 = n/10 s, half a sine as first mode, 5 % in modes 1 and 2."""
+    shape = np.sin(math.pi * np.arange(storeys + 1) / (2 * storeys))
+    stiffnesses = np.cumsum(shape[:0:-1])[::-1] / np.diff(shape)
+    return _system(tan_alpha, rho, stiffnesses, storeys / 10.0, 0.05)
+
+
+def uniform_podium(
+    storeys: int, tan_alpha: float, rho: float, period: float, damping: float = 0.05
+) -> OracleSystem:
+    """Floors on equal springs; one storey is damped in proportion to stiffness."""
+    return _system(tan_alpha, rho, np.ones(storeys), period, damping)
 
 
 def block(half_width: float, half_height: float, restitution: float | None = None) -> OracleSystem:
@@ -44,29 +67,4 @@ def slender_block(p: float, restitution: float | None = None) -> OracleSystem:
 def pulse(peak: float, period: float, dt: float) -> Array:
     return np.asarray(
         peak * np.sin(2.0 * math.pi * np.arange(round(period / dt) + 1) * dt / period)
-    )
-
-
-def uniform_podium(
-    storeys: int, tan_alpha: float, rho: float, period: float, damping: float = 0.05
-) -> OracleSystem:
-    """`podium` with floors on equal springs; one storey is damped in proportion to stiffness."""
-    between = np.eye(storeys) - np.eye(storeys, k=-1)
-    stiffness_matrix = between.T @ between
-    spring = 1.0
-    damping_matrix = np.zeros((storeys, storeys))
-    if storeys > 0:
-        rates = np.sqrt(np.linalg.eigvalsh(stiffness_matrix))
-        spring = (2.0 * math.pi / (period * rates[0])) ** 2
-        rates = rates[:2] * math.sqrt(spring)
-        damping_matrix = 2.0 * damping / rates[0] * spring * stiffness_matrix
-        if storeys > 1:
-            mass_part = rates[0] * rates[1] * np.eye(storeys)
-            damping_matrix = (
-                2.0 * damping / (rates[0] + rates[1]) * (mass_part + spring * stiffness_matrix)
-            )
-    wedge = 2.0 * tan_alpha if rho else tan_alpha
-    ones = np.ones(storeys)
-    return OracleSystem(
-        1.5, tan_alpha, wedge, rho, 4 / 3, 0.1, 1.0, ones, spring * ones, damping_matrix
     )

@@ -49,6 +49,8 @@ class OracleResult:
     uplifts: int
     overturned: bool
     energy_lost: float
+    arrivals: tuple[float, ...]
+    """|theta'| just before each impact."""
     device_work: Array
     """What each device took up [J], in its stiffness or for good."""
     plastic: tuple[float, ...]
@@ -93,6 +95,7 @@ class _Simulation:
         self.max_rotation = self.energy_lost = 0.0
         self.impacts = self.uplifts = self.sticks = self.branches = 0
         self.overturned = False
+        self.arrivals: list[float] = []
 
     def advance(self, ground: LinearGround, duration: float) -> None:
         """Through one interval of the record, however many events it holds."""
@@ -350,6 +353,7 @@ class _Simulation:
         motion, n1 = self.lagrangian, self.lagrangian.storeys + 1
         before = sum(motion.energies(contact, self.y))
         self.impacts += 1
+        self.arrivals.append(abs(float(self.y[n1])))
         self.equipment.stand()
         self.y = motion.after_impact(self.y)
         beyond = Contact(-contact.side, contact.rolling)
@@ -449,6 +453,7 @@ def simulate(
         uplifts=run.uplifts,
         overturned=run.overturned,
         energy_lost=run.energy_lost,
+        arrivals=tuple(run.arrivals),
         device_work=run.y[2 * n + 2 :].copy(),
         plastic=tuple(run.equipment.plastic),
         sticks=run.sticks,

@@ -19,8 +19,7 @@ from scipy.integrate import DOP853
 from .crossings import NODES, Array, first_crossing, monotone_pieces, through_nodes
 from .devices import OracleDevice
 from .full_contact import FullContact
-from .spatial_devices import SpatialDevices
-from .spatial_lagrangian import SpatialLagrangian
+from .spatial_lagrangian import SpatialDevices, SpatialLagrangian
 from .storey_lagrangian import OracleSystem
 
 TIP = 1e-10

@@ -21,8 +21,7 @@ from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import PodiumStructure
 from rpscli.records.ground_motion import GroundMotion
 
-from .multibody import MultibodyResult, simulate, turning_points
-from .multibody_departures import Departures
+from .multibody import Departures, MultibodyResult, simulate, turning_points
 from .resolved_contact import WINDOW, strongest
 from .resolved_contact import structure_of as long_arcs
 from .storey_lagrangian import StoreyLagrangian

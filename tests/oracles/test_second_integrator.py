@@ -1,4 +1,7 @@
-"""The second integrator against exact solutions, published numbers and its own invariants."""
+"""The second integrator and its search for roots, against what is known exactly and published.
+
+Closed forms of devices that it shares with the program stand in `physics/test_devices.py`.
+"""
 
 from __future__ import annotations
 
@@ -9,13 +12,40 @@ from typing import Literal
 
 import numpy as np
 import pytest
+from numpy.polynomial.polynomial import polyfromroots, polyval
+from scipy.optimize import brentq
 from scipy.signal import lsim
 
+from .crossings import NODES, Array, first_crossing, monotone_pieces, through_nodes
+from .devices import Equipment, Friction, OracleDevice, RollingResistance, Stop, Tendon, Viscous
 from .full_contact import LinearGround
-from .locking import drifts_at_the_end
 from .reference_systems import GRAVITY, block, podium, pulse, slender_block
 from .second_integrator import _Simulation, simulate
-from .storey_lagrangian import Contact, StoreyLagrangian
+from .storey_lagrangian import Contact, OracleSystem, StoreyLagrangian
+
+STILL = LinearGround(0.0, 0.0, 0.0, 0.0)
+
+
+def test_a_dip_and_its_return_are_both_found() -> None:
+    dip = np.asarray(-polyfromroots([0.5, 0.5 + 1e-4, 2.0]), dtype=np.float64)
+    pieces = monotone_pieces(dip)
+    end = float(polyval(1.0, dip))
+    assert first_crossing(dip, pieces, 0.0, -1, end=end) == pytest.approx(0.5, abs=1e-9)
+    assert first_crossing(dip, pieces, 0.0, 1, end=end) == pytest.approx(0.5001, abs=1e-9)
+
+
+def test_the_start_of_a_step_is_no_crossing() -> None:
+    up_and_down = np.array([0.0, 1.0, -4.0])
+    pieces = monotone_pieces(up_and_down)
+    assert first_crossing(up_and_down, pieces, 0.0, -1, end=-3.0) == pytest.approx(0.25)
+    assert first_crossing(up_and_down, pieces, 0.0, 1, end=-3.0) is None
+
+
+def test_the_polynomial_through_the_nodes_is_exact_to_degree_seven() -> None:
+    coefficients = np.random.default_rng(5).normal(size=8)
+    found = through_nodes(float(coefficients[0]), np.asarray(polyval(NODES, coefficients)))
+    assert found == pytest.approx(coefficients, abs=1e-10)  # condition 1e5 of the fit
+    assert found[0] == coefficients[0]
 
 
 def test_full_contact_is_the_linear_building() -> None:
@@ -89,7 +119,7 @@ def test_energy_goes_only_at_impacts(law: Literal["rigid", "flexible"], rho: flo
     run.y[0], run.contact = -0.03, Contact(-1, rolling=rho > 0.0)
     initial = sum(run.lagrangian.energies(run.contact, run.y))
     for _ in range(120):
-        run.advance(LinearGround(0.0, 0.0, 0.0, 0.0), 0.02)
+        run.advance(STILL, 0.02)
         assert run.contact is not None
         energy = sum(run.lagrangian.energies(run.contact, run.y))
         assert energy + run.energy_lost == pytest.approx(initial, rel=1e-8)
@@ -118,12 +148,23 @@ def test_one_sine_on_a_large_block(peak: float, falls: bool) -> None:
     assert result.overturned is falls
 
 
-def test_mirrored_ground_motion_gives_the_mirrored_response() -> None:
+@pytest.mark.parametrize(
+    "devices",
+    [(), (Friction(2.0), Stop(0.02, 30.0, 1.0), Tendon(4.0, 0.5, 20.0, 0.8), Viscous(1.0, 0.5))],
+    ids=["bare", "equipped"],
+)
+def test_mirrored_ground_motion_gives_the_mirrored_response(
+    devices: tuple[OracleDevice, ...],
+) -> None:
     system, record = podium(2, 0.15, 0.5), pulse(3.0, 0.8, 0.02)
-    right, left = (simulate(system, sign * record, 0.02, free_vibration=1.0) for sign in (1, -1))
+    right, left = (
+        simulate(system, sign * record, 0.02, free_vibration=1.0, devices=devices)
+        for sign in (1, -1)
+    )
     assert right.impacts == left.impacts > 0
-    assert right.theta == pytest.approx(-left.theta, abs=0.0)
-    assert right.drifts == pytest.approx(-left.drifts, abs=0.0)
+    assert np.array_equal(right.theta, -left.theta)
+    assert np.array_equal(right.drifts, -left.drifts)
+    assert np.array_equal(right.device_work, left.device_work)
 
 
 def test_constant_vertical_acceleration_is_gravity() -> None:
@@ -158,3 +199,144 @@ def test_locking_needs_no_small_tolerance(
     monkeypatch.setattr(_Simulation, "left_out", lambda *_: 0.0)
     assert np.max(np.abs(vibration(1e-6) - followed_far)) > 1e-2 * size
     assert vibration(1e-11) == pytest.approx(followed_far, abs=1e-3 * size)
+
+
+def drifts_at_the_end(system: OracleSystem, tolerance: float, *devices: OracleDevice) -> Array:
+    """Drifts at the last samples, upright, after a release from 0.02 rad."""
+    result = simulate(
+        system,
+        np.zeros(1),
+        0.02,
+        free_vibration=2.0,
+        recontact_tolerance=tolerance,
+        initial_rotation=0.02,
+        devices=devices,
+    )
+    assert result.theta[-1] == 0.0
+    return result.drifts[-20:]
+
+
+class Thrown(_Simulation):
+    """A slender frame that left its upright position with a velocity of the cap beam, and is back.
+
+    It is restored by a constant force, and moves like `mass` on a line.
+    """
+
+    def __init__(self, system: OracleSystem, velocity: float, *devices: OracleDevice) -> None:
+        super().__init__(system, recontact=1e-6, overturning=2.0, rtol=1e-11, devices=devices)
+        self.span = 2.0 * self.lagrangian.half_height  # du_b/dtheta where rho = 1/2
+        self.mass = float(self.lagrangian.mass_matrix(complex(self.span))[0, 0]) / self.span**2
+        self.y[1], self.contact = velocity / self.span, Contact(1, rolling=True)
+        while self.impacts == 0:
+            self.advance(STILL, 0.05)
+
+
+@pytest.mark.evidence("devices", "exact")
+def test_a_stop_with_a_damper_lets_go_before_its_gap() -> None:
+    gap, stiffness, c, velocity = 0.002, 40.0, 4.0, 0.05
+    none = np.zeros(0)
+    frame = OracleSystem(1.5, 1e-3, 0.5, 0.5, 4 / 3, 0.1, 1.0, none, none, np.zeros((0, 0)))
+    run = Thrown(frame, velocity, Stop(gap, stiffness, c))
+    F_0, M_E, span = run.lagrangian.lifted_mass * GRAVITY * 1e-3, run.mass, run.span
+    # z = u - d from the meeting on: M_e z'' + c z' + k z + F_0 = 0
+    decay, rest = c / (2.0 * M_E), F_0 / stiffness
+    omega = math.sqrt(stiffness / M_E - decay**2)
+    speed = math.sqrt(velocity**2 - 2.0 * F_0 * gap / M_E)
+
+    def motion(t: float) -> tuple[float, float]:
+        a, b = rest, (speed + decay * rest) / omega
+        cosine, sine, damp = math.cos(omega * t), math.sin(omega * t), math.exp(-decay * t)
+        z = damp * (a * cosine + b * sine) - rest
+        rate = damp * ((omega * b - decay * a) * cosine - (omega * a + decay * b) * sine)
+        return z, rate
+
+    def push(t: float) -> float:
+        z, rate = motion(t)
+        return stiffness * z + c * rate
+
+    times = np.linspace(1e-4, 2.0 * math.pi / omega, 20_001)
+    falls = int(np.flatnonzero(np.array([push(t) for t in times]) < 0.0)[0])
+    gone = brentq(push, times[falls - 1], times[falls])
+    z, rate = motion(gone)
+    assert z > 0.05 * gap
+    back = math.sqrt(rate**2 + 2.0 * F_0 * (z + gap) / M_E)
+    # a few alpha^2 are left out
+    assert span * run.arrivals[0] == pytest.approx(back, rel=1e-5)
+    # all that it took, 1/2 k z^2 included, is lost: it relaxes without pulling
+    assert float(run.y[2]) == pytest.approx(0.5 * M_E * (velocity**2 - back**2), rel=1e-5)
+
+
+@pytest.mark.evidence("devices", "exact")
+@pytest.mark.parametrize("wedge", [0.15, 0.17, 0.4])
+def test_the_opening_is_the_path_of_two_points(wedge: float) -> None:
+    rho = 0.0 if wedge == 0.15 else 0.6
+    motion = StoreyLagrangian(replace(podium(2, 0.15, rho), tan_alpha_wedge=wedge))
+    gear = Equipment(motion, (Tendon(1.0, 1.0, 1.0),), 1.0)
+    B, H, r, beta = motion.half_width, motion.half_height, motion.radius, motion.beta
+    for x in (1e-9, 1e-4, 0.01, 0.03, 0.2, 0.4):
+        rolling = x < beta
+        e, growth = gear.elongation(x, rolling=rolling)
+        if rolling:
+            du = B * (1.0 - math.cos(x)) + r * (x - math.sin(x))
+            dv = B * math.sin(x) + r * (1.0 - math.cos(x))
+        else:  # the lower end's middle turns about the contact as a body does
+            w = motion.cap_beam(x, rolling=False)[0]
+            du, dv = w.real / 2.0 - H * math.sin(x), w.imag / 2.0 + H * (1.0 - math.cos(x))
+        assert e == pytest.approx(2.0 * math.hypot(du, dv), rel=1e-7)
+        if rho == 0.0:
+            assert e == pytest.approx(4.0 * B * math.sin(x / 2.0), rel=1e-13)
+        if abs(x - beta) > 1e-3:
+            h = 1e-5 * x
+            ahead, behind = (gear.elongation(x + d, rolling=rolling)[0] for d in (h, -h))
+            assert growth == pytest.approx((ahead - behind) / (2.0 * h), rel=1e-5)
+    assert gear.elongation(0.0, rolling=rho > 0.0)[0] == 0.0
+    assert gear.elongation(0.0, rolling=rho > 0.0)[1] == pytest.approx(2.0 * B, rel=1e-13)
+
+
+@pytest.mark.evidence("devices", "exact")
+@pytest.mark.parametrize("share", [0.2, 0.4])
+def test_locking_with_friction_needs_no_small_tolerance(share: float) -> None:
+    system = replace(podium(2, 0.15, 0.0), restitution=0.6)
+    friction = Friction(share * StoreyLagrangian(system).lifted_mass * GRAVITY * 0.15)
+    exact = drifts_at_the_end(system, 1e-12, friction)
+    found = drifts_at_the_end(system, 1e-8, friction)
+    assert np.max(np.abs(found - exact)) < 1e-4 * np.max(np.abs(exact))
+
+
+@pytest.mark.evidence("devices", "exact")
+@pytest.mark.parametrize("law", ["rigid", "flexible"])
+def test_energy_with_every_device(law: Literal["rigid", "flexible"]) -> None:
+    base = podium(2, 0.15, 0.4)
+    system = replace(base, law=law, damping_matrix=np.zeros((2, 2)))
+    devices: tuple[OracleDevice, ...] = (
+        Viscous(0.1, 0.6),
+        Friction(0.3),
+        Stop(0.06, 20.0, 2.0),
+        Stop(0.06, 10.0),
+        Tendon(4.0, 0.4, 40.0, 0.6),
+        RollingResistance(0.01),
+    )
+    run = _Simulation(system, recontact=1e-6, overturning=2.0, rtol=1e-11, devices=devices)
+    run.y[0], run.contact = -0.06, Contact(-1, rolling=True)
+    run.equipment.release(0.06, rolling=True)
+    run.turn(STILL)
+
+    def energies() -> tuple[float, float]:
+        assert run.contact is not None
+        x = abs(float(run.y[0]))
+        stored = run.equipment.stored(x, rolling=run.contact.rolling)
+        return sum(run.lagrangian.energies(run.contact, run.y)), stored
+
+    initial, stored = energies()
+    for _ in range(60):
+        run.advance(STILL, 0.02)
+        if run.contact is None:
+            break  # type: ignore[unreachable] # mypy does not see that `advance` may end it
+        energy, now = energies()
+        work = run.y[6:]
+        assert energy + float(np.sum(work)) + run.energy_lost == pytest.approx(initial, rel=1e-8)
+        # what is taken up and not stored is dissipated, by each kind that can
+        assert float(np.sum(work)) > now - stored
+    assert run.impacts > 1
+    assert np.all(work[[0, 1, 5]] > 0.0)
+    assert run.branches > 4

@@ -22,13 +22,7 @@ from paper_structures import (
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
-from rpscli.model.devices import (
-    FrictionDamper,
-    RollingResistance,
-    Stop,
-    Tendon,
-    ViscousDamper,
-)
+from rpscli.model.devices import FrictionDamper, RollingResistance, Stop, Tendon, ViscousDamper
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import Device, PodiumStructure
 from rpscli.model.superstructure import ModalDamping, RayleighDamping

@@ -122,18 +122,6 @@ def test_lagranges_equations_in_tilt_and_drifts_say_the_same(state: State) -> No
 
 
 @given(states())
-def test_the_mirrored_state_moves_as_the_mirror_image(state: State) -> None:
-    mirror = np.array([1.0, *[-1.0] * state.structure.storeys])
-    mirrored = state._replace(
-        side=-state.side,
-        position=mirror * state.position,
-        velocity=mirror * state.velocity,
-        horizontal=-state.horizontal,
-    )
-    assert mirrored.accelerations().tolist() == (mirror * state.accelerations()).tolist()
-
-
-@given(states())
 def test_energies_are_those_of_the_lagrangian(state: State) -> None:
     lane = state.in_a_lane()
     lane.accelerations()

@@ -88,17 +88,6 @@ def test_auto_waits_for_the_swing_of_a_building_that_never_lifts() -> None:
 
 
 @needs_compiled_kernels
-def test_a_storey_that_never_lifts_waits_only_for_its_building() -> None:
-    structure = podium(2)
-    result = time_history(structure, waves(1.0, 0.01, 0.2, seed=1))
-    assert result.outcome == "at_rest"
-    longer = time_history(structure, waves(1.0, 0.01, 0.2, seed=1), LONG)
-    assert result.duration < 2.0
-    assert result.storey_shears.tolist() == longer.storey_shears.tolist()
-    assert result.floor_accelerations.tolist() == longer.floor_accelerations.tolist()
-
-
-@needs_compiled_kernels
 @pytest.mark.parametrize(("storeys", "period"), [(1, 0.3), (3, 0.05)])
 def test_undamped_stiff_buildings_do_not_drift(storeys: int, period: float) -> None:
     """Two minutes of rocking, in which nothing but the steps takes energy from the fast modes."""

@@ -24,13 +24,15 @@ from rpscli.physics import prepare
 from rpscli.physics.compile import (
     CONSTANTS,
     cache_folder,
-    is_compiled,
     kernel,
-    remember_compiled,
     sources_digest,
 )
 from rpscli.physics.prepare import compile_kernel  # workers have one of their own
 from rpscli.user_cache import alone_in, user_cache
+
+
+def twice(x: float) -> float:
+    return 2.0 * x
 
 
 @pytest.fixture(autouse=True)
@@ -42,14 +44,6 @@ def fresh_folder(monkeypatch: pytest.MonkeyPatch) -> Iterator[pytest.MonkeyPatch
     cache_folder.cache_clear()
 
 
-def test_the_user_may_name_the_place(fresh_folder: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    fresh_folder.setenv("RPS_CACHE_DIR", str(tmp_path / "here"))
-    folder = cache_folder()
-    assert folder is not None
-    assert folder.parent == tmp_path / "here"
-    assert folder.is_dir()
-
-
 def test_one_process_keeps_machine_code_at_a_time(tmp_path: Path) -> None:
     with (
         alone_in(tmp_path),
@@ -59,24 +53,23 @@ def test_one_process_keeps_machine_code_at_a_time(tmp_path: Path) -> None:
         other.execute("BEGIN EXCLUSIVE")
 
 
-def test_a_place_that_cannot_be_written_is_passed_over(
+def test_the_place_is_that_of_the_user_then_of_the_system_then_none(
     fresh_folder: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     (tmp_path / "file").write_text("no folder")
-    fresh_folder.setenv("RPS_CACHE_DIR", str(tmp_path / "file" / "below"))
-    fresh_folder.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
-    folder = cache_folder()
-    assert folder is not None
-    assert folder.parent == tmp_path / "cache" / "rps"
-
-
-def test_nowhere_to_write_means_no_cache(fresh_folder: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    (tmp_path / "file").write_text("no folder")
     nowhere = str(tmp_path / "file" / "below")
-    fresh_folder.setenv("RPS_CACHE_DIR", nowhere)
-    fresh_folder.setenv("XDG_CACHE_HOME", nowhere)
     fresh_folder.setattr(tempfile, "gettempdir", lambda: nowhere)
-    assert cache_folder() is None
+    for own, of_system, parent in (
+        (str(tmp_path / "here"), nowhere, tmp_path / "here"),
+        (nowhere, str(tmp_path / "cache"), tmp_path / "cache" / "rps"),
+        (nowhere, nowhere, None),
+    ):
+        fresh_folder.setenv("RPS_CACHE_DIR", own)
+        fresh_folder.setenv("XDG_CACHE_HOME", of_system)
+        cache_folder.cache_clear()
+        folder = cache_folder()
+        assert (folder and folder.parent) == parent
+        assert folder is None or folder.is_dir()
     double = kernel(twice)
     assert double(3.0) == 6.0
 
@@ -176,22 +169,6 @@ def test_a_source_that_moves_to_another_folder_counts_as_changed(tmp_path: Path)
     # what is no source does not count
     (tmp_path / "one" / "notes.txt").write_text("A = 2\n")
     assert sources_digest(tmp_path / "one") == one
-
-
-def twice(x: float) -> float:
-    return 2.0 * x
-
-
-def test_what_was_compiled_is_remembered(fresh_folder: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    fresh_folder.setenv("RPS_CACHE_DIR", str(tmp_path))
-    fresh_folder.setattr(compilation, "_compiled_here", set())
-    assert not is_compiled("three, of them")
-    remember_compiled("three, of them")
-    assert is_compiled("three, of them")
-    # another process, so to speak: only the disk knows
-    fresh_folder.setattr(compilation, "_compiled_here", set())
-    assert is_compiled("three, of them")
-    assert not is_compiled("three")
 
 
 PROGRAM = """
@@ -346,10 +323,7 @@ def test_a_full_disk_keeps_nothing_and_stops_nothing(
 ) -> None:
     fresh_folder.setenv("RPS_CACHE_DIR", str(tmp_path))
 
-    def doubled(x: float) -> float:
-        return 2.0 * x
-
-    made = kernel(doubled)
+    made = kernel(twice)
 
     def full(*_: object) -> None:
         raise OSError(errno.ENOSPC, "No space left on device")

@@ -1,0 +1,303 @@
+"""Steps: their rule, the orders that are observed, where they are halved, and how many it takes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+from paper_structures import (
+    FLAT,
+    Array,
+    RecordLoader,
+    building,
+    needs_compiled_kernels,
+    podium,
+    steps_an_interval,
+    stillness,
+    waves,
+)
+
+from rpscli.analyses.kernels import systems
+from rpscli.analyses.kernels.systems import LOSS, fastest_decay, highest_frequency
+from rpscli.analyses.modal import modal
+from rpscli.analyses.results import TimeHistoryResult
+from rpscli.analyses.settings import TimeHistorySettings
+from rpscli.analyses.timehistory import time_history
+from rpscli.model.bearing import Bearing
+from rpscli.model.impact import ImpactLaw
+from rpscli.model.podium import PodiumStructure
+from rpscli.model.superstructure import ModalDamping, RayleighDamping
+from rpscli.physics.tableau import A2, END, ERROR, USED, A, C
+from rpscli.records.ground_motion import GroundMotion
+
+SIXTH, FIFTH = A[END], A[END] - ERROR
+
+
+def missed(b: Array) -> Iterator[float]:
+    """What weights miss of the conditions of orders 1 to 5 (Butcher's trees)."""
+    Ac, Ac2 = A @ C, A @ C**2
+    yield float(b.sum() - 1.0)
+    for k in range(1, 5):
+        yield float(b @ C**k - 1.0 / (k + 1))
+    for tree, value in (
+        (Ac, 6), (C * Ac, 8), (Ac2, 12), (A @ Ac, 24), (C**2 * Ac, 10), (Ac**2, 20), (C * Ac2, 15),
+        (A @ C**3, 20), (C * (A @ Ac), 30), (A @ (C * Ac), 40), (A @ Ac2, 60), (A @ (A @ Ac), 120),
+    ):  # fmt: skip
+        yield float(b @ tree - 1.0 / value)
+
+
+@pytest.mark.parametrize("b", [SIXTH, FIFTH], ids=["6", "5"])
+def test_conditions_up_to_order_five(b: Array) -> None:
+    # weights of up to 176 multiply rounding
+    assert max(map(abs, missed(b))) < 1e-10
+
+
+def test_one_rule_is_of_order_six_and_the_other_is_not() -> None:
+    assert pytest.approx(1.0 / 6.0, abs=1e-10) == SIXTH @ C**5
+    assert abs(FIFTH @ C**5 - 1.0 / 6.0) > 1e-4
+
+
+def test_positions_follow_by_the_squared_tableau() -> None:
+    assert np.array_equal(A2, A @ A)
+    assert pytest.approx(0.5, abs=1e-10) == SIXTH @ C
+    assert not np.any(np.where(USED, 0.0, A))
+
+
+@pytest.mark.parametrize("z", [0.5, 0.7, 0.9])
+def test_what_a_step_takes_from_a_vibration(z: float) -> None:
+    """Of its energy LOSS z^8: what the lengths of steps are bounded by."""
+    stages = np.linalg.solve(np.eye(END + 1) - 1j * z * A, np.ones(END + 1))
+    grown = abs(1.0 + 1j * z * (SIXTH @ stages))
+    assert 1.0 - grown**2 == pytest.approx(LOSS * z**8, rel=0.06)
+
+
+ACCURACIES = (0.8, 1.6, 3.2)
+REFERENCE = 48.0
+LEAST_STATE, LEAST_ENERGY = 5.5, 5.5
+"""Order six shows as 5.6 to 8, that of energy likewise: rounding is near, so the steps are few and
+long, and the error that counts is not always that of the same quantity."""
+
+LEAST_PARABOLA = 4.5
+"""That of frames without stiffness, whose motion between events is almost a parabola."""
+
+
+@pytest.fixture
+def even_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+    """No error shortens them."""
+    monkeypatch.setattr(systems, "STEP_ERROR", math.inf)
+    monkeypatch.setattr(systems, "_system", systems._system.__wrapped__)
+
+
+class Orders(NamedTuple):
+    """Slopes over three step lengths, and the history with the shortest step."""
+
+    state: float
+    energy: float
+    reference: TimeHistoryResult
+
+
+def final_state(result: TimeHistoryResult) -> Array:
+    trace = result.trace
+    return np.concatenate(
+        ([trace.rotation[-1], trace.rotation_rate[-1]], trace.drifts[-1], trace.storey_shears[-1])
+    )
+
+
+def observed(structure: PodiumStructure, record: GroundMotion) -> Orders:
+    """Released from 0.1 rad under the record, which ends the history."""
+
+    def run(accuracy: float) -> TimeHistoryResult:
+        settings = TimeHistorySettings(free_vibration=0.0, accuracy=accuracy, initial_rotation=0.1)
+        return time_history(structure, record, settings)
+
+    reference = run(REFERENCE)
+    assert reference.trace.phase[-1] > 0
+    exact = final_state(reference)
+    steps, errors, residuals = [], [], []
+    for accuracy in ACCURACIES:
+        result = run(accuracy)
+        assert [e.kind for e in result.events] == [e.kind for e in reference.events]
+        steps.append(steps_an_interval(structure, record.dt, accuracy))
+        errors.append(np.max(np.abs(final_state(result) - exact) / np.abs(exact)))
+        residuals.append(abs(result.energy.residual) / result.trace.energy_stored[0])
+    assert min(errors) > 1e-14  # not yet rounding
+    lengths = -np.log(steps)
+    state, energy = (float(np.polyfit(lengths, np.log(e), 1)[0]) for e in (errors, residuals))
+    return Orders(state, energy, reference)
+
+
+@pytest.mark.evidence("steps, events, energy", "exact")
+@needs_compiled_kernels
+@pytest.mark.usefixtures("even_steps")
+@pytest.mark.parametrize(
+    ("storeys", "rho"),
+    [(0, FLAT), (1, FLAT), (1, 0.5), (3, FLAT), (3, 0.5), (6, 0.5)],
+)
+def test_flight_in_one_phase_is_of_order_six(storeys: int, rho: float) -> None:
+    # without springs the motion is slow: longer intervals, or one step would do for all
+    dt = 0.02 if storeys else 0.2
+    orders = observed(podium(storeys, 0.15, rho), waves(0.4, dt, 1.0, seed=1))
+    assert orders.reference.events == ()
+    assert orders.state > (LEAST_STATE if storeys else LEAST_PARABOLA)
+    assert orders.energy > (LEAST_ENERGY if storeys else LEAST_PARABOLA)
+
+
+@pytest.mark.evidence("steps, events, energy", "exact")
+@needs_compiled_kernels
+@pytest.mark.usefixtures("even_steps")
+@pytest.mark.parametrize(
+    ("storeys", "rho"),
+    # a frame without stiffness is almost a parabola, whose error has no leading term
+    [(0, FLAT), (0, 0.25), (0, 1.5), *((n, rho) for n in (1, 3) for rho in (FLAT, 0.25, 0.5, 1.5))],
+)
+def test_events_cost_no_order(storeys: int, rho: float) -> None:
+    """Impacts reset the state, and D jumps at beta: both only if met exactly."""
+    dt = 0.02 if storeys else 0.2
+    orders = observed(podium(storeys, 0.15, rho), waves(2.4, dt, 2.0, seed=1))
+    kinds = [event.kind for event in orders.reference.events]
+    assert kinds.count("impact") >= 1
+    if rho == 1.5:
+        assert kinds.count("rolling_to_rocking") >= 1
+        assert kinds.count("rocking_to_rolling") >= 1
+    assert orders.state > (LEAST_STATE if storeys else LEAST_PARABOLA)
+    assert orders.energy > (LEAST_ENERGY if storeys else LEAST_PARABOLA)
+
+
+SHORT = PodiumStructure(Bearing(0.12, 0.3, 0.6, 2.5), 5.9e3, 5.6e4, None, ImpactLaw("value", 1.0))
+"""Columns of a quarter of a metre with large radii: a tilt of 0.3 rad moves the contact far."""
+
+HEAVY = PodiumStructure(
+    Bearing(0.3, 0.15, 0.3, 0.5),
+    1e3,
+    1e3,
+    building(2, damping=RayleighDamping(0.0)),
+    ImpactLaw("value", 1.0),
+)
+"""Floors of hundreds of columns: near theta_cr, where they rise no more, A has a valley."""
+
+
+def drift(structure: PodiumStructure, rotation: float, accuracy: float) -> tuple[float, float]:
+    """Largest change of the energy that should stay, over itself; steps over the plain number."""
+    settings = TimeHistorySettings(
+        free_vibration=2.0,
+        initial_rotation=rotation * structure.bearing.critical_rotation,
+        accuracy=accuracy,
+    )
+    result = time_history(structure, stillness(0.05), settings)
+    stored = result.trace.energy_stored
+    plain = len(stored) * steps_an_interval(structure, 0.05, accuracy)
+    return float(np.max(np.abs(stored / stored[0] - 1.0))), result.history.steps / plain
+
+
+@needs_compiled_kernels
+@pytest.mark.parametrize(("structure", "rotation"), [(SHORT, 0.55), (HEAVY, 0.95)])
+def test_steps_are_halved_where_the_tilt_is_fast(
+    structure: PodiumStructure, rotation: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # undamped buildings would have short steps anyway
+    monkeypatch.setattr(systems, "MOST_LOST", math.inf)
+    monkeypatch.setattr(systems, "_system", systems._system.__wrapped__)  # as if never made
+    kept, steps = drift(structure, rotation, 1.0)
+    with monkeypatch.context() as patch:
+        patch.setattr(systems, "STEP_ERROR", math.inf)
+        lost, plain = drift(structure, rotation, 1.0)
+    assert steps > plain
+    assert kept < 1e-5
+    assert lost > 5.0 * kept
+    assert drift(structure, rotation, 2.0)[0] < max(0.05 * kept, 1e-11)  # or rounding
+
+
+BEYOND_A_PLAIN_STEP = 3.5
+"""Steps that an event adds on average: those taken again to its root, the one that leads on from
+it, and halves of steps in which the tilt changes fast."""
+
+
+def steps_an_event(result: TimeHistoryResult) -> float:
+    """Steps beyond those of the intervals, over the number of events."""
+    intervals = len(result.trace.time) - 1
+    plain = intervals * steps_an_interval(result.structure, result.record.dt)
+    return float(result.history.steps - plain) / len(result.events)
+
+
+@pytest.mark.evidence("steps, events, energy", "exact")
+@needs_compiled_kernels
+@pytest.mark.parametrize(
+    ("storeys", "rho"), [(0, FLAT), (0, 1.5), (3, 0.5), (6, FLAT), (9, 0.26), (9, 1.5)]
+)
+def test_an_event_costs_few_steps(storeys: int, rho: float) -> None:
+    structure = podium(storeys, 0.10, rho)
+    for seed in range(3):
+        record = waves(12.0, 0.01, 2.5 * structure.uplift_acceleration, seed)
+        result = time_history(structure, record, TimeHistorySettings(free_vibration=4.0))
+        assert len(result.events) > 10
+        assert steps_an_event(result) < BEYOND_A_PLAIN_STEP
+
+
+@pytest.mark.evidence("steps, events, energy", "exact")
+@needs_compiled_kernels
+def test_steps_a_sample_of_an_earthquake(fema_record: RecordLoader) -> None:
+    result = time_history(podium(9, 0.15, 1.5), fema_record("farfield/1/b"))
+    assert len(result.events) > 300
+    assert steps_an_event(result) < BEYOND_A_PLAIN_STEP
+
+
+@pytest.mark.evidence("steps, events, energy", "exact")
+def test_full_contact_needs_no_more_than_plain_steps() -> None:
+    structure = podium(3)
+    result = time_history(structure, waves(2.0, 0.02, 0.2, seed=1))
+    assert result.outcome == "at_rest"
+    intervals = len(result.trace.time) - 1
+    assert result.history.steps == intervals * steps_an_interval(structure, 0.02)
+
+
+@pytest.mark.evidence("steps, events, energy", "exact")
+@pytest.mark.parametrize("storeys", [1, 2, 5, 30])
+@pytest.mark.parametrize(
+    "damping", [RayleighDamping(0.05), RayleighDamping(0.3), ModalDamping(0.05)], ids=str
+)
+@pytest.mark.parametrize("rho", [FLAT, 1.5])
+def test_the_step_is_short_enough_for_every_uplifted_mode(
+    storeys: int, damping: RayleighDamping | ModalDamping, rho: float
+) -> None:
+    structure = podium(storeys, 0.15, rho, superstructure=building(storeys, damping=damping))
+    modes = modal(structure)
+    uplifted = modes.rocking if rho == FLAT else modes.rolling
+    assert uplifted is not None
+    assert highest_frequency(structure) >= uplifted.frequencies[-1]
+    # 2 xi w of the fastest mode is above its decay rate
+    assert fastest_decay(structure) >= np.max(np.abs(uplifted.eigenvalues.real))
+    # no waste either: the bounds are sharp within a factor
+    assert highest_frequency(structure) < 1.5 * max(uplifted.frequencies[-1], 5.0)
+
+
+@pytest.mark.evidence("steps, events, energy", "exact")
+@needs_compiled_kernels
+@pytest.mark.parametrize("damping", [5.0, 20.0])
+def test_an_overdamped_building_stays_stable(damping: float) -> None:
+    """Explicit steps diverge beyond h lambda = 4; the step heeds the decay rate."""
+    above = building(1, damping=RayleighDamping(damping))
+    settings = TimeHistorySettings(free_vibration=6.0, initial_rotation=0.03)
+    result = time_history(podium(1, superstructure=above), stillness(0.01), settings)
+    assert result.outcome == "survived"
+    assert result.max_rotation == 0.03
+    assert abs(result.energy.residual) < 1e-4 * result.trace.energy_stored[0]
+
+
+@pytest.mark.evidence("steps, events, energy", "exact")
+@needs_compiled_kernels
+@pytest.mark.parametrize("storeys", [0, 1, 2, 10, 30, 100])
+@pytest.mark.parametrize("rho", [FLAT, 0.26, 0.5, 1.5])
+def test_buildings_of_any_height_are_followed_to_the_end(storeys: int, rho: float) -> None:
+    structure = podium(storeys, 0.15, rho)
+    record = waves(8.0, 0.02, 2.0 * structure.uplift_acceleration, seed=5)
+    settings = TimeHistorySettings(free_vibration=4.0, initial_rotation=0.02)
+    result = time_history(structure, record, settings)
+    assert result.outcome == "survived"
+    assert result.impacts > 0
+    assert np.isfinite(result.trace.rotation).all()
+    assert np.isfinite(result.trace.floor_accelerations).all()
+    supplied = abs(result.energy.input) + result.trace.energy_stored[0]
+    assert abs(result.energy.residual) < 1e-5 * supplied
