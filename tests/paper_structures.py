@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from typing import TypeVar
 
 import numba
 import numpy as np
@@ -32,6 +33,8 @@ Array = NDArray[np.float64]
 RecordLoader = Callable[[str], GroundMotion]
 """From the name of a component to its motion."""
 
+Value = TypeVar("Value")
+
 COMPILED = not getattr(numba.config, "DISABLE_JIT")  # noqa: B009
 """Whether the kernels are machine code; interpreted they are some hundred times slower."""
 
@@ -44,6 +47,12 @@ SLENDER = 1e-3
 
 FLAT = 0.0
 """Curvature ratio of flat ends."""
+
+
+def known(value: Value | None) -> Value:
+    """A value that is there."""
+    assert value is not None
+    return value
 
 
 def building(

@@ -17,7 +17,7 @@ import pytest
 import yaml
 from oracles.reference_systems import podium as oracle_podium
 from oracles.second_integrator import simulate
-from oracles.test_earthquakes import ROWS, recorded
+from oracles.test_second_integrator import ROWS, recorded
 from paper_structures import RecordLoader, block, needs_compiled_kernels, podium
 from physics.test_overturning_pulses import SINE, least_amplitude
 from reproduction.test_histories import PRINTED

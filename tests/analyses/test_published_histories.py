@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from oracles.test_earthquakes import ROWS, Row
+from oracles.test_second_integrator import ROWS, Row
 from paper_structures import RecordLoader, needs_compiled_kernels, podium
 
 from rpscli.analyses.demand import demand

@@ -16,10 +16,6 @@ from rpscli.physics.quintic import (
     SETTLED,
     Quintic,
     first_descent,
-    lower_hull,
-    quintic,
-    upper_hull,
-    value,
 )
 
 pytestmark = pytest.mark.evidence("steps, events, energy", "exact")
@@ -86,13 +82,6 @@ def test_the_first_descent_is_found(kind: int) -> None:
         assert descent(b) == pytest.approx(descent_by_roots(b), abs=1e-7), b
 
 
-@given(st.floats(0.05, 0.95), st.floats(0.0, 0.2))
-def test_a_found_root_is_a_root(root: float, lift: float) -> None:
-    # (root - t)(1 + lift t^4): slope near -1, so the value at the root measures its error
-    b = to_bernstein(np.convolve([-1.0, root], [lift, 0.0, 0.0, 0.0, 1.0]))
-    assert descent(b) == pytest.approx(root, abs=1e-15)
-
-
 @pytest.mark.parametrize(
     ("b", "expected"),
     [
@@ -119,27 +108,6 @@ def test_two_crossings_right_after_a_start_on_zero() -> None:
         # the conversion leaves the start on zero; coefficients round at 1e-16, slope there is a^2
         assert b[0] == 0.0
         assert descent(b) == pytest.approx(a, rel=1e-14 / a**2 + 1e-12)
-
-
-@given(st.lists(st.floats(-1.0, 1.0), min_size=6, max_size=6), st.floats(1e-3, 10.0))
-def test_end_values_and_derivatives_are_met(ends: list[float], h: float) -> None:
-    b = quintic(h, *ends)
-    powers = to_powers(b)
-    slope, bend = np.polyder(powers), np.polyder(powers, 2)
-    got = [np.polyval(p, t) / h**i for t in (0, 1) for i, p in enumerate((powers, slope, bend))]
-    # second derivatives are differences of coefficients over h^2: these round some hundred times
-    assert got == pytest.approx(ends, abs=2e-13 * (1.0 + 1.0 / h**2))
-
-
-@given(
-    st.lists(st.floats(-1.0, 1.0), min_size=6, max_size=6),
-    st.floats(0.0, 1.0, exclude_min=True),
-)
-def test_the_curve_stays_within_its_hull(b: list[float], t: float) -> None:
-    curve = (b[0], b[1], b[2], b[3], b[4], b[5])
-    f = value(curve, t)
-    assert f == pytest.approx(np.polyval(to_powers(curve), t), abs=1e-13)
-    assert min(lower_hull(curve), b[0]) - 1e-15 <= f <= max(upper_hull(curve), b[0]) + 1e-15
 
 
 @given(st.floats(0.1, 0.9), st.floats(1e-12, 1e-3))

@@ -126,14 +126,6 @@ def test_nothing_jumps_where_rolling_ends(shape: Shape) -> None:
         assert rolling == pytest.approx(rocking, abs=ROUNDING * shape.scale)
 
 
-@given(shapes)
-def test_standing_upright_nothing_is_displaced(shape: Shape) -> None:
-    phase = shape.bearing.rolling
-    assert value(phase, "u", 0.0) == value(phase, "v", 0.0) == 0.0
-    assert value(phase, "B", 0.0) == pytest.approx(math.sin(shape.alpha), abs=1e-15)
-    assert value(phase, "C", 0.0) == pytest.approx(math.cos(shape.alpha), abs=1e-14 * shape.scale)
-
-
 @given(st.floats(0.02, 0.6))
 def test_flat_ends_rock_like_housners_block(tan_alpha: float) -> None:
     flat = Bearing(1.0, tan_alpha, 2.0 * tan_alpha, 0.0)
@@ -190,21 +182,9 @@ def test_up_to_a_quarter_of_a_turn(end: float, error: float) -> None:
         assert abs(1.0 - less - math.cos(x)) <= LAST_PLACES, x
 
 
-@given(st.floats(-0.5 * math.pi, 0.5 * math.pi))
-def test_odd_and_even(x: float) -> None:
-    sine, less, excess = sines(x)
-    assert sines(-x) == (-sine, less, -excess)
-
-
 @given(st.floats(1e-9, 0.1))
 def test_near_zero_nothing_is_lost(x: float) -> None:
     _, less, excess = sines(x)
     assert less == pytest.approx(2.0 * math.sin(0.5 * x) ** 2, rel=4e-16)
     series = x**3 / 6.0 * (1.0 - x * x / 20.0 * (1.0 - x * x / 42.0 * (1.0 - x * x / 72.0)))
     assert excess == pytest.approx(series, rel=1e-14)
-
-
-def test_beyond_the_range_that_is_needed_the_error_stays_small() -> None:
-    sine, less, _ = sines(math.pi)
-    assert abs(sine) < 1e-9
-    assert abs(less - 2.0) < 1e-9

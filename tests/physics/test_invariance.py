@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from paper_structures import COMPILED, FLAT, ground, podium, waves
+from paper_structures import COMPILED, FLAT, ground, known, podium, waves
 
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
@@ -89,18 +89,6 @@ def test_without_gravity_the_push_chooses_the_side(
     assert np.array_equal(here.trace.rotation, -there.trace.rotation)
 
 
-@pytest.mark.parametrize("structure", STRUCTURES, ids=name)
-def test_a_release_to_either_side_is_the_same_motion(structure: PodiumStructure) -> None:
-    here, there = (
-        time_history(structure, RECORD, replace(SETTINGS, initial_rotation=sign * 0.04))
-        for sign in (1.0, -1.0)
-    )
-    again = time_history(structure, RECORD.scaled(-1.0), replace(SETTINGS, initial_rotation=-0.04))
-    assert here.trace.rotation[0] == -there.trace.rotation[0] == 0.04
-    assert np.array_equal(here.trace.rotation, -again.trace.rotation)
-    assert not np.array_equal(here.trace.rotation, -there.trace.rotation)
-
-
 def with_building(structure: PodiumStructure, mass: float, stiffness: float) -> PodiumStructure:
     """All masses times `mass`, all storey stiffnesses times `stiffness`."""
     above = structure.superstructure
@@ -168,8 +156,7 @@ def test_a_rigid_building_moves_like_a_heavier_cap_beam() -> None:
     record = waves(1.0, 0.02, 4.0, seed=11)
     differences = []
     for period in (0.04, 0.02):
-        above = podium(2).superstructure
-        assert above is not None
+        above = known(podium(2).superstructure)
         above = replace(above, stiffnesses=above.stiffnesses * (0.2 / period) ** 2)
         stiff = time_history(podium(2, superstructure=above), record, SETTINGS)
         rigid = time_history(frame, record, SETTINGS)

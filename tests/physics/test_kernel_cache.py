@@ -1,4 +1,4 @@
-"""Where compiled kernels are kept, and that other sources never find them."""
+"""Where compiled kernels are kept, that other sources never find them, and what Ctrl-C leaves."""
 
 from __future__ import annotations
 
@@ -7,27 +7,27 @@ import errno
 import os
 import runpy
 import shutil
+import signal
 import sqlite3
 import stat
 import subprocess
 import sys
 import tempfile
+import time
 from collections.abc import Iterator
 from contextlib import closing
 from pathlib import Path
 
+import numpy as np
 import pytest
-from paper_structures import needs_compiled_kernels
+from paper_structures import known, needs_compiled_kernels
 
 from rpscli.physics import compile as compilation
 from rpscli.physics import prepare
-from rpscli.physics.compile import (
-    CONSTANTS,
-    cache_folder,
-    kernel,
-    sources_digest,
-)
+from rpscli.physics.compile import CONSTANTS, cache_folder, kernel, sources_digest
+from rpscli.physics.follow import hear
 from rpscli.physics.prepare import compile_kernel  # workers have one of their own
+from rpscli.physics.state import Field, records
 from rpscli.user_cache import alone_in, user_cache
 
 
@@ -91,8 +91,7 @@ def test_a_place_that_others_may_write_to_is_not_used(
         assert user_cache() == tmp_path / "cache" / "rps"
     assert stat.S_IMODE((tmp_path / "cache" / "rps").stat().st_mode) == 0o700
     (tmp_path / "shared").chmod(0o755)
-    folder = cache_folder()
-    assert folder is not None
+    folder = known(cache_folder())
     assert folder.parent == tmp_path / "shared"
     folder.chmod(mode)
     cache_folder.cache_clear()
@@ -137,8 +136,7 @@ def test_the_folder_is_named_after_the_sources(
     with (sources / source).open("a") as file:
         file.write("\n")
     cache_folder.cache_clear()
-    after = cache_folder()
-    assert after is not None
+    after = known(cache_folder())
     assert before != after
     assert digest != sources_digest(sources, CONSTANTS)
 
@@ -331,3 +329,32 @@ def test_a_full_disk_keeps_nothing_and_stops_nothing(
     fresh_folder.setattr("numba.core.caching.IndexDataCacheFile.save", full)
     with pytest.warns(UserWarning, match=rf"{tmp_path}.*No space left.*make room"):
         assert made(2.0) == 4.0
+
+
+class Interrupted(BaseException):
+    """What Ctrl-C is."""
+
+
+@pytest.mark.posix
+def test_an_interruption_waits_for_the_end_of_the_kernel() -> None:
+    state = records((Field("stop", "", "-", "asked for"),))
+    ended = []
+
+    def slow_to_hear() -> None:
+        while state.view(np.ndarray)["stop"][0] == 0:
+            time.sleep(0.01)
+        time.sleep(0.3)  # a machine with other work
+        ended.append(True)
+
+    def interrupt(number: int, frame: object) -> None:
+        raise Interrupted
+
+    before = signal.signal(signal.SIGALRM, interrupt)
+    signal.setitimer(signal.ITIMER_REAL, 0.15)
+    try:
+        with pytest.raises(Interrupted):
+            hear(slow_to_hear, state)
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, before)
+    assert ended

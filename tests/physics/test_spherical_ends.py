@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from paper_structures import building, ground, needs_compiled_kernels, stillness, waves
+from paper_structures import building, ground, known, needs_compiled_kernels, stillness, waves
 from scipy.integrate import DOP853
 
 from rpscli.analyses.demand import Request, demand, demands
@@ -164,8 +164,7 @@ def swing(structure: PodiumStructure, start: float, seconds: float) -> TimeHisto
 
 def own_period(structure: PodiumStructure) -> float:
     """Of the slowest mode, rolling [s]."""
-    rolling = modal(structure).rolling
-    assert rolling is not None
+    rolling = known(modal(structure).rolling)
     assert rolling.own_period is not None
     return rolling.own_period
 

@@ -13,6 +13,7 @@ from paper_structures import (
     Array,
     RecordLoader,
     building,
+    known,
     needs_compiled_kernels,
     podium,
     steps_an_interval,
@@ -264,8 +265,7 @@ def test_the_step_is_short_enough_for_every_uplifted_mode(
 ) -> None:
     structure = podium(storeys, 0.15, rho, superstructure=building(storeys, damping=damping))
     modes = modal(structure)
-    uplifted = modes.rocking if rho == FLAT else modes.rolling
-    assert uplifted is not None
+    uplifted = known(modes.rocking if rho == FLAT else modes.rolling)
     assert highest_frequency(structure) >= uplifted.frequencies[-1]
     # 2 xi w of the fastest mode is above its decay rate
     assert fastest_decay(structure) >= np.max(np.abs(uplifted.eigenvalues.real))

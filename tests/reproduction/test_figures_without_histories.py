@@ -14,6 +14,7 @@ from rpscli.case.case import load_case
 
 RHO = "podium.bearing.curvature_ratio"
 SIZE = "podium.bearing.semi_diagonal"
+OWN = "first_order.frequency_parameter"
 
 
 def values(rows: Iterable[Row], **wanted: str) -> list[float]:
@@ -83,16 +84,12 @@ def test_figure_3_amplification(reproduce: Reproduce) -> None:
 @pytest.mark.evidence("modes", "published")
 def test_figure_4a_size(reproduce: Reproduce) -> None:
     rolling = reproduce("figure_4a", "figure_4a_rolling")
-    assert set(values(rolling, rho="0.5", result="rolling.first_order.frequency_parameter")) == {
-        0.0
-    }
+    assert set(values(rolling, rho="0.5", result=f"rolling.{OWN}")) == {0.0}
 
     def excess(rho: str) -> Array:
         """How far the rigid estimate is above the model, from R = 0.5 to 3 m."""
-        model = np.array(values(rolling, rho=rho, result="rolling.first_order.frequency_parameter"))
-        rigid = np.array(
-            values(rolling, rho=rho, result="rolling.first_order.frequency_parameter_rigid")
-        )
+        model = np.array(values(rolling, rho=rho, result=f"rolling.{OWN}"))
+        rigid = np.array(values(rolling, rho=rho, result=f"rolling.{OWN}_rigid"))
         return np.asarray(rigid / model - 1.0)
 
     assert np.all(np.abs(excess("critical")) < 0.015)
@@ -100,12 +97,8 @@ def test_figure_4a_size(reproduce: Reproduce) -> None:
     assert excess("1.5")[0] > 0.07
     # less than while rocking, for every size
     rocking = reproduce("figure_4a", "figure_4a_rocking")
-    slow = np.array(
-        values(rolling, rho="critical", result="rolling.first_order.frequency_parameter")
-    )
-    fast = np.array(
-        values(rocking, rho="critical", result="rocking.first_order.frequency_parameter")
-    )
+    slow = np.array(values(rolling, rho="critical", result=f"rolling.{OWN}"))
+    fast = np.array(values(rocking, rho="critical", result=f"rocking.{OWN}"))
     assert np.all(slow < fast)
 
 
@@ -114,10 +107,8 @@ def test_figure_4b_radius(reproduce: Reproduce) -> None:
     rows = reproduce("figure_4b", "figure_4b")
     for size in ("0.5", "1", "1.5", "3"):
         rho = np.array([float(row[RHO]) for row in rows if row[SIZE] == size])
-        model = np.array(values(rows, R=size, result="rolling.first_order.frequency_parameter"))
-        rigid = np.array(
-            values(rows, R=size, result="rolling.first_order.frequency_parameter_rigid")
-        )
+        model = np.array(values(rows, R=size, result=f"rolling.{OWN}"))
+        rigid = np.array(values(rows, R=size, result=f"rolling.{OWN}_rigid"))
         rho = rho[: len(model)]
         assert model[rho == 0.5] == 0.0
         negative = rho < 0.5
@@ -133,17 +124,14 @@ def test_figure_5_number_of_storeys(reproduce: Reproduce) -> None:
     rows = reproduce("figure_5", "figure_5")
     for size in ("1", "1.5", "2", "3"):
         negative, positive = (
-            np.array(
-                values(rows, rho=rho, R=size, result="rolling.first_order.frequency_parameter")
-            )
+            np.array(values(rows, rho=rho, R=size, result=f"rolling.{OWN}"))
             for rho in ("critical", "1.5")
         )
         assert np.ptp(negative) / np.mean(negative) < 0.02
         assert np.all(np.diff(positive) < 0.0)
         assert positive[-1] / positive[0] < 0.97
     spread = [
-        np.ptp(values(rows, rho="1.5", R=size, result="rolling.first_order.frequency_parameter"))
-        for size in ("1", "3")
+        np.ptp(values(rows, rho="1.5", R=size, result=f"rolling.{OWN}")) for size in ("1", "3")
     ]
     assert spread[0] > 4.0 * spread[1]  # mostly for small columns
 
