@@ -325,14 +325,13 @@ class Failure(NamedTuple):
 class Collected:
     """The files of a study by name, and what its reports say.
 
-    `notes` warn of the numbers, `findings` are lines for the terminal, `parts` and `documents`
-    tables of reports for readers and for JSON, `broken` are the reports that could not be made.
+    `notes` warn of the numbers, `parts` and `documents` are tables of reports for readers and for
+    JSON, `broken` are the reports that could not be made.
     """
 
     files: dict[str, str | Content] = field(default_factory=dict)
     failures: list[Failure] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
-    findings: dict[str, list[tuple[str, str]]] = field(default_factory=dict)
     parts: list[Part] = field(default_factory=list)
     documents: dict[str, Any] = field(default_factory=dict)
     broken: list[RpsError] = field(default_factory=list)
@@ -582,8 +581,6 @@ class StudyResult(Shown):
         made = self._made(request)
         found.files |= dict(made.files(request.stem, self._title(request), look))
         add_notes(found.notes, request.stem, made.notes)
-        if lines := list(made.findings):
-            found.findings[request.stem] = lines
         if document := made.document():
             found.documents[request.stem] = document
             found.parts += [Heading(request.stem), *made.parts()]
