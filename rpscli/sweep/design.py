@@ -142,7 +142,7 @@ def weights_of(clusters: Sequence[int], resamples: int, seed: int) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Answer:
-    """All designs that were looked at; designs are the last axis of everything judged."""
+    """All designs that were looked at, and how each is judged."""
 
     task: DesignTask
     requirements: tuple[Requirement, ...]
@@ -164,10 +164,10 @@ class Answer:
 
     def with_more(self, other: Answer) -> Answer:
         """With the designs of a further round."""
-        joined: dict[str, Any] = {}
-        for name in (*LOOKED_AT, *JUDGED):
-            parts = getattr(self, name), getattr(other, name)
-            joined[name] = np.concatenate(parts, axis=0 if name in LOOKED_AT else -1)
+        joined: dict[str, Any] = {
+            name: np.concatenate([getattr(self, name), getattr(other, name)], axis)
+            for name, axis in AXES.items()
+        }
         return replace(self, **joined)
 
     @cached_property
@@ -247,8 +247,8 @@ class Answer:
                         yield unknown.key, word
 
 
-LOOKED_AT = ("places", "values")
-JUDGED = ("valid", "results", "met", "excess", "objectives")
+AXES = {"places": 0, "values": 0, "valid": 0, "results": 2, "met": 2, "excess": 1, "objectives": 1}
+"""That of the designs in each array of an answer."""
 
 
 class Round(NamedTuple):
