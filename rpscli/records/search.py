@@ -19,7 +19,7 @@ WHOLE = 2_000_000
 STARTS = 100
 """First choices at most, each grown from another motion and improved by exchange."""
 
-KICKS = 400
+KICKS = 1000
 """Times that the best choice is left by three motions at random, and improved again."""
 
 ROUNDING = 2e-5
@@ -172,11 +172,26 @@ class _Search:
         """The cost and the places after the best exchanges, until none helps."""
         now = self.goal.of_set(self.features[places], self.pool.factors[places])[0]
         while len(places) > 1:
-            rest = [[place for place in places if place != out] for out in places]
-            (cost, other), kept = min((self.with_one_more(kept), kept) for kept in rest)
+            cost = self._after_each_exchange(places)
+            out, other = np.unravel_index(int(np.argmin(cost)), cost.shape)
             # Rounding of the sums must not look like progress, or it would never end.
-            if cost >= now - 1e-12:
+            if cost[out, other] >= now - 1e-12:
                 break
-            now, places = cost, [*kept, other]
+            now = float(cost[out, other])
+            places = [*places[:out], *places[out + 1 :], int(other)]
         places = sorted(places)
         return self.goal.of_set(self.features[places], self.pool.factors[places])[0], places
+
+    def _after_each_exchange(self, places: list[int]) -> Array:
+        """(size, m) costs with another one in place of each; infinite where it is not free."""
+        size, (_, every, recordings, events) = len(places), self.pool
+        own = self.features[places]
+        total = (own.sum(axis=0) - own)[:, None, :] + self.features
+        rest = np.array([np.delete(every[places], out) for out in range(size)])
+        least = np.minimum(rest.min(axis=1)[:, None], every)
+        most = np.maximum(rest.max(axis=1)[:, None], every)
+        cost, _ = self.goal.judged(total, size, least, most)
+        same = recordings == recordings[places][:, None]
+        kin = events == events[places][:, None]
+        free = (same.sum(axis=0) - same == 0) & (kin.sum(axis=0) - kin < self.per_event)
+        return np.where(free, cost, math.inf)
