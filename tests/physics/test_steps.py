@@ -13,7 +13,6 @@ from paper_structures import (
     Array,
     RecordLoader,
     building,
-    known,
     needs_compiled_kernels,
     podium,
     steps_an_interval,
@@ -22,15 +21,14 @@ from paper_structures import (
 )
 
 from rpscli.analyses.kernels import systems
-from rpscli.analyses.kernels.systems import LOSS, fastest_decay, highest_frequency
-from rpscli.analyses.modal import modal
+from rpscli.analyses.kernels.systems import LOSS
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.model.bearing import Bearing
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import PodiumStructure
-from rpscli.model.superstructure import ModalDamping, RayleighDamping
+from rpscli.model.superstructure import RayleighDamping
 from rpscli.physics.tableau import A2, END, ERROR, USED, A, C
 from rpscli.records.ground_motion import GroundMotion
 
@@ -252,25 +250,6 @@ def test_full_contact_needs_no_more_than_plain_steps() -> None:
     assert result.outcome == "at_rest"
     intervals = len(result.trace.time) - 1
     assert result.history.steps == intervals * steps_an_interval(structure, 0.02)
-
-
-@pytest.mark.evidence("steps, events, energy", "exact")
-@pytest.mark.parametrize("storeys", [1, 2, 5, 30])
-@pytest.mark.parametrize(
-    "damping", [RayleighDamping(0.05), RayleighDamping(0.3), ModalDamping(0.05)], ids=str
-)
-@pytest.mark.parametrize("rho", [FLAT, 1.5])
-def test_the_step_is_short_enough_for_every_uplifted_mode(
-    storeys: int, damping: RayleighDamping | ModalDamping, rho: float
-) -> None:
-    structure = podium(storeys, 0.15, rho, superstructure=building(storeys, damping=damping))
-    modes = modal(structure)
-    uplifted = known(modes.rocking if rho == FLAT else modes.rolling)
-    assert highest_frequency(structure) >= uplifted.frequencies[-1]
-    # 2 xi w of the fastest mode is above its decay rate
-    assert fastest_decay(structure) >= np.max(np.abs(uplifted.eigenvalues.real))
-    # no waste either: the bounds are sharp within a factor
-    assert highest_frequency(structure) < 1.5 * max(uplifted.frequencies[-1], 5.0)
 
 
 @pytest.mark.evidence("steps, events, energy", "exact")
