@@ -55,10 +55,6 @@ class OracleResult:
     """What each device took up [J], in its stiffness or for good."""
     plastic: tuple[float, ...]
     """Of each tendon, the elongation that stays [m]."""
-    sticks: int
-    """Times that friction held the storey tilted."""
-    branches: int
-    """Times that a device changed its branch."""
 
 
 class Event(NamedTuple):
@@ -93,7 +89,7 @@ class _Simulation:
         self.stuck, self.direction = False, 1
         self.step = np.inf  # the last free step of DOP853
         self.max_rotation = self.energy_lost = 0.0
-        self.impacts = self.uplifts = self.sticks = self.branches = 0
+        self.impacts = self.uplifts = self.branches = 0
         self.overturned = False
         self.arrivals: list[float] = []
 
@@ -347,7 +343,6 @@ class _Simulation:
                 self.leave(way.direction)
                 return
         self.stuck = True
-        self.sticks += 1
 
     def impact(self, contact: Contact, ground: LinearGround) -> None:
         motion, n1 = self.lagrangian, self.lagrangian.storeys + 1
@@ -456,6 +451,4 @@ def simulate(
         arrivals=tuple(run.arrivals),
         device_work=run.y[2 * n + 2 :].copy(),
         plastic=tuple(run.equipment.plastic),
-        sticks=run.sticks,
-        branches=run.branches,
     )
