@@ -419,7 +419,7 @@ def test_no_axis_is_special(kind: str, contact_time: float) -> None:
 @pytest.mark.long
 @needs_compiled_kernels
 def test_what_is_kept_at_samples() -> None:
-    """Forces along the velocity, as geometry of sharp edges has it; the audit closes throughout."""
+    """Forces by the velocity, as geometry of sharp edges has it; the audit closes throughout."""
     x, y = two_pulses(3.0)
     structure = replace(equipped("root"), devices=(KINDS["root"], KINDS["stop"]))
     motion = pair(x, y, STEP)
