@@ -275,29 +275,21 @@ def subject_words(source: str, overrides: Iterable[str]) -> list[str]:
 
 
 def _commands(given: CaseInput, asked: Sequence[Asked], *, with_budget: bool) -> list[list[str]]:
-    """That make the same again."""
+    """Commands that make the history and the page again."""
     words = subject_words(given.request.source, given.request.overrides)
     if given.case.record is None and not any(records for records, _ in asked):
         return [["rps", "report", *words]]
-    return [
-        [
-            "rps",
-            command,
-            *words,
-            *_motion_words(*each),
-            *["--budget"] * (with_budget and command == "report"),
-        ]
-        for command in ("timehistory", "report")
-        for each in asked
-    ]
-
-
-def _motion_words(records: Sequence[str], motion: MotionRequest) -> list[str]:
-    options = [("--record", record) for record in records]
-    options += [("--vertical", motion.vertical)] if motion.vertical else []
-    options += [] if motion.scale is None else [("--scale", repr(motion.scale))]
-    options += [("--scale-to", motion.scale_to)] if motion.scale_to else []
-    return [word for option in options for word in option]
+    found = []
+    for command in ("timehistory", "report"):
+        budget = ["--budget"] * (with_budget and command == "report")
+        for records, motion in asked:
+            options = [("--record", record) for record in records]
+            options += [("--vertical", motion.vertical)] if motion.vertical else []
+            options += [] if motion.scale is None else [("--scale", repr(motion.scale))]
+            options += [("--scale-to", motion.scale_to)] if motion.scale_to else []
+            asked_for = [word for option in options for word in option]
+            found.append(["rps", command, *words, *asked_for, *budget])
+    return found
 
 
 def _stored(

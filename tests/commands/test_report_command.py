@@ -63,6 +63,12 @@ def test_a_case_and_its_history_are_on_one_page(rps: Invoke, rps_json: Callable[
     history = rps_json("timehistory", "small.yaml", "-o", "history")
     assert document["max_rotation"] == history["max_rotation"]
     assert f"{shown(history['max_rotation'])} rad" in text
+    # And how much one history says.
+    for part in ("one history: with 1 % less or more motion", "judge by several records"):
+        assert part in text
+    assert "restitution at impact: e = " in text
+    assert "one horizontal direction at a time" in text.lower()
+    assert len(document["neighbours"]) == 7
 
 
 def test_a_case_without_a_record_ends_with_statics(rps: Invoke) -> None:
@@ -248,16 +254,6 @@ def test_what_moves_the_worst_history_stands_on_its_page(
     assert rps("report", "old", "--budget", "-o", "old.html").exit_code == 10
     of_case = rps_json("budget", "small.yaml", *given[2:], "--figures", "none")
     assert of_case["results"][1]["sentences"] in text_of("old.html")
-
-
-def test_a_single_history_says_that_it_is_one(rps_json: Callable[..., Any]) -> None:
-    document = rps_json("report", "small.yaml", "-o", "out.html")
-    text = text_of("out.html")
-    assert "one history: with 1 % less or more motion" in text
-    assert "judge by several records" in text
-    assert "restitution at impact: e = " in text
-    assert "one horizontal direction at a time" in text.lower()
-    assert len(document["neighbours"]) == 7
 
 
 def test_values_stand_as_they_were_written(rps: Invoke) -> None:

@@ -101,12 +101,7 @@ def test_a_panel_is_drawn_with_labels_and_units(name: str) -> None:
     assert figure.get_suptitle() == ""
     assert (figure.axes[0], figure.axes[1]) == (left, right)
     figure.draw_without_rendering()
-
-
-@pytest.mark.parametrize("name", PANELS)
-def test_a_panel_stands_in_a_part_of_a_figure_too(name: str) -> None:
-    figure = Figure()
-    parts = figure.subfigures(1, 2, squeeze=False)[0]
+    parts = Figure().subfigures(1, 2, squeeze=False)[0]
     panel(name, parts[1].subplots())
     assert not parts[0].axes
 
