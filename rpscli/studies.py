@@ -233,21 +233,23 @@ class Study(Shown):
 
     def run(
         self,
-        folder: Path | str | None = None,
+        folder: Path | str | Store | None = None,
         *,
         jobs: int | None = None,
         scheduler: str | None = None,
         fresh: bool = False,
         retry_failed: bool = False,
         progress: Callable[[Progress], None] = lambda _: None,
+        watch: Watch | None = None,
+        announce: Callable[[], None] = lambda: None,
     ) -> StudyResult:
         """Compute what is not stored yet, and store each batch of points as it ends.
 
         Parameters
         ----------
         folder
-            Of the store, which `rps sweep` reads and continues; without one the points are stored
-            in a temporary folder that ends with the result.
+            Of the store, which `rps sweep` reads and continues, or the store; without one the
+            points are stored in a temporary folder that ends with the result.
         jobs
             Threads; all cores by default.
         scheduler
@@ -258,6 +260,10 @@ class Study(Shown):
             Recompute failed points.
         progress
             Is told how far it is.
+        watch
+            Is told where it begins, before `progress`, in place of which it may give another.
+        announce
+            Says that points under way will end after a first Ctrl-C.
 
         Raises
         ------
@@ -268,35 +274,20 @@ class Study(Shown):
         """
         if jobs is not None and not 0 < jobs <= MOST_JOBS:
             raise UsageError(f"jobs = {jobs} must be a number of threads from 1 to {MOST_JOBS}")
-        keeper = _Temporary() if folder is None else None
-        place = keeper.place if keeper else Path(folder or "")
-        self.output(place)
-        return self.computed(
-            Store(place, fresh=fresh),
-            jobs=jobs,
-            scheduler=scheduler,
-            retry_failed=retry_failed,
-            watch=lambda _: nullcontext(progress),
-            keeper=keeper,
-        )
-
-    def computed(
-        self,
-        store: Store,
-        *,
-        jobs: int | None = None,
-        scheduler: str | None = None,
-        retry_failed: bool = False,
-        watch: Watch = lambda _: nullcontext(lambda _: None),
-        announce: Callable[[], None] = lambda: None,
-        keeper: object = None,
-    ) -> StudyResult:
-        """Compute what a store has not yet; `announce` says that a first Ctrl-C lets points end."""
+        keeper = None
+        if folder is None:
+            keeper = _Temporary()
+            folder = keeper.place
+        if isinstance(folder, Store):
+            store = folder
+        else:
+            self.output(Path(folder))
+            store = Store(Path(folder), fresh=fresh)
         layout, jobs = self.layout, jobs or available_cores()
         with store:
             begin = start(layout, store, retry_failed=retry_failed)
             done = Progress(len(self), begin.kept, 0, 0, 0.0)
-            with watch(begin) as report:
+            with watch(begin) if watch else nullcontext(progress) as report:
                 store.note(**begin.facts)
                 try:
                     if begin.pending:

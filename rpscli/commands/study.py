@@ -97,7 +97,7 @@ def computed(
         terminal.note("\nstopping after the points under way; Ctrl-C again stops at once")
 
     try:
-        result = study.computed(
+        result = study.run(
             store,
             jobs=choices.jobs,
             scheduler=choices.scheduler,
