@@ -20,7 +20,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
 from hashlib import sha256
 from pathlib import Path
 from shutil import rmtree
@@ -72,7 +72,6 @@ from rpscli.sweep.table import (
     StudyResults,
     Table,
     array,
-    names_of,
     point_columns,
     points_csv,
     units_of_columns,
@@ -299,7 +298,7 @@ class Study(Shown):
                     known = store.outcomes()
                     stored = sum(key in known for key in begin.keys)
                     raise StudyInterrupted(stored, len(self), store.path) from None
-            table = Table.of(layout, store.results(begin.keys, names_of(layout)))
+            table = Table.of(layout, partial(store.results, begin.keys))
             results = StudyResults(table, begin.keys, store, jobs)
         return StudyResult(self, results, begin, done, keeper)
 

@@ -264,6 +264,7 @@ class Engine:
             self._opened.callback(client.close)
             client.wait_for_workers(1, timeout=PATIENCE)
         except (OSError, ValueError) as error:  # a TimeoutError is an OSError
+            self._opened.close()
             raise UsageError(
                 f"--scheduler {address}: no Dask scheduler with a worker answers there ({error})"
             ) from None

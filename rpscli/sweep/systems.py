@@ -120,8 +120,8 @@ class SystemProperties(NamedTuple):
 
     `values` are those of the varied keys; `period` is T1 on a fixed base, `frequency_parameter`
     that of the rigid frame, p_hat; `building` is a digest of the superstructure, empty without one;
-    `limits` are those of the study or, where it has none, of
-    the case; `lacking` names results that the system cannot have; `doubts` are what is unusual.
+    `limits` are those of the study or, where it has none, of the case; `lacking` names results that
+    the system cannot have; `doubts` are what is unusual.
     """
 
     values: Values

@@ -6,7 +6,7 @@ import csv
 import hashlib
 import io
 import json
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cached_property
@@ -113,8 +113,10 @@ class Table(Outcomes):
     """(points, most storeys) largest storey shears from the bottom [N], NaN above the roof."""
 
     @classmethod
-    def of(cls, layout: StudyPoints, stored: PointResults) -> Table:
-        """From what is stored of `NAMES`, in the order of the study."""
+    def of(cls, layout: StudyPoints, read: Callable[[Sequence[str]], PointResults]) -> Table:
+        """From what is read of results by their names, in the order of the study."""
+        names = SCALARS[layout.plan.analysis]
+        stored = read([*names, "scale", STOREY_SHEARS.name])
         unknown = np.full(len(layout), np.nan)
         most = max(properties.storeys for properties in layout.properties)
         shears = np.full((len(layout), most), np.nan)
@@ -122,9 +124,7 @@ class Table(Outcomes):
             shears[:, : known.shape[1]] = known
         return cls(
             outcomes=stored.outcomes,
-            columns={
-                name: stored.columns.get(name, unknown) for name in SCALARS[layout.plan.analysis]
-            },
+            columns={name: stored.columns.get(name, unknown) for name in names},
             clusters=layout.clusters,
             independent=layout.independent,
             layout=layout,
@@ -170,11 +170,6 @@ class Table(Outcomes):
                     continue
             values[point.number] = unscaled * abs(factor) ** MEASURES[measure].power
         return Intensity(measure, MEASURES[measure].unit, period, values, layout.of)
-
-
-def names_of(layout: StudyPoints) -> list[str]:
-    """Of the stored results that a table takes."""
-    return [*SCALARS[layout.plan.analysis], "scale", STOREY_SHEARS.name]
 
 
 class Group(NamedTuple):

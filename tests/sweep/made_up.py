@@ -11,7 +11,7 @@ import numpy as np
 from rpscli.report.study.report import Found
 from rpscli.sweep.evaluation import FAILED, MISSING, SCALARS, PointResults, at_path, stacked
 from rpscli.sweep.points import StudyPoints, lay_out
-from rpscli.sweep.table import StudyResults, Table, names_of
+from rpscli.sweep.table import StudyResults, Table
 from sweep.small_studies import STUDY, Make
 
 
@@ -52,7 +52,7 @@ def reader(rows: Iterable[Stored | None]) -> Callable[[Iterable[str]], PointResu
 
 
 def tabulate(layout: StudyPoints, rows: Iterable[Stored | None]) -> Table:
-    return Table.of(layout, reader(rows)(names_of(layout)))
+    return Table.of(layout, reader(rows))
 
 
 def table_of(make: Make, answer: Answer, *changes: tuple[str, str]) -> Table:

@@ -7,6 +7,7 @@ import signal
 import warnings
 from collections.abc import Iterator
 from concurrent.futures import Executor, Future
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +18,7 @@ from rpscli.sweep.context import Plan
 from rpscli.sweep.points import lay_out
 from rpscli.sweep.run import Engine, Progress, compute, run, start
 from rpscli.sweep.store import Store
-from rpscli.sweep.table import Table, names_of, points_csv
+from rpscli.sweep.table import Table, points_csv
 from sweep.small_studies import STUDY, Make
 
 distributed = pytest.importorskip("distributed")
@@ -56,7 +57,7 @@ def test_a_killed_worker_changes_no_byte(study_of: Make, workplace: Path, schedu
             engine = Engine(layout.context, 1, address)
             finish = run(layout, begin, store, engine, kill_one)
             assert (finish.computed, finish.failed) == (len(layout), 0)
-            table = Table.of(layout, store.results(begin.keys, names_of(layout)))
+            table = Table.of(layout, partial(store.results, begin.keys))
             texts.append("".join(points_csv(table)))
     assert killed
     assert texts[0] == texts[1]

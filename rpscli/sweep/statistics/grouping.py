@@ -121,7 +121,10 @@ def grouping(
     keys = own_keys(layout, besides) if keys is None else tuple(keys)
     found = (Histories(table, *group) for group in groups(layout, keys, within))
     differing = pooled(layout, (*keys, *besides))
-    notes = pooling_notes(layout, differing)
+    of = f"intervals count {layout.independent}"
+    if layout.alone:
+        of = "intervals are of these histories, and say nothing of other records"
+    notes = (f"pools {' and '.join(differing)}, which differ: {of}",) if differing else ()
     return Grouping(shown_keys(layout, keys), tuple(found), differing, notes)
 
 
@@ -149,16 +152,6 @@ def pooled(layout: StudyPoints, keys: Sequence[str]) -> tuple[str, ...]:
     counts += [(len(layout.scales), "intensities")] * (INTENSITY not in keys)
     counts += [(len(layout.members), "members")]
     return tuple(f"{count} {what}" for count, what in counts if count > 1)
-
-
-def pooling_notes(layout: StudyPoints, differing: Sequence[str]) -> tuple[str, ...]:
-    """The warning that belongs to what is pooled; empty if nothing is."""
-    if not differing:
-        return ()
-    of = f"intervals count {layout.independent}"
-    if layout.alone:
-        of = "intervals are of these histories, and say nothing of other records"
-    return (f"pools {' and '.join(differing)}, which differ: {of}",)
 
 
 def shown_keys(layout: StudyPoints, keys: Sequence[str]) -> tuple[str, ...]:
