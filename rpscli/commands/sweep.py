@@ -40,8 +40,9 @@ if TYPE_CHECKING:
 OF_A_REPORT = 12
 """Warnings that are shown at most."""
 MOST_LINES = 60
-MOST_ROWS = 40
-"""Of a table, where there are few of them."""
+FEWER = (40, 30, 22, 16, 12, 9, 6, 4, 2, 1)
+"""Rows of a table: the most of them that fit."""
+ALL = "; --all prints them"
 
 
 @click.command("sweep")
@@ -132,38 +133,51 @@ def command(
     leave(error)
 
 
-def _shown(result: StudyResult, found: Collected, *, whole: bool) -> Iterator[Part]:
-    """All, or as many rows of each table as fit into some lines."""
+def _shown(result: StudyResult, found: Collected, *, whole: bool) -> list[Part]:
+    """All, or as many rows of each table as fit into some lines: statistics are cut first."""
     from rpscli.report.study.shown import asked, cut
 
+    told = list(_told(result, found))
     if whole:
-        yield from _tables(result, found, None)
-        return
-    parts, rows = list(_tables(result, found, asked(result.layout))), MOST_ROWS
-    few = list(cut(parts, rows, "; --all prints them"))
-    while rows > 1 and rendered(few).count("\n") > MOST_LINES:
-        rows = max(1, min(rows - 1, 3 * rows // 4))
-        few = list(cut(parts, rows, "; --all prints them"))
-    yield from few
+        return [*_head(result), *_statistics(result, None), *told]
+    head, statistics = list(_head(result)), list(_statistics(result, asked(result.layout)))
+    few: list[Part] = []
+    for rows, of_reports in [(n, FEWER[0]) for n in FEWER] + [(0, n) for n in FEWER]:
+        some = cut(statistics, rows, ALL) if rows else [f"statistics are in statistics.csv{ALL}"]
+        few = [*head, *some, *cut(told, of_reports, ALL)]
+        if rendered(few).count("\n") <= MOST_LINES:
+            break
+    return few
 
 
-def _tables(result: StudyResult, found: Collected, wanted: set[str] | None) -> Iterator[Part]:
-    from rpscli.report.study.shown import of_first_system, summary_tables, verdict_table
-
+def _head(result: StudyResult) -> Iterator[Part]:
+    """The title and counts of outcomes."""
     yield Heading(result.study.title)
     counts = {"points": len(result), **result.outcomes}
     listing = [(name, str(count)) for name, count in counts.items()]
     if aim := result.layout.scaled_to:
         listing.append(("records scaled to", aim))
     yield Table.listing(listing)
+
+
+def _statistics(result: StudyResult, wanted: set[str] | None) -> Iterator[Part]:
+    """Outcomes and fractiles of demands of each system and intensity."""
+    from rpscli.report.study.shown import summary_tables
+
     if result.summary is not None:
         yield from summary_tables(result.summary, wanted)
+
+
+def _told(result: StudyResult, found: Collected) -> Iterator[Part]:
+    """What counts as overturned, verdicts, reports; what several of them remark is said once."""
+    from rpscli.report.study.shown import of_first_system, verdict_table
+
+    if result.summary is not None:
         yield of_first_system(result.layout)
         if result.judgements:
             yield verdict_table(result.summary, result.judgements)
     told: set[Part] = set()
     for part in found.parts:
-        # What several reports remark is said once.
         if isinstance(part, Table | Heading) or part not in told:
             yield part
         told |= set() if isinstance(part, Table) else {part}
