@@ -213,7 +213,17 @@ class Study(Shown):
         }
 
     def output(self, place: Path, command: str = "sweep", *, force: bool = False) -> OutputFolder:
-        """A folder for its results, claimed for a command; a store there belongs to the study."""
+        """A folder for its results, claimed for a command; a store there belongs to the study.
+
+        Parameters
+        ----------
+        place
+            The folder.
+        command
+            That which writes there.
+        force
+            Replace results of another study, or of another command.
+        """
         # After a kill there may be files there that no `run.json` speaks of.
         require_writable(place)
         study, plan = self.layout.study, self.layout.plan
@@ -537,7 +547,15 @@ class StudyResult(Shown):
         return made.files
 
     def collected(self, look: Look, place: Path | None = None) -> Collected:
-        """All files for a folder. A report that fails does not take the others with it."""
+        """All files for a folder. A report that fails does not take the others with it.
+
+        Parameters
+        ----------
+        look
+            Of the figures.
+        place
+            Where the files will stand, for the commands in them; the folder of the store by default.
+        """
         found = Collected({"points.csv": points_csv(self.table)})
         found.failures += self._failures(place or self.folder, found)
         if found.failures:
@@ -586,7 +604,15 @@ class StudyResult(Shown):
             yield Failure(number + 1, message, command)
 
     def error(self, found: Collected, *, limits: bool = True) -> RpsError | None:
-        """The gravest of what went wrong, whose exit code counts; its text tells of all."""
+        """The gravest of what went wrong, whose exit code counts; its text tells of all.
+
+        Parameters
+        ----------
+        found
+            What was collected.
+        limits
+            Count limits that are exceeded.
+        """
         errors: list[RpsError] = [*found.broken]
         if failures := found.failures:
             lines = [f"{len(failures)} of {len(self)} points failed; they enter no statistic"]

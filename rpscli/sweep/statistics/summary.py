@@ -11,6 +11,7 @@ from rpscli.analyses.result_quantities import LIMITED, ResultQuantity
 from rpscli.records.ground_motion import LEAST, MOST
 from rpscli.records.measures import measure_label
 from rpscli.records.recordings import clusters
+from rpscli.shown import frozen
 from rpscli.sweep.statistics.fractiles import Share, Spread, demand, share_of, spread
 from rpscli.sweep.statistics.grouping import grouping
 from rpscli.sweep.table import Array, FixedBaseReferences, Indices, Outcomes, Table
@@ -99,7 +100,7 @@ def _row(
         spread(column[points], from_below=quantity.from_below)
         for quantity, column in demands.items()
     )
-    return SummaryRow(values, points, failed, overturned, tuple(spreads))
+    return SummaryRow(values, frozen(points), failed, overturned, tuple(spreads))
 
 
 def shear_over_fixed_base(table: Table, fixed: FixedBaseReferences) -> Array:
