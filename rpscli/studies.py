@@ -554,7 +554,7 @@ class StudyResult(Shown):
         look
             Of the figures.
         place
-            Where the files will stand, for the commands in them; the folder of the store by default.
+            Where the files will stand, for the commands in them; by default that of the store.
         """
         found = Collected({"points.csv": points_csv(self.table)})
         found.failures += self._failures(place or self.folder, found)
