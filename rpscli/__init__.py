@@ -15,7 +15,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from rpscli import figures
+    from rpscli import figures, plugins
     from rpscli.analyses.demand import demand
     from rpscli.analyses.floor_spectra import fixed_base_floor_spectra, isolated_floor_spectra
     from rpscli.analyses.largest_demands import Demand
@@ -96,6 +96,7 @@ __all__ = [
     "load_record",
     "load_study",
     "modal",
+    "plugins",
     "profile_stiffnesses",
     "pushover",
     "response_spectrum",
@@ -109,8 +110,8 @@ def __getattr__(name: str) -> Any:
 
     if name == "__version__":
         return import_module("rpscli.version").VERSION
-    if name == "figures":
-        return import_module("rpscli.figures")
+    if name in {"figures", "plugins"}:
+        return import_module(f"rpscli.{name}")
     for module, names in _HOMES.items():
         if name in names:
             return getattr(import_module(module), name)

@@ -29,7 +29,7 @@ SECTIONS = {
         "budget": "sensitivity of limited results and verdicts",
         "export": "write a case as a model for mujoco or OpenSees",
         "identify": "properties of a case from measured motion",
-        "schema": "JSON schemas of files and of results",
+        "schema": "JSON schemas of cases, studies and designs",
         "completion": "complete commands, files and keys in your shell",
         "verify": "compare this installation with known numbers",
         "doctor": "what is installed, what is missing",

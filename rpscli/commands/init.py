@@ -113,8 +113,8 @@ RESULTS_GONE = (
 @click.argument(
     "what",
     metavar=f"[{'|'.join(FORMATS)}]",
-    type=click.Choice((*FORMATS, "results")),
     default="case",
+    **completing(lambda: FORMATS),
 )
 @click.option("--study", "also", flag_value="study", help="The same as `rps schema study`.")
 @click.option("--design", "also", flag_value="design", help="The same as `rps schema design`.")
@@ -125,8 +125,9 @@ def schema(*, what: str, also: str | None, terminal: Terminal) -> None:
     Editors that know YAML check and complete a file by it: `rps init --editor`.
     """
     del terminal
-    if what == "results":
-        raise UsageError(RESULTS_GONE)
+    if what not in FORMATS:
+        others = f"schema {what}: the schemas are those of {', '.join(FORMATS)}"
+        raise UsageError(RESULTS_GONE if what == "results" else others)
     if also and what not in {"case", also}:
         raise UsageError(f"{what} and --{also} are two formats; take one of them")
     emit(json_text(schema_of(also or what)), sys.stdout)

@@ -86,6 +86,8 @@ def command(
     points of a STUDY or DESIGN that are not stored yet. Those of a FOLDER are computed again and
     compared with what is stored.
     """
+    if place is not None and place.suffix.lower() not in {".html", ".htm"}:
+        raise UsageError(f"-o {place}: the page is HTML; name a file that ends with .html")
     look = Look(style={} if style_file is None else drawable_style(style_file))
     request, asked = CaseRequest(subject, overrides), motion
     earlier = earlier_results(Path(subject)) if Path(subject).is_dir() else None

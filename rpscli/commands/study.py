@@ -78,7 +78,7 @@ def computed(
 
     @contextmanager
     def watch(begin: Start) -> Iterator[Callable[[Progress], None]]:
-        for note in begin.notes:
+        for note in begin.notes if command != "design" else ():  # which is many studies
             terminal.note(note)
         pending, total = len(begin.pending), len(begin.keys)
         if choices.report_only and pending:

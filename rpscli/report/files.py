@@ -206,7 +206,8 @@ class OutputFolder:
         place = self.folder / RUN_FILE
         try:
             earlier = json.loads(place.read_text(encoding="utf-8"))
-            owner = f"`rps {earlier['command']}` on {earlier['name']} ({earlier['file']})"
+            file = f" ({earlier['file']})" if earlier["file"] else ""
+            owner = f"`rps {earlier['command']}` on {earlier['name']}{file}"
             earlier["files"] = [name for name in earlier["files"] if isinstance(name, str)]
         except FileNotFoundError:
             return {}

@@ -240,8 +240,8 @@ def _passes(result: TimeHistoryResult) -> list[Row]:
     """Passes near upright: their number, the closest, and the shortest."""
     rows = [("uplifts, passes", f"{result.uplifts}, {result.passes}", "", "")]
     if result.passes:
-        rows.append(_row(result, "passes_as_impacts"))
         rows += [
+            (QUANTITIES["passes_as_impacts"].label, f"{result.passes_as_impacts:.0f}", "", ""),
             (QUANTITIES["closest_pass"].label, f"{shown(result.closest_pass)} alpha", "", ""),
             _row(result, "shortest_pass"),
         ]
