@@ -64,8 +64,8 @@ OBJECTS: dict[str, Callable[[], Any]] = {
 """Every class that is offered, and what functions without a class of theirs give."""
 
 OTHER = {
-    "demand", "figures", "plugins", "load_case", "load_components", "load_record", "load_study", "modal",
-    "pushover", "time_history", "profile_stiffnesses", "__version__",
+    "demand", "figures", "load_case", "load_components", "load_record", "load_study", "modal",
+    "plugins", "pushover", "time_history", "profile_stiffnesses", "__version__",
 }  # fmt: skip
 """They give objects of the classes above, texts, or an array that nobody else knows."""
 

@@ -326,7 +326,8 @@ def compared(folder: Path, document: Mapping[str, Any]) -> list[Block]:
     except (OSError, ValueError, AttributeError) as error:
         return [Notice(f"{folder / SUMMARY} cannot be read, so nothing was compared: {error}")]
     now = results_of(plain(document))
-    names = [name for name in before if name in now]
+    # By what the record was scaled is a result; the aim that asked for it is computed once.
+    names = [name for name in before if name in now and name != "record.scaled_to"]
     differing = [(n, as_text(before[n]), as_text(now[n])) for n in names if before[n] != now[n]]
     same = len(names) - len(differing)
     text = (
@@ -335,7 +336,7 @@ def compared(folder: Path, document: Mapping[str, Any]) -> list[Block]:
     )
     if not differing:
         return [text]
-    warning = f"{text} {len(differing)} differ; this page shows what was computed again."
+    warning = f"{text} Different: {len(differing)}; this page shows what was computed again."
     return [
         Notice(warning),
         Table.of_texts(("result", "stored", "computed anew"), differing, words=1),
