@@ -27,6 +27,7 @@ from typing import Any
 
 import numpy as np
 
+from rpscli.analyses.kernels.systems import most_seconds
 from rpscli.case.text.document import shown
 from rpscli.errors import Refused, RpsError, UsageError
 from rpscli.sweep.context import Plan, Point, StudyContext, solver_version
@@ -438,6 +439,8 @@ def estimated_seconds(layout: StudyPoints, jobs: int) -> float:
     tried, spent, points = min(PROBES, count), 0.0, 0
     numbers = sorted({count * (2 * i + 1) // (2 * tried) for i in range(tried)})
     for batch in batches(layout, numbers, jobs=1):
+        if (most := _most_seconds(layout, batch[0])) > 10.0 * LONGEST_PROBING:  # not to be tried
+            return most * count / min(jobs, count)
         alone = _seconds(layout.context, batch[:1])  # reads records, loads kernels
         if alone > 2.0 * LONGEST_PROBING:  # of which loading is little
             return alone * count / min(jobs, count)
@@ -448,7 +451,18 @@ def estimated_seconds(layout: StudyPoints, jobs: int) -> float:
     return spent / points * count / min(jobs, count)
 
 
+def _most_seconds(layout: StudyPoints, point: Point) -> float:
+    """About the longest that a history may take, of a point that has one [s]."""
+    if layout.plan.analysis != "timehistory":
+        return 0.0
+    try:
+        request = layout.context.history(point)
+    except RpsError:  # which the point tells when it is tried
+        return 0.0
+    return most_seconds(request.structure, request.settings, request.motion.duration)
+
+
 def _seconds(context: StudyContext, points: Sequence[Point]) -> float:
-    began = time.perf_counter()
+    began = time.thread_time()  # whatever else runs on the machine
     run_batch(context, points)
-    return time.perf_counter() - began
+    return time.thread_time() - began
