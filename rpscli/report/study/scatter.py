@@ -157,7 +157,7 @@ def _draw_curve(
     if fit is not None:
         ends = np.array([x.min(), fit.break_x, x.max()])
         axes.plot(ends, fit(ends), color=style.BLACK, lw=1.6, label="bilinear fit")
-        beyond = f"beyond,{apart}from {int((x > fit.break_x).sum())} of {len(x)}"
+        beyond = f"beyond,\nfrom {int((x > fit.break_x).sum())} of {len(x)}"
         text = (
             f"saturation at{apart}{fit.break_x:.3f}, {fit.break_y:.2f}"
             f"\nslope kₛ{apart}{fit.slope_after:.2f} {beyond}"
@@ -168,7 +168,7 @@ def _draw_curve(
                 f"\nslope{apart}{fit.slope_after:.3g} {beyond}"
             )
         # Where the curve runs through the lower right, the upper left is free.
-        rising = bool(np.min(fit(np.linspace(0.3, 1.0, 8) * highest)) < 0.25 * top)
+        rising = bool(np.min(fit(np.linspace(0.3, 1.0, 8) * highest)) < 0.35 * top)
     axes.text(
         0.04 if rising else 0.96, 0.95 if rising else 0.05, text, transform=axes.transAxes,
         ha="left" if rising else "right", va="top" if rising else "bottom",
