@@ -257,7 +257,7 @@ def test_base_shear_against_rotation(histories: Open) -> None:
         same(curve(axes, "bilinear fit"), ((first, x, end), heights))
         (text,) = axes.texts
         beyond = (turned > x * (1.0 + 1e-6)).sum()  # the break may be a point
-        assert text.get_text().endswith(f"beyond, from {beyond} of {len(turned)}")
+        assert text.get_text().endswith(f"beyond,\nfrom {beyond} of {len(turned)}")
         assert text.get_text().startswith(f"saturation at {x:.3f}, {y:.2f}\n")
         same(axes.get_xlim(), (0.0, 1.04 * highest))
         assert axes.get_ylim()[0] == 0.0
