@@ -11,6 +11,7 @@ from rpscli.analyses.kernels.history import Request, follow, longest_history, ru
 from rpscli.analyses.kernels.systems import paired_systems
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.model.bearing import Bearing
+from rpscli.model.contact import Contact
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import Device, PodiumStructure
 from rpscli.model.superstructure import RayleighDamping, Superstructure, profile_stiffnesses
@@ -33,9 +34,11 @@ def frame(
     rho: float = 0.0,
     contact_time: float = 0.0,
     factor: float = 1.0,
+    loss: float = 1.0,
     axial: float = np.nan,
     period_y: float = 0.0,
     devices: tuple[Device, ...] = (),
+    contact: Contact | None = None,
 ) -> PodiumStructure:
     """R 1.5 m, equal floors on uniform storeys, 5 % in modes 1 and 2, the flexible law."""
     given = {} if np.isnan(axial) else {"inertia_ratio_axial": axial}
@@ -51,9 +54,10 @@ def frame(
         COLUMNS_MASS,
         COLUMNS_MASS * gamma,
         building(period) if storeys else None,
-        ImpactLaw("flexible", factor=factor, contact_time=contact_time),
+        ImpactLaw("flexible", factor=factor, loss=loss, contact_time=contact_time),
         superstructure_y=building(period_y) if period_y else None,
         devices=devices,
+        contact=contact or Contact(),
     )
 
 
@@ -93,7 +97,7 @@ class History:
         """Energy left over, over the input."""
         left = self.left
         spent = left.energy_damped + left.energy_lost + left.energy_stored
-        spent += left.device_energy.sum() + left.device_stored.sum()
+        spent += left.device_energy.sum() + left.device_stored.sum() + left.bed_energy
         return float((left.energy_input - spent) / left.energy_input)
 
     def of_kind(self, kind: int) -> Record:

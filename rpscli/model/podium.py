@@ -154,20 +154,12 @@ class PodiumStructure(Shown):
     @property
     def planar_only(self) -> str:
         """Why both horizontal components cannot act at once; empty if they can."""
-        if self.bearing.is_spherical:
-            return "columns without a flat part are followed in one plane only"
-        if self.bed is not None:
-            return (
-                "compliant ends are followed under one component; use podium.contact `rigid`,"
-                " or one component at a time"
-            )
-        if self.impact_law.floors_jump and self.superstructure is not None:
+        has_passes = self.bed is None and not self.bearing.is_spherical
+        if has_passes and self.impact_law.floors_jump and self.superstructure is not None:
             return (
                 f"the impact law {self.impact_law.kind} lets floors jump, which has no form for a"
                 " pass that loses a part of an impact; use the law flexible, with loss or factor"
             )
-        for kind in {"friction", "rolling_resistance"} & {d.kind for d in self.devices}:
-            return f"devices of the kind {kind} are followed in one plane only; leave them out"
         return ""
 
     def left_out_of_columns(self, *, both: bool, axial: bool = True) -> tuple[str, ...]:

@@ -1,8 +1,8 @@
 """Ends that give way: full contact with a stiffness, and gradual uplift (Theory, section 12).
 
-In full contact, BEDDED, the tilt is a signed number within -phi_u and phi_u with B = 0 and C = C_u:
-constants of a phase like others, with `bed_k` and `bed_c`. Beyond it a plane end lifts gradually,
-by `sink` and `root` of what `laws` takes from both arms.
+In full contact, BEDDED, the tilt is a signed number within -phi_u and phi_u, or any vector within,
+with B = 0 and C = C_u: constants of a phase like others, with `bed_k` and `bed_c`. Beyond it a
+plane end lifts gradually, by `sink` and `root` of what `laws` takes from both arms.
 
 phi_u is that of the weight. Where the ground accelerates upwards, lifted ends may turn back what
 the bed pushes out: then the storey is held there, STUCK with `bed_back`, until either lets it go.
@@ -31,7 +31,9 @@ def load_bed(s: Record, l: int, system: Record) -> None:
     """Begin a history on its bed, or on rigid ends."""
     s.bed_u[l], s.fade[l] = system.bed_uplift, 0.0
     s.bed_energy[l], s.bedded_time[l], s.impact_number[l] = 0.0, 0.0, 0.0
-    s.bed_back[l] = 0.0
+    s.bed_back[l], s.turned[l], s.bed_k[l] = 0.0, 0.0, 0.0
+    smooth = system.compliant > 0 or system.alpha == 0.0
+    s.cone[l] = 0.0 if smooth or ways_of(s) == 1 else 1.0
     if system.bed_full > 0.0:
         s.fade[l] = 1.0 / (system.bed_full - system.bed_uplift)
 
@@ -45,7 +47,7 @@ def first_phase(system: Record) -> int:
 @compiled
 def enter_on_bed(s: Record, l: int, system: Record, phase: int) -> None:
     """What a bed changes in a phase of motion that is entered: constants, range, steps."""
-    s.bed_k[l], s.bed_c[l], s.sink[l], s.root[l] = 0.0, 0.0, 0.0, 0.0
+    s.bed_k[l], s.bed_c[l], s.sink[l], s.root[l], s.rim[l] = 0.0, 0.0, 0.0, 0.0, 0.0
     if system.compliant == 0:
         return
     uplift, full = system.bed_uplift, system.bed_full
@@ -54,7 +56,9 @@ def enter_on_bed(s: Record, l: int, system: Record, phase: int) -> None:
         s.x_low[l], s.x_high[l] = -uplift, uplift
         s.bed_k[l], s.bed_c[l] = system.bed_k, system.bed_c
         s.h_most[l] = 1.0 / system.bedded_rate
-    elif phase == first_phase(system):
+        return
+    s.rim[l] = system.bed_c * uplift
+    if phase == first_phase(system):
         s.x_low[l] = uplift
         lifts = s.x[l] < full or (s.x[l] == full and s.v[l] < 0.0)
         if full == 0.0 or lifts:

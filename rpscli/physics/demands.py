@@ -26,8 +26,9 @@ import math
 from typing import TypeAlias
 
 from rpscli.physics.compile import compiled, inlined
-from rpscli.physics.devices import act, has_friction, push_at_rest, raise_devices, worked
+from rpscli.physics.devices import act, has_friction, raise_devices, worked
 from rpscli.physics.events import path_of
+from rpscli.physics.friction import grip_at, push_at_rest
 from rpscli.physics.ground import g_up_now, ground_now, log_row
 from rpscli.physics.laws import (
     contact_forces,
@@ -58,6 +59,7 @@ from rpscli.physics.quintic import (
 from rpscli.physics.state import (
     CRITICAL_PASSAGE,
     NO_HISTORY,
+    STUCK,
     Floats,
     Record,
 )
@@ -346,7 +348,7 @@ def torsion(s: Record, l: int) -> float:
     faster = (s.new_bend[1, l] * n - s.new_bend[0, l] * t - 2.0 * p * w) * per_x
     c, p0, q0 = s.c[l], s.p[l], s.q0[l]
     # From B = p cos + q sin and C - c = p sin - q cos.
-    size = p0 * p0 + q0 * q0
+    size = p0 * p0 + q0 * q0 if s.bed_k[l] == 0.0 else 1.0
     sine, cosine = (q0 * at.B + p0 * (at.C - c)) / size, (p0 * at.B - q0 * (at.C - c)) / size
     turns = w * p
     l_1 = -i_1 * (faster * sine + 2.0 * turns * cosine) - turns * (i_3 * at.G)
@@ -355,8 +357,8 @@ def torsion(s: Record, l: int) -> float:
     weight = s.cap_beam_mass[l] + s.floors_mass[l] + s.columns_mass[l]
     arm = 0.25 * s.diameter[l] * s.diameter[l] * s.columns_mass[l]
     lever = arm * abs(tall * l_3 - wide * l_1) / (at.C * weight * s.gravity[l])
-    smooth = (s.moves[l] > 0.0) & (x > 0.0)
-    own = s.contact_time[l]
+    smooth = (s.moves[l] > 0.0) & (x > 0.0) & (s.bed_k[l] == 0.0)
+    own = s.contact_time[l] * s.cone[l]
     smooth &= own * own * (rate[0] * rate[0] + rate[1] * rate[1]) <= x * x
     return lever if smooth else 0.0
 
@@ -385,8 +387,8 @@ def measures_within(s: Record, l: int, t: float) -> tuple[float, Measures]:
     w, dw = patch(s, l, x)
     if s.devices[l] > 0:
         act(s, l, worked(s, l, tilt, rate))
-        if stands(s, l) and ways == 1:
-            push_at_rest(s, l, V_x, a_x, g_up)
+        if stands(s, l):
+            push_at_rest(s, l, (V_x, V_y), (a_x, a_y), g_up)
     drive_x, drive_y = s.drive[0, l], (s.drive[1, l] if ways == 2 else 0.0)
     z_x = s.share[l] * (V_x + drive_x) - s.load[l] * a_x
     z_y = s.share[l] * (V_y + drive_y) - s.load[l] * a_y
@@ -461,6 +463,8 @@ def raise_by(s: Record, l: int, found: Measures) -> None:
 @compiled
 def is_held(s: Record, l: int) -> bool:
     """Whether a storey at rest is held: one that lifts off at once has not stood."""
+    if ways_of(s) == 2 and s.phase[l] == STUCK:
+        return bool(grip_at(s, l, 0).margin >= 0.0)
     R, size, g_up = 0.5 * s.diameter[l], 0.0, g_up_now(s, l)
     for axis in range(ways_of(s)):
         push = R * (s.share[l] * s.V[axis, l] - s.load[l] * ground_now(s, l, axis))
@@ -482,9 +486,10 @@ def observe_start(s: Record, l: int) -> None:
     V_x, V_y, a_y, beam_y = s.V[0, l], 0.0, 0.0, 0.0
     if ways_of(s) == 2:
         a_y = s.a_g[1, l] + time * s.a_g_slope[1, l]
-        V_y, beam_y = s.V[1, l] + s.drive[1, l], s.shaking[1, l] - a_y
-    elif stands(s, l):
-        push_at_rest(s, l, V_x, a_x, g_up)
+        V_y, beam_y = s.V[1, l], s.shaking[1, l] - a_y
+    if stands(s, l):
+        push_at_rest(s, l, (V_x, V_y), (a_x, a_y), g_up)
+    V_y += s.drive[1, l] if ways_of(s) == 2 else 0.0
     V = V_x + s.drive[0, l] + s.tied[l] * n, V_y + s.tied[l] * t
     if s.moves[l] > 0.0 or is_held(s, l):
         stays, beam = without_shock(s, l, x, rate), (s.shaking[0, l] - a_x, beam_y)
@@ -511,6 +516,7 @@ def observe_tilt(s: Record, log: Record) -> None:
         path = path_of(s, l)
         inside = turning & (max(upper_hull(path), path[0]) > s.max_theta[l])
         below = (s.bed_k[l] > 0.0) & (-min(lower_hull(path), path[0]) > s.max_theta[l])
+        below &= ways_of(s) == 1
         closer = (s.accepted[l] > 0.0) & (passing | inside | below)
         s.attention[l] = 2.0 if closer else s.attention[l]
         s.max_theta_time[l] = (end if higher & (not closer) else s.max_theta_time[l]) + 0.0
@@ -529,7 +535,8 @@ def raise_tilt(s: Record, l: int, log: Record) -> None:
     height, fraction = s.new_x[l], 1.0
     if s.v[l] > 0.0 and s.new_v[l] < 0.0 and upper_hull(path) > s.max_theta[l]:
         fraction, height = peak_in_step(path)
-    if s.bed_k[l] > 0.0 and -min(lower_hull(path), path[0]) > s.max_theta[l]:
+    bedded = ways_of(s) == 1 and s.bed_k[l] > 0.0
+    if bedded and -min(lower_hull(path), path[0]) > s.max_theta[l]:
         over = (-path[0], -path[1], -path[2], -path[3], -path[4], -path[5])
         t, most = 1.0, -s.new_x[l]
         if s.v[l] < 0.0 < s.new_v[l]:

@@ -4,6 +4,9 @@ Dampers and stops push the cap beam, a tendon pulls both ends of its column toge
 resistance turns the columns back. Which branch of its law a device follows is part of the state, so
 that all is smooth within a step; a law changes where a watched value falls below zero. A new law is
 its force and its power in `resistance` and `power_of`, and what it watches in `watched`.
+
+Friction in one plane has the sign of `direction`. Of a tilt to any side it acts along the velocity,
+which seldom is zero: what comes to a stop is held, or turns at once to where it is pushed (11.20).
 """
 
 from __future__ import annotations
@@ -15,6 +18,7 @@ from rpscli.physics import geometry
 from rpscli.physics.compile import compiled
 from rpscli.physics.ground import log_event
 from rpscli.physics.laws import (
+    beam_at,
     lanes_of,
     path_at,
     place_of,
@@ -36,14 +40,12 @@ from rpscli.physics.state import (
     ROLLING_MOMENT,
     ROLLING_RESISTANCE,
     SLOTS,
-    STICKING,
     STOP,
     STOP_DAMPING,
     STOP_GAP,
     STOP_LEFT,
     STOP_MET,
     STOP_STIFFNESS,
-    STUCK,
     TENDON,
     TENDON_PRESTRESS,
     TENDON_SLACK,
@@ -65,7 +67,8 @@ class Worked(NamedTuple):
 
     n: float  # the azimuth of the tilt
     t: float
-    p: float  # x'
+    p: float  # x', and the rate across
+    q: float
     path: float  # |u_b| [m]
     along: float  # u_b' along the tilt and across it [m/s]
     across: float
@@ -81,13 +84,13 @@ def worked(s: Record, l: int, tilt: tuple[float, float], rate: tuple[float, floa
     """How devices are worked at a tilt and its rate."""
     x, n, t, p, q = polar(s, l, tilt, rate)
     if s.phase[l] == FULL_CONTACT:
-        return Worked(n, t, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
+        return Worked(n, t, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
     at, diameter = place_of(s, l, x), s.diameter[l]
     e, lever, sin_psi, cos_psi = 0.0, 0.0, 0.0, 1.0
     if s.tendons[l] > 0:
         e, lever, sin_psi, cos_psi = tendon_elongation(s, l, x)
     return Worked(
-        n, t, p, diameter * path_at(s, l, x), diameter * at.C * p, diameter * at.h * q, at.C,
+        n, t, p, q, diameter * path_at(s, l, x), diameter * at.C * p, diameter * at.h * q, at.C,
         e, lever, sin_psi, cos_psi,
     )  # fmt: skip
 
@@ -129,7 +132,9 @@ def tension(s: Record, l: int, i: int, e: float) -> float:
 
 @compiled
 def drag_of(s: Record, l: int, i: int, speed: float) -> float:
-    """Resistance of a viscous damper over |u_b'|; else 0 [N s/m]."""
+    """Resistance of what acts along the velocity, over |u_b'|; else 0 [N s/m]."""
+    if s.device_kind[i, l] == FRICTION and ways_of(s) == 2:
+        return float(s.law[i, FRICTION_FORCE, l] / max(speed, 1e-150))
     if s.device_kind[i, l] != VISCOUS:
         return 0.0
     exponent = s.law[i, DAMPER_EXPONENT, l] - 1.0
@@ -141,9 +146,9 @@ def drag_of(s: Record, l: int, i: int, speed: float) -> float:
 
 @compiled
 def resistance(s: Record, l: int, i: int, path: float, along: float) -> float:
-    """Resistance of friction and stops along the tilt [N]; 0 of others."""
+    """Resistance of stops, and of friction in one plane, along the tilt [N]; 0 of others."""
     kind = s.device_kind[i, l]
-    if kind == FRICTION:
+    if kind == FRICTION and ways_of(s) == 1:
         return float(s.direction[l] * s.law[i, FRICTION_FORCE, l])
     if kind == STOP and s.branch[i, l] == WORKING:
         beyond = path - s.law[i, STOP_GAP, l]
@@ -155,13 +160,14 @@ def resistance(s: Record, l: int, i: int, path: float, along: float) -> float:
 def power_of(s: Record, l: int, i: int, at: Worked) -> float:  # noqa: PLR0911 -- a law each
     """What a device dissipates [W]."""
     kind = s.device_kind[i, l]
-    if kind == VISCOUS:
+    if kind == VISCOUS or (kind == FRICTION and ways_of(s) == 2):
         speed = math.sqrt(at.along * at.along + at.across * at.across)
         return drag_of(s, l, i, speed) * (speed * speed)
     if kind == FRICTION:
         return float(s.direction[l] * s.law[i, FRICTION_FORCE, l] * at.along)
     if kind == ROLLING_RESISTANCE:
-        return float(s.direction[l] * s.law[i, ROLLING_MOMENT, l] * at.p)
+        rate = s.direction[l] * at.p if ways_of(s) == 1 else math.sqrt(at.p * at.p + at.q * at.q)
+        return float(s.law[i, ROLLING_MOMENT, l] * rate)
     if kind == STOP and s.branch[i, l] == WORKING:
         return float(s.law[i, STOP_DAMPING, l] * (at.along * at.along))
     if kind == STOP and s.branch[i, l] == BEYOND:  # it recovers by itself
@@ -181,15 +187,20 @@ def act(s: Record, l: int, at: Worked) -> None:
         drag += drag_of(s, l, i, speed)
         resisting += resistance(s, l, i, at.path, at.along)
         tense += s.columns[l] * tension(s, l, i, at.e)
-    moment = tense * at.lever + s.direction[l] * s.friction_moment[l]
+    rolls, across = s.direction[l] * s.friction_moment[l], 0.0
+    if ways_of(s) == 2:
+        per_rate = s.friction_moment[l] / max(math.sqrt(at.p * at.p + at.q * at.q), 1e-300)
+        rolls, across = per_rate * at.p, per_rate * at.q
+    moment = tense * at.lever + rolls
     s.turning[l] = -s.share[l] * moment / s.diameter[l]
+    s.turning_across[l] = -s.share[l] * across / s.diameter[l]
     s.tied[l], s.pull[l] = -tense * at.sin_psi, tense * at.cos_psi
     out, aside = -(drag * at.along + resisting), -drag * at.across
     s.drive[0, l] = out * at.n - aside * at.t
     if ways_of(s) == 2:
         s.drive[1, l] = out * at.t + aside * at.n
     if stands(s, l):
-        s.turning[l] = 0.0
+        s.turning[l], s.turning_across[l] = 0.0, 0.0
         for axis in range(ways_of(s)):
             s.drive[axis, l] = 0.0
 
@@ -221,13 +232,25 @@ def begin_work(s: Record, weight: float) -> None:
 # Loading, beginning an excursion, being held.
 
 
+STOP_SPEED = 1e-9
+"""Of sqrt(g R): what slides more slowly to any side is stopped, or turned to where it is pushed;
+what lets go begins with twice as much."""
+
+
+@compiled
+def has_friction(s: Record, l: int) -> bool:
+    """Whether something holds the tilt at rest."""
+    return bool(s.friction_force[l] + s.friction_moment[l] > 0.0)
+
+
 @compiled
 def load_devices(s: Record, l: int, system: Record) -> None:
     """Begin a history with its devices as they are at rest and upright."""
     s.devices[l], s.columns[l], s.tendons[l] = system.devices, system.columns, 0
     s.linear_speed[l], s.direction[l] = system.linear_speed, 1.0
     s.friction_force[l], s.friction_moment[l], s.kinks[l] = 0.0, 0.0, 0.0
-    s.turning[l], s.tied[l], s.pull[l] = 0.0, 0.0, 0.0
+    s.turning[l], s.turning_across[l], s.tied[l], s.pull[l] = 0.0, 0.0, 0.0, 0.0
+    s.stop_speed[l] = STOP_SPEED * math.sqrt(system.gravity * system.R)
     for axis in range(ways_of(s)):
         s.drive[axis, l] = 0.0
     for i in range(system.devices):
@@ -236,9 +259,10 @@ def load_devices(s: Record, l: int, system: Record) -> None:
         s.device_force[i, l], s.device_velocity[i, l], s.device_energy[i, l] = 0.0, 0.0, 0.0
         for k in range(4):
             s.law[i, k, l] = of[k]
-        if kind == VISCOUS and of[DAMPER_EXPONENT] != 1.0:
+        turns = ways_of(s) == 2 and kind in (FRICTION, ROLLING_RESISTANCE)
+        if turns or (kind == VISCOUS and of[DAMPER_EXPONENT] != 1.0):
             s.kinks[l] = 1.0
-        elif kind == FRICTION:
+        if kind == FRICTION:
             s.friction_force[l] += of[FRICTION_FORCE]
         elif kind == ROLLING_RESISTANCE:
             s.friction_moment[l] += of[ROLLING_MOMENT]
@@ -291,114 +315,31 @@ def reset_yielded_tendons(s: Record, l: int) -> None:
             s.branch[i, l] = WORKING
 
 
-@compiled
-def has_friction(s: Record, l: int) -> bool:
-    """Whether something holds the tilt at rest."""
-    return bool(s.friction_force[l] + s.friction_moment[l] > 0.0)
-
-
-@compiled
-def force_at_rest(s: Record, l: int) -> tuple[float, float]:
-    """Horizontal force at the cap beam against a tilt at rest [N].
-
-    Returns: That of stops and tendons, towards smaller x, and what friction may add to either side.
-    """
-    if s.devices[l] == 0:
-        return 0.0, 0.0
-    e, lever, _, _ = tendon_elongation(s, l, s.x[l])
-    C, path = place_of(s, l, s.x[l]).C, s.diameter[l] * path_at(s, l, s.x[l])
-    arm, elastic = s.diameter[l] * C, 0.0
-    for i in range(s.devices[l]):
-        elastic += s.columns[l] * tension(s, l, i, e) * lever / arm
-        if s.device_kind[i, l] == STOP:
-            elastic += resistance(s, l, i, path, 0.0)
-    return elastic, s.friction_force[l] + s.friction_moment[l] / arm
-
-
-@compiled
-def set_limits(s: Record, l: int) -> None:
-    """Write what holds a lane at rest to either side, in full contact or stuck (3.2), (11.14)."""
-    R = 0.5 * s.diameter[l]
-    weigh = R * s.weigh[l]
-    elastic, friction = force_at_rest(s, l)
-    elastic, friction = R * s.share[l] * elastic, R * s.share[l] * friction
-    right = s.tan_a[l] * weigh
-    s.limit_right[l], s.limit_left[l] = right, right
-    s.held_right[l], s.held_left[l] = elastic + friction, elastic + friction
-    if s.bed_back[l] > 0.0:  # outwards as the lifted ends, inwards as the bed
-        at, back = place_of(s, l, s.x[l]), R * s.bed_back[l]
-        missing = R * (s.root[l] - s.sink[l]) * s.w[l] * s.gravity[l] * s.weigh[l]
-        out, held_out = at.Bv / at.C * weigh, elastic + friction + missing / at.C
-        s.limit_right[l], s.held_right[l] = out, held_out
-        s.limit_left[l], s.held_left[l] = 0.0, friction - elastic - back
-        if s.side[l] < 0.0:
-            s.limit_right[l], s.held_right[l] = 0.0, friction - elastic - back
-            s.limit_left[l], s.held_left[l] = out, held_out
-    elif s.phase[l] == STUCK:
-        at, side = place_of(s, l, s.x[l]), s.side[l]
-        missing = (s.root[l] - s.sink[l]) * s.w[l] * s.gravity[l] * s.weigh[l]
-        elastic += R * (missing + s.bed_k[l] * s.x[l]) / at.C
-        right, elastic = side * at.Bv / at.C * weigh, side * elastic
-        s.limit_right[l], s.limit_left[l] = right, -right
-        s.held_right[l], s.held_left[l] = friction + elastic, friction - elastic
-
-
-@compiled
-def push_at_rest(s: Record, l: int, V: float, a_g: float, g_up: float) -> float:
-    """What friction dampers push the cap beam with while a lane is at rest [N]; writes `drive`.
-
-    In full contact the columns hold what they can, and friction dampers the rest: no less, or the
-    columns would turn (11.13). A stuck storey is held by dampers and rolling resistance in
-    proportion to what each could. Returns the share of their friction that is asked for, against
-    growing tilts: -1 to 1.
-    """
-    R, side = 0.5 * s.diameter[l], s.side[l]
-    # Between bed and lifted ends the columns hold what they can too, up to where they let go.
-    if s.friction_force[l] + s.friction_moment[l] == 0.0 or s.bed_back[l] > 0.0:
-        return 0.0
-    action = side * R * (s.load[l] * a_g - s.share[l] * V)
-    per_N = R * s.share[l]
-    _, friction = force_at_rest(s, l)
-    friction *= per_N
-    resists = 0.5 * (s.limit_right[l] - s.limit_left[l]) * side * g_up
-    if s.phase[l] == STUCK:
-        resists += 0.5 * side * (s.held_right[l] - s.held_left[l])
-        share = -(resists + action) / friction
-        steady = 0.0
-        path = s.diameter[l] * path_at(s, l, s.x[l])
-        for i in range(s.devices[l]):
-            if s.device_kind[i, l] == STOP:
-                steady += resistance(s, l, i, path, 0.0)
-        s.drive[0, l] = -side * (steady + share * s.friction_force[l])
-        return float(share)
-    dampers = per_N * s.friction_force[l]
-    if dampers == 0.0:
-        return 0.0
-    resists = s.limit_right[l] * g_up + s.held_right[l]
-    beyond = min(max(abs(action) - (resists - dampers), 0.0), dampers)
-    share = -math.copysign(beyond / dampers, action)
-    s.drive[0, l] = -side * share * s.friction_force[l]
-    return share
-
-
-@compiled
-def sticks(s: Record, l: int, log: Record) -> bool:
-    """After x' = 0 under friction: go on to the side that is pushed to; True if neither is."""
-    if not has_friction(s, l):
-        return False
-    at = place_of(s, l, s.x[l])
-    moment = at.C * s.friction_force[l] + s.friction_moment[l] / s.diameter[l]
-    held = s.share[l] * moment / at.A
-    free = s.a[l] + s.direction[l] * held
-    if abs(free) > held:
-        s.direction[l] = 1.0 if free > 0.0 else -1.0
-        return False
-    s.phase[l] = STUCK
-    log_event(s, l, log, STICKING, 0.0, 0.0, 0.0)
-    return True
-
-
 # Where laws change.
+
+
+SLOWING = 1 + 2 * SLOTS
+WATCHED = SLOWING + 1
+"""Numbers of watched values."""
+
+
+@compiled
+def speed_of_stop(s: Record, l: int, end: int) -> tuple[bool, float, float]:
+    """|u_b'|^2 over that of a stop, and its slope, where friction brakes it."""
+    if ways_of(s) == 1 or not has_friction(s, l):
+        return False, 0.0, 0.0
+    tilt, rate, time = tilt_of(s, l), rate_of(s, l), s.time[l] + end * s.h[l]
+    if end > 0:
+        tilt = s.new_tilt[0, l], s.new_tilt[1, l]
+        rate = s.new_tilt_rate[0, l], s.new_tilt_rate[1, l]
+    beam = beam_at(s, l, tilt, rate)
+    value, slope = -s.stop_speed[l] * s.stop_speed[l], 0.0
+    for axis in range(2):
+        shaking = s.new_shaking[axis, l] if end > 0 else s.shaking[axis, l]
+        faster = shaking - (s.a_g[axis, l] + time * s.a_g_slope[axis, l])
+        value += beam[2 + axis] * beam[2 + axis]
+        slope += 2.0 * beam[2 + axis] * faster
+    return True, value, slope
 
 
 @compiled
@@ -408,11 +349,14 @@ def watched(  # noqa: PLR0911 -- a law each
     """A watched value and its slope, at the start (0) or the end (1) of the step.
 
     Number 0 is the rate of the tilt in the direction of friction, 1 + i and 1 + SLOTS + i belong to
-    device i. Returns first whether there is such a one.
+    device i; `SLOWING` is the velocity of what friction brakes while it may tilt to any side.
+    Returns first whether there is such a one.
     """
+    if which == SLOWING:
+        return speed_of_stop(s, l, end)
     x, p, a = (s.new_x[l], s.new_v[l], s.new_a[l]) if end > 0 else (s.x[l], s.v[l], s.a[l])
     if which == 0:
-        there = has_friction(s, l)
+        there = ways_of(s) == 1 and has_friction(s, l)
         for i in range(s.devices[l]):
             there |= s.device_kind[i, l] == TENDON and s.branch[i, l] == BEYOND
         return there, s.direction[l] * p, s.direction[l] * a
@@ -498,13 +442,15 @@ def device_at(s: Record, l: int, i: int, at: Worked) -> tuple[float, float, floa
     kind = s.device_kind[i, l]
     if kind == TENDON:
         return tension(s, l, i, at.e), at.lever * at.p, at.e
+    speed = at.along
+    if ways_of(s) == 2:
+        speed = math.sqrt(at.along * at.along + at.across * at.across)
     if kind == ROLLING_RESISTANCE:
         moment = s.direction[l] * s.law[i, ROLLING_MOMENT, l]
-        return moment / (s.diameter[l] * at.C), at.along, at.path
+        return moment / (s.diameter[l] * at.C), speed, at.path
+    if kind == FRICTION and ways_of(s) == 2:
+        return s.law[i, FRICTION_FORCE, l], speed, at.path
     if kind == VISCOUS:
-        speed = at.along
-        if ways_of(s) == 2:
-            speed = math.sqrt(at.along * at.along + at.across * at.across)
         return drag_of(s, l, i, abs(speed)) * speed, speed, at.path
     return resistance(s, l, i, at.path, at.along), at.along, at.path
 

@@ -11,7 +11,8 @@ from __future__ import annotations
 import math
 
 from rpscli.physics.compile import compiled, inlined
-from rpscli.physics.devices import watched
+from rpscli.physics.devices import WATCHED, watched
+from rpscli.physics.friction import grip_at
 from rpscli.physics.laws import lanes_of, ways_of
 from rpscli.physics.quintic import (
     NO_PASSAGE,
@@ -32,7 +33,7 @@ from rpscli.physics.state import (
     NEAREST,
     NO_HISTORY,
     NOTHING,
-    SLOTS,
+    STUCK,
     Record,
 )
 
@@ -58,6 +59,36 @@ motion whose peak is the limit itself would uplift and land again and again."""
 def path_of(s: Record, l: int) -> Quintic:
     """The tilt over the step just taken."""
     return quintic(s.h[l], s.x[l], s.v[l], s.a[l], s.new_x[l], s.new_v[l], s.new_a[l])
+
+
+@inlined
+def path_in_range(s: Record, l: int) -> tuple[Quintic, float, float]:
+    """The tilt over the step and its range; the squares of both where it passes upright smoothly.
+
+    There x = |r| turns at once, and what is smooth is its square.
+    """
+    if ways_of(s) == 1:
+        return path_of(s, l), s.x_low[l], s.x_high[l]
+    x, v, a, new_x, new_v, new_a = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    for axis in range(ways_of(s)):
+        tilt, rate, new_tilt = s.tilt[axis, l], s.tilt_rate[axis, l], s.new_tilt[axis, l]
+        new_rate = s.new_tilt_rate[axis, l]
+        x, v, a = x + tilt * tilt, v + tilt * rate, a + rate * rate + tilt * s.bend[axis, l]
+        new_x, new_v = new_x + new_tilt * new_tilt, new_v + new_tilt * new_rate
+        new_a += new_rate * new_rate + new_tilt * s.new_bend[axis, l]
+    low, high = s.x_low[l] * abs(s.x_low[l]), s.x_high[l] * s.x_high[l]
+    x = min(max(x, low), high)  # what begins at an end is rounded
+    as_cone = s.cone[l] > 0.0
+    path = quintic(
+        s.h[l],
+        s.x[l] if as_cone else x,
+        s.v[l] if as_cone else 2.0 * v,
+        s.a[l] if as_cone else 2.0 * a,
+        s.new_x[l] if as_cone else new_x,
+        s.new_v[l] if as_cone else 2.0 * new_v,
+        s.new_a[l] if as_cone else 2.0 * new_a,
+    )
+    return path, (s.x_low[l] if as_cone else low), (s.x_high[l] if as_cone else high)
 
 
 @inlined
@@ -89,7 +120,8 @@ def surely_held(s: Record, l: int) -> bool:
         y, most = push_path(s, l, 1), 0.0
         for i in range(6):
             most = max(most, x[i] * x[i] + y[i] * y[i])
-        return (right >= 0.0) & (most <= right * right)  # type: ignore[no-any-return]
+        within = (right >= 0.0) & (most <= right * right)
+        return within & (s.phase[l] != STUCK)  # type: ignore[no-any-return]
     left = min(s.limit_left[l] * start, s.limit_left[l] * end) + s.held_left[l]
     held = (max(upper_hull(x), x[0]) <= right) & (-min(lower_hull(x), x[0]) <= left)
     return held  # type: ignore[no-any-return]  # noqa: RET504 -- bool() would be a branch
@@ -106,16 +138,17 @@ def falls(s: Record, l: int) -> bool:
     for axis in range(ways_of(s)):
         square += s.tilt_rate[axis, l] * s.tilt_rate[axis, l]
     least, v = CIRCLING * CIRCLING * square, s.v[l]
-    return (v < 0.0) & (v * v > least)  # type: ignore[no-any-return]
+    return (v < 0.0) & (v * v > least) & (s.cone[l] > 0.0)  # type: ignore[no-any-return]
 
 
 @compiled
 def check_steps(s: Record) -> None:
     """Accept the steps that are short enough and surely hold no event."""
     for l in range(lanes_of(s)):
-        path, moves = path_of(s, l), s.moves[l] > 0.0
+        moves = s.moves[l] > 0.0
+        path, low, high = path_in_range(s, l)
         lowest, highest = min(lower_hull(path), path[0]), max(upper_hull(path), path[0])
-        inside = (lowest >= s.x_low[l]) & (highest <= s.x_high[l])
+        inside = (lowest >= low) & (highest <= high)
         if ways_of(s) == 2:
             inside &= (not falls(s, l)) | (s.new_v[l] < 0.0)
         clear = inside if moves else surely_held(s, l)
@@ -134,18 +167,23 @@ def watched_path(s: Record, l: int, which: int) -> tuple[bool, Quintic]:
     if not there:
         return False, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     _, end, end_slope = watched(s, l, which, 1)
-    h, value = s.h[l], max(value, 0.0)
+    return True, cubic(s.h[l], max(value, 0.0), slope, end, end_slope)
+
+
+@compiled
+def cubic(h: float, value: float, slope: float, end: float, end_slope: float) -> Quintic:
+    """The cubic through values and slopes at both ends of a step."""
     mean = (end - value) / h if h > 0.0 else 0.0
     per_h = 1.0 / h if h > 0.0 else 0.0
     bend = (6.0 * mean - 4.0 * slope - 2.0 * end_slope) * per_h
     end_bend = (2.0 * slope + 4.0 * end_slope - 6.0 * mean) * per_h
-    return True, quintic(h, value, slope, bend, end, end_slope, end_bend)
+    return quintic(h, value, slope, bend, end, end_slope, end_bend)
 
 
 @compiled
 def may_change(s: Record, l: int) -> bool:
     """Whether a device may change its law in the step."""
-    for which in range(1 + 2 * SLOTS):
+    for which in range(WATCHED):
         there, path = watched_path(s, l, which)
         if there and min(lower_hull(path), path[0]) < 0.0:
             return True
@@ -158,18 +196,18 @@ def first_event(s: Record, l: int) -> tuple[float, int, int]:
     first, kind, which, piece = NO_PASSAGE, NOTHING, 0, s.piece
     if s.moves[l] == 0.0:
         return let_go(s, l)
-    path = path_of(s, l)
-    t = first_descent(offset(path, 1.0, s.x_low[l]), SETTLED, piece)
+    path, low, high = path_in_range(s, l)
+    t = first_descent(offset(path, 1.0, low), SETTLED, piece)
     if t < first:
         first, kind = t, LOW
-    t = first_descent(offset(path, -1.0, s.x_high[l]), SETTLED, piece)
+    t = first_descent(offset(path, -1.0, high), SETTLED, piece)
     if t < first:
         first, kind = t, HIGH
     if ways_of(s) == 2 and falls(s, l) and s.new_v[l] >= 0.0:
         t = nearest(s, l)
         if t < first:
             first, kind = t, NEAREST
-    for number in range(1 + 2 * SLOTS if s.devices[l] > 0 else 0):
+    for number in range(WATCHED if s.devices[l] > 0 else 0):
         there, path = watched_path(s, l, number)
         if there:
             t = first_descent(path, SETTLED, piece)
@@ -201,7 +239,12 @@ def let_go(s: Record, l: int) -> tuple[float, int, int]:
     start = s.g_up[l] + s.time[l] * s.g_up_slope[l]
     rise, x = h * s.g_up_slope[l], push_path(s, l, 0)
     if ways_of(s) == 2:
-        t = first_descent(squared_margin(s, l), SETTLED, piece)
+        if s.phase[l] == STUCK:
+            one, two = grip_at(s, l, 0), grip_at(s, l, 1)
+            path = cubic(h, max(one.margin, 0.0), one.slope, two.margin, two.slope)
+            t = first_descent(path, SETTLED, piece)
+        else:
+            t = first_descent(squared_margin(s, l), SETTLED, piece)
         return t, (LET_GO if t <= 1.0 else NOTHING), 1
     # Where gravity is lost both margins are negative at once: then the push decides.
     push = 0.0
@@ -266,6 +309,9 @@ def missing(s: Record, l: int) -> tuple[float, float]:
     if kind == CHANGE:
         _, value, slope = watched(s, l, which, 1)
         return value, slope
+    if ways_of(s) == 2 and s.phase[l] == STUCK:
+        grip = grip_at(s, l, 1)
+        return grip.margin, grip.slope
     R, h = 0.5 * s.diameter[l], s.h[l]
     g_up = s.g_up[l] + (s.time[l] + h) * s.g_up_slope[l]
     factor, held, size, growth = s.limit_right[l], s.held_right[l], 0.0, 0.0

@@ -17,18 +17,19 @@ from rpscli.physics.bed import first_phase, load_bed
 from rpscli.physics.compile import borrowed, compiled, inlined, kernel
 from rpscli.physics.demands import observe, observe_start
 from rpscli.physics.devices import (
+    SLOWING,
     change_law,
     has_friction,
     load_devices,
     release_devices,
-    set_limits,
-    sticks,
     stored_in,
     worked,
 )
 from rpscli.physics.events import check_steps, resolve_step
+from rpscli.physics.friction import grip_at, set_limits, sticks
 from rpscli.physics.ground import azimuth_of, log_event, set_ground, time_of
 from rpscli.physics.laws import (
+    beam_now,
     lanes_of,
     place_of,
     polar,
@@ -48,6 +49,7 @@ from rpscli.physics.state import (
     FAILED_STEP_TOO_SMALL,
     FAILED_TOO_MANY_EVENTS,
     FAILED_TOO_MANY_STEPS,
+    FRICTION,
     FULL_CONTACT,
     HIGH,
     LANES,
@@ -62,9 +64,11 @@ from rpscli.physics.state import (
     ROCKING,
     ROCKING_TO_ROLLING,
     ROLLING,
+    ROLLING_RESISTANCE,
     ROLLING_TO_ROCKING,
     RUNNING,
     SLIDING,
+    STICKING,
     STUCK,
     SURVIVED,
     UPLIFT,
@@ -75,6 +79,7 @@ from rpscli.physics.state import (
 from rpscli.physics.step import renew, take_steps
 from rpscli.physics.upright import (
     enter_phase,
+    move_floors,
     pass_on_bed,
     pass_upright,
     set_polar,
@@ -279,7 +284,8 @@ def near_limit(s: Record, l: int) -> float:
     for axis in range(ways_of(s)):
         fast += s.tilt_rate[axis, l] * s.tilt_rate[axis, l]
         pulled += s.bend[axis, l] * s.bend[axis, l]
-    turns = x / (math.sqrt(pulled) + 2.0 * s.tan_a[l] * s.weigh[l] * s.gravity[l] / s.one[l])
+    pulled = math.sqrt(pulled) + 2.0 * s.tan_a[l] * s.weigh[l] * s.gravity[l] / s.one[l]
+    turns = x / max(pulled, 1e-300)
     limit = min(x / math.sqrt(fast + 1e-300), 2.0 * math.sqrt(turns))
     return ARC * limit  # type: ignore[no-any-return]
 
@@ -290,7 +296,7 @@ def plan(s: Record, l: int) -> float:
     step = min(even_part(max(s.dt[l] - s.time[l], 0.0), s.h_most[l]), s.h_limit[l])
     if ways_of(s) == 2:
         near = near_limit(s, l)
-        step = min(step, near if s.moves[l] > 0.0 else step)
+        step = min(step, near if (s.moves[l] > 0.0) & (s.x_low[l] > 0.0) else step)
     return step  # type: ignore[no-any-return]
 
 
@@ -403,11 +409,7 @@ def switch(s: Record, l: int, systems: Record, output: Output, kind: int) -> Non
             uplift(s, l, system, log, s.which[l])
         return
     if kind == CHANGE:
-        if change_law(s, l, log, s.which[l]):
-            renew(s, l)
-            reverse(s, l, system, log)
-        else:
-            renew(s, l)
+        change(s, l, system, log)
         return
     if kind == NEAREST or (kind == LOW and is_upright(s, l, system)):
         pass_upright(s, l, system, log, kind == LOW)
@@ -436,6 +438,18 @@ def switch(s: Record, l: int, systems: Record, output: Output, kind: int) -> Non
 
 
 @compiled
+def change(s: Record, l: int, system: Record, log: Record) -> None:
+    """A watched value fell below zero: of friction at a standstill, or of a device."""
+    if s.which[l] == SLOWING:
+        stop_or_turn(s, l, system, log)
+        return
+    stands_still = change_law(s, l, log, s.which[l])
+    renew(s, l)
+    if stands_still:
+        reverse(s, l, system, log)
+
+
+@compiled
 def stay_inside(s: Record, l: int) -> None:
     """Have the next step begin within its range: of a tilt to any side x is a root, and rounded."""
     s.x[l] = min(max(s.x[l], s.x_low[l]), s.x_high[l])
@@ -452,7 +466,7 @@ def is_upright(s: Record, l: int, system: Record) -> bool:
 @compiled
 def reverse(s: Record, l: int, system: Record, log: Record) -> None:
     """At a standstill of the tilt: go on, or be held by friction."""
-    if sticks(s, l, log):
+    if ways_of(s) == 1 and sticks(s, l, log):
         hold(s, l, system)
     else:
         renew(s, l)
@@ -467,13 +481,49 @@ def hold(s: Record, l: int, system: Record) -> None:
 
 
 @compiled
+def stop_or_turn(s: Record, l: int, system: Record, log: Record) -> None:
+    """What slides too slowly to any side: be held, or go on along what is not held (11.20)."""
+    grip = grip_at(s, l, 0)
+    if grip.margin >= 0.0:
+        set_sliding(s, l, system, 0.0, 0.0)
+        log_event(s, l, log, STICKING, 0.0, 0.0, 0.0)
+        hold(s, l, system)
+    else:
+        set_sliding(s, l, system, grip.d_n, grip.d_t)
+        renew(s, l)
+
+
+@compiled
+def set_sliding(s: Record, l: int, system: Record, d_n: float, d_t: float) -> None:
+    """Set the rate of a tilt that hardly slides along a unit vector, or to zero.
+
+    Floors keep their velocities; the first device with friction books the difference.
+    """
+    energy, before = total_energy(s, l, system), beam_now(s, l)
+    x, n, t, _, _ = polar(s, l, tilt_of(s, l), (0.0, 0.0))
+    at = place_of(s, l, x)
+    rate = 2.0 * s.stop_speed[l] / (s.diameter[l] * math.hypot(at.C * d_n, at.h * d_t) + 1e-300)
+    set_polar(s, l, x, n, t, rate * d_n, rate * d_t)
+    move_floors(s, l, before)
+    for i in range(s.devices[l]):
+        if s.device_kind[i, l] in (FRICTION, ROLLING_RESISTANCE):
+            s.device_energy[i, l] += energy - total_energy(s, l, system)
+            break
+
+
+@compiled
 def slide(s: Record, l: int, system: Record, log: Record, side: int) -> None:
     """Leave a tilt that friction held, or the end of the bed, to the right or to the left."""
     phase = ROLLING if s.rolls[l] > 0.0 else ROCKING
     out = side * s.side[l]
-    s.direction[l] = out if has_friction(s, l) else 1.0
+    s.direction[l] = out if ways_of(s) == 1 and has_friction(s, l) else 1.0
     log_event(s, l, log, SLIDING, 0.0, 0.0, 0.0)
     s.phase[l], s.moves[l] = (BEDDED if s.bed_k[l] > 0.0 else phase), 1.0
+    if ways_of(s) == 2:
+        grip = grip_at(s, l, 0)
+        set_sliding(s, l, system, grip.d_n, grip.d_t)
+        renew(s, l)
+        return
     if s.bed_back[l] > 0.0:
         s.bed_back[l] = 0.0
         enter_phase(s, l, system, first_phase(system) if out > 0.0 else BEDDED)
@@ -549,8 +599,11 @@ def begin_history(
     enter_phase(s, l, system, first_phase(system))
     s.kappa[l] = 1.0
     if ways == 2:
-        upright = place_of(s, l, 1e-30)
+        upright, u = place_of(s, l, 0.0), system.bed_uplift
         s.kappa[l] = math.sqrt(upright.K / upright.A)
+        if system.compliant > 0:  # K goes on from A of full contact
+            bedded = s.io_1[l] + s.one[l] * (system.bed_height * system.bed_height)
+            s.turned[l] = u * u * (bedded - place_of(s, l, u).K)
     if system.initial_rotation != 0.0 or system.alpha == 0.0 or system.compliant > 0:
         release(s, l, system, output.log)
     else:
@@ -648,7 +701,9 @@ def release(s: Record, l: int, system: Record, log: Record) -> None:
     enter_phase(s, l, system, BEDDED if bedded else phase)
     release_devices(s, l)
     renew(s, l)
-    if has_friction(s, l):
+    if has_friction(s, l) and ways_of(s) == 2:
+        stop_or_turn(s, l, system, log)
+    elif has_friction(s, l):
         reverse(s, l, system, log)
 
 

@@ -4,8 +4,8 @@ The tilt is a vector (a, b) = x (cos phi, sin phi); along it and across it its r
 q = x phi'. One plane is its first component alone, signed by the side s: x = s a may then pass
 through zero, and nothing across it exists. With K = J/x^2, over N m_c R^2,
 
-    A r''_n = C z_n - arms - bed - c_r p + G + [(K - A)/x + K'/2] q^2 - D p^2          D = A'/2
-    K r''_t = h z_t - K' p q                                                           h = u/x
+    A r''_n = C z_n - arms - bed - c_r p + G_n + [(K - A)/x + K'/2] q^2 - D p^2        D = A'/2
+    K r''_t = h z_t - c_t q + G_t - K' p q                                             h = u/x
     u_b''   = 2 R (C r''_n + B p^2 + h' q^2) along it,  2 R (h r''_t + 2 h' p q) across it
     z       = 2 (V + P)/(N m_c R) - (1 + 2 gamma) a_g/R
     arms    = [(B - sink w) g + B_v a_v] (1 + 2 gamma + 2 gamma eta)/R,   B_v = B - root w
@@ -98,9 +98,14 @@ class Place(NamedTuple):
     G_slope: float
 
 
+UPRIGHT = 1e-30
+"""Upright, for what is divided by the tilt [rad]."""
+
+
 @inlined
 def place_with(s: Record, l: int, x: float, w: float, dw: float) -> Place:
     """Geometry and inertia of a lane at a tilt, where the patch is known."""
+    x = x if ways_of(s) == 1 else max(x, UPRIGHT)
     sine, less, excess = sines(x)
     phase = phase_of(s, l)
     p, q0 = phase.p, phase.q
@@ -111,19 +116,27 @@ def place_with(s: Record, l: int, x: float, w: float, dw: float) -> Place:
     D = one * (C * B) + both * (Bv * Bv_slope)
     if ways_of(s) == 1:
         return Place(B, C, Bv, Bv_slope, A, D, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0)
-    io_1, i_3, per_x = s.io_1[l], s.i_3[l], 1.0 / (x if x > 0.0 else 1.0)
+    io_1, i_3, per_x = s.io_1[l], s.i_3[l], 1.0 / x
     sine_x, less_x, excess_x = sine * per_x, less * per_x, excess * per_x
     gap = p * (sine - less_x) + q0 * (less - excess_x) - (s.u0[l] - p) * per_x
     h, rolls = C - gap, s.rolls[l] > 0.0
     base = s.sin_a[l] + s.spin[l] * (sine if rolls else s.sin_beta[l])
-    more = s.spin[l] * (excess if rolls else s.excess_beta[l]) / base
-    slope = s.spin[l] * (less - more * (1.0 - less)) / base if rolls else 0.0
+    more = s.spin[l] * (excess if rolls else s.excess_beta[l]) / (base if base > 0.0 else 1.0)
+    slope = s.spin[l] * (less - more * (1.0 - less)) / (base if rolls else 1.0)
+    slope = slope if rolls else 0.0
     G, G_slope = less + more, sine + slope
     G_x, flat = G * per_x, less - excess_x
-    K = io_1 * (sine_x * sine_x) + i_3 * (G_x * G_x) + one * (h * h)
-    K_slope = 2.0 * per_x * (-io_1 * sine_x * flat + i_3 * G_x * (G_slope - G_x) + one * h * gap)
-    cone = i_3 * (G_x * G_x) - io_1 * excess_x * (1.0 + sine_x)
-    cone = (cone - one * gap * (h + C) - both * (Bv * Bv)) * per_x
+    turned, bedded = s.turned[l] * (per_x * per_x), s.bed_k[l] > 0.0
+    K = io_1 * (sine_x * sine_x) + i_3 * (G_x * G_x) + one * (h * h) + turned
+    K_slope = -io_1 * sine_x * flat + i_3 * G_x * (G_slope - G_x) + one * h * gap - turned
+    cone = i_3 * (G_x * G_x) - io_1 * excess_x * (1.0 + sine_x) + turned
+    cone = cone - one * gap * (h + C) - both * (Bv * Bv)
+    K, K_slope = (A if bedded else K), (0.0 if bedded else 2.0 * per_x * K_slope)
+    cone, G, G_slope = (
+        0.0 if bedded else per_x * cone,
+        0.0 if bedded else G,
+        0.0 if bedded else G_slope,
+    )
     return Place(B, C, Bv, Bv_slope, A, D, h, gap * per_x, K, K_slope, cone, G, G_slope)
 
 
@@ -172,9 +185,11 @@ def motion_at(
     per_x = 1.0 / (x if x > 0.0 else 1.0)
     n, t = (tilt[0] * per_x if x > 0.0 else 1.0), tilt[1] * per_x
     p, q = rate[0] * n + rate[1] * t, rate[1] * n - rate[0] * t
-    held = arms + at.D * (p * p) - (at.cone + 0.5 * at.K_slope) * (q * q) - s.turning[l]
+    held = (arms if x > 0.0 else 0.0) + at.D * (p * p) + s.bed_k[l] * x + s.bed_c[l] * p
+    held -= (at.cone + 0.5 * at.K_slope) * (q * q) + s.turning[l]
     out = (at.C * (z[0] * n + z[1] * t) - held) / at.A
-    across = (at.h * (z[1] * n - z[0] * t) - at.K_slope * (p * q)) / at.K
+    back = at.K_slope * (p * q) + (s.bed_c[l] + s.rim[l] * per_x) * q - s.turning_across[l]
+    across = (at.h * (z[1] * n - z[0] * t) - back) / at.K
     along = diameter * (at.C * out + at.B * (p * p) + at.dh * (q * q))
     aside = diameter * (at.h * across + 2.0 * at.dh * (p * q))
     a = out + q * q * per_x
@@ -380,7 +395,7 @@ def without_shock(s: Record, l: int, x: float, rate: tuple[float, float]) -> flo
     """
     if ways_of(s) == 1:
         return 1.0
-    own = s.shock_time[l]
+    own = s.shock_time[l] * s.cone[l]
     return 0.0 if own * own * (rate[0] * rate[0] + rate[1] * rate[1]) > x * x else 1.0
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from rpscli.physics.compile import compiled
+from rpscli.physics.friction import grip_of
 from rpscli.physics.laws import (
     inertia_unit,
     lifted_mass,
@@ -34,7 +35,7 @@ def is_over(s: Record, l: int, systems: Record) -> bool:
     if s.phase[l] in (FULL_CONTACT, STUCK):
         return stays_down(s, l) and demands_stand(s, l, systems)
     if s.phase[l] == BEDDED:
-        return rests_on_bed(s, l, system)
+        return rests_on_bed(s, l, systems)
     return ways_of(s) == 2 and free * s.dt[l] >= WOBBLES and tilts_no_more(s, l, system)
 
 
@@ -54,10 +55,14 @@ def stays_down(s: Record, l: int) -> bool:
             force = math.sqrt(s.omega2[r, l]) + s.two_xi_omega[r, l]
             largest += abs(s.Gamma[r, l]) * force * modal_speed(s, l, r)
         square += largest * largest
+    most = s.share[l] * math.sqrt(square)
+    if ways_of(s) == 2 and s.phase[l] == STUCK:
+        grip = grip_of(s, l, (0.0, 0.0), (0.0, 0.0), (s.gravity[l], 0.0), most)
+        return s.n == 0 or bool(most < s.share[l] * s.friction_force[l] and grip.margin > 0.0)
     limit = s.gravity[l] * s.limit_right[l] + s.held_right[l]
     if ways_of(s) == 1:
         limit = min(limit, s.gravity[l] * s.limit_left[l] + s.held_left[l])
-    return s.n == 0 or bool(0.5 * s.diameter[l] * s.share[l] * math.sqrt(square) < limit)
+    return s.n == 0 or bool(0.5 * s.diameter[l] * most < limit)
 
 
 @compiled
@@ -98,13 +103,15 @@ def tilts_no_more(s: Record, l: int, system: Record) -> bool:
 
 
 @compiled
-def rests_on_bed(s: Record, l: int, system: Record) -> bool:
+def rests_on_bed(s: Record, l: int, systems: Record) -> bool:
     """Whether free vibration in full contact can bring nothing new: energy bounds all of it.
 
     All springs together hold no more than the energy, nor do all masses: with E = v^2/2 the tilt is
     below v/sqrt(N m_c R^2 k), a storey's shear below v sqrt(k_i), and the force of mode r below
     w_r v, with what its dampers add at velocities against the beam of v (1 + Gamma/sqrt(m_0)).
+    Both directions share the energy: resultants are below the larger of both bounds.
     """
+    system = systems[0]
     v = math.sqrt(2.0 * total_energy(s, l, system))
     per_tilt = math.sqrt(inertia_unit(s, l))
     farthest = v / (per_tilt * math.sqrt(system.bed_k))
@@ -113,18 +120,23 @@ def rests_on_bed(s: Record, l: int, system: Record) -> bool:
     C = system.bed_height
     A = s.io_1[l] + s.one[l] * C * C
     per_beam = s.diameter[l] * C / (per_tilt * math.sqrt(A))  # 1/sqrt(m_0)
-    for i in range(s.n):
-        stiffness, spring, damper, beam = 0.0, 0.0, 0.0, 0.0
-        for r in range(s.n):
-            shear = system.storey_shear_of[r, i] / system.omega[r]
-            force = system.phi[r, i] * system.omega[r]
-            damped = system.phi[r, i] * system.two_xi_omega[r]
-            stiffness, spring = stiffness + shear * shear, spring + force * force
-            damper += damped * damped
-            beam += abs(damped * system.Gamma[r]) * per_beam
-        acceleration = math.sqrt(spring) + math.sqrt(damper) + beam
-        if v * math.sqrt(stiffness) > s.largest[0, l, i]:
-            return False
-        if v * acceleration > s.largest[1, l, i]:
-            return False
+    rows = 2 * ways_of(s) - 1
+    for axis in range(ways_of(s)):
+        building = systems[axis]
+        for i in range(s.n):
+            stiffness, spring, damper, beam = 0.0, 0.0, 0.0, 0.0
+            for r in range(s.n):
+                shear = building.storey_shear_of[r, i] / building.omega[r]
+                force = building.phi[r, i] * building.omega[r]
+                damped = building.phi[r, i] * building.two_xi_omega[r]
+                stiffness, spring = stiffness + shear * shear, spring + force * force
+                damper += damped * damped
+                beam += abs(damped * building.Gamma[r]) * per_beam
+            shear, acceleration = (
+                v * math.sqrt(stiffness),
+                v * (math.sqrt(spring) + math.sqrt(damper) + beam),
+            )
+            for row in (0, axis + 1 if ways_of(s) == 2 else 0):
+                if shear > s.largest[row, l, i] or acceleration > s.largest[rows + row, l, i]:
+                    return False
     return True

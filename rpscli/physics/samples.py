@@ -6,7 +6,8 @@ import math
 
 from rpscli.physics.compile import compiled
 from rpscli.physics.demands import tilt_within
-from rpscli.physics.devices import act, push_at_rest, store_devices, stored_in, worked
+from rpscli.physics.devices import act, store_devices, stored_in, worked
+from rpscli.physics.friction import push_at_rest
 from rpscli.physics.laws import (
     beam_at,
     beam_lift,
@@ -98,8 +99,8 @@ def write_row(
     if s.devices[l] > 0:
         at = worked(s, l, tilt, rate)
         act(s, l, at)
-        if s.moves[l] == 0.0 and ways == 1:
-            share = push_at_rest(s, l, V_x, a_x, g_up)
+        if s.moves[l] == 0.0:
+            share = push_at_rest(s, l, (V_x, V_y), (a_x, a_y), g_up)
         store_devices(s, l, at, share, output.devices[row])
         for i in range(s.devices[l]):
             stored += stored_in(s, l, i, at)

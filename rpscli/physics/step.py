@@ -14,6 +14,8 @@ from rpscli.physics.compile import compiled, fma, inlined, together
 from rpscli.physics.devices import act, act_at_stage, begin_work, worked
 from rpscli.physics.ground import g_up_now, ground_now
 from rpscli.physics.laws import (
+    UPRIGHT,
+    inertia_unit,
     lanes_of,
     lifted_mass,
     motion_at,
@@ -249,7 +251,7 @@ def book_power(
 ) -> None:
     """Add the power of ground, dampers and bed in the only lane, its velocities in `new_dq`."""
     supplied, damped, moving = 0.0, 0.0, s.moves[0] > 0.0
-    out, aside, n, t, p, q, lift = 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0
+    out, aside, x, n, t, p, q, lift = 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0
     if moving:
         x, n, t, p, q = polar(s, 0, tilt, rate)
         w, dw = patch(s, 0, x)
@@ -265,10 +267,12 @@ def book_power(
         supplied += (s.a_g[axis, 0] + time * s.a_g_slope[axis, 0]) * momentum
     a_v = s.g_up[0] + time * s.g_up_slope[0] - s.gravity[0]
     supplied += a_v * lifted_mass(s, 0) * lift
-    bed = 0.25 * s.columns_mass[0] * s.diameter[0] * s.diameter[0] * s.bed_c[0]
+    bed = s.bed_c[0] * (p * p + q * q)
+    if ways_of(s) == 2 and moving:
+        bed += s.rim[0] / max(x, UPRIGHT) * (q * q)
     s.power_input[0] -= weight * supplied
     s.power_damped[0] += weight * damped
-    s.power_bed[0] += weight * bed * (p * p)
+    s.power_bed[0] += weight * inertia_unit(s, 0) * bed
 
 
 @compiled

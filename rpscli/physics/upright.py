@@ -13,16 +13,11 @@ import math
 
 from rpscli.physics.bed import enter_on_bed, first_phase, impact_number
 from rpscli.physics.compile import compiled
-from rpscli.physics.devices import (
-    begin_excursion,
-    force_at_rest,
-    set_limits,
-    take_up_stops,
-)
+from rpscli.physics.devices import begin_excursion, has_friction, take_up_stops
+from rpscli.physics.friction import force_at_rest, set_limits
 from rpscli.physics.ground import g_up_now, ground_now, log_event
 from rpscli.physics.laws import (
     beam_now,
-    inertia_unit,
     lift_at,
     lifted_mass,
     place_of,
@@ -73,7 +68,9 @@ def enter_phase(s: Record, l: int, system: Record, phase: int) -> None:
     constants = system.rolling if phase == ROLLING else system.rocking
     s.p[l], s.q0[l], s.c[l] = constants[0], constants[1], constants[2]
     s.u0[l], s.v0[l] = constants[3], constants[4]
-    upright = 0.0 if ways_of(s) == 1 else UPRIGHT_TILT
+    upright = 0.0
+    if ways_of(s) == 2:
+        upright = UPRIGHT_TILT if s.cone[l] > 0.0 else -1.0
     s.x_low[l], s.x_high[l] = max(system.beta, upright), system.theta_limit
     if phase == ROLLING:
         s.x_low[l], s.x_high[l] = upright, min(system.beta, system.theta_limit)
@@ -319,11 +316,13 @@ def begin_tilt(s: Record, l: int, system: Record, z_x: float, z_y: float) -> Non
     else:
         lifted = potential(s, l, system, 0.0)
     enter_phase(s, l, system, first_phase(system))
-    set_polar(s, l, UPLIFT_TILT, z_x / size, z_y / size, 0.0, 0.0)
-    move_floors(s, l, before)
-    s.energy_input[l] += potential(s, l, system, UPLIFT_TILT) - lifted
-    s.energy_input[l] += strain_energy(s, l) - strain
     arm = s.diameter[l] * math.cos(system.alpha)
+    rate = 2.0 * s.stop_speed[l] / arm if has_friction(s, l) else 0.0
+    set_polar(s, l, UPLIFT_TILT, z_x / size, z_y / size, rate, 0.0)
+    move_floors(s, l, before)
+    moving = tilting_energy(s, l, place_of(s, l, UPLIFT_TILT), rate, 0.0)
+    s.energy_input[l] += potential(s, l, system, UPLIFT_TILT) - lifted + moving
+    s.energy_input[l] += strain_energy(s, l) - strain
     s.energy_input[l] += force_at_rest(s, l)[0] * arm * rise
     s.h_limit[l] = FIRST_STEP
 
@@ -346,30 +345,55 @@ def uplift(s: Record, l: int, system: Record, log: Record, side: int) -> None:
 
 @compiled
 def pass_on_bed(s: Record, l: int, system: Record, log: Record, enters: bool) -> None:  # noqa: FBT001
-    """Uplift from a bed, or contact with it again; floors keep their velocities."""
+    """Uplift from a bed, or contact with it again; floors keep their velocities.
+
+    Going outwards x' changes by j, inwards by e/j, and what goes round by e (13.20).
+    """
     if s.x[l] < 0.0:  # over to the other side
         s.side[l], s.direction[l] = -s.side[l], -s.direction[l]
         s.v[l] = -s.v[l]
-    side, before, change = s.side[l], s.v[l], system.lifts
-    beam = side * s.diameter[l] * system.bed_height * before
+    _, n, t, p, q = polar(s, l, tilt_of(s, l), rate_of(s, l))
+    change, keeps, lost, u = system.lifts, 1.0, 0.0, system.bed_uplift
+    set_polar(s, l, u, n, t, p, q)
+    before = beam_now(s, l)
     if enters:
-        change = system.restitution / change
-        chi = impact_number(system, before)
+        keeps = system.restitution
+        change = keeps / change
+        lost = (1.0 - keeps * keeps) * tilting_energy(s, l, place_of(s, l, u), p, q)
+        chi = impact_number(system, math.sqrt(p * p + q * q))
         s.impact_number[l] = max(s.impact_number[l], chi)
-    set_polar(s, l, system.bed_uplift, side, 0.0, change * before, 0.0)
+    set_polar(s, l, u, n, t, change * p, keeps * q)
     enter_phase(s, l, system, BEDDED if enters else first_phase(system))
-    for r in range(s.n):
-        s.dq[r, l] += s.Gamma[r, l] * ((1.0 - change) * beam)
-    lost = 0.0
-    if enters:  # A just outside of phi_u is A_u/j^2
-        C = system.bed_height
-        A = s.io_1[l] + s.one[l] * (C * C)
-        outside = before / system.lifts
-        lost = 0.5 * inertia_unit(s, l) * A * (outside * outside - s.v[l] * s.v[l])
+    move_floors(s, l, before)
     s.energy_lost[l] += lost
-    log_event(s, l, log, IMPACT if enters else UPLIFT, before, s.v[l], lost)
+    log_event(s, l, log, IMPACT if enters else UPLIFT, p, s.v[l], lost)
     renew(s, l)
-    hold_between(s, l, system, log)
+    if ways_of(s) == 1:
+        hold_between(s, l, system, log)
+    else:
+        keep_apart(s, l, system)
+
+
+NEAREST_RETURN = 1e-4
+"""Of phi_u: what would come back from less far, and may go round, is sent so far."""
+
+
+@compiled
+def keep_apart(s: Record, l: int, system: Record) -> None:
+    """Let a slow storey leave phi_u a little where the bed pushes out and lifted ends turn back.
+
+    It goes to and fro there until either lets it go.
+    """
+    outwards = 1.0 if s.phase[l] != BEDDED else -1.0
+    least = 2.0 * abs(s.a[l]) * NEAREST_RETURN * system.bed_uplift
+    x, n, t, p, q = polar(s, l, tilt_of(s, l), rate_of(s, l))
+    if outwards * s.a[l] >= 0.0 or p * p >= least:
+        return
+    energy, before = total_energy(s, l, system), beam_now(s, l)
+    set_polar(s, l, x, n, t, outwards * math.sqrt(least), q)
+    move_floors(s, l, before)
+    s.energy_lost[l] += energy - total_energy(s, l, system)
+    renew(s, l)
 
 
 HELD = 1e-6

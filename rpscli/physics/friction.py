@@ -1,0 +1,235 @@
+"""What friction holds: a storey at rest on its ends, or tilted (section 11).
+
+In one plane it is held between two limits. A tilt to any side is held inside a closed curve of what
+pushes it, a circle where dampers alone hold it, and begins to slide along its normal.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from rpscli.physics.compile import compiled
+from rpscli.physics.devices import has_friction, resistance, tendon_elongation, tension
+from rpscli.physics.ground import log_event
+from rpscli.physics.laws import patch, path_at, place_of, polar, tilt_of, ways_of
+from rpscli.physics.state import STICKING, STOP, STUCK, Record
+
+
+@compiled
+def force_at_rest(s: Record, l: int) -> tuple[float, float]:
+    """Horizontal force at the cap beam against a tilt at rest [N].
+
+    Returns: That of stops and tendons, towards smaller x, and what friction may add to either side.
+    """
+    if s.devices[l] == 0:
+        return 0.0, 0.0
+    e, lever, _, _ = tendon_elongation(s, l, s.x[l])
+    C, path = place_of(s, l, s.x[l]).C, s.diameter[l] * path_at(s, l, s.x[l])
+    arm, elastic = s.diameter[l] * C, 0.0
+    for i in range(s.devices[l]):
+        elastic += s.columns[l] * tension(s, l, i, e) * lever / arm
+        if s.device_kind[i, l] == STOP:
+            elastic += resistance(s, l, i, path, 0.0)
+    return elastic, s.friction_force[l] + s.friction_moment[l] / arm
+
+
+@compiled
+def set_limits(s: Record, l: int) -> None:
+    """Write what holds a lane at rest to either side, in full contact or stuck (3.2), (11.14)."""
+    R = 0.5 * s.diameter[l]
+    weigh = R * s.weigh[l]
+    elastic, friction = force_at_rest(s, l)
+    elastic, friction = R * s.share[l] * elastic, R * s.share[l] * friction
+    right = s.tan_a[l] * weigh
+    s.limit_right[l], s.limit_left[l] = right, right
+    s.held_right[l], s.held_left[l] = elastic + friction, elastic + friction
+    if s.bed_back[l] > 0.0:  # outwards as the lifted ends, inwards as the bed
+        at, back = place_of(s, l, s.x[l]), R * s.bed_back[l]
+        missing = R * (s.root[l] - s.sink[l]) * s.w[l] * s.gravity[l] * s.weigh[l]
+        out, held_out = at.Bv / at.C * weigh, elastic + friction + missing / at.C
+        s.limit_right[l], s.held_right[l] = out, held_out
+        s.limit_left[l], s.held_left[l] = 0.0, friction - elastic - back
+        if s.side[l] < 0.0:
+            s.limit_right[l], s.held_right[l] = 0.0, friction - elastic - back
+            s.limit_left[l], s.held_left[l] = out, held_out
+    elif s.phase[l] == STUCK:
+        at, side = place_of(s, l, s.x[l]), s.side[l]
+        missing = (s.root[l] - s.sink[l]) * s.w[l] * s.gravity[l] * s.weigh[l]
+        elastic += R * (missing + s.bed_k[l] * s.x[l]) / at.C
+        right, elastic = side * at.Bv / at.C * weigh, side * elastic
+        s.limit_right[l], s.limit_left[l] = right, -right
+        s.held_right[l], s.held_left[l] = friction + elastic, friction - elastic
+
+
+@compiled
+def push_at_rest(
+    s: Record, l: int, V: tuple[float, float], a_g: tuple[float, float], g_up: float
+) -> float:
+    """What friction dampers push the cap beam with while a lane is at rest [N]; writes `drive`.
+
+    In full contact the columns hold what they can, and friction dampers the rest: no less, or the
+    columns would turn (11.13). A stuck storey is held by dampers and rolling resistance in
+    proportion to what each could. Returns the share of their friction that is asked for, against
+    growing tilts, -1 to 1; of a tilt to any side against where it is pushed to, 0 to 1.
+    """
+    R, side = 0.5 * s.diameter[l], s.side[l]
+    # Between bed and lifted ends the columns hold what they can too, up to where they let go.
+    if s.friction_force[l] + s.friction_moment[l] == 0.0 or s.bed_back[l] > 0.0:
+        return 0.0
+    per_N = R * s.share[l]
+    if ways_of(s) == 2 and s.phase[l] == STUCK:
+        return push_stuck(s, l, V, a_g, g_up)
+    x, y = R * (s.load[l] * a_g[0] - s.share[l] * V[0]), 0.0
+    action = side * x
+    if ways_of(s) == 2:
+        y = R * (s.load[l] * a_g[1] - s.share[l] * V[1])
+        action = math.sqrt(x * x + y * y)
+    _, friction = force_at_rest(s, l)
+    friction *= per_N
+    resists = 0.5 * (s.limit_right[l] - s.limit_left[l]) * side * g_up
+    if s.phase[l] == STUCK:
+        resists += 0.5 * side * (s.held_right[l] - s.held_left[l])
+        share = -(resists + action) / friction
+        steady = 0.0
+        path = s.diameter[l] * path_at(s, l, s.x[l])
+        for i in range(s.devices[l]):
+            if s.device_kind[i, l] == STOP:
+                steady += resistance(s, l, i, path, 0.0)
+        s.drive[0, l] = -side * (steady + share * s.friction_force[l])
+        return float(share)
+    dampers = per_N * s.friction_force[l]
+    if dampers == 0.0:
+        return 0.0
+    resists = s.limit_right[l] * g_up + s.held_right[l]
+    beyond = min(max(abs(action) - (resists - dampers), 0.0), dampers)
+    share = -math.copysign(beyond / dampers, action)
+    s.drive[0, l] = -side * share * s.friction_force[l]
+    if ways_of(s) == 2:
+        push = beyond / max(per_N * action, 1e-300)
+        s.drive[0, l], s.drive[1, l] = push * x, push * y
+        return beyond / dampers
+    return share
+
+
+@compiled
+def sticks(s: Record, l: int, log: Record) -> bool:
+    """After x' = 0 under friction: go on to the side that is pushed to; True if neither is."""
+    if not has_friction(s, l):
+        return False
+    at = place_of(s, l, s.x[l])
+    moment = at.C * s.friction_force[l] + s.friction_moment[l] / s.diameter[l]
+    held = s.share[l] * moment / at.A
+    free = s.a[l] + s.direction[l] * held
+    if abs(free) > held:
+        s.direction[l] = 1.0 if free > 0.0 else -1.0
+        return False
+    s.phase[l] = STUCK
+    log_event(s, l, log, STICKING, 0.0, 0.0, 0.0)
+    return True
+
+
+# Of a tilt to any side (11.20). With P the friction of dampers along W d = (C d_n, h d_t) and M
+# that of rolling along d, Q is held if Q.d <= P |W d| + M for every unit vector d.
+
+
+class Grip(NamedTuple):
+    """How a tilt at rest is held, over N m_c R^2 [1/s2]."""
+
+    used: float  # the part of what friction could do: it holds up to 1
+    margin: float  # P |W d| + M - Q.d, where d is the vector for which that is least at used = 1
+    slope: float  # its rate [1/s3]
+    d_n: float
+    d_t: float
+    drag_n: float  # W d/|W d|
+    drag_t: float
+
+
+TURNS = 30
+"""Steps to d, each of which leaves |C - h|/C of what is missing: some hundredth."""
+
+
+@compiled
+def grip_of(
+    s: Record,
+    l: int,
+    z: tuple[float, float],
+    z_rate: tuple[float, float],
+    g_up: tuple[float, float],
+    less: float,
+) -> Grip:
+    """How a tilt at rest is held under z of what is not friction, and g + a_v, with their rates.
+
+    Of the dampers' part `less` may not be asked for [1/s2].
+    """
+    x, n, t, _, _ = polar(s, l, tilt_of(s, l), (0.0, 0.0))
+    w, _ = patch(s, l, x)
+    at, weigh, gravity = place_of(s, l, x), s.weigh[l], s.gravity[l]
+    P = max(s.share[l] * s.friction_force[l] - less, 0.0)
+    M = s.share[l] * s.friction_moment[l] / s.diameter[l]
+    arm = at.Bv * weigh
+    held = arm * g_up[0] + (s.root[l] - s.sink[l]) * w * gravity * weigh + s.bed_k[l] * x
+    held += at.C * s.share[l] * force_at_rest(s, l)[0]
+    Q_n, Q_t = at.C * (z[0] * n + z[1] * t) - held, at.h * (z[1] * n - z[0] * t)
+    rate_n = at.C * (z_rate[0] * n + z_rate[1] * t) - arm * g_up[1]
+    rate_t = at.h * (z_rate[1] * n - z_rate[0] * t)
+    size = math.sqrt(Q_n * Q_n + Q_t * Q_t)
+    d_n, d_t = (Q_n / size, Q_t / size) if size > 0.0 else (1.0, 0.0)
+    long = math.sqrt((at.C * d_n) ** 2 + (at.h * d_t) ** 2)
+    for _ in range(TURNS if P + M > 0.0 else 0):
+        # Where Q is just held it is the gradient of P |W d| + M |d|.
+        d_n = Q_n / (P * at.C * at.C / long + M)
+        d_t = Q_t / (P * at.h * at.h / long + M)
+        far = math.sqrt(d_n * d_n + d_t * d_t)
+        d_n, d_t = (d_n / far, d_t / far) if far > 0.0 else (1.0, 0.0)
+        long = math.sqrt((at.C * d_n) ** 2 + (at.h * d_t) ** 2)
+    most, pulled = P * long + M, Q_n * d_n + Q_t * d_t
+    return Grip(
+        pulled / max(most, 1e-300),
+        most * (1.0 + ROUNDING) - pulled,
+        -(rate_n * d_n + rate_t * d_t),
+        d_n,
+        d_t,
+        at.C * d_n / long,
+        at.h * d_t / long,
+    )
+
+
+ROUNDING = 1e-13
+"""Share of what friction can hold within which its margin is zero."""
+
+
+@compiled
+def grip_at(s: Record, l: int, end: int) -> Grip:
+    """How a lane is held at the start (0) or at the end (1) of its step."""
+    z_x, z_y, rate_x, rate_y, time = 0.0, 0.0, 0.0, 0.0, s.time[l] + end * s.h[l]
+    for axis in range(2):
+        V = s.new_V[axis, l] if end > 0 else s.V[axis, l]
+        dV = s.new_dV[axis, l] if end > 0 else s.dV[axis, l]
+        slope = s.a_g_slope[axis, l]
+        z = s.share[l] * V - s.load[l] * (s.a_g[axis, l] + time * slope)
+        rate = s.share[l] * dV - s.load[l] * slope
+        if axis == 0:
+            z_x, rate_x = z, rate
+        else:
+            z_y, rate_y = z, rate
+    g_up = s.g_up[l] + time * s.g_up_slope[l], s.g_up_slope[l]
+    return grip_of(s, l, (z_x, z_y), (rate_x, rate_y), g_up, 0.0)
+
+
+@compiled
+def push_stuck(
+    s: Record, l: int, V: tuple[float, float], a_g: tuple[float, float], g_up: float
+) -> float:
+    """`push_at_rest` of a lane that is stuck with a tilt to any side."""
+    z_x = s.share[l] * V[0] - s.load[l] * a_g[0]
+    z_y = s.share[l] * V[1] - s.load[l] * a_g[1]
+    grip = grip_of(s, l, (z_x, z_y), (0.0, 0.0), (g_up, 0.0), 0.0)
+    _, n, t, _, _ = polar(s, l, tilt_of(s, l), (0.0, 0.0))
+    path, push = s.diameter[l] * path_at(s, l, s.x[l]), grip.used * s.friction_force[l]
+    out, aside = -push * grip.drag_n, -push * grip.drag_t
+    for i in range(s.devices[l]):
+        if s.device_kind[i, l] == STOP:
+            out -= resistance(s, l, i, path, 0.0)
+    s.drive[0, l], s.drive[1, l] = out * n - aside * t, out * t + aside * n
+    return grip.used

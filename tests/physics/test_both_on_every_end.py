@@ -1,0 +1,337 @@
+"""Both components on compliant and spherical ends, with friction and rolling resistance.
+
+The histories of `both_references.json` come from a program that shares no equation with this one:
+momenta of the tilt vector, complex-step derivatives of the Lagrangian, an adaptive rule of order 8
+at 1e-12. Their results have ten digits.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from paper_structures import Array, RecordLoader, ground, needs_compiled_kernels
+from two_components import History, followed, frame, pair, released, two_pulses
+
+from rpscli.analyses.demand import Request, demands
+from rpscli.analyses.kernels.history import sampled_history
+from rpscli.analyses.kernels.systems import paired_systems
+from rpscli.analyses.settings import TimeHistorySettings
+from rpscli.case.case import load_case
+from rpscli.constants import STANDARD_GRAVITY
+from rpscli.model.contact import Contact
+from rpscli.model.devices import FrictionDamper, RollingResistance, ViscousDamper
+from rpscli.model.podium import Device, PodiumStructure
+from rpscli.physics.bed import first_phase, load_bed
+from rpscli.physics.devices import load_devices
+from rpscli.physics.follow import load_system
+from rpscli.physics.friction import grip_of
+from rpscli.physics.laws import place_of
+from rpscli.physics.state import IMPACT, STATE, STICKING, STUCK, UPLIFT, records
+from rpscli.physics.upright import enter_phase, set_polar
+from rpscli.records.ground_motion import MotionComponents
+
+REFERENCES: dict[str, list[dict[str, Any]]] = json.loads(
+    (Path(__file__).parents[1] / "oracles" / "both_references.json").read_text()
+)
+HISTORIES = {each["name"]: each for each in REFERENCES["histories"]}
+STEP = 0.01
+
+
+def motion_of(reference: dict[str, Any], fema_record: RecordLoader) -> MotionComponents:
+    """Sines, or a part of a recorded pair."""
+    of = reference["motion"]
+    if "sines" in of:
+        t = np.arange(of["npts"]) * of["dt"]
+        x, y = (
+            np.where(
+                (t >= start) & (t <= start + period),
+                a * STANDARD_GRAVITY * np.sin(2.0 * np.pi * (t - start) / period),
+                0.0,
+            )
+            for a, period, start in of["sines"]
+        )
+        return pair(x, y, of["dt"])
+    both = [fema_record(f"farfield/{of['fema']}/{way}") for way in "ab"]
+    dt = both[0].dt
+    first, count = round(of["t0"] / dt), round(reference["T"] / dt) + 1
+    x, y = (of["scale"] * each.acceleration[first : first + count] for each in both)
+    return pair(x, y, dt)
+
+
+@needs_compiled_kernels
+@pytest.mark.evidence("both components", "program")
+@pytest.mark.parametrize("name", HISTORIES)
+def test_histories_of_another_program(name: str, fema_record: RecordLoader) -> None:
+    reference = HISTORIES[name]
+    motion = motion_of(reference, fema_record)
+    structure = load_case({"rps": 1, **reference["case"]}).structure
+    free = max(reference["T"] - motion.horizontal.duration, 0.0)
+    history = followed(structure, motion, TimeHistorySettings(free_vibration=free))
+    trace, left = np.array(reference["trace"]), history.left
+    rows = np.rint(trace[:, 0] / motion.horizontal.dt).astype(int)
+    tilt = trace[:, 1] + 1j * trace[:, 2]
+    # found: 1e-10 rad, 1e-9 where friction begins with a velocity that is not zero
+    assert np.max(np.abs(history.tilt[rows] - tilt)) < 3e-9
+    assert left.max_theta == pytest.approx(reference["max_tilt"], rel=1e-7)
+    last = rows[-1] + 1
+    shear = np.hypot(*history.samples.base_shear[:last].T).max()
+    damping = structure.superstructure is not None  # springs and dampers; the reference has springs
+    if damping:
+        elastic = elastic_shear(structure, history)[:last].max()
+        assert elastic == pytest.approx(reference["base_shear"], rel=1e-6)
+        assert shear == pytest.approx(elastic, rel=0.2)
+    spent = reference["energy"]
+    for mine, theirs in (
+        (left.energy_input, "input"),
+        (left.energy_damped, "damped"),
+        (left.bed_energy, "bed"),
+        (left.energy_lost, "impact"),
+        (left.energy_stored, "stored"),
+        (left.device_energy.sum(), "devices"),
+    ):
+        assert mine == pytest.approx(spent[theirs], abs=1e-7 * spent["input"]), theirs
+    uplifts, reentries, sticks = reference["events"]
+    begins_stuck = left.events[STICKING] > 0 and structure.bearing.alpha * (not structure.bed) == 0
+    assert left.events[UPLIFT] == uplifts
+    assert left.events[IMPACT] == reentries
+    assert left.events[STICKING] - begins_stuck == sticks
+    assert (left.phase == STUCK or history.samples.phase[-1] == STUCK) == reference["stuck"]
+
+
+def elastic_shear(structure: PodiumStructure, history: History) -> Array:
+    """Resultant of the springs of the first storey at the samples [N]."""
+    n, both = structure.storeys, []
+    for axis, building in enumerate(
+        (structure.superstructure, structure.superstructure_y or structure.superstructure)
+    ):
+        assert building is not None
+        first = history.floors[:, 0, n * axis] - history.samples.beam[:, axis]
+        both.append(building.stiffnesses[0] * first)
+    return np.hypot(*both)
+
+
+PLANE, EDGES = (Contact(kind, stiffness=6.34e8, damping=0.0) for kind in ("plane", "edges"))
+
+
+@needs_compiled_kernels
+@pytest.mark.evidence("both components", "program")
+@pytest.mark.parametrize("reference", REFERENCES["free"], ids=["near", "nearest", "edges"])
+def test_free_motion_on_compliant_ends(reference: dict[str, Any]) -> None:
+    """Energy and momentum stay; the other program's path."""
+    contact = PLANE if reference["kind"] == "plane" else EDGES
+    plain = frame(loss=0.0)
+    bearing = replace(plain.bearing, inertia_ratio=1.35)
+    structure = replace(
+        plain, bearing=bearing, columns_mass=2e4, cap_beam_mass=2e5, contact=contact
+    )
+    free = released(structure, 0.06, reference["across"], 10.0, accuracy=4.0)
+    trace = np.array(reference["trace"])
+    rows = np.rint(trace[:, 0] / STEP).astype(int)
+    assert np.max(np.abs(free.tilt[rows] - trace[:, 1] - 1j * trace[:, 2])) < 1e-9
+    begun = free.samples[0].energy_stored
+    assert free.left.energy_stored == pytest.approx(begun, rel=1e-9)
+
+
+W = frame(3, 3.0).weight
+SOFT: dict[str, Any] = {"loss": 0.3, "tan_wedge": 0.3, "rho": 0.5}
+ENDS: dict[str, dict[str, Any]] = {
+    "plane": {"contact": Contact("plane", period_ratio=1.2), "loss": 0.3},
+    "plane arcs": {"contact": Contact("plane", period_ratio=1.2), **SOFT},
+    "edges": {"contact": Contact("edges", period_ratio=1.2)},
+    "edges arcs": {"contact": Contact("edges", period_ratio=1.2), **SOFT},
+    "spherical": {"tan_alpha": 0.0, "tan_wedge": 0.3, "rho": 0.8},
+}
+DEVICES: dict[str, tuple[Device, ...]] = {
+    "": (),
+    "viscous": (ViscousDamper(0.2 * W),),
+    "friction": (FrictionDamper(0.02 * W),),
+    "rolling": (RollingResistance(0.02),),
+    "friction and rolling": (FrictionDamper(0.01 * W), RollingResistance(0.01)),
+}
+CELLS = [
+    (end, kind)
+    for end in ENDS
+    for kind in DEVICES
+    if end == "spherical" or "rolling" not in kind  # refused beside compliant contact
+]
+
+
+def structure_of(end: str, kind: str = "", **options: Any) -> PodiumStructure:
+    return frame(3, 3.0, devices=DEVICES[kind], **{**ENDS[end], **options})
+
+
+def short(accuracy: float = 1.0) -> TimeHistorySettings:
+    return TimeHistorySettings(free_vibration=2.0, accuracy=accuracy)
+
+
+@needs_compiled_kernels
+@pytest.mark.evidence("both components", "exact")
+@pytest.mark.parametrize(("end", "kind"), CELLS)
+def test_one_component_is_the_planar_program(end: str, kind: str) -> None:
+    """Along x nothing moves in y, and rotations and demands are those of one plane."""
+    x, _ = two_pulses()
+    structure = structure_of(end, kind)
+    history = followed(structure, pair(x, 0.0 * x, STEP), short(4.0))
+    planar = sampled_history(structure, MotionComponents(ground(x, STEP)), short(4.0))
+    left, other = history.left, planar.history
+    assert not history.samples.beam[:, 1].any()
+    assert not left.storey_shear_y.any()
+    bar = 1e-9 if kind in ("", "viscous") else 5e-9  # friction begins with a velocity of 8e-9 m/s
+    assert np.max(np.abs(history.tilt.real - planar.samples.theta)) < bar
+    moved = planar.floors
+    for row in range(3):
+        size = np.max(np.abs(moved[:, row]))
+        assert np.max(np.abs(history.floors[:, row, :3] - moved[:, row])) < 200.0 * bar * size
+    for name in ("energy_input", "energy_damped", "bed_energy", "energy_lost"):
+        assert left[name] == pytest.approx(other[name], abs=1e-6 * left.energy_input), name
+
+
+@needs_compiled_kernels
+@pytest.mark.evidence("both components", "exact")
+@pytest.mark.parametrize(("end", "kind"), CELLS)
+def test_no_axis_is_special(end: str, kind: str) -> None:
+    """Turned by any angle, the pair turns the result; mirrored, it mirrors it to the last bit."""
+    x, y = two_pulses()
+    structure = structure_of(end, kind)
+    turn = np.exp(0.64j)
+    turned = turn * (x + 1j * y)
+    one = followed(structure, pair(x, y, STEP), short(2.0))
+    other = followed(structure, pair(turned.real, turned.imag, STEP), short(2.0))
+    assert np.max(np.abs(turn * one.tilt - other.tilt)) < 1e-8 * one.left.max_theta
+    assert other.left.max_theta == pytest.approx(one.left.max_theta, rel=1e-9)
+    mirrored = followed(structure, pair(-x, y, STEP), short(2.0))
+    assert np.array_equal(mirrored.samples.beam, one.samples.beam * [-1.0, 1.0])
+    assert abs(one.residual) < 1e-6
+
+
+@needs_compiled_kernels
+@pytest.mark.parametrize("vertical", [False, True])
+@pytest.mark.parametrize("end", ENDS)
+def test_alone_and_in_company(end: str, vertical: bool) -> None:
+    """The same bits, whatever goes on in other lanes."""
+    x, y = two_pulses()
+    up = 0.5 * (x + y) if vertical else None
+    settings = TimeHistorySettings(free_vibration=2.0)
+    requests = [
+        Request(structure_of(end, kind), pair(factor * x, y, STEP, up), settings)
+        for kind in ("", "friction")
+        for factor in np.linspace(0.2, 1.2, 12)
+    ]
+    together, alone = demands(requests), demands(requests, worth_lanes=1000)
+    for one, other in zip(together, alone, strict=True):
+        assert one.history.tobytes() == other.history.tobytes()
+
+
+@needs_compiled_kernels
+@pytest.mark.parametrize("end", [end for end in ENDS if end != "spherical"])
+def test_sustained_upward_acceleration(end: str) -> None:
+    """Where the bed pushes out what lifted ends turn back, histories go on, and energy closes."""
+    x, y = two_pulses()
+    up = 3.0 * np.ones(len(x))
+    history = followed(structure_of(end), pair(x, y, STEP, up), short())
+    assert history.left.outcome in (1, 2, 3)
+    assert abs(history.residual) < 1e-6
+
+
+# What friction holds.
+
+
+@pytest.mark.evidence("devices", "exact")
+@pytest.mark.parametrize("kind", ["friction", "rolling", "friction and rolling"])
+def test_what_is_held_is_held_against_every_direction(kind: str) -> None:
+    """Q.d <= P |W d| + M for 360 vectors d, on either side of the margin's zero."""
+    structure = structure_of("spherical", kind)
+    left = records(STATE, 1, 2, 1)[0]
+    system = paired_systems([(structure, TimeHistorySettings())])[0]
+    load_system(left, 0, system)
+    load_devices(left, 0, system)
+    load_bed(left, 0, system)
+    enter_phase(left, 0, system, first_phase(system))
+    set_polar(left, 0, 0.12, 0.6, 0.8, 0.0, 0.0)
+    at = place_of(left, 0, 0.12)
+    P = left.share[0] * left.friction_force[0]
+    M = left.share[0] * left.friction_moment[0] / left.diameter[0]
+    back = at.Bv * left.weigh[0] * left.gravity[0]
+    angles = np.radians(np.arange(0.0, 360.0, 0.25))
+    d = np.array([np.cos(angles), np.sin(angles)])
+    most = P * np.hypot(at.C * d[0], at.h * d[1]) + M
+    rng = np.random.default_rng(5)
+    signs = set()
+    for _ in range(200):
+        n, t = rng.normal(0.0, 1.5 * (P + M), 2)
+        z = (0.6 * (n + back / at.C) - 0.8 * t, 0.8 * (n + back / at.C) + 0.6 * t)
+        grip = grip_of(left, 0, z, (0.0, 0.0), (left.gravity[0], 0.0), 0.0)
+        margin = np.min(most - at.C * n * d[0] - at.h * t * d[1])
+        if abs(margin) > 1e-4 * (P + M):
+            assert (margin >= 0.0) == (grip.margin >= 0.0)
+            assert (grip.used <= 1.0) == (margin >= 0.0)
+            signs.add(margin >= 0.0)
+    assert len(signs) == 2
+
+
+@needs_compiled_kernels
+@pytest.mark.parametrize("end", ["plane", "spherical"])
+def test_what_rests_stays(end: str) -> None:
+    """Held by friction after the record, nothing moves for another minute."""
+    x, y = two_pulses()
+    settings = TimeHistorySettings(free_vibration=70.0)
+    history = followed(structure_of(end, "friction"), pair(x, y, STEP), settings)
+    rows = np.flatnonzero(history.samples.phase != STUCK)
+    rest = history.tilt[rows[-1] + 2 :]
+    assert len(rest) > 5000
+    assert np.all(rest == rest[0])
+
+
+# What the laws are made of.
+
+
+@needs_compiled_kernels
+@pytest.mark.evidence("compliant contact", "exact")
+@pytest.mark.parametrize("end", [end for end in ENDS if end != "spherical"])
+def test_in_proportion_to_the_stiffness(end: str) -> None:
+    """Stiffer and stiffer, the motion of rigid ends with passes that lose nothing."""
+    x, y = two_pulses(2.0)
+    options = {k: v for k, v in ENDS[end].items() if k != "contact"} | {"loss": 0.0}
+    rigid = followed(frame(3, 3.0, **options, contact_time=0.0), pair(x, y, STEP))
+    kind, gaps = end.split(maxsplit=1)[0], []
+    for stiffness in (1e10, 1e11, 1e12):
+        contact = Contact(kind, stiffness=stiffness, damping=0.0)  # type: ignore[arg-type]
+        soft = followed(frame(3, 3.0, **options, contact=contact), pair(x, y, STEP))
+        gaps.append(np.max(np.abs(soft.tilt - rigid.tilt)))
+    assert rigid.left.max_theta > 0.02
+    assert gaps[0] > 1.5 * gaps[1] > 2.2 * gaps[2]
+    if kind == "edges":
+        assert gaps[2] < 1e-5
+
+
+@needs_compiled_kernels
+@pytest.mark.evidence("both components", "exact")
+def test_small_flat_parts_become_spherical_ends() -> None:
+    x, y = two_pulses(2.0)
+    ball = followed(frame(3, 3.0, tan_alpha=0.0, tan_wedge=0.3, rho=0.8), pair(x, y, STEP))
+    gaps = []
+    for flat in (1e-3, 1e-4, 1e-5):
+        almost = frame(3, 3.0, tan_alpha=flat, tan_wedge=0.3, rho=0.8, loss=0.0)
+        gaps.append(np.max(np.abs(followed(almost, pair(x, y, STEP)).tilt - ball.tilt)))
+    assert gaps[0] > 7.0 * gaps[1] > 40.0 * gaps[2]
+
+
+@needs_compiled_kernels
+@pytest.mark.parametrize("aim", [0.0, 1e-12, 0.5, 1.0, 1.5])
+@pytest.mark.parametrize("contact", [PLANE, EDGES], ids=["plane", "edges"])
+def test_passes_at_any_distance(contact: Contact, aim: float) -> None:
+    """Aimed at parts of phi_u, nothing is lost without loss, and neighbours stay neighbours."""
+    structure = frame(contact=contact, loss=0.0)
+    assert structure.bed is not None
+    u = structure.bed.uplift_rotation
+    one, other = (
+        released(structure, 0.06, part * u * 10.0, 3.0, accuracy=4.0)
+        for part in (aim, aim * (1.0 + 1e-7))
+    )
+    assert one.left.energy_stored == pytest.approx(one.samples[0].energy_stored, rel=1e-9)
+    assert np.max(np.abs(one.tilt - other.tilt)) < 1e-6
