@@ -98,7 +98,7 @@ def thrust_moment(structure: PodiumStructure, trace: Trace) -> Array:
 
 def in_shocks(structure: PodiumStructure, trace: Trace) -> NDArray[np.bool_]:
     """Samples of passes that floors cannot follow (13.19), none of one component (samples,)."""
-    if trace.azimuth_rate is None:
+    if trace.azimuth_rate is None or structure.passes_smoothly:
         return np.zeros(len(trace.time), dtype=bool)
     rate = np.hypot(trace.rotation_rate, trace.rotation * trace.azimuth_rate)
     return np.asarray(structure.shock_time * rate > trace.rotation)

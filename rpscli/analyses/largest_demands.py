@@ -116,6 +116,12 @@ class Histories:
         """The values on compliant ends; NaN on rigid ones."""
         return np.asarray(np.where(self.each(lambda st: st.bed is not None) > 0.0, values, np.nan))
 
+    def of_passes(self, field: str) -> Array:
+        """A field of histories with passes near upright; NaN of others, which have none."""
+        smooth = self.each(lambda structure: structure.passes_smoothly) > 0.0
+        values = self.known(field)
+        return np.asarray(np.where(smooth.reshape(-1, *(1,) * (values.ndim - 1)), np.nan, values))
+
     def of_storeys(self, field: str) -> Array:
         """(histories, n)."""
         values: Array = self.left[field][:, : self.storeys]
@@ -409,13 +415,14 @@ class Demand(Shown):
         "Largest absolute floor acceleration in y [m/s2]; None under one component.",
         lambda h: _largest(h.of_storeys_in("y", "floor_acceleration")),
     )
-    passes = _Result[int](
-        "Closest approaches to upright between swings, however wide.",
-        lambda h: h.left["events"][:, state.PASS],
+    passes = _Optional(
+        "Closest approaches to upright between swings, however wide; None where upright is nothing"
+        " special, and under one component.",
+        lambda h: h.of_passes("events")[:, state.PASS],
     )
     passes_as_impacts = _Optional(
-        "Passes that lost more than half of what an impact would; None under one component.",
-        lambda h: h.known("passes_as_impacts"),
+        "Passes that lost more than half of what an impact would; None as of `passes`.",
+        lambda h: h.of_passes("passes_as_impacts"),
     )
     closest_pass = _Optional(
         "Least theta_min/alpha of a pass; None without passes.",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from numbers import Integral
 from typing import Any, ClassVar, NamedTuple, TypeAlias
@@ -154,13 +154,32 @@ class PodiumStructure(Shown):
     @property
     def planar_only(self) -> str:
         """Why both horizontal components cannot act at once; empty if they can."""
-        has_passes = self.bed is None and not self.bearing.is_spherical
-        if has_passes and self.impact_law.floors_jump and self.superstructure is not None:
+        jumps = self.impact_law.floors_jump and self.superstructure is not None
+        if jumps and not self.passes_smoothly:
             return (
                 f"the impact law {self.impact_law.kind} lets floors jump, which has no form for a"
                 " pass that loses a part of an impact; use the law flexible, with loss or factor"
             )
         return ""
+
+    @property
+    def passes_smoothly(self) -> bool:
+        """True if nothing happens at upright: on compliant ends, and on those without flat part.
+
+        Others have impacts there, or passes where both components act (Theory, section 13).
+        """
+        return self.bed is not None or self.bearing.is_spherical
+
+    @cached_property
+    def across(self) -> PodiumStructure:
+        """The same podium under what vibrates in y; joints keep their stiffness."""
+        if self.superstructure_y is None:
+            return self
+        joint = None if self.bed is None else self.bed.stiffness
+        contact = replace(self.contact, period_ratio=None, settlement=None, stiffness=joint)
+        return replace(
+            self, superstructure=self.superstructure_y, superstructure_y=None, contact=contact
+        )
 
     def left_out_of_columns(self, *, both: bool, axial: bool = True) -> tuple[str, ...]:
         """Parts that forces of single columns leave out, and the keys that would give them.
@@ -178,11 +197,15 @@ class PodiumStructure(Shown):
         if axial and building is not None and (both or not self.rows):
             key = "known under one component" if both else "podium.plan"
             parts.append(f"the overturning moment of the building ({key})")
+        shocks = f"passes shorter than {1e3 * self.shock_time:g} ms"
+        if not both or self.bed is not None:
+            shocks = "impacts"
+        if self.bearing.is_spherical:
+            return tuple(parts)
         if both and building is None:
-            parts.append(f"the shock of passes shorter than {1e3 * self.shock_time:g} ms")
+            parts.append(f"the shock of {shocks}")
         elif building is not None and building.vertical_period is None:
-            what = f"passes shorter than {1e3 * self.shock_time:g} ms" if both else "impacts"
-            parts.append(f"the shock of {what} (superstructure.vertical_period)")
+            parts.append(f"the shock of {shocks} (superstructure.vertical_period)")
         return tuple(parts)
 
     @property

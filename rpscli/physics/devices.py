@@ -233,8 +233,7 @@ def begin_work(s: Record, weight: float) -> None:
 
 
 STOP_SPEED = 1e-9
-"""Of sqrt(g R): what slides more slowly to any side is stopped, or turned to where it is pushed;
-what lets go begins with twice as much."""
+"""Of sqrt(g R): what slides more slowly to any side is stopped, or turned to where it is pushed."""
 
 
 @compiled
@@ -251,6 +250,7 @@ def load_devices(s: Record, l: int, system: Record) -> None:
     s.friction_force[l], s.friction_moment[l], s.kinks[l] = 0.0, 0.0, 0.0
     s.turning[l], s.turning_across[l], s.tied[l], s.pull[l] = 0.0, 0.0, 0.0, 0.0
     s.stop_speed[l] = STOP_SPEED * math.sqrt(system.gravity * system.R)
+    s.start_speed[l] = system.start_speed
     for axis in range(ways_of(s)):
         s.drive[axis, l] = 0.0
     for i in range(system.devices):

@@ -241,7 +241,8 @@ def let_go(s: Record, l: int) -> tuple[float, int, int]:
     if ways_of(s) == 2:
         if s.phase[l] == STUCK:
             one, two = grip_at(s, l, 0), grip_at(s, l, 1)
-            path = cubic(h, max(one.margin, 0.0), one.slope, two.margin, two.slope)
+            start, end = max(one.margin + one.late, 0.0), two.margin + two.late
+            path = cubic(h, start, one.slope, end, two.slope)
             t = first_descent(path, SETTLED, piece)
         else:
             t = first_descent(squared_margin(s, l), SETTLED, piece)
@@ -311,7 +312,7 @@ def missing(s: Record, l: int) -> tuple[float, float]:
         return value, slope
     if ways_of(s) == 2 and s.phase[l] == STUCK:
         grip = grip_at(s, l, 1)
-        return grip.margin, grip.slope
+        return grip.margin + grip.late, grip.slope
     R, h = 0.5 * s.diameter[l], s.h[l]
     g_up = s.g_up[l] + (s.time[l] + h) * s.g_up_slope[l]
     factor, held, size, growth = s.limit_right[l], s.held_right[l], 0.0, 0.0

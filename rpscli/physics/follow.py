@@ -485,24 +485,24 @@ def stop_or_turn(s: Record, l: int, system: Record, log: Record) -> None:
     """What slides too slowly to any side: be held, or go on along what is not held (11.20)."""
     grip = grip_at(s, l, 0)
     if grip.margin >= 0.0:
-        set_sliding(s, l, system, 0.0, 0.0)
+        set_sliding(s, l, system, 0.0, 0.0, 0.0)
         log_event(s, l, log, STICKING, 0.0, 0.0, 0.0)
         hold(s, l, system)
     else:
-        set_sliding(s, l, system, grip.d_n, grip.d_t)
+        set_sliding(s, l, system, grip.d_n, grip.d_t, 2.0 * s.stop_speed[l])
         renew(s, l)
 
 
 @compiled
-def set_sliding(s: Record, l: int, system: Record, d_n: float, d_t: float) -> None:
-    """Set the rate of a tilt that hardly slides along a unit vector, or to zero.
+def set_sliding(s: Record, l: int, system: Record, d_n: float, d_t: float, speed: float) -> None:
+    """Set the rate of a tilt that hardly slides along a unit vector [speed m/s of the beam].
 
     Floors keep their velocities; the first device with friction books the difference.
     """
     energy, before = total_energy(s, l, system), beam_now(s, l)
     x, n, t, _, _ = polar(s, l, tilt_of(s, l), (0.0, 0.0))
     at = place_of(s, l, x)
-    rate = 2.0 * s.stop_speed[l] / (s.diameter[l] * math.hypot(at.C * d_n, at.h * d_t) + 1e-300)
+    rate = speed / (s.diameter[l] * math.hypot(at.C * d_n, at.h * d_t) + 1e-300)
     set_polar(s, l, x, n, t, rate * d_n, rate * d_t)
     move_floors(s, l, before)
     for i in range(s.devices[l]):
@@ -521,7 +521,7 @@ def slide(s: Record, l: int, system: Record, log: Record, side: int) -> None:
     s.phase[l], s.moves[l] = (BEDDED if s.bed_k[l] > 0.0 else phase), 1.0
     if ways_of(s) == 2:
         grip = grip_at(s, l, 0)
-        set_sliding(s, l, system, grip.d_n, grip.d_t)
+        set_sliding(s, l, system, grip.d_n, grip.d_t, s.start_speed[l])
         renew(s, l)
         return
     if s.bed_back[l] > 0.0:

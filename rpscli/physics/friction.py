@@ -108,7 +108,7 @@ def push_at_rest(
     if ways_of(s) == 2:
         push = beyond / max(per_N * action, 1e-300)
         s.drive[0, l], s.drive[1, l] = push * x, push * y
-        return beyond / dampers
+        return float(beyond / dampers)
     return share
 
 
@@ -139,6 +139,7 @@ class Grip(NamedTuple):
     used: float  # the part of what friction could do: it holds up to 1
     margin: float  # P |W d| + M - Q.d, where d is the vector for which that is least at used = 1
     slope: float  # its rate [1/s3]
+    late: float  # what it is below zero when a motion has come to `START_SPEED`
     d_n: float
     d_t: float
     drag_n: float  # W d/|W d|
@@ -184,10 +185,13 @@ def grip_of(
         d_n, d_t = (d_n / far, d_t / far) if far > 0.0 else (1.0, 0.0)
         long = math.sqrt((at.C * d_n) ** 2 + (at.h * d_t) ** 2)
     most, pulled = P * long + M, Q_n * d_n + Q_t * d_t
+    falls = max(rate_n * d_n + rate_t * d_t, 0.0)
+    inert = (at.A * d_n * d_n + at.K * d_t * d_t) / (s.diameter[l] * long)
     return Grip(
         pulled / max(most, 1e-300),
         most * (1.0 + ROUNDING) - pulled,
         -(rate_n * d_n + rate_t * d_t),
+        math.sqrt(2.0 * s.start_speed[l] * inert * falls),
         d_n,
         d_t,
         at.C * d_n / long,

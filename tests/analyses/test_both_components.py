@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from paper_structures import needs_compiled_kernels, podium
+from paper_structures import known, needs_compiled_kernels, podium
 
 from rpscli.analyses.fixed_base import fixed_base_response
 from rpscli.analyses.results import TimeHistoryResult
@@ -47,10 +47,10 @@ def result(motion: MotionComponents) -> TimeHistoryResult:
 def test_the_energies_balance_at_every_sample(result: TimeHistoryResult) -> None:
     # Those put in, damped and lost are the kernel's; what is stored follows from the samples.
     t = result.trace
-    known = t.energy_input - t.energy_damped - t.energy_impact
+    stored = t.energy_input - t.energy_damped - t.energy_impact
     assert result.uplifts == 1
-    assert result.passes > 3
-    assert np.max(np.abs(t.energy_stored - known)) < 1e-6 * np.max(t.energy_input)
+    assert known(result.passes) > 3
+    assert np.max(np.abs(t.energy_stored - stored)) < 1e-6 * np.max(t.energy_input)
 
 
 def test_samples_do_not_exceed_the_largest_values(result: TimeHistoryResult) -> None:

@@ -10,15 +10,12 @@ import pytest
 from click.testing import CliRunner
 from matplotlib.figure import Figure
 
-from rpscli.analyses.demand import Request, demands
 from rpscli.analyses.modal import modal
 from rpscli.analyses.pushover import pushover
 from rpscli.case.case import Case, parse_case
 from rpscli.cli import program
 from rpscli.commands.report_case import ends
-from rpscli.errors import UsageError
 from rpscli.model.podium import PodiumStructure
-from rpscli.records.ground_motion import GroundMotion, MotionComponents
 from rpscli.report.figures.bearing import draw_end
 from rpscli.report.figures.structure import draw_mode
 
@@ -38,13 +35,6 @@ def case_of(*overrides: str) -> Case:
 
 def structure_of(*overrides: str) -> PodiumStructure:
     return case_of(*overrides).structure
-
-
-def test_both_components_are_refused() -> None:
-    x = GroundMotion([0.0, 0.1, 0.0], 0.01, "made", "made", "made")  # type: ignore[arg-type]
-    pair = MotionComponents(x, y=x)
-    with pytest.raises((ValueError, UsageError), match="compliant ends are followed under one"):
-        demands([Request(structure_of(PLANE), pair)])
 
 
 def test_keys_and_their_defaults() -> None:

@@ -9,10 +9,11 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from paper_structures import FLAT, building, podium
+from paper_structures import FLAT, building, known, podium
 from scipy.integrate import quad
 
 from rpscli.model.bearing import Bearing
+from rpscli.model.contact import Contact
 from rpscli.model.devices import FrictionDamper, RollingResistance, Stop, Tendon, ViscousDamper
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import PodiumStructure
@@ -123,18 +124,30 @@ def test_a_building_needs_a_beam_to_stand_on() -> None:
 
 
 def test_what_is_followed_in_one_plane_only() -> None:
-    bearing = Bearing(1.5, 0.15, 0.3, 0.5)
-    frame = PodiumStructure(bearing, 2e4, 2e5, impact_law=ImpactLaw("rigid"))
-    under = PodiumStructure(bearing, 2e4, 2e5, building(2), ImpactLaw("value", 0.9))
-    ball = PodiumStructure(Bearing(1.5, 0.0, 0.3, 0.8), 2e4, 2e5, impact_law=ImpactLaw(loss=0.0))
-    assert not frame.planar_only
-    assert "use the law flexible" in under.planar_only
-    for device in (FrictionDamper(1e3), RollingResistance(1e-3)):
-        held = PodiumStructure(bearing, 2e4, 2e5, devices=(device,))
-        assert f"the kind {device.kind} are followed in one plane" in held.planar_only
-    smooth = ViscousDamper(1e3), Stop(0.1, 1e6), Tendon(1e3, 1e5)
-    assert not PodiumStructure(bearing, 2e4, 2e5, devices=smooth).planar_only
-    assert "without a flat part" in ball.planar_only
+    """Floors that jump, where there are impacts that they may jump at."""
+    bearing, ball = Bearing(1.5, 0.15, 0.3, 0.5), Bearing(1.5, 0.0, 0.3, 0.8)
+    jumps, above = ImpactLaw("value", 0.9), building(2)
+    assert not PodiumStructure(bearing, 2e4, 2e5, impact_law=ImpactLaw("rigid")).planar_only
+    assert "use the law flexible" in PodiumStructure(bearing, 2e4, 2e5, above, jumps).planar_only
+    whole = ImpactLaw("value", 1.0)
+    assert not PodiumStructure(ball, 2e4, 2e5, above, whole).planar_only
+    devices = FrictionDamper(1e3), RollingResistance(1e-3), ViscousDamper(1e3), Stop(0.1, 1e6)
+    assert not PodiumStructure(bearing, 2e4, 2e5, devices=devices).planar_only
+    soft = Contact("plane", stiffness=1e9)
+    assert not PodiumStructure(bearing, 2e4, 2e5, above, contact=soft).planar_only
+
+
+def test_joints_are_the_same_in_both_directions() -> None:
+    """The ratio of periods is that of x."""
+    x, y = building(2), building(2, 0.3)
+    soft = PodiumStructure(
+        Bearing(1.5, 0.15, 0.3, 0.5), 2e4, 2e5, x, superstructure_y=y,
+        contact=Contact("plane", period_ratio=1.2),
+    )  # fmt: skip
+    assert soft.bed is not None and soft.across.bed is not None
+    assert soft.across.bed.stiffness == pytest.approx(soft.bed.stiffness, rel=1e-12)
+    assert soft.across.superstructure is y
+    assert 1.0 < known(soft.across.bed.period_ratio) < 1.15
 
 
 def test_the_floors_are_the_same_in_both_directions() -> None:

@@ -20,6 +20,7 @@ from paper_structures import (
     Array,
     RecordLoader,
     ground,
+    known,
     needs_compiled_kernels,
     oracle_devices,
     oracle_system,
@@ -451,5 +452,5 @@ def test_energy_closes_where_tendons_yield_and_columns_go_round(seed: int) -> No
     motion = MotionComponents(waves(6.0, 0.01, peak, seed), y=waves(6.0, 0.01, peak, seed + 50))
     result = time_history(structure, motion, TimeHistorySettings(free_vibration=1.0))
     assert sum(event.kind == "tendon_yielding" for event in result.events) >= 1
-    assert result.passes >= 1
+    assert known(result.passes) >= 1
     assert abs(result.energy.residual) < 1e-7 * result.energy.input

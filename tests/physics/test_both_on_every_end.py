@@ -31,7 +31,7 @@ from rpscli.physics.devices import load_devices
 from rpscli.physics.follow import load_system
 from rpscli.physics.friction import grip_of
 from rpscli.physics.laws import place_of
-from rpscli.physics.state import IMPACT, STATE, STICKING, STUCK, UPLIFT, records
+from rpscli.physics.state import IMPACT, STATE, SLIDING, STICKING, STUCK, UPLIFT, records
 from rpscli.physics.upright import enter_phase, set_polar
 from rpscli.records.ground_motion import MotionComponents
 
@@ -75,9 +75,10 @@ def test_histories_of_another_program(name: str, fema_record: RecordLoader) -> N
     trace, left = np.array(reference["trace"]), history.left
     rows = np.rint(trace[:, 0] / motion.horizontal.dt).astype(int)
     tilt = trace[:, 1] + 1j * trace[:, 2]
-    # found: 1e-10 rad, 1e-9 where friction begins with a velocity that is not zero
-    assert np.max(np.abs(history.tilt[rows] - tilt)) < 3e-9
-    assert left.max_theta == pytest.approx(reference["max_tilt"], rel=1e-7)
+    # 1e-10 rad are found, 5e-8 where friction lets go, of which a motion begins with some velocity
+    held = left.events[SLIDING] > 0
+    assert np.max(np.abs(history.tilt[rows] - tilt)) < (1e-7 if held else 3e-9)
+    assert left.max_theta == pytest.approx(reference["max_tilt"], rel=1e-6 if held else 1e-7)
     last = rows[-1] + 1
     shear = np.hypot(*history.samples.base_shear[:last].T).max()
     damping = structure.superstructure is not None  # springs and dampers; the reference has springs
@@ -94,7 +95,9 @@ def test_histories_of_another_program(name: str, fema_record: RecordLoader) -> N
         (left.energy_stored, "stored"),
         (left.device_energy.sum(), "devices"),
     ):
-        assert mine == pytest.approx(spent[theirs], abs=1e-7 * spent["input"]), theirs
+        assert mine == pytest.approx(
+            spent[theirs], abs=(3e-7 if held else 1e-7) * spent["input"]
+        ), theirs
     uplifts, reentries, sticks = reference["events"]
     begins_stuck = left.events[STICKING] > 0 and structure.bearing.alpha * (not structure.bed) == 0
     assert left.events[UPLIFT] == uplifts
@@ -112,7 +115,7 @@ def elastic_shear(structure: PodiumStructure, history: History) -> Array:
         assert building is not None
         first = history.floors[:, 0, n * axis] - history.samples.beam[:, axis]
         both.append(building.stiffnesses[0] * first)
-    return np.hypot(*both)
+    return np.asarray(np.hypot(*both))
 
 
 PLANE, EDGES = (Contact(kind, stiffness=6.34e8, damping=0.0) for kind in ("plane", "edges"))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
@@ -53,21 +52,16 @@ def paired_systems(systems: Sequence[tuple[PodiumStructure, TimeHistorySettings]
     for structure, settings in systems:
         if why := structure.planar_only:
             raise ValueError(f"both horizontal components: {why}")
-        both += [(structure, settings), (_across(structure), settings)]
+        both += [(structure, settings), (structure.across, settings)]
     pairs = _stacked(tuple(both))
     rows = pairs.view(_PLAIN, np.ndarray)
     # one length of step for both
     rows["step_rate"] = np.repeat(rows["step_rate"].reshape(-1, 2).max(axis=1), 2)
-    rows["step_error"] = [step_error(settings, PASSES_ERROR) for _, settings in both]
+    rows["step_error"] = [
+        step_error(settings, 1.0 if structure.passes_smoothly else PASSES_ERROR)
+        for structure, settings in both
+    ]
     return pairs
-
-
-@lru_cache(SYSTEMS_KEPT)
-def _across(structure: PodiumStructure) -> PodiumStructure:
-    """What vibrates in y."""
-    if structure.superstructure_y is None:
-        return structure
-    return replace(structure, superstructure=structure.superstructure_y, superstructure_y=None)
 
 
 @lru_cache(STACKS_KEPT)
@@ -168,6 +162,8 @@ def fill_settings(
         structure.bed.refuse_start(settings.initial_rotation)
     record["most_steps"] = MOST_POWER_STEPS
     record["linear_speed"] = linear_speed(structure, settings.accuracy)
+    speed = math.sqrt(structure.gravity * structure.bearing.semi_diagonal)
+    record["start_speed"] = START_SPEED * speed / settings.accuracy**2
     record["step_error"] = step_error(settings)
     record["recontact_tolerance"] = settings.recontact_tolerance
     record["max_events"] = settings.max_events
@@ -250,6 +246,12 @@ LINEAR_SPEEDS = 1e-8, 1e-6
 """Of sqrt(g R): up to the first of these velocities a power of it is taken as linear, too little to
 be felt; up to the second where the power would else decay faster than `FASTEST_POWER`. Both at
 accuracy 1, which divides them."""
+
+START_SPEED = 3e-6
+"""Of sqrt(g R), over the accuracy's square: so fast a tilt to any side begins to slide. More slowly
+friction turns its velocity to where it is pushed so soon that thousands of steps would follow it.
+What is let go by a margin that falls by m' a second has a = m' t, and so much after sqrt(2 v/m').
+"""
 
 FASTEST_POWER = 6e4
 """Of a power of the velocity: its decay rate where it is taken as linear, over sqrt(g/R), if that

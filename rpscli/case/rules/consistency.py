@@ -11,7 +11,6 @@ from rpscli.case.build import Masses, Shape, overturning_limit
 from rpscli.case.schema.case_file import (
     DEVICE_KEYS,
     AcrossSection,
-    AnalysisSection,
     CaseFile,
     DeviceSection,
     SuperstructureSection,
@@ -216,13 +215,20 @@ class Consistency:
                 " does not go with law value: a measured restitution includes the loss; remove it,"
                 " or scale the restitution by factor",
             )
-        # The default may stand there, in a case that was written out whole.
-        default = AnalysisSection.model_fields["recontact_tolerance"].default
-        rigid, tolerance = self.file.podium.contact.kind == "rigid", "recontact_tolerance"
-        if not rigid and getattr(self.file.analysis, tolerance) != default:
+        podium, reason = self.file.podium, ""
+        if podium.contact.kind != "rigid":
             where = self._where("podium.contact.kind")
-            text = f" has no effect with podium.contact{where}: compliant ends do not bounce"
-            yield _at_key(f"analysis.{tolerance}", f"{text}; remove it")
+            reason = f"with podium.contact{where}: compliant ends do not bounce"
+        elif podium.bearing.slenderness == 0.0:
+            where = self._where(f"{BEARING}.slenderness")
+            reason = f"without a flat part{where}: such ends roll through upright without an impact"
+        # The default may stand there, in a case that was written out whole.
+        for owner, section, name in (
+            ("analysis", self.file.analysis, "recontact_tolerance"),
+            ("podium.impact", podium.impact, "contact_time"),
+        ):
+            if reason and getattr(section, name) != type(section).model_fields[name].default:
+                yield _at_key(f"{owner}.{name}", f" has no effect {reason}; remove it")
 
     def _devices(self) -> Iterator[Fault]:
         """Each device has the keys of its kind, and there are not too many."""

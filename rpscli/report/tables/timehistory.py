@@ -104,6 +104,8 @@ def contact_text(structure: PodiumStructure) -> str | None:
     if ratio is not None:
         period = shown(bed.period, 3)
         parts.append(f"period {period} s in full contact ({ratio:.2f} x fixed base)")
+    if structure.superstructure_y is not None and (across := structure.across.bed) is not None:
+        parts.append(f"in y {shown(across.period, 3)} s ({across.period_ratio:.2f} x fixed base)")
     if bed.settlement is not None:
         parts.append(f"a joint settles {shown(1e3 * bed.settlement, 2)} mm")
     other = "edges" if kind == "plane" else "plane"
@@ -238,7 +240,10 @@ def _ways(result: TimeHistoryResult, name: str) -> str:
 
 def _passes(result: TimeHistoryResult) -> list[Row]:
     """Passes near upright: their number, the closest, and the shortest."""
-    rows = [("uplifts, passes", f"{result.uplifts}, {result.passes}", "", "")]
+    if result.passes is None:
+        rows = [("uplifts, impacts", f"{result.uplifts}, {result.impacts}", "", "")]
+    else:
+        rows = [("uplifts, passes", f"{result.uplifts}, {result.passes:.0f}", "", "")]
     if result.passes:
         rows += [
             (QUANTITIES["passes_as_impacts"].label, f"{result.passes_as_impacts:.0f}", "", ""),
@@ -249,12 +254,19 @@ def _passes(result: TimeHistoryResult) -> list[Row]:
 
 
 def passes_text(result: TimeHistoryResult) -> str | None:
-    """The weight of the assumed contact time; None where one component acts."""
+    """What both components assume at upright; None where one acts."""
+    if result.both_components and result.structure.bed is not None:
+        return (
+            "under both components compliant ends follow the law of a strip in every direction: a"
+            " round joint of the same stiffness tilts some 6 % more, with 8 % less base shear; the"
+            " impact's loss acts where columns come back within the tilt at uplift, wider passes"
+            " lose in the joints alone"
+        )
     if not result.passes:
         return None
     lost = 0 if result.passes_as_impacts is None else int(result.passes_as_impacts)
     return (
-        f"{result.passes} passes near upright, however wide, of which {lost} lose like an impact"
+        f"{result.passes:.0f} passes near upright, however wide; {lost} of them lose like an impact"
         " (l > 0.5);"
         f" contact time {1e3 * result.structure.impact_law.contact_time:g} ms assumed: it decides"
         " how the end of the motion dies, and hardly how large it becomes"
