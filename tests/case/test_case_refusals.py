@@ -243,7 +243,7 @@ TENDON = "[{kind: tendon, prestress: 1 kN, stiffness: 1 kN/mm}]"
         ((*EDGES, "podium.impact={law: value, restitution: 0.9}"), "floors would jump"),
         ((*PLANE, "analysis.recontact_tolerance=1e-8"), "recontact_tolerance has no effect"),
         ((*PLANE, "podium.impact.contact_time=1 ms"), "contact_time has no effect with"),
-        ((*SPHERE, "podium.impact={law: flexible}", "podium.impact.contact_time=1 ms"), "contact_time has no effect without a flat"),
+        ((*SPHERE, "podium.impact={law: flexible, contact_time: 1 ms}"), "without a flat part"),
         ((*PLANE, "analysis.initial_rotation=1e-6"), "initial_rotation = 1e-06 rad must be 0"),
         (("podium.impact.law=flexible", "podium.contact={kind: plane, settlement: 1 mm}"),
          "curved ends bear on more than a settlement describes"),

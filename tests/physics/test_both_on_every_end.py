@@ -31,7 +31,7 @@ from rpscli.physics.devices import load_devices
 from rpscli.physics.follow import load_system
 from rpscli.physics.friction import grip_of
 from rpscli.physics.laws import place_of
-from rpscli.physics.state import IMPACT, STATE, SLIDING, STICKING, STUCK, UPLIFT, records
+from rpscli.physics.state import IMPACT, SLIDING, STATE, STICKING, STUCK, UPLIFT, records
 from rpscli.physics.upright import enter_phase, set_polar
 from rpscli.records.ground_motion import MotionComponents
 
