@@ -6,7 +6,7 @@ that all is smooth within a step; a law changes where a watched value falls belo
 its force and its power in `resistance` and `power_of`, and what it watches in `watched`.
 
 Friction in one plane has the sign of `direction`. Of a tilt to any side it acts along the velocity,
-which seldom is zero: what comes to a stop is held, or turns at once to where it is pushed (11.20).
+which seldom is zero: what comes to a stop is held, or turns at once to where it is pushed (13.25).
 """
 
 from __future__ import annotations

@@ -482,7 +482,7 @@ def hold(s: Record, l: int, system: Record) -> None:
 
 @compiled
 def stop_or_turn(s: Record, l: int, system: Record, log: Record) -> None:
-    """What slides too slowly to any side: be held, or go on along what is not held (11.20)."""
+    """What slides too slowly to any side: be held, or go on along what is not held (13.25)."""
     grip = grip_at(s, l, 0)
     if grip.margin >= 0.0:
         set_sliding(s, l, system, 0.0, 0.0, 0.0)

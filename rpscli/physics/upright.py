@@ -347,7 +347,7 @@ def uplift(s: Record, l: int, system: Record, log: Record, side: int) -> None:
 def pass_on_bed(s: Record, l: int, system: Record, log: Record, enters: bool) -> None:  # noqa: FBT001
     """Uplift from a bed, or contact with it again; floors keep their velocities.
 
-    Going outwards x' changes by j, inwards by e/j, and what goes round by e (13.20).
+    Going outwards x' changes by j, inwards by e/j, and what goes round by e (13.21), (13.22).
     """
     if s.x[l] < 0.0:  # over to the other side
         s.side[l], s.direction[l] = -s.side[l], -s.direction[l]

@@ -8,7 +8,9 @@ at 1e-12. Their results have ten digits.
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
 from dataclasses import replace
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -17,14 +19,16 @@ import pytest
 from paper_structures import Array, RecordLoader, ground, needs_compiled_kernels
 from two_components import History, followed, frame, pair, released, two_pulses
 
+import rpscli
 from rpscli.analyses.demand import Request, demands
-from rpscli.analyses.kernels.history import sampled_history
+from rpscli.analyses.kernels.history import SampledHistory, sampled_history
 from rpscli.analyses.kernels.systems import paired_systems
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.case.case import load_case
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.model.contact import Contact
-from rpscli.model.devices import FrictionDamper, RollingResistance, ViscousDamper
+from rpscli.model.devices import FrictionDamper, RollingResistance, Stop, Tendon, ViscousDamper
+from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import Device, PodiumStructure
 from rpscli.physics.bed import first_phase, load_bed
 from rpscli.physics.devices import load_devices
@@ -338,3 +342,56 @@ def test_passes_at_any_distance(contact: Contact, aim: float) -> None:
     )
     assert one.left.energy_stored == pytest.approx(one.samples[0].energy_stored, rel=1e-9)
     assert np.max(np.abs(one.tilt - other.tilt)) < 1e-6
+
+
+# What goes together.
+
+GUIDE = Path(rpscli.__file__).with_name("GUIDE.md").read_text(encoding="utf-8")
+HEAD = "| ends | components |"
+WORDS: dict[str, tuple[Device, ...]] = {
+    "viscous": (ViscousDamper(0.2 * W),),
+    "friction": (FrictionDamper(0.02 * W),),
+    "stop": (Stop(0.05, 20.0 * W),),
+    "tendon": (Tendon(0.02 * W, W),),
+    "rolling_resistance": (RollingResistance(0.01),),
+}
+
+
+def cells() -> Iterator[tuple[str, bool, str, bool]]:
+    """Ends, whether both components act, device or law, and whether the guide says yes."""
+    rows = GUIDE[GUIDE.index(HEAD) :].split("\n\n", 1)[0].splitlines()
+    names = [cell.strip().split(" ")[0].strip("`") for cell in rows[0].split("|")[1:-1]]
+    for row in rows[2:]:
+        kinds, components, *marks = (cell.strip() for cell in row.split("|")[1:-1])
+        for end in kinds.replace("`", "").split(", "):
+            for name, mark in zip(names[2:], marks, strict=True):
+                yield end, components == "both", name, mark.startswith("yes")
+
+
+@needs_compiled_kernels
+@pytest.mark.parametrize(("end", "both", "name", "goes"), list(cells()))
+def test_every_cell_of_the_guide(end: str, both: bool, name: str, goes: bool) -> None:
+    x, y = two_pulses(3.0)
+    motion = pair(x, y, STEP, 0.3 * x) if both else MotionComponents(ground(x, STEP))
+
+    def run() -> History | SampledHistory:
+        plain = frame(3, 3.0, **({} if end == "rigid" else ENDS[end]))
+        if name != "impact":
+            structure = replace(plain, devices=WORDS[name])
+        else:
+            structure = replace(plain, impact_law=ImpactLaw("rigid"))
+        follow = followed if both else sampled_history
+        return follow(structure, motion, TimeHistorySettings(free_vibration=0.0))
+
+    if goes:
+        assert run().samples.theta[-1] != 0.0
+    else:
+        with pytest.raises(ValueError, match=r"\w"):
+            run()
+
+
+def test_the_guide_has_every_combination() -> None:
+    said = {(end, both, name) for end, both, name, _ in cells()}
+    assert said == set(
+        product(("rigid", "plane", "edges", "spherical"), (False, True), (*WORDS, "impact"))
+    )
