@@ -50,6 +50,7 @@ PAGES = {
         "cases/measured_period.yaml",
         "cases/compdyn2021/README.md",
         "cases/studies/contact/README.md",
+        "cases/studies/joints_both/README.md",
         "cases/studies/impact_law/README.md",
         "cases/studies/product.yaml",
         ".github/workflows/pages.yml",

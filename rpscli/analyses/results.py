@@ -325,9 +325,11 @@ class TimeHistoryResult(Demand):
             and self.outcome == "survived"
             and (self.history["phase"] not in RESTING and self.settings.free_vibration is None)
         ):
+            brake = "but its joints" if self.structure.bed is not None else "of its ends"
             notes.append(
-                "at the end the storey still wobbles, without loss in this model; no larger"
-                " rotation can occur (rolling resistance would bring it to rest)"
+                f"at the end the storey still goes round, and nothing {brake} takes energy from it;"
+                " no larger rotation can occur (friction dampers or rolling resistance would bring"
+                " it to rest)"
             )
         elif self.outcome == "survived" and self.history["phase"] not in RESTING:
             if self.structure.bearing.is_spherical:

@@ -170,7 +170,7 @@ def grip_of(
     M = s.share[l] * s.friction_moment[l] / s.diameter[l]
     arm = at.Bv * weigh
     held = arm * g_up[0] + (s.root[l] - s.sink[l]) * w * gravity * weigh + s.bed_k[l] * x
-    held += at.C * s.share[l] * force_at_rest(s, l)[0]
+    held = held + at.C * s.share[l] * force_at_rest(s, l)[0] if x > 0.0 else 0.0
     Q_n, Q_t = at.C * (z[0] * n + z[1] * t) - held, at.h * (z[1] * n - z[0] * t)
     rate_n = at.C * (z_rate[0] * n + z_rate[1] * t) - arm * g_up[1]
     rate_t = at.h * (z_rate[1] * n - z_rate[0] * t)

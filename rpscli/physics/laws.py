@@ -185,13 +185,16 @@ def motion_at(
     per_x = 1.0 / (x if x > 0.0 else 1.0)
     n, t = (tilt[0] * per_x if x > 0.0 else 1.0), tilt[1] * per_x
     p, q = rate[0] * n + rate[1] * t, rate[1] * n - rate[0] * t
-    held = (arms if x > 0.0 else 0.0) + at.D * (p * p) + s.bed_k[l] * x + s.bed_c[l] * p
-    held -= (at.cone + 0.5 * at.K_slope) * (q * q) + s.turning[l]
+    leans = x > 0.0  # upright nothing depends on the direction, which is any
+    pp, qq, pq = (p * p if leans else 0.0), (q * q if leans else 0.0), (p * q if leans else 0.0)
+    arms = arms if leans else 0.0
+    held = arms + at.D * pp + s.bed_k[l] * x + s.bed_c[l] * p
+    held -= (at.cone + 0.5 * at.K_slope) * qq + s.turning[l]
     out = (at.C * (z[0] * n + z[1] * t) - held) / at.A
-    back = at.K_slope * (p * q) + (s.bed_c[l] + s.rim[l] * per_x) * q - s.turning_across[l]
+    back = at.K_slope * pq + (s.bed_c[l] + s.rim[l] * per_x) * q - s.turning_across[l]
     across = (at.h * (z[1] * n - z[0] * t) - back) / at.K
-    along = diameter * (at.C * out + at.B * (p * p) + at.dh * (q * q))
-    aside = diameter * (at.h * across + 2.0 * at.dh * (p * q))
+    along = diameter * (at.C * out + at.B * pp + at.dh * qq)
+    aside = diameter * (at.h * across + 2.0 * at.dh * pq)
     a = out + q * q * per_x
     lift = diameter * (at.Bv * a + at.Bv_slope * (p * p))
     return Motion(

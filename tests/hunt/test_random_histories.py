@@ -26,7 +26,7 @@ from rpscli.analyses.timehistory import denser_trace, time_history
 from rpscli.analyses.trace import Trace
 from rpscli.model.bearing import Bearing
 from rpscli.model.contact import Contact
-from rpscli.model.devices import FrictionDamper
+from rpscli.model.devices import FrictionDamper, RollingResistance
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import Device, PodiumStructure
 from rpscli.model.superstructure import (
@@ -261,10 +261,33 @@ def structure_of_a_pair(random: Random) -> PodiumStructure:
     return replace(system, impact_law=law)
 
 
-def judged_pair(random: Random) -> str:
+def smooth_structure_of_a_pair(random: Random) -> PodiumStructure:
+    """On compliant or spherical ends, or with friction on rigid ones; perhaps softer in y."""
+    kind = random.choice(["bed", "bed", "spherical", "spherical", "rigid"])
+    system = structure_on_a_bed(random) if kind == "bed" else structure_of_a_pair(random)
+    held = 0.3 * random.random() * system.weight * max(system.bearing.slenderness, 0.05)
+    rolling = RollingResistance(0.1 * random.random() * system.bearing.semi_diagonal)
+    friction = random.choice([(FrictionDamper(held),), (rolling,), (FrictionDamper(held), rolling)])
+    if kind == "rigid":
+        return replace(system, devices=friction)
+    if kind == "spherical":
+        R, wedge = system.bearing.semi_diagonal, logarithmic(random, 0.05, 0.8)
+        bearing = Bearing(R, 0.0, wedge, random.uniform(0.51, 2.0))
+        devices = random.choice([(), friction])
+        system = replace(system, bearing=bearing, impact_law=ImpactLaw(), devices=devices)
+    if (above := system.superstructure) is not None and random.random() < 0.4:
+        share = [logarithmic(random, 0.1, 10.0)] * above.storeys
+        other = replace(above, stiffnesses=above.stiffnesses * share)
+        system = replace(system, superstructure_y=other)
+    return system
+
+
+def judged_pair(
+    random: Random, drawn: Callable[[Random], PodiumStructure] = structure_of_a_pair
+) -> str:
     """An outcome, the energy, and the history under the opposite pair."""
     try:
-        system = structure_of_a_pair(random)
+        system = drawn(random)
     except ValueError:
         return "refused"
     record, vertical = motions(random)
@@ -348,3 +371,12 @@ def test_ends_that_give_way(long: bool) -> None:
 @shares
 def test_pairs(long: bool) -> None:
     hunt("pairs", judged_pair, 4, 1000 if long else None)
+
+
+@needs_compiled_kernels
+@shares
+def test_pairs_on_every_end(long: bool) -> None:
+    def trial(random: Random) -> str:
+        return judged_pair(random, smooth_structure_of_a_pair)
+
+    hunt("pairs on every end", trial, 6, 1000 if long else None)

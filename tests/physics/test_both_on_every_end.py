@@ -298,7 +298,7 @@ def test_what_rests_stays(end: str) -> None:
 
 
 @needs_compiled_kernels
-@pytest.mark.evidence("compliant contact", "exact")
+@pytest.mark.evidence("compliant ends", "exact")
 @pytest.mark.parametrize("end", [end for end in ENDS if end != "spherical"])
 def test_in_proportion_to_the_stiffness(end: str) -> None:
     """Stiffer and stiffer, the motion of rigid ends with passes that lose nothing."""

@@ -141,42 +141,51 @@ def profile_rows(both: Sequence[Sequence[Row]]) -> Iterator[list[str]]:
             yield [str(n), name, *cells]
 
 
-@pytest.fixture
-def contact(tmp_path: object, monkeypatch: pytest.MonkeyPatch) -> list[Row]:
-    monkeypatch.chdir(str(tmp_path))
-    study = "cases/studies/contact/contact.yaml"
-    run_all([f"rps sweep {ROOT / study} --figures none"])
-    return rows_of(next((ROOT / str(tmp_path)).rglob("points.csv")))
+def groups_of(study: str, tmp_path: Path) -> dict[tuple[str, ...], list[Row]]:
+    """Rows of a study of contacts by scale, kind of end, and force of friction."""
+    run_all([f"rps sweep {ROOT / study} --figures none -o {tmp_path / 'run'}"])
+    groups: dict[tuple[str, ...], list[Row]] = {}
+    for row in rows_of(tmp_path / "run" / "points.csv"):
+        key = f"{float(row['scale']):g}", json.loads(row["podium.contact"])["kind"]
+        if "podium.devices" in row:
+            devices = json.loads(row["podium.devices"])
+            key = (*key, devices[0]["force"] if devices else "none")  # type: ignore[assignment]
+        groups.setdefault(key, []).append(row)
+    return groups
 
 
-def contact_cells(rows: Sequence[Row]) -> list[str]:
-    """Medians with the 6th and 15th of twenty, shares with Clopper's and Pearson's interval."""
+def cells_of(rows: Sequence[Row], scales: dict[str, float], rank: int = 6) -> list[str]:
+    """Medians with values of a rank from below and above, the share that overturned."""
     fell = np.array([row["outcome"].startswith("overturned") for row in rows])
-    scales = {
-        "max_rotation": math.atan(0.15), "base_shear_ratio": 1.0,
-        "max_floor_acceleration": STANDARD_GRAVITY,
-    }  # fmt: skip
-    cells = []
+    cells, of = [], len(rows)
     for name, scale in scales.items():
         values: Array = np.sort(np.where(fell, np.inf, column(list(rows), name) / scale))
-        median, low, high = values[9:11].mean(), values[5], values[14]
+        median, low, high = np.median(values), values[rank - 1], values[of - rank]
         cells.append(f"{median:.3g} ({low:.3g} to {high:.3g})")
-    k, of = int(fell.sum()), len(fell)
+    k = int(fell.sum())
     low = beta.ppf(0.025, k, of - k + 1) if k else 0.0
-    cells.append(f"{k} ({100 * low:.0f} to {100 * beta.ppf(0.975, k + 1, of - k):.0f} %)")
-    strongest = np.nanmax(np.append(column(list(rows), "max_impact_number"), 0.0))
-    return [*cells, f"{strongest:.2g}"]
+    return [*cells, f"{k} ({100 * low:.0f} to {100 * beta.ppf(0.975, k + 1, of - k):.0f} %)"]
 
 
-def test_what_the_ends_bear_on(contact: list[Row], fema_record: RecordLoader) -> None:
+FORCES = {"base_shear_ratio": 1.0, "max_floor_acceleration": STANDARD_GRAVITY}
+
+
+def test_what_the_ends_bear_on(tmp_path: Path, fema_record: RecordLoader) -> None:
     told = table(ROOT / "cases/studies/contact/README.md", "rps sweep")[1:]
-    groups: dict[tuple[str, str], list[Row]] = {}
-    for row in contact:
-        kind = json.loads(row["podium.contact"])["kind"]
-        groups.setdefault((f"{float(row['scale']):g}", kind), []).append(row)
-    assert {(row[0], row[1]): row[2:] for row in told} == {
-        key: contact_cells(rows) for key, rows in groups.items()
-    }
+    for key, rows in groups_of("cases/studies/contact/contact.yaml", tmp_path).items():
+        strongest = np.nanmax(np.append(column(rows, "max_impact_number"), 0.0))
+        cells = cells_of(rows, {"max_rotation": math.atan(0.15), **FORCES})
+        assert [*key, *cells, f"{strongest:.2g}"] in told
+
+
+def test_both_components_on_joints(tmp_path: Path, fema_record: RecordLoader) -> None:
+    told = table(ROOT / "cases/studies/joints_both/README.md", "rps sweep")[1:]
+    groups = groups_of("cases/studies/joints_both/joints_both.yaml", tmp_path)
+    assert len(groups) == len(told)
+    for key, rows in groups.items():
+        end = np.median(column(rows, "residual_rotation"))
+        cells = cells_of(rows, {"rotation_ratio": 1.0, **FORCES})
+        assert [*key, *cells, f"{end:.1g}"] in told
 
 
 BUILDING = (

@@ -215,20 +215,19 @@ class Consistency:
                 " does not go with law value: a measured restitution includes the loss; remove it,"
                 " or scale the restitution by factor",
             )
-        podium, reason = self.file.podium, ""
+        podium, ends, sections = self.file.podium, "", [("podium.impact", "contact_time")]
         if podium.contact.kind != "rigid":
-            where = self._where("podium.contact.kind")
-            reason = f"with podium.contact{where}: compliant ends do not bounce"
+            ends = f"with podium.contact{self._where('podium.contact.kind')}: compliant ends do not"
+            ends += " bounce"
+            sections.append(("analysis", "recontact_tolerance"))
         elif podium.bearing.slenderness == 0.0:
-            where = self._where(f"{BEARING}.slenderness")
-            reason = f"without a flat part{where}: such ends roll through upright without an impact"
+            ends = f"without a flat part{self._where(f'{BEARING}.slenderness')}: such ends roll"
+            ends += " through upright without an impact"
         # The default may stand there, in a case that was written out whole.
-        for owner, section, name in (
-            ("analysis", self.file.analysis, "recontact_tolerance"),
-            ("podium.impact", podium.impact, "contact_time"),
-        ):
-            if reason and getattr(section, name) != type(section).model_fields[name].default:
-                yield _at_key(f"{owner}.{name}", f" has no effect {reason}; remove it")
+        for owner, name in sections if ends else ():
+            section = impact if name == "contact_time" else self.file.analysis
+            if getattr(section, name) != type(section).model_fields[name].default:
+                yield _at_key(f"{owner}.{name}", f" has no effect {ends}; remove it")
 
     def _devices(self) -> Iterator[Fault]:
         """Each device has the keys of its kind, and there are not too many."""
