@@ -126,7 +126,8 @@ def check_tables(document: Mapping[str, Any], limits: Sequence[Condition]) -> It
         for row in rows:
             if row in LEADING and rows is not LEADING:
                 continue
-            if document[row.name] is None and (row in on_bed or row.name == "rolling_period"):
+            of_some = row in (*on_bed, *BOTH) or row.name == "rolling_period"
+            if document[row.name] is None and of_some:
                 continue  # columns with a flat part, edges, or curved ends have none
             value, unit = large(document[row.name], row.unit)
             texts.append((row.label, row.symbol, shown(value), unit))

@@ -177,7 +177,8 @@ def doubts_of_directions(structure: PodiumStructure, *, both: bool) -> Iterator[
             " stay in place, which torsion under their weight hardly ensures: they may roll"
             " away"
         )
-    if structure.impact_law.contact_time == 0.0 and structure.restitution < 1.0:
+    lossless = structure.impact_law.contact_time == 0.0 and not structure.passes_smoothly
+    if lossless and structure.restitution < 1.0:
         yield Doubt(
             "podium.impact.contact_time = 0: passes near upright lose nothing, however close,"
             " but impacts do: results are discontinuous, and rounding decides them"

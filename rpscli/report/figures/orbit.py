@@ -68,13 +68,16 @@ def draw_push(axes: style.Axes, result: TimeHistoryResult) -> None:
     trace, structure = result.trace, result.structure
     assert trace.y is not None, "both components act"
     both = np.array([trace.driving_moment, trace.y.driving_moment])
-    least = float(result.restoring_moment(np.array([np.finfo(float).tiny]))[0])
+    lifts = np.finfo(float).tiny if structure.bed is None else structure.bed.uplift_rotation
+    least = float(result.restoring_moment(np.array([lifts]))[0])
     factor, prefix = style.engineering(max(least, float(np.nanmax(np.hypot(*both)))))
     alone = structure.devices or result.motion.vertical is not None
     name = f"uplift{', by the weight alone' if alone else ''}: {factor * least:.3g} {prefix}N m"
-    circle = (factor * least, name, "--", style.BLACK)
+    circles = [(factor * least, name, "--", style.BLACK)]
+    if structure.bearing.is_spherical:
+        circles = []  # they roll from the first moment on
     reach = 1.08 * factor * max(least, float(np.nanmax(np.abs(both))))
-    _in_colours(axes, result, (factor * both[0], factor * both[1]), reach, [circle])
+    _in_colours(axes, result, (factor * both[0], factor * both[1]), reach, circles)
     axes.set(xlabel=f"driving moment, x [{prefix}N m]", ylabel=f"driving moment, y [{prefix}N m]")
 
 

@@ -106,10 +106,16 @@ AT_CRITICAL = (
 """Where the weight no longer restores."""
 
 BOTH = (
-    Derived("pass_turn", "azimuth change in a pass near upright", "Delta phi", "rad"),
+    Derived(
+        "pass_turn", "azimuth change in a pass near upright", "Delta phi", "rad",
+        lambda s: None if s.passes_smoothly else s.pass_turn,
+    ),
     Derived("turning_inertia", "rotational inertia, upright", "K(0)", "-"),
-    Derived("contact_time", "contact time of an impact", "t_c", "s", "impact_law.contact_time"),
-)
+    Derived(
+        "contact_time", "contact time of an impact", "t_c", "s",
+        lambda s: None if s.passes_smoothly else s.impact_law.contact_time,
+    ),
+)  # fmt: skip
 """Where both horizontal components act."""
 
 CONTACT = (
