@@ -619,17 +619,10 @@ def observe(s: Record, systems: Record, log: Record) -> None:
 @compiled
 def observe_devices(s: Record, l: int) -> None:
     """Raise what devices see in the step just taken, and book what they dissipated."""
-    start, middle, end = (
-        tilt_within(s, l, 0.0),
-        tilt_within(s, l, 0.5),
-        tilt_within(s, l, 1.0),
-    )
-    raise_devices(
-        s,
-        l,
-        worked(s, l, start[0], start[1]),
-        worked(s, l, middle[0], middle[1]),
-        worked(s, l, end[0], end[1]),
-    )
+    tilt, rate = tilt_within(s, l, 0.5)
+    middle = worked(s, l, tilt, rate)
+    tilt, rate = tilt_within(s, l, 1.0)
+    start, end = worked(s, l, tilt_of(s, l), rate_of(s, l)), worked(s, l, tilt, rate)
+    raise_devices(s, l, start, middle, end)
     for i in range(s.devices[l]):
         s.device_energy[i, l] += s.h[l] * s.device_work[i, l]

@@ -22,6 +22,7 @@ from rpscli.physics.laws import (
     lanes_of,
     path_at,
     place_of,
+    place_with,
     polar,
     rate_of,
     stands,
@@ -85,7 +86,7 @@ def worked(s: Record, l: int, tilt: tuple[float, float], rate: tuple[float, floa
     x, n, t, p, q = polar(s, l, tilt, rate)
     if s.phase[l] == FULL_CONTACT:
         return Worked(n, t, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
-    at, diameter = place_of(s, l, x), s.diameter[l]
+    at, diameter = place_with(s, l, x, 0.0, 0.0), s.diameter[l]  # C and h know of no patch
     e, lever, sin_psi, cos_psi = 0.0, 0.0, 0.0, 1.0
     if s.tendons[l] > 0:
         e, lever, sin_psi, cos_psi = tendon_elongation(s, l, x)

@@ -146,7 +146,7 @@ class Grip(NamedTuple):
     drag_t: float
 
 
-TURNS = 30
+TURNS = 10
 """Steps to d, each of which leaves |C - h|/C of what is missing: some hundredth."""
 
 
@@ -177,7 +177,8 @@ def grip_of(
     size = math.sqrt(Q_n * Q_n + Q_t * Q_t)
     d_n, d_t = (Q_n / size, Q_t / size) if size > 0.0 else (1.0, 0.0)
     long = math.sqrt((at.C * d_n) ** 2 + (at.h * d_t) ** 2)
-    for _ in range(TURNS if P + M > 0.0 else 0):
+    turns = 1 if M == 0.0 or P == 0.0 else TURNS  # of one alone d follows at once
+    for _ in range(turns if P + M > 0.0 else 0):
         # Where Q is just held it is the gradient of P |W d| + M |d|.
         d_n = Q_n / (P * at.C * at.C / long + M)
         d_t = Q_t / (P * at.h * at.h / long + M)

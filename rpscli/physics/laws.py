@@ -251,7 +251,7 @@ def beam_at(
     if s.phase[l] == FULL_CONTACT:
         return 0.0, 0.0, 0.0, 0.0
     x, n, t, p, q = polar(s, l, tilt, rate)
-    diameter, u, at = s.diameter[l], path_at(s, l, x), place_of(s, l, x)
+    diameter, u, at = s.diameter[l], path_at(s, l, x), place_with(s, l, x, 0.0, 0.0)
     way, along = diameter * u, diameter * at.C * p
     if ways_of(s) == 1:
         return way * n, 0.0, along * n, 0.0
