@@ -2,39 +2,48 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import PluginError, RecordError
-from rpscli.records.formats.agencies import LAYOUTS, Layout
-from rpscli.records.formats.at2 import FORMAT, read_at2, recognises_at2, recording_of_at2
+from rpscli.records.formats.agencies import LAYOUTS
+from rpscli.records.formats.at2 import FORMAT, contents_of_at2, read_at2, recognises_at2
 from rpscli.records.formats.columns import read_columns, recognises_columns
-from rpscli.records.formats.record_text import RecordText, read_text
-from rpscli.records.ground_motion import UNKNOWN, GroundMotion, Recording
+from rpscli.records.formats.record_text import Contents, RecordText, read_text
+from rpscli.records.ground_motion import UNKNOWN, GroundMotion
 from rpscli.registry import Registry
 
 
 @dataclass(frozen=True)
 class RecordFormat:
-    """A file format: what it is called, how it is recognised, how it is read."""
+    """A file format: what it is called, how it is recognised, how it is read.
+
+    `contents` tells from headers alone what a file holds; without it the file is read.
+    """
 
     name: str
     extensions: tuple[str, ...]
     recognises: Callable[[RecordText], bool]
     read: Callable[[RecordText], GroundMotion]
+    contents: Callable[[RecordText], Sequence[Contents]] | None = None
 
 
-_LAYOUTS: dict[str, Layout] = {layout.name: layout for layout in LAYOUTS}
 _OURS = (
-    RecordFormat(FORMAT, (".at2",), recognises_at2, read_at2),
-    *(RecordFormat(of.name, of.extensions, of.recognises, of.read) for of in LAYOUTS),
+    RecordFormat(FORMAT, (".at2",), recognises_at2, read_at2, contents_of_at2),
+    *(RecordFormat(of.name, of.extensions, of.recognises, of.read, of.contents) for of in LAYOUTS),
 )
-_PLAIN = RecordFormat("columns", (".txt", ".dat", ".csv", ".tsv"), recognises_columns, read_columns)
+_PLAIN = RecordFormat(
+    "columns",
+    (".txt", ".dat", ".csv", ".tsv"),
+    recognises_columns,
+    read_columns,
+    lambda _: [Contents("", UNKNOWN)],
+)
 """Accepts most, so it comes last."""
 
 FORMATS = Registry("formats", {form.name: form for form in (*_OURS, _PLAIN)}, RecordFormat)
@@ -72,17 +81,6 @@ def read_record(path: Path, source: str, **stated: Any) -> GroundMotion:
     return replace(motion, warnings=(*motion.warnings, *_implausible(motion)))
 
 
-class Contents(NamedTuple):
-    """One channel of a file, by its number if there are several, and what its header states.
-
-    `refusal` says why a file of a known format is not used, such as an uncorrected record.
-    """
-
-    channel: str
-    recording: Recording
-    refusal: str = ""
-
-
 def contents(path: Path) -> tuple[Contents, ...]:
     """The channels of a file that is recognised as a record; empty for others."""
     if path.suffix.lower() in _OTHER_QUANTITIES:
@@ -103,25 +101,10 @@ def _contents(path: Path, _changed: int, _size: int) -> tuple[Contents, ...]:
     if form is None:
         return ()
     try:
-        return tuple(_held(text, form))
+        own = form.contents
+        return tuple(own(text) if own else [Contents("", form.read(text).recording)])
     except RecordError:
         return (Contents("", UNKNOWN),)  # told where it is read
-
-
-def _held(text: RecordText, form: RecordFormat) -> Iterator[Contents]:
-    if form.name == FORMAT:
-        yield Contents("", recording_of_at2(text))
-    elif form is _PLAIN:
-        yield Contents("", UNKNOWN)
-    elif (layout := _LAYOUTS.get(form.name)) is None:
-        yield Contents("", form.read(text).recording)
-    elif refusal := layout.refused(text):
-        yield Contents("", UNKNOWN, refusal)
-    else:
-        channels = layout.channels(text)
-        for each in channels:
-            number = f"{each.number}" if len(channels) > 1 else ""
-            yield Contents(number, layout.stated(text, each)[0].recording)
 
 
 def _in_order() -> Iterator[RecordFormat]:

@@ -15,11 +15,12 @@ from typing import NamedTuple
 from rpscli.records.formats.record_text import (
     MOST_VALUES,
     Channel,
+    Contents,
     RecordText,
     Stated,
     Statement,
 )
-from rpscli.records.ground_motion import GroundMotion, Recording
+from rpscli.records.ground_motion import UNKNOWN, GroundMotion, Recording
 from rpscli.records.quantities import KNOWN_UNITS, NUMBER_PATTERN, UNIT_PATTERN, canonical_unit
 
 Said = dict[str, Statement]
@@ -78,6 +79,15 @@ class Layout:
         if found and re.match(self.corrected, text.heads[found[0].line], re.IGNORECASE):
             return ""
         return self.refusal.format(text.heads[0].partition("(")[0].strip()[:40])
+
+    def contents(self, text: RecordText) -> list[Contents]:
+        """What the headers of all channels state; of a file without any that can be read why."""
+        if refusal := self.refused(text):
+            return [Contents("", UNKNOWN, refusal)]
+        channels = self.channels(text)
+        numbers = [f"{each.number}" if len(channels) > 1 else "" for each in channels]
+        found = (self.stated(text, each)[0].recording for each in channels)
+        return [Contents(*each) for each in zip(numbers, found, strict=True)]
 
     def channels(self, text: RecordText) -> list[Channel]:
         """Those that can be read."""

@@ -8,23 +8,24 @@ before or after their numbers, with or without "=", on one line or on two.
 from __future__ import annotations
 
 import re
+from itertools import chain, takewhile
 from typing import NamedTuple
 
 import numpy as np
 
 from rpscli.constants import STANDARD_GRAVITY
-from rpscli.errors import RecordError
 from rpscli.records.formats.record_text import (
     STATED_PATTERN,
     STEP_PATTERN,
     Array,
+    Contents,
     RecordText,
     Stated,
     Statement,
     remark,
     steps_in,
 )
-from rpscli.records.ground_motion import GroundMotion, Recording
+from rpscli.records.ground_motion import UNKNOWN, GroundMotion, Recording
 from rpscli.records.quantities import (
     KNOWN_UNITS,
     NUMBER_PATTERN,
@@ -81,18 +82,20 @@ def read_at2(text: RecordText) -> GroundMotion:
     text.single_channel()
     header = _header(text)
     if header is None:
-        raise _no_header(text)
+        raise text.fault(
+            "no header line gives NPTS and DT, so this is not a PEER AT2 file; for plain columns"
+            " of numbers rename it to .txt and give ?dt= and ?units="
+        )
     stated, note = _stated(text, header)
-    assert stated.count is not None
-    values, rest = _values(text, header.start, text.count(stated.count), header.npts.line)
+    values, rest = _values(text, header)
     title = _title(text, header)
     return text.motion(stated, values, FORMAT, "; ".join(title) or "no title", *note, *rest)
 
 
-def recording_of_at2(text: RecordText) -> Recording:
-    """Earthquake, date, station and direction, as far as the titles say them."""
+def contents_of_at2(text: RecordText) -> list[Contents]:
+    """The one channel, with earthquake, date, station and direction as far as titles say them."""
     header = _header(text)
-    return Recording() if header is None else _recording(_title(text, header))
+    return [Contents("", UNKNOWN if header is None else _recording(_title(text, header)))]
 
 
 def _title(text: RecordText, header: _Header) -> list[str]:
@@ -102,7 +105,7 @@ def _title(text: RecordText, header: _Header) -> list[str]:
 
 def _recording(title: list[str]) -> Recording:
     if "not a recording" in " ".join(title).lower():
-        return Recording()
+        return UNKNOWN
     # Fewer commas are those of another sentence.
     parts = [part for line in title for part in line.split(";") if part.count(",") > 1]
     whole = next((part.split(",") for part in parts if part.count(",") == 3), None)
@@ -110,20 +113,6 @@ def _recording(title: list[str]) -> Recording:
         return Recording((parts or [""])[0].strip())
     event, date, station, direction = map(str.strip, whole)
     return Recording(f"{event}, {date}", station=station, direction=direction)
-
-
-def _no_header(text: RecordText) -> RecordError:
-    for index, head in enumerate(text.heads[:_HEADER_LINES]):
-        if "NPTS" in head and (length := len(text.lines[index])) > len(head):
-            return text.fault(
-                f"the line of NPTS, {head.strip()[:40]!r}..., has {length} letters, of which a"
-                f" header has {len(head)} at most; correct it, or fetch the file again",
-                index,
-            )
-    return text.fault(
-        "no header line gives NPTS and DT, so this is not a PEER AT2 file; for plain columns "
-        "of numbers rename it to .txt and give ?dt= and ?units="
-    )
 
 
 def _header(text: RecordText) -> _Header | None:
@@ -195,36 +184,26 @@ def _unit(text: RecordText, header: _Header) -> str | None:
     return None if unit is None else canonical_unit(unit.value)
 
 
-def _values(text: RecordText, start: int, count: int, line: int) -> tuple[Array, list[str]]:
+def _values(text: RecordText, header: _Header) -> tuple[Array, list[str]]:
     """The values, and what is said of text behind them."""
-    values: list[float] = []
-    stop = start
-    while stop < len(text.lines) and (row := numbers_in(text.lines[stop])) is not None:
-        values.extend(row)
-        stop += 1
-    if len(values) < count and stop < len(text.lines):
+    rows = takewhile(lambda row: row is not None, map(numbers_in, text.lines[header.start :]))
+    read = [row or [] for row in rows]
+    values, count = np.array([*chain.from_iterable(read)]), text.count(header.npts)
+    rest = [line for line in text.lines[header.start + len(read) :] if line.strip()]
+    first = next((f"{line.strip()[:40]!r}{why_no_numbers(line)}" for line in rest), "the end")
+    at = header.start + len(read) if rest else header.npts.line
+    if values.size != count:
         raise text.fault(
-            f"NPTS = {count}, but after {len(values)} values comes"
-            f" {text.lines[stop].strip()[:40]!r}, which is not a row of finite numbers"
-            f"{why_no_numbers(text.lines[stop])}; fetch the file again",
-            stop,
+            f"NPTS = {count}, but the file holds {values.size} values up to {first}; fetch it"
+            f" again, or write NPTS={values.size} if all its values belong to the record",
+            at,
         )
-    if (found := len(values)) != count:
-        cause = "cut short" if found < count else "longer than it says"
+    if any(map(numbers_in, rest)):
         raise text.fault(
-            f"NPTS = {count}, but the file holds {found} values: it is {cause}; fetch it "
-            f"again, or write NPTS={found} in the header if all its values belong to the record",
-            line,
+            f"more numbers follow after the {count} values and {first}; keep one record in a file",
+            at,
         )
-    rest = [words for words in map(str.strip, text.lines[stop:]) if words]
-    if any(numbers_in(words) for words in rest):
-        raise text.fault(
-            f"more numbers follow after the {count} values and the text {rest[0][:40]!r}; "
-            f"keep one record in a file",
-            stop,
-        )
-    told = [f"{len(rest)} line(s) of text after the values, first {rest[0][:40]!r}"] if rest else []
-    return np.array(values), told
+    return values, [f"{len(rest)} line(s) of text after the values, first {first}"] * bool(rest)
 
 
 _VALUES_PER_LINE = 5

@@ -68,6 +68,17 @@ class Channel(NamedTuple):
     label: str
 
 
+class Contents(NamedTuple):
+    """One channel of a file, by its number if there are several, and what its header states.
+
+    `refusal` says why a file of a known format is not used, such as an uncorrected record.
+    """
+
+    channel: str
+    recording: Recording
+    refusal: str = ""
+
+
 @dataclass(frozen=True)
 class Stated:
     """All that a file says of its values; None where it is silent.
