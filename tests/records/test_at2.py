@@ -176,10 +176,10 @@ def test_steps_that_cannot_be_a_rounded_rate_are_not_doubted(tmp_path: Path, ste
         (at2(values=VALUES.replace("-.7", "0.6.7")), "5 values up to '.6000000E-01 0.6.7"),
         (at2(values=VALUES.replace("\n", "\nNEXT RECORD\n", 1)), "5 values up to 'NEXT"),
         (at2(values=VALUES + "NEXT RECORD\n .1 .2\n"), "more numbers follow after the 7 values"),
-        (at2(units="ACCELERATION TIME SERIES IN UNITS OF FURLONGS"), "no unit of acceleration"),
+        (at2(units="ACCELERATION TIME SERIES IN UNITS OF FURLONGS"), "not a unit of acceleration"),
         (at2(units="VELOCITY TIME SERIES IN UNITS OF CM/S"), "this is a velocity record"),
         (at2(units="DISPLACEMENT TIME HISTORY IN UNITS OF CM"), "this is a displacement record"),
-        (at2(units="ACCELERATION TIME SERIES IN UNITS OF CM/S"), "no unit of acceleration"),
+        (at2(units="ACCELERATION TIME SERIES IN UNITS OF CM/S"), "not a unit of acceleration"),
         (at2(npts=f"NPTS= {'9' * 5000}, DT= .01 SEC"), "no header line gives NPTS and DT"),
     ],
 )

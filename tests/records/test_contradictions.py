@@ -95,7 +95,10 @@ def test_a_row_that_is_not_full_is_refused(tmp_path: Path) -> None:
         (AT2.replace("NPTS= 4,", "NPTS= 4, NPTS= 9,"), "rec:3: NPTS = 9 contradicts NPTS = 4"),
         (AT2.replace("SEC", "DT= .01"), "DT = .01 contradicts DT = .02 of line 3"),
         (AT2.replace("OF G\n", "OF G\nUNITS OF CM/S2\n"), "UNITS = CM/S2 contradicts"),
-        (COLUMN.replace("units: g", "units: g, units: gal"), "different units: g, gal"),
+        (
+            COLUMN.replace("units: g", "units: g, units: gal"),
+            "units = gal contradicts units = g of line",
+        ),
         (COLUMN.replace("dt: 0.02", "dt: 0.02, dt: 0.01"), "dt = 0.01 contradicts dt = 0.02"),
         (COLUMN.replace("units", "npts: 4\nnpts: 5\nunits"), "npts = 5 contradicts npts = 4"),
         (

@@ -83,7 +83,7 @@ def test_a_peak_that_differs_from_the_header_is_a_warning(tmp_path: Path) -> Non
         (csmip().replace("ACCEL DATA", "SOME DATA"), "no line announces the acceleration data"),
         (esm("VELOCITY"), "the file holds velocity"),
         (esm(count=13), "announces 13 values, but there are 12"),
-        (esm(units="cm"), "UNITS: cm is not a unit of acceleration"),
+        (esm(units="cm"), "UNITS says 'cm', which is not a unit of acceleration"),
         (esm().replace("NDATA: 12", "NDATA:"), "the header lacks NDATA"),
         (smc("3 VELOCITY"), "only '2 CORRECTED ACCELEROGRAM'"),
         (smc("1 UNCORRECTED ACCELEROGRAM"), "only '2 CORRECTED ACCELEROGRAM'"),

@@ -21,7 +21,7 @@ from rpscli.records.formats.record_text import (
     Statement,
 )
 from rpscli.records.ground_motion import UNKNOWN, GroundMotion, Recording
-from rpscli.records.quantities import KNOWN_UNITS, NUMBER_PATTERN, UNIT_PATTERN, canonical_unit
+from rpscli.records.quantities import NUMBER_PATTERN, UNIT_PATTERN
 
 Said = dict[str, Statement]
 """Statements of a header, by the names of `Layout.says`."""
@@ -137,14 +137,7 @@ class Layout:
 
     def _meant(self, text: RecordText, said: Said, channel: Channel) -> Stated:
         """The statements as values."""
-        unit = self.unit
-        if "unit" in said and (unit := canonical_unit(said["unit"].value)) is None:
-            name, spelling, line = said["unit"]
-            raise text.fault(
-                f"{name}: {spelling[:40]} is not a unit of acceleration that is known"
-                f" ({KNOWN_UNITS}); give the acceleration file",
-                line,
-            )
+        unit = text.unit([said["unit"]]) if "unit" in said else self.unit
         if "quantity" in said and said["quantity"].value.upper() != "ACCELERATION":
             kind = said["quantity"].value.lower()
             raise text.fault(f"the file holds {kind}; give the acceleration (.ACC.) file")

@@ -27,10 +27,8 @@ from rpscli.records.formats.record_text import (
 )
 from rpscli.records.ground_motion import UNKNOWN, GroundMotion, Recording
 from rpscli.records.quantities import (
-    KNOWN_UNITS,
     NUMBER_PATTERN,
     UNIT_PATTERN,
-    canonical_unit,
     last_digit,
     numbers_in,
     why_no_numbers,
@@ -175,13 +173,8 @@ def _unit(text: RecordText, header: _Header) -> str | None:
         if spelling := pattern.search(line):
             said.insert(0, Statement("UNITS", spelling[1], index))
         elif not said and _UNITS_LINE.search(line):
-            raise text.fault(
-                f"{line.strip()[:60]!r} names no unit of acceleration that is known "
-                f"({KNOWN_UNITS}); correct the line",
-                index,
-            )
-    unit = text.agreed(said, lambda each: canonical_unit(each.value))
-    return None if unit is None else canonical_unit(unit.value)
+            said.append(Statement("the header", line, index))  # which names none
+    return text.unit(said)
 
 
 def _values(text: RecordText, header: _Header) -> tuple[Array, list[str]]:

@@ -30,7 +30,6 @@ from rpscli.records.formats.record_text import (
 )
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.quantities import (
-    KNOWN_UNITS,
     NUMBER_PATTERN,
     UNIT_PATTERN,
     canonical_unit,
@@ -97,13 +96,10 @@ class _Table:
     lines: NDArray[np.int64]  # (rows,) of the file
     above: int  # line of the words above the first number, but for rulers
 
-    def found(self, name: str, pattern: re.Pattern[str]) -> list[Statement]:
-        """Statements in lines of the header."""
-        return [
-            Statement(name, match[match.lastindex or 0], line.line)
-            for line in self.header
-            for match in pattern.finditer(line.value)
-        ]
+    @property
+    def words(self) -> str:
+        """The first line of the header."""
+        return self.header[0].value[:100] if self.header else "no header"
 
 
 def recognises_columns(text: RecordText) -> bool:
@@ -116,7 +112,7 @@ def recognises_columns(text: RecordText) -> bool:
 def read_columns(text: RecordText) -> GroundMotion:
     """Read a series of accelerations, or the rows of a bare AT2 body."""
     table = _table(text)
-    _check_count(text, table)
+    count = _count(text, table)
     width = int(table.widths[0])
     even = not np.any(table.widths != width)
     titles = _titles(table, width)
@@ -127,7 +123,7 @@ def read_columns(text: RecordText) -> GroundMotion:
     if even and width > 1 and (width == 2 or titles):
         return _columns(text, table, titles)
     text.single_channel()
-    note = [] if width == 1 and even else [_wrapped(text, table)]
+    note = [] if width == 1 and even else [_wrapped(text, table, count)]
     return _sequence(text, table, titles[0] if width == 1 and titles else None, *note)
 
 
@@ -212,14 +208,18 @@ def _table(text: RecordText) -> _Table:
     return _Table(kept, np.array(values), np.array(widths), np.array(lines), above)
 
 
-def _check_count(text: RecordText, table: _Table) -> None:
-    stated = text.agreed(table.found("npts", _COUNT), text.count)
+def _count(text: RecordText, table: _Table) -> int | None:
+    """The number of values, or of rows, that the header announces."""
+    said = [Statement("npts", number, line.line) for line in table.header
+            for number in _COUNT.findall(line.value)]  # fmt: skip
+    count = text.count(said[0]) if text.agreed(said, text.count) else None
     rows, numbers = table.widths.size, table.values.size
-    if stated and text.count(stated) not in (numbers, rows):
+    if count not in (None, numbers, rows):
         raise text.fault(
-            f"the header announces {stated.value} values and the file holds {rows} row(s)"
+            f"the header announces {count} values and the file holds {rows} row(s)"
             f" and {numbers} number(s); fetch it again, or correct the header"
         )
+    return count
 
 
 def _columns(text: RecordText, table: _Table, titles: list[_Title]) -> GroundMotion:
@@ -231,14 +231,13 @@ def _columns(text: RecordText, table: _Table, titles: list[_Title]) -> GroundMot
     if times is None and width == 2 and not (titles and text.channel):
         times = 1 - place
     title = titles[place] if titles else None
-    stated, header = _stated(text, table, title)
+    stated = _stated(text, table, title)
     warnings: list[str] = []
     if times is not None:
         stated, warnings = _timed(text, table, stated, values[:, times], times, titles)
-    words = f"{header[:100] or 'no header'}"
-    words += f", column {title.name}" if title and width > 2 else ""
+    words = table.words + (f", column {title.name}" if title and width > 2 else "")
     form = "two-column text" if width == 2 else "columns of text"
-    return text.motion(stated, values[:, place], form, words, *warnings, header=header)
+    return text.motion(stated, values[:, place], form, words, *warnings)
 
 
 def _chosen(text: RecordText, titles: list[_Title]) -> int:
@@ -287,9 +286,8 @@ def _timed(
 
 def _sequence(text: RecordText, table: _Table, title: _Title | None, *doubts: str) -> GroundMotion:
     """All numbers, one after the other."""
-    stated, header = _stated(text, table, title)
-    values = table.values
-    text.agreed_factor(stated.unit, header)
+    stated, values = _stated(text, table, title), table.values
+    text.agreed_unit(stated.unit)
     dt = text.agreed_dt(stated.step)
     # A whole number before decimal ones is a count or a flag: 4000, or 1 and then the time step.
     numerals = [word for line in table.lines[:2] for word in numerals_in(text.lines[line])]
@@ -302,12 +300,10 @@ def _sequence(text: RecordText, table: _Table, title: _Title | None, *doubts: st
         )
     if values[0] == dt:
         doubts += (f"the first value, {dt:g}, equals dt: see that it is not a header",)
-    return text.motion(
-        stated, values, "one-column text", header[:100] or "no header", *doubts, header=header
-    )
+    return text.motion(stated, values, "one-column text", table.words, *doubts)
 
 
-def _wrapped(text: RecordText, table: _Table) -> str:
+def _wrapped(text: RecordText, table: _Table, count: int | None) -> str:
     """A note on rows that were read one after the other; refuses rows that look otherwise."""
     width = int(table.widths[0])
     ragged = np.flatnonzero(table.widths[:-1] != width)
@@ -319,11 +315,10 @@ def _wrapped(text: RecordText, table: _Table) -> str:
             int(table.lines[bad]),
         )
     first = table.values[::width]
-    counted = table.found("npts", _COUNT)
-    if counted and text.count(counted[0]) == table.widths.size:
+    if count == table.widths.size:
         raise text.fault(
-            f"the header announces {table.widths.size} values, as many as there are rows of {width}"
-            " numbers: name the columns in a line of titles, and one of them by ?channel=NAME"
+            f"the header announces {count} values, as many as there are rows of {width} numbers:"
+            " name the columns in a line of titles, and one of them by ?channel=NAME"
         )
     if width == 2 or (first.size > 2 and bool(np.all(np.diff(first) > 0.0))):
         raise text.fault(
@@ -333,42 +328,24 @@ def _wrapped(text: RecordText, table: _Table) -> str:
     return f"rows of {width} numbers were read one after the other"
 
 
-def _stated(text: RecordText, table: _Table, title: _Title | None) -> tuple[Stated, str]:
+def _stated(text: RecordText, table: _Table, title: _Title | None) -> Stated:
     """Statements of the header and of the title; two units, or steps, are refused."""
-    units: set[str] = set()
-    for line in table.header:
-        for key in _UNITS_KEY.finditer(line.value):
+    units, steps = list[Statement](), list[Statement]()
+    for _, value, line in table.header:
+        for key in _UNITS_KEY.finditer(value):
             word = re.match(rf"[\s(\[]*({UNIT_PATTERN})", key[1], re.IGNORECASE)
-            if (unit := canonical_unit(word[1]) if word else None) is None:
-                raise text.fault(
-                    f"the header says {key[0].strip()[:60]!r}, which is not a unit of acceleration"
-                    f" that is known ({KNOWN_UNITS}); correct the header",
-                    line.line,
-                )
-            units.add(unit)
-    if title is not None and title.unit:
-        if unit := canonical_unit(title.unit):
-            units.add(unit)
-        elif not _NO_UNIT.fullmatch(title.unit):
-            raise text.fault(
-                f"the title says {title.name} in {title.unit[:40]!r}, which is not a unit of"
-                f" acceleration that is known ({KNOWN_UNITS}); correct it",
-                title.line,
-            )
-    if len(units) > 1:
-        raise text.fault(
-            f"the header states different units: {', '.join(sorted(units))}; correct the header"
-        )
-    steps = [step for line in table.header for step in steps_in("dt", _STEP, line.value, line.line)]
+            units.append(Statement("units", word[1] if word else key[1], line))
+        steps += steps_in("dt", _STEP, value, line)
+    if title and title.unit and (canonical_unit(title.unit) or not _NO_UNIT.fullmatch(title.unit)):
+        units.append(Statement(f"the title {title.name}", title.unit, title.line))
     step = text.agreed(steps, text.step)
-    header = table.header[0].value if table.header else ""
     peak = next((m for line in table.header if (m := _PEAK.search(line.value))), None)
     return Stated(
-        units.pop() if units else None,
-        None if step is None else text.step(step),
+        text.unit(units),
+        step and text.step(step),
         peak=Statement("peak", peak[2], 0) if peak else None,
         peak_unit=canonical_unit(peak[1]) if peak else None,
-    ), header
+    )
 
 
 def _refuse_other_quantities(text: RecordText, table: _Table, titles: list[_Title]) -> None:

@@ -131,33 +131,28 @@ class RecordText:
         place = f"{self.path}" if line is None else f"{self.path}:{line + 1}"
         return RecordError(f"{place}: {message}")
 
-    def agreed_factor(self, stated: str | None, header: str = "") -> tuple[str, float]:
-        """The unit of the values and its size in m/s2, from the file or from the user."""
-        if stated is None and self.units is None:
+    def agreed_unit(self, stated: str | None) -> str:
+        """The unit of the values, from the file or from a user who does not contradict it."""
+        if (unit := stated or self.units) is None:
             raise self.fault(
-                f"the file does not state the units of its values"
-                f"{f' (its header: {header[:60]!r})' if header else ''} and none were given; say "
-                f"?units=g (or another of {KNOWN_UNITS}) after the file name, "
-                f"or write a header line 'units: g'"
+                "the file does not state the units of its values and none were given; say ?units=g"
+                f" (or another of {KNOWN_UNITS}) after the file name, or write a header line"
+                " 'units: g'"
             )
-        unit = stated or self.units
-        assert unit is not None
         if self.units is not None and unit_factor(self.units) != unit_factor(unit):
             raise self.fault(
                 f"units = {self.units} contradicts the file, which says {unit}; leave the units "
                 f"out, or correct the file if its header is wrong"
             )
-        return unit, unit_factor(unit)
+        return unit
 
     def agreed_dt(self, stated: float | None, tolerance: float = 1e-9) -> float:
         """The sampling interval [s], from the file or from a user who does not contradict it."""
-        if stated is None and self.dt is None:
+        if (dt := stated if self.dt is None else self.dt) is None:
             raise self.fault(
                 "the file does not state its sampling interval and none was given; say "
                 "?dt=0.005 after the file name, or write a header line 'dt: 0.005'"
             )
-        dt = stated if self.dt is None else self.dt
-        assert dt is not None
         if dt <= 0.0:
             raise self.fault(f"dt = {dt} s must be positive")
         if not _SHORTEST_STEP <= dt <= _LONGEST_STEP:
@@ -265,6 +260,19 @@ class RecordText:
                 )
         return first
 
+    def unit(self, statements: Sequence[Statement]) -> str | None:
+        """The one unit of acceleration that several statements name."""
+        for name, spelling, line in statements:
+            if canonical_unit(spelling) is None:
+                raise self.fault(
+                    f"{name} says {spelling.strip()[:_SHOWN]!r}, which is not a unit of"
+                    f" acceleration that is known ({KNOWN_UNITS}); correct it, or give the"
+                    " acceleration file",
+                    line,
+                )
+        said = self.agreed(statements, lambda each: canonical_unit(each.value))
+        return said and canonical_unit(said.value)
+
     def series(
         self,
         start: int,
@@ -326,11 +334,10 @@ class RecordText:
         form: str,
         description: str,
         *doubts: str,
-        header: str = "",
         name: str = "",
     ) -> GroundMotion:
         """The motion of values in their unit, held against what the header states of them."""
-        unit, factor = self.agreed_factor(stated.unit, header)
+        factor = unit_factor(unit := self.agreed_unit(stated.unit))
         tolerance = 0.51 * stated.resolution / stated.step if stated.step else 0.0
         dt = self.agreed_dt(stated.step, max(tolerance, 1e-9))
         if stated.duration is not None:
