@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from rpscli import errors
@@ -115,6 +115,7 @@ _UNITS = {
     "angle": {"": 1.0, "rad": 1.0, "deg": math.pi / 180.0},
     "direction": {"": 1.0, "deg": 1.0, "rad": 180.0 / math.pi},
     "ratio": {"": 1.0, "%": 0.01},
+    "acceleration": {"": 1.0, **_FACTORS},
 }
 
 
@@ -149,45 +150,14 @@ class Query:
     source: str
     values: Mapping[str, str]
 
-    def quantity(self, key: str, kind: str, default: float | None = None) -> float:
-        """A number with an optional unit, in SI."""
-        if key not in self.values and default is not None:
-            return default
-        parts = self._parts(key)
-        factor = _UNITS[kind].get(parts[1].lower())
-        if factor is None:
-            units = ", ".join(unit for unit in _UNITS[kind] if unit)
-            raise RecordError(
-                f"{self.source}: {key} = {self.values[key]!r} should be a {kind} in {units}"
-            )
-        return to_float(parts[0]) * factor
-
-    def acceleration(self, key: str, *, bare: bool = True) -> float:
-        """An acceleration [m/s2]: `0.4g`, `3.9 m/s2`, or a number in m/s2 where it may be bare."""
-        parts = self._parts(key)
-        if not (bare or parts[1]):
-            raise RecordError(
-                f"{self.source}: say the unit: {key}={parts[0]} g, or {key}={parts[0]} m/s2"
-            )
-        unit = canonical_unit(parts[1] or "m/s2")
-        if unit is None:
-            raise RecordError(
-                f"{self.source}: {key} = {self.values[key]!r} should be an acceleration in "
-                f"{KNOWN_UNITS}{' (bare: m/s2)' * bare}"
-            )
-        return to_float(parts[0]) * unit_factor(unit)
-
-    def integer(self, key: str) -> int:
-        """A whole number that is not negative."""
-        value = self.values.get(key)
-        if value is None or not re.fullmatch("[0-9]{1,18}", value):
-            found = "is missing" if value is None else f"= {value[:40]!r} is not one"
-            raise RecordError(f"{self.source}: {key} {found}; give a whole number, {key}=1")
-        return int(value)
-
-    def _parts(self, key: str) -> tuple[str, str]:
+    def quantity(
+        self, key: str, kind: str, default: float | None = None, *, bare: bool = True
+    ) -> float:
+        """A number with a unit, which may be left out where it may be `bare`, in SI."""
         value = self.values.get(key)
         if value is None:
+            if default is not None:
+                return default
             raise RecordError(
                 f"{self.source}: {key} is missing; add {key}={EXAMPLES.get(key, '...')}"
             )
@@ -196,7 +166,28 @@ class Query:
             raise RecordError(
                 f"{self.source}: {key} = {value[:40]!r} is not a number; write {key}=0.5"
             )
-        return match[1], match[2]
+        number, unit = match.groups()
+        if not (unit or bare):
+            raise RecordError(
+                f"{self.source}: say the unit: {key}={number} g, or {key}={number} m/s2"
+            )
+        known = canonical_unit(unit) or unit if kind == "acceleration" else unit.lower()
+        if (factor := _UNITS[kind].get(known)) is None:
+            units = ", ".join(filter(None, _UNITS[kind]))
+            raise RecordError(f"{self.source}: {key} = {value!r} is no {kind} in {units}")
+        return to_float(number) * factor
+
+    def acceleration(self, key: str, *, bare: bool = True) -> float:
+        """An acceleration [m/s2]: `0.4g`, `3.9 m/s2`, or a number in m/s2 where it may be bare."""
+        return self.quantity(key, "acceleration", bare=bare)
+
+    def integer(self, key: str) -> int:
+        """A whole number that is not negative."""
+        value = self.values.get(key)
+        if value is None or not re.fullmatch("[0-9]{1,18}", value):
+            found = "is missing" if value is None else f"= {value[:40]!r} is not one"
+            raise RecordError(f"{self.source}: {key} {found}; give a whole number, {key}=1")
+        return int(value)
 
 
 def options_in(text: str, source: str) -> Iterator[tuple[str, str | None]]:
@@ -210,13 +201,23 @@ def options_in(text: str, source: str) -> Iterator[tuple[str, str | None]]:
         yield name, value if mark else None
 
 
-def parse_query(text: str, source: str, allowed: Sequence[str]) -> Query:
-    """Split `key=value&key=value`."""
+def query_of(
+    options: Iterable[tuple[str, str | None]],
+    source: str,
+    allowed: Sequence[str],
+    flags: Sequence[str] = (),
+) -> Query:
+    """Options that are all allowed, and have values but for flags."""
     values: dict[str, str] = {}
-    for key, value in options_in(text, source):
+    for key, value in options:
         if key not in allowed:
             raise RecordError(f"{source}: option {key!r} is not known; {hint(key, allowed)}")
-        if not value:
+        if not value and key not in flags:
             raise RecordError(f"{source}: {key} has no value; write {key}=...")
-        values[key] = value
+        values[key] = value or ""
     return Query(source, values)
+
+
+def parse_query(text: str, source: str, allowed: Sequence[str]) -> Query:
+    """Split `key=value&key=value`."""
+    return query_of(options_in(text, source), source, allowed)

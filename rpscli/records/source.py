@@ -21,7 +21,7 @@ from pathlib import Path, PurePath
 from typing import Self
 
 from rpscli.errors import RecordError
-from rpscli.records.quantities import Query, hint, options_in
+from rpscli.records.quantities import Query, hint, options_in, query_of
 
 FILE, LIST, SET = "", "list", "fema_p695"
 SCHEMES = (SET, "pulse", "synthetic", LIST)
@@ -114,9 +114,7 @@ class Source(str):  # noqa: SLOT000 -- parts are kept beside the text
                 " structure is shaken; both has them act together, in two directions: keep one of"
                 " the options, or turn the pair by rotation= in place of angle="
             )
-        for name in COMMON:
-            if name in self.values and not self.values[name] and name not in FLAGS:
-                raise RecordError(f"{self}: {name} has no value; write {name}=...")
+        query_of(((n, v) for n, v in self.options if n in COMMON), self, COMMON, FLAGS)
         _ = self.rotation, self.angle, self.factor  # which refuse what is no number
 
     @cached_property
@@ -125,7 +123,7 @@ class Source(str):  # noqa: SLOT000 -- parts are kept beside the text
         return dict(self.options)
 
     def _number(self, name: str, kind: str, usual: float) -> float:
-        given = {name: self.values[name] or ""} if name in self.values else {}
+        given = {key: value or "" for key, value in self.options}
         return Query(self, given).quantity(name, kind, usual)
 
     @property
@@ -161,14 +159,8 @@ class Source(str):  # noqa: SLOT000 -- parts are kept beside the text
 
     def query(self, *allowed: str) -> Query:
         """The options of what reads or makes it: raises RecordError for others than the allowed."""
-        own = {name: value or "" for name, value in self.options if name not in COMMON}
-        for name, value in self.options:
-            if name not in (*COMMON, *allowed):
-                known = (*allowed, *COMMON)
-                raise RecordError(f"{self}: option {name!r} is not known; {hint(name, known)}")
-            if not value and name not in FLAGS:
-                raise RecordError(f"{self}: {name} has no value; write {name}=...")
-        return Query(self, own)
+        own = query_of(self.options, self, (*allowed, *COMMON), FLAGS)
+        return Query(self, {name: own.values[name] for name in allowed if name in own.values})
 
     def without(self, *names: str) -> Source:
         """The same without some options."""

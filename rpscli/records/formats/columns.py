@@ -287,7 +287,7 @@ def _timed(
 def _sequence(text: RecordText, table: _Table, title: _Title | None, *doubts: str) -> GroundMotion:
     """All numbers, one after the other."""
     stated, values = _stated(text, table, title), table.values
-    text.agreed_unit(stated.unit)
+    text.agreed_factor(stated.unit)
     dt = text.agreed_dt(stated.step)
     # A whole number before decimal ones is a count or a flag: 4000, or 1 and then the time step.
     numerals = [word for line in table.lines[:2] for word in numerals_in(text.lines[line])]

@@ -131,8 +131,8 @@ class RecordText:
         place = f"{self.path}" if line is None else f"{self.path}:{line + 1}"
         return RecordError(f"{place}: {message}")
 
-    def agreed_unit(self, stated: str | None) -> str:
-        """The unit of the values, from the file or from a user who does not contradict it."""
+    def agreed_factor(self, stated: str | None) -> tuple[str, float]:
+        """The unit of the values and its size in m/s2, from the file or from the user."""
         if (unit := stated or self.units) is None:
             raise self.fault(
                 "the file does not state the units of its values and none were given; say ?units=g"
@@ -144,7 +144,7 @@ class RecordText:
                 f"units = {self.units} contradicts the file, which says {unit}; leave the units "
                 f"out, or correct the file if its header is wrong"
             )
-        return unit
+        return unit, unit_factor(unit)
 
     def agreed_dt(self, stated: float | None, tolerance: float = 1e-9) -> float:
         """The sampling interval [s], from the file or from a user who does not contradict it."""
@@ -337,7 +337,7 @@ class RecordText:
         name: str = "",
     ) -> GroundMotion:
         """The motion of values in their unit, held against what the header states of them."""
-        factor = unit_factor(unit := self.agreed_unit(stated.unit))
+        unit, factor = self.agreed_factor(stated.unit)
         tolerance = 0.51 * stated.resolution / stated.step if stated.step else 0.0
         dt = self.agreed_dt(stated.step, max(tolerance, 1e-9))
         if stated.duration is not None:
