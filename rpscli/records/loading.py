@@ -24,7 +24,7 @@ from rpscli.machine import mode_of
 from rpscli.records import made, sets
 from rpscli.records.ground_motion import GroundMotion, MotionComponents, is_usual, scale_warning
 from rpscli.records.pair import rotated, turned
-from rpscli.records.quantities import LIKENESS, canonical_unit, unit_factor
+from rpscli.records.quantities import LIKENESS
 from rpscli.records.recordings import earthquake, pairs_among, vertical_of, verticals
 from rpscli.records.source import FILE, LIST, PAIRING, SET, Source, is_file, split_options
 
@@ -73,41 +73,68 @@ def load_record(
     """
     require_kind(source, str, "the record", "give its name as text")
     of = Source.parse(source, folder)
+    read, factor = _described(of, dt, units), of.factor
     if of.both:
         raise RecordError(
             f"{source}: holds two components, and one is wanted here; name one of them, or a"
             " direction between them by angle=30 in place of both"
         )
     with _readable(source):
-        motion, factor = _unscaled(of, folder, dt, units), of.factor
-    if factor == 1.0 and "factor" not in of.values:
-        return replace(motion, source=of)
+        motion = replace(_unscaled(read.without("factor"), folder), source=of)
+    if "factor" not in of.values:
+        return motion
     doubt = () if is_usual(factor) else (scale_warning(motion.name, factor),)
     # Results of different factors go to different folders.
     name, warnings = f"{motion.name}_x{factor:.4g}", (*motion.warnings, *doubt)
-    return replace(motion.scaled(factor), name=name, source=of, warnings=warnings)
+    return replace(motion.scaled(factor), name=name, warnings=warnings)
 
 
-def _unscaled(of: Source, folder: Path | None, dt: float | None, units: str | None) -> GroundMotion:
+def _described(of: Source, dt: float | None, units: str | None) -> Source:
+    """The source of a file with the step and the unit that are given beside it."""
+    given = {"dt": None if dt is None else repr(float(dt)), "units": units}
+    given = {name: value for name, value in given.items() if value is not None}
+    if of.scheme and given:
+        raise RecordError(f"{of}: dt and units describe files; leave them out here")
+    for name, value in given.items():
+        if (own := of.values.get(name, value)) != value:
+            raise RecordError(f"{of}: {name} = {value} contradicts the {own} in it; keep one")
+    return of.plus(**given)
+
+
+def _unscaled(of: Source, folder: Path | None) -> GroundMotion:
     if of.scheme == LIST:
         raise RecordError(f"{of}: stands for several records; name one of its lines")
-    if of.scheme:
-        _describes_no_file(of, dt, units)
     if (angle := of.angle) is None:
         if "second" in of.values:
             raise RecordError(
                 f"{of}: two components need both options: second=FILE, seen from the folder of"
                 " the first one, and angle=30, in degrees, or both"
             )
-        return _MAKERS[of.scheme](of) if of.scheme else _read(of, folder, dt, units)
+        return _MAKERS[of.scheme](of) if of.scheme else _read(of, folder)
+    motion = rotated(*_components(of, folder), angle)
+    name, direction = motion.name, f"_{angle:g}deg"
+    name = name.replace("_a", direction, 1) if of.scheme == SET else f"{name}{direction}"
+    return replace(motion, name=name)
+
+
+def _components(of: Source, folder: Path | None) -> tuple[GroundMotion, GroundMotion]:
+    """Both components of a pair, held against each other."""
     of.require_two()
-    if of.scheme == SET:
+    if of.scheme == SET:  # before a component is refused that nobody wrote
         sets.require_pair(of)
-    one, other = (_unscaled(each, folder, dt, units) for each in of.components or ())
-    motion = rotated(one, other, angle)
-    if of.scheme == SET:
-        return replace(motion, name=motion.name.replace("_a", f"_{angle:g}deg", 1))
-    return replace(motion, name=f"{motion.name}_{angle:g}deg")
+    one, other = (load_record(each, folder=folder) for each in of.components or ())
+    return one, _beside(one, other, of)
+
+
+def _read(of: Source, folder: Path | None) -> GroundMotion:
+    query, path = of.query("dt", "units", "channel"), _located(of.place, folder)
+    _require_file(path, of)
+    from rpscli.records.formats import read_record  # sets and pulses are not files
+
+    dt = query.quantity("dt", "time") if "dt" in query.values else None
+    return read_record(
+        path, of, dt=dt, units=query.values.get("units"), channel=query.values.get("channel")
+    )
 
 
 def load_components(
@@ -139,7 +166,6 @@ def load_components(
     """
     folder = how.get("folder")
     of = Source.parse(source, folder)
-    of.require_two()
     if vertical == OWN and not is_file(OWN, folder):
         vertical = vertical_of(of, folder)
     above = None if vertical is None else load_record(vertical, **how)
@@ -147,13 +173,9 @@ def load_components(
         along = load_record(of, **how)
         if y is None:
             return MotionComponents(along, above)
-        across = load_record(y, **how)
+        across = _beside(along, load_record(y, **how), source)
     else:
-        if of.scheme == SET:  # before a component is refused that nobody wrote
-            _describes_no_file(of, how.get("dt"), how.get("units"))
-            sets.require_pair(of)
-        along, across = (load_record(str(one), **how) for one in of.components or ())
-    across = _beside(along, across, source)
+        along, across = _components(_described(of, how.get("dt"), how.get("units")), folder)
     in_set = of.scheme == SET and of.both
     name = along.name.replace("_a", "_both", 1) if in_set else f"{along.name}_both"
     motion = MotionComponents(replace(along, name=name, source=source), above, y=across)
@@ -213,36 +235,6 @@ def _apart(one: str, other: str) -> float:
     if not (first and second) or one == other:
         return 0.0
     return abs(first[-1] - second[-1]) if first[:-1] == second[:-1] else float("inf")
-
-
-def _describes_no_file(of: Source, dt: float | None, units: str | None) -> None:
-    if dt is not None or units is not None:
-        raise RecordError(f"{of}: dt and units describe files; leave them out here")
-
-
-def _read(of: Source, folder: Path | None, dt: float | None, units: str | None) -> GroundMotion:
-    query, path, source = of.query("dt", "units", "channel"), _located(of.place, folder), of
-    in_source = query.quantity("dt", "time") if "dt" in query.values else None
-    if dt is not None and in_source not in {None, dt}:
-        raise RecordError(f"{source}: dt = {dt} s contradicts the {in_source} s in the source")
-    spelled = query.values.get("units")
-    if units is not None and spelled is not None and _size(units) != _size(spelled):
-        raise RecordError(f"{source}: units = {units} contradicts the {spelled} in the source")
-    _require_file(path, source)
-    from rpscli.records.formats import read_record  # sets and pulses are not files
-
-    return read_record(
-        path,
-        source,
-        dt=dt if in_source is None else in_source,
-        units=spelled or units,
-        channel=query.values.get("channel"),
-    )
-
-
-def _size(unit: str) -> float | str:
-    known = canonical_unit(unit)
-    return unit if known is None else unit_factor(known)
 
 
 class Expansion(NamedTuple):
@@ -309,10 +301,10 @@ def _files(of: Source, folder: Path | None, notes: list[str]) -> list[Source]:
         files = {match: start / match for match in matches if (start / match).is_file()}
     else:
         _require_file(path, of)
-        if not of.of_pair or of.components or "channel" in of.values or len(contents(path)) < 2:
+        if of.components or "channel" in of.values or len(contents(path)) < 2:
             of.require_two()
             return [of]
-        files = {place: path}  # whose channels are both components
+        files = {place: path}  # each of its channels
     held = {name: inside for name, file in files.items() if (inside := contents(file))}
     refused = {name: inside[0].refusal for name, inside in held.items() if inside[0].refusal}
     held = {name: inside for name, inside in held.items() if name not in refused}
@@ -335,7 +327,7 @@ def _files(of: Source, folder: Path | None, notes: list[str]) -> list[Source]:
                 single.append(of.at(name).plus(channel=each.channel))
     if left_out:
         notes.append(f"{of}: vertical components left out: {_some(left_out)}")
-    return single if of.second else _paired(of, [each.alone for each in single], folder)
+    return single if of.components else _paired(of, [each.alone for each in single], folder)
 
 
 def _some(names: Sequence[str]) -> str:

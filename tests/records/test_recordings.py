@@ -122,6 +122,8 @@ def test_a_folder_as_downloaded(stations: Path) -> None:
         "one.smc?second=two.smc&both&factor=2",
         "three.v2?channel=1,3&both&factor=2",
     ]
+    assert expanded(["three.v2"], folder=stations).sources == found.sources[3:5]
+    assert expanded(["*.v2?channel=1,3&both&factor=2"], folder=stations).sources == pairs[2:]
     for source in pairs:
         assert load_components(source, "own", folder=stations).samples.shape == (3, 12)
     with pytest.raises(RecordError, match=r"no record file .* only corrected acceleration can be"):
