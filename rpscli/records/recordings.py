@@ -122,14 +122,18 @@ def _family(of: Source, place: str, apart: set[str]) -> str:
     return str(folder / _KNET.sub(r".\1", _CHANNEL_CODE.sub(r"\1", _WAY.sub("", name))))
 
 
-def _families(sources: Sequence[Source]) -> list[set[str]]:
-    """Of each source the names of its recording: one, or those of both files of a pair."""
+def _families(sources: Sequence[Source], folder: Path | None) -> list[set[str]]:
+    """Of each source the names of its recording: by its file, or both of a pair, and by headers."""
     named = [[name for name in (of.place, of.second) if name is not None] for of in sources]
     apart = _right_angles(name for names in named for name in names)
-    return [
+    families = [
         {_family(of, name, apart) for name in names}
         for of, names in zip(sources, named, strict=True)
     ]
+    for of, names in zip(sources, families, strict=True):
+        if of.scheme == FILE:
+            names.update(_stated_name(stated(of, folder)))
+    return families
 
 
 def _numbered(families: Sequence[set[str]]) -> list[int]:
@@ -154,13 +158,10 @@ def clusters(
 ) -> tuple[int, ...]:
     """Numbers of the recordings or events of sources, from 0 in their order; headers are read."""
     parsed = [Source.parse(source, folder) for source in sources]
-    families = _families(parsed)
+    families = _families(parsed, folder)
     for names, of in zip(families, parsed, strict=True):
-        if by == "events" or of.scheme == FILE:
-            recording = stated(of, folder)
-            names.update(_stated_name(recording))
-            if by == "events" and (event := event_of(recording)):
-                names.add(f"event {event}")
+        if by == "events" and (event := event_of(stated(of, folder))):
+            names.add(f"event {event}")
     return tuple(_numbered(families))
 
 
@@ -212,21 +213,23 @@ def pairs_among(
     Of a set either component names its pair. Of files both have to be there.
     """
     given = list(dict.fromkeys(single))
-    families = _families(given)
     members: dict[int, list[Source]] = {}
-    for of, names in zip(given, families, strict=True):
+    for of, number in zip(given, _numbered(_families(given, folder)), strict=True):
         if of.of_pair:
             raise RecordError(f"{of}: is of two components already, which {text} asks for again")
         if of.scheme not in (FILE, SET):
             raise RecordError(f"{of}: has no second component, which {text} asks for")
-        if of.scheme == FILE:
-            names.update(_stated_name(stated(of, folder)))
-    for of, number in zip(given, _numbered(families), strict=True):
         members.setdefault(number, []).append(of)
-    return [_pair(of_one, text).plus(**asked) for of_one in members.values()]
+    return [_pair(of_one, text, folder).plus(**asked) for of_one in members.values()]
 
 
-def _pair(of_one: Sequence[Source], text: str) -> Source:
+def _is_horizontal(of: Source, folder: Path | None) -> bool:
+    """True for a component that neither its name nor its header tells to be vertical."""
+    by_name = "channel" not in of.values and _VERTICAL.fullmatch(of.place)
+    return not (by_name or stated(of, folder).is_vertical)
+
+
+def _pair(of_one: Sequence[Source], text: str, folder: Path | None) -> Source:
     """Both components of a recording in one source."""
     first, *rest = of_one
     if any(each.without("channel").options != first.without("channel").options for each in rest):
@@ -236,9 +239,7 @@ def _pair(of_one: Sequence[Source], text: str) -> Source:
         )
     if first.scheme == SET:
         return first.together(first)
-    horizontal = [
-        of for of in of_one if "channel" in of.values or not _VERTICAL.fullmatch(of.place)
-    ]
+    horizontal = [of for of in of_one if _is_horizontal(of, folder)]
     if len(horizontal) != 2:
         some = ", ".join(each.place for each in of_one[:3])
         raise RecordError(
@@ -256,23 +257,26 @@ ONE_FACTOR = (
 )
 
 
-def pairs(sources: Sequence[str], of: Of | None = None) -> tuple[Pair | None, ...]:
+def pairs(
+    sources: Sequence[str], of: Of | None = None, folder: Path | None = None
+) -> tuple[Pair | None, ...]:
     """Both components by which each source is measured, or None where it is by itself."""
     # Without `of` it is the pair where its recording stands in several directions among the
     # sources, at an angle or as both components: one factor then suits all of them. A measure `of`
     # a pair is that of every source.
-    parsed = [Source.parse(source) for source in sources]
+    parsed = [Source.parse(source, folder) for source in sources]
     if of == "component":
         for pair in (p for p in parsed if p.of_pair):
             raise RecordError(f"{pair}: {ONE_FACTOR}")
         return (None,) * len(sources)
-    members: dict[int, dict[tuple[str, bool], Source]] = {}
-    numbers = _numbered(_families(parsed))
+    members: dict[int, dict[tuple[str | bool | None, ...], Source]] = {}
+    numbers = _numbered(_families(parsed, folder))
     for number, p in zip(numbers, parsed, strict=True):
-        members.setdefault(number, {})[p.place, p.of_pair and not p.both] = p
+        direction = p.place, p.values.get("channel"), p.of_pair and not p.both
+        members.setdefault(number, {})[direction] = p
     found = []
     for source, number, p in zip(sources, numbers, parsed, strict=True):
-        known = _components(p, [*members[number].values()])
+        known = p.components or _components(p, members[number].values(), folder)
         if of is not None and known is None:
             raise RecordError(
                 f"{source}: has no second component, of: {of} is for pairs; name it by"
@@ -283,16 +287,13 @@ def pairs(sources: Sequence[str], of: Of | None = None) -> tuple[Pair | None, ..
     return tuple(found)
 
 
-def _components(of: Source, members: Sequence[Source]) -> Pair | None:
-    """Sources of both components of a recording, under the factor of one of its sources."""
-    if (own := of.components) is not None:
-        return own
-    both = next((m for m in members if m.second and of.place in (m.place, m.second)), None)
-    if both is not None and both.second is not None:
-        return of.alone.at(both.place), of.alone.at(both.second)
-    files = {m.place: m for m in members if not _VERTICAL.fullmatch(m.place)}
-    if len(files) != 2 or of.place not in files or of.scheme != FILE:
+def _components(of: Source, members: Iterable[Source], folder: Path | None) -> Pair | None:
+    """Both components of a recording that are among its sources, under the factor of one."""
+    single = {
+        each.alone.without("factor") for m in members for each in m.components or (m,)
+    }  # fmt: skip
+    both = sorted(each for each in single if _is_horizontal(each, folder))
+    if of.scheme != FILE or len(both) != 2 or of.alone.without("factor") not in both:
         return None
     factor = {name: value for name, value in of.options if name == "factor"}
-    first, second = (m.alone.without("factor").plus(**factor) for _, m in sorted(files.items()))
-    return first, second
+    return both[0].plus(**factor), both[1].plus(**factor)

@@ -253,7 +253,7 @@ def lay_out(
 def _records(study: Study, measure: MeasureScale | None) -> tuple[RecordRequest, ...]:
     """The records of a study, and which of them are measured as pairs."""
     try:
-        measured = pairs(study.sources, measure.of if measure else None)
+        measured = pairs(study.sources, measure.of if measure else None, study.folder)
     except RecordError as error:
         study.document.refuse([Fault(("scale", "of"), f"scale.of: {error}")])
         raise

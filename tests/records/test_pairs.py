@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from rpscli.errors import RecordError
-from rpscli.records.formats import Contents
+from rpscli.records.formats.record_text import Contents
 from rpscli.records.ground_motion import UNKNOWN, GroundMotion
 from rpscli.records.loading import expand_sources, load_components, load_record
 from rpscli.records.pair import rotated

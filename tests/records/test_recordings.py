@@ -12,7 +12,7 @@ from rpscli.commands.inputs import MotionRequest, single_motions
 from rpscli.errors import RecordError, UsageError
 from rpscli.records.ground_motion import Recording
 from rpscli.records.loading import expanded, load_components, load_record
-from rpscli.records.recordings import clusters, event_of
+from rpscli.records.recordings import clusters, event_of, pairs
 from rpscli.records.source import Source
 
 STATED = {
@@ -116,15 +116,19 @@ def test_a_folder_as_downloaded(stations: Path) -> None:
     assert [text[:19] for text in refused] == [".: left out: raw.sm", ".: left out: raw.v1"]
     assert "'Uncorrected acceleration'; only corrected acceleration" in refused[1]
     assert clusters(found.sources, stations) == (0, 0, 1, 2, 2, 1)
-    pairs = expanded([".?both&factor=2"], folder=stations).sources
-    assert pairs == [
+    knet_pair, smc_pair = ("CHB002.EW", "CHB002.NS"), ("one.smc", "two.smc")
+    channels = ("three.v2?channel=1", "three.v2?channel=3")
+    measured = knet_pair, knet_pair, smc_pair, channels, channels, smc_pair
+    assert pairs(found.sources, folder=stations) == measured
+    both = expanded([".?both&factor=2"], folder=stations).sources
+    assert both == [
         "CHB002.EW?second=CHB002.NS&both&factor=2",
         "one.smc?second=two.smc&both&factor=2",
         "three.v2?channel=1,3&both&factor=2",
     ]
     assert expanded(["three.v2"], folder=stations).sources == found.sources[3:5]
-    assert expanded(["*.v2?channel=1,3&both&factor=2"], folder=stations).sources == pairs[2:]
-    for source in pairs:
+    assert expanded(["*.v2?channel=1,3&both&factor=2"], folder=stations).sources == both[2:]
+    for source in both:
         assert load_components(source, "own", folder=stations).samples.shape == (3, 12)
     with pytest.raises(RecordError, match=r"no record file .* only corrected acceleration can be"):
         expanded(["raw*1"], folder=stations)
