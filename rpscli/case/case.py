@@ -28,8 +28,11 @@ from rpscli.case.schema.limits import LimitsSection
 from rpscli.case.text.document import Document, dotted, is_design, is_study, text_of_values
 from rpscli.case.text.files import STDIN, read_text
 from rpscli.case.text.yaml_text import read_yaml
-from rpscli.errors import CaseError, require_kind, stem_of
+from rpscli.errors import CaseError, RecordError, require_kind, stem_of
 from rpscli.model.podium import PodiumStructure
+from rpscli.records.measures import Of
+from rpscli.records.recordings import ONE_FACTOR, Pair, pairs
+from rpscli.records.source import Source
 from rpscli.shown import Shown
 
 
@@ -84,6 +87,19 @@ class Case(Shown):
     def record(self) -> RecordSection | None:
         """The ground motion's source and scale, if the file names one."""
         return self.file.record
+
+    @cached_property
+    def record_source(self) -> Source:
+        """The source of the record, or of its first component, taken apart."""
+        return Source.parse(self.record.source if self.record else "", self.folder)
+
+    def record_pair(self, of: Of | None) -> Pair | None:
+        """Both components that a measure of the record is of; None if it is of a single one."""
+        if self.record is None or self.record.y is None:
+            return pairs([self.record_source], of, self.folder)[0]
+        if of == "component":
+            raise RecordError(f"{self.record_source}: {ONE_FACTOR}")
+        return self.record_source, self.record.y
 
     @property
     def limits(self) -> LimitsSection:

@@ -202,11 +202,11 @@ def _direction(case: Case, motion: MotionRequest, ground: MotionComponents) -> W
     from rpscli.records.source import Source
 
     own = case.record if motion.record is None else None
-    source, alike = own.source if own else motion.record or "", _scaled(motion, ground.scale)
-    of = Source.parse(source, case.folder if own else None)
+    of = case.record_source if own else Source.parse(motion.record or "")
+    alike = _scaled(motion, ground.scale)
     unturned = ("record.rotation=null",) if ground.y is not None else ()
     if own and own.y is not None:
-        alone = (f"record.source={source}", "record.x=null", "record.y=null", *unturned)
+        alone = (f"record.source={of}", "record.x=null", "record.y=null", *unturned)
         return "first component alone", alone, alike
     if of.components is None:
         return "other component", (), "not known: the source names no second component"

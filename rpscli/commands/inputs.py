@@ -213,9 +213,9 @@ def motion_source(case: Case, request: MotionRequest) -> Path | str:
     """The record of a motion, whatever its scale: a file, or a source that is none."""
     from rpscli.records.source import Source
 
-    folder = case.folder if request.record is None else Path()
-    given = case.record.source if request.record is None and case.record else request.record or ""
-    file = folder / Source.parse(given, folder).place
+    own = request.record is None
+    given = case.record_source if own else Source.parse(request.record or "")
+    file = (case.folder if own else Path()) / given.place
     return file if file.is_file() else given
 
 
@@ -234,7 +234,7 @@ def load_motion(case: Case, request: MotionRequest) -> MotionComponents:
         own = OWN if request.vertical == OWN else own
         how = {"folder": case.folder, "dt": given.dt, "units": given.units}
         rotation = given.rotation or 0.0
-        motion = load_components(given.source, own, given.y, rotation, **how)
+        motion = load_components(case.record_source, own, given.y, rotation, **how)
         if request.vertical is not None and request.vertical != OWN:
             motion = replace(motion, vertical=load_record(request.vertical))
     if motion.y is not None and (why := case.structure.planar_only):
@@ -287,7 +287,7 @@ def _scaled_to(
         period = float(building.periods[0])
     pair = request.pair
     if request.record is None and case.record is not None:
-        pair = case.record.pair(target.of)
+        pair = case.record_pair(target.of)
     if pair is None:
         unscaled, of = measured(motion.horizontal, measure, period, target.damping), None
     else:

@@ -176,7 +176,11 @@ def examined(
         try:
             case = resolved(plan, values)
             system = System.of_case(case)
-            both = pairs if case.record is None or study.sources else case.record.is_pair
+            both = (
+                pairs
+                if case.record is None or study.sources
+                else case.record.y is not None or case.record_source.both
+            )
             request = (
                 None
                 if study.sources
@@ -205,11 +209,11 @@ def record_request(case: Case, of: Of | None = None) -> RecordRequest | None:
     if (record := case.record) is None:
         return None
     try:
-        pair = record.pair(of)
+        pair = case.record_pair(of)
     except RecordError as error:
         raise CaseError(str(error)) from None
     what = record.vertical, record.dt, record.units, pair, record.y, record.rotation or 0.0
-    return RecordRequest(record.source, str(case.folder), *what)
+    return RecordRequest(case.record_source, str(case.folder), *what)
 
 
 def _properties(

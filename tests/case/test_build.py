@@ -242,7 +242,6 @@ PAIR = "{x: 'pulse:sine?amplitude=1&period=1', y: 'pulse:sine?amplitude=2&period
 def test_a_pair_of_sources() -> None:
     case = case_of(f"record={PAIR}")
     assert case.record is not None
-    assert case.record.is_pair
     assert (case.record.source[-19:], case.record.rotation) == ("mplitude=1&period=1", 30.0)
     assert case.document["record"]["source"] == case.record.source
     again = case_of(text=str(case.document).replace("None", "null"))

@@ -22,12 +22,8 @@ from rpscli.case.schema.fields import (
 from rpscli.case.schema.limits import LimitsSection
 from rpscli.case.schema.scale_to import ScaleToSection
 from rpscli.constants import MOST_STOREYS, STANDARD_GRAVITY
-from rpscli.errors import RecordError
 from rpscli.model.devices import DEVICES
 from rpscli.model.impact import CONTACT_TIME, LONGEST_CONTACT
-from rpscli.records.measures import Of
-from rpscli.records.recordings import ONE_FACTOR, Pair, pairs
-from rpscli.records.source import Source
 
 DEVICE_KEYS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     kind: (
@@ -349,17 +345,6 @@ class RecordSection(Section):
             fits = isinstance(x, str) and x.strip()  # else it is refused as x, which is enough
             return {"source": x if fits else "x", **value}
         return value
-
-    @property
-    def is_pair(self) -> bool:
-        """Whether both horizontal components act."""
-        return self.y is not None or Source.parse(self.source).both
-
-    def pair(self, of: Of | None) -> Pair | None:
-        """Both components that a measure is of; None if it is that of a single one."""
-        if self.y is not None and of == "component":
-            raise RecordError(f"{self.source}: {ONE_FACTOR}")
-        return pairs([self.source], of)[0] if self.y is None else (self.source, self.y)
 
 
 class AnalysisSection(Section):
