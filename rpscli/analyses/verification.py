@@ -6,8 +6,6 @@ a case for each. Where motions part the answers are a sample, and its distributi
 
 from __future__ import annotations
 
-import csv
-import io
 import math
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -23,6 +21,7 @@ from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.analyses.trace import Array, Trace
+from rpscli.csv_text import csv_rows
 from rpscli.errors import CaseError, hint
 from rpscli.model.podium import PodiumStructure
 from rpscli.records.ground_motion import MotionComponents
@@ -79,13 +78,14 @@ class Comparison:
 
 def _rows(text: str, source: str) -> Iterator[tuple[int, Key, dict[str, str]]]:
     """Line, problem and quantity, and cells."""
-    rows = csv.DictReader(io.StringIO(text), skipinitialspace=True, restval="")
-    if lacking := {"problem", "quantity", "value"} - {*(rows.fieldnames or ())}:
+    (_, heads), *rows = csv_rows(text, source) or [(1, [])]
+    if lacking := {"problem", "quantity", "value"} - {*heads}:
         raise CaseError(
             f"{source}: line 1 names no column {min(lacking)}; begin with `{','.join(COLUMNS)}`"
         )
-    for row in rows:
-        yield rows.line_num, (row["problem"].strip(), row["quantity"].strip()), row
+    for line, cells in rows:
+        row = dict.fromkeys(heads, "") | dict(zip(heads, cells, strict=False))
+        yield line, (row["problem"].strip(), row["quantity"].strip()), row
 
 
 def certified() -> dict[Key, tuple[str, int, list[float]]]:

@@ -135,7 +135,8 @@ def measured(source: str, test: str, first: float | None, last: float | None) ->
     import numpy as np
 
     from rpscli.analyses.identification.identify import TESTS
-    from rpscli.case.text.files import csv_rows, read_text
+    from rpscli.case.text.files import read_text
+    from rpscli.csv_text import csv_rows
     from rpscli.units import si_factor
 
     (_, heads), *rows = csv_rows(read_text(source), source) or [(1, [])]

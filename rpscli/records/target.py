@@ -6,7 +6,6 @@ EN 1998-1:2004, EN 1998-1-1:2024, ASCE/SEI 7-16 and SP 14.13330.2018. None of th
 
 from __future__ import annotations
 
-import csv
 import math
 import re
 from collections.abc import Callable, Sequence
@@ -18,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.constants import STANDARD_GRAVITY
+from rpscli.csv_text import csv_rows
 from rpscli.errors import RecordError, beginning, stem_of
 from rpscli.records.measures import Of
 from rpscli.records.quantities import KNOWN_UNITS, canonical_unit, hint, parse_query, unit_factor
@@ -364,10 +364,10 @@ def table_spectrum(path: Path, options: str, source: str) -> TargetSpectrum:
     """Columns period and acceleration, linear between logarithms, and perhaps `sigma_ln [-]`."""
     # With the third one, the standard deviation of ln Sa, the acceleration is the median.
     try:
-        lines = list(csv.reader(path.read_text(encoding="utf-8-sig").splitlines()))
+        text = path.read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
         raise RecordError(f"{source}: cannot be read: {error}; name a CSV file") from None
-    head = lines[0] if lines else []
+    (_, head), *rows = csv_rows(text, path, RecordError) or [(1, [])]
     units = [match[2].strip() if (match := _HEAD.fullmatch(cell)) else "" for cell in head[:2]]
     unit = canonical_unit(units[1]) if len(units) == 2 and units[0] == "s" else None
     if unit is None:
@@ -375,7 +375,7 @@ def table_spectrum(path: Path, options: str, source: str) -> TargetSpectrum:
             f"{path}:1: {beginning(','.join(head))} should name two columns with units, as in"
             f" 'period [s],acceleration [g]'; accelerations are in {KNOWN_UNITS}"
         )
-    factor, rows = unit_factor(unit), [(n, row) for n, row in enumerate(lines[1:], 2) if any(row)]
+    factor = unit_factor(unit)
     scatters = len(head) > 2 and _DEVIATION.fullmatch(head[2]) is not None
     width = 3 if scatters else 2
     cells = np.array([_cells(row, width, f"{path}:{n}") for n, row in rows]).reshape(-1, width)

@@ -5,14 +5,21 @@ from __future__ import annotations
 import io
 import os
 import threading
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
+from rpscli.analyses.verification import answers_of_file
 from rpscli.case.case import load_case, parse_case
+from rpscli.case.study.observed import read_observed
 from rpscli.case.text import files
-from rpscli.errors import CaseError, RecordError
+from rpscli.case.text.document import Document
+from rpscli.commands.identify import measured
+from rpscli.errors import CaseError, RecordError, RpsError
 from rpscli.records.loading import expand_sources, load_record
+from rpscli.records.target import load_target
+from rpscli.sweep.fits.hazard import read_hazard
 
 from .conftest import BUILDING
 
@@ -169,3 +176,22 @@ def test_a_decimal_comma_in_braces_is_named() -> None:
     assert named == ["c.yaml:2:38: superstructure.period = 0,3 has a decimal comma; write 0.3"]
     assert not any("the key 3" in line for line in lines)
     assert "the key 3 must be text" in text_refusal("a: {b: 0, 3}\n")
+
+
+TABLES: dict[str, Callable[[Path], object]] = {
+    "period [s],acceleration [g]": lambda file: load_target(str(file)),
+    "PGV [cm/s],rate [1/year]": lambda file: read_hazard(file, "PGV"),
+    "time [s],rotation [rad]": lambda file: measured(str(file), "rocking", None, None),
+    "problem,quantity,value": lambda file: answers_of_file(file.read_text(), str(file)),
+    "record,overturned": lambda file: read_observed(
+        str(file), file.parent, (), Document("s.yaml", {})
+    ),
+}
+
+
+@pytest.mark.parametrize("head", TABLES)
+def test_a_lost_quote_in_a_table_is_told(tmp_path: Path, head: str) -> None:
+    file = tmp_path / "x.csv"
+    file.write_text(f'{head}\r1,1\r"{"1" * 140_000}', encoding="utf-8", newline="")
+    with pytest.raises(RpsError, match=r"x\.csv:[23]: is not CSV: field larger"):
+        TABLES[head](file)

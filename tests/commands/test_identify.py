@@ -116,7 +116,6 @@ def test_a_longer_period_tells_how_the_columns_bear(
         (("rocking",), "time [s],rotation [mrad]\n", 4, "four are needed"),
         (("rocking",), "time [s],rotation [rad]\n", 4, "2 rad is beyond the critical one of"),
         (("rocking",), "time [s],rotation [rad]\n0,0\n1,nan\n", 3, "csv:3: column rotation: nan"),
-        (("rocking",), 'time [s],rotation [rad]\n0,"0\n' + 140_000 * "1", 3, "is not CSV: field"),
         (("rocking",), SLOW, 4, "no structure of this kind rocks in this way: the swings of"),
         (("rocking", "--from", "9"), "time [s],rotation [rad]\n", 2, "between --from and --to"),
     ],

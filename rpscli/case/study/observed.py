@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import math
 import re
 from collections.abc import Iterable, Iterator, Sequence
@@ -16,6 +14,7 @@ from rpscli.case.schema.keys import unit as key_unit
 from rpscli.case.study.axes import Axis
 from rpscli.case.text.document import Document, Fault, Path, Place, shown
 from rpscli.case.text.files import read_text
+from rpscli.csv_text import csv_rows
 from rpscli.errors import CaseError, hint, listed
 from rpscli.units import KINDS, in_si, si_value
 
@@ -96,12 +95,9 @@ def read_observed(
     if name is None:
         return None
     try:
-        lines = csv.reader(io.StringIO(read_text(folder / name)), skipinitialspace=True)
-        rows = [(lines.line_num, row) for row in lines if any(cell.strip() for cell in row)]
+        rows = csv_rows(read_text(folder / name), name)
     except CaseError as error:
         document.refuse([Fault(PATH, f"observed: {error}")])
-    except csv.Error as error:
-        document.refuse([_fault(name, lines.line_num, f"is not CSV: {error}")])
     if len(rows) < 2:
         text = f"observed: {name} must have a line of titles and more lines"
         document.refuse([Fault(PATH, text)])

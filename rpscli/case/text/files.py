@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import os
 import select
 import stat
@@ -80,16 +78,6 @@ def decoded(data: bytes, name: str) -> str:
             f"{name}:{line}:{column}: the byte 0x{data[error.start]:02x} is not UTF-8; save the"
             " file as UTF-8 text"
         ) from None
-
-
-def csv_rows(text: str, name: str | Path) -> list[tuple[int, list[str]]]:
-    """Rows of CSV that are not empty, each with the number of its line."""
-    lines = csv.reader(io.StringIO(text, newline=""))
-    try:
-        return [(lines.line_num, row) for row in lines if any(cell.strip() for cell in row)]
-    except csv.Error as error:
-        line = lines.line_num
-        raise CaseError(f"{name}:{line}: is not CSV: {error}; is a quote not closed?") from None
 
 
 def starter_text(*, study: bool = False) -> str:

@@ -24,7 +24,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.case.text.document import shown
-from rpscli.case.text.files import csv_rows, read_text
+from rpscli.case.text.files import read_text
+from rpscli.csv_text import csv_rows
 from rpscli.errors import CaseError
 from rpscli.records.measures import MEASURES, Measure
 from rpscli.units import si_value
