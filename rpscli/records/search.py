@@ -17,7 +17,7 @@ WHOLE = 2_000_000
 """Sets at most of which all are looked at."""
 
 STARTS = 100
-"""First choices at most, each grown from another motion and improved by exchange."""
+"""First choices at random, each improved by exchange."""
 
 KICKS = 1000
 """Times that the best choice is left by three motions at random, and improved again."""
@@ -102,15 +102,10 @@ def best_choice(pool: Pool, goal: Goal, count: int, per_event: int) -> tuple[lis
     search = _Search(pool, goal, count, per_event)
     if math.comb(len(pool.factors), count) <= WHOLE:
         return search.best_of_all(), True
-    alone, _ = goal.judged(search.features, 1, pool.factors, pool.factors)
-    first = np.argsort(alone, kind="stable")[:STARTS].tolist()
-    best = min(search.exchanged(search.grown([one])) for one in first)
-    random = np.random.default_rng(1)
-    for _ in range(KICKS):
-        kept = random.permutation(best[1])[min(3, count - 1) :].tolist()
-        while len(kept) < count:
-            kept.append(int(random.choice(np.flatnonzero(search.free(kept)))))
-        best = min(best, search.exchanged(kept))
+    best, random = (math.inf, list[int]()), np.random.default_rng(1)
+    for number in range(STARTS + KICKS):
+        kept = random.permutation(best[1])[min(3, count - 1) :].tolist() if number >= STARTS else []
+        best = min(best, search.exchanged(search.filled(kept, random)))
     return best[1], False
 
 
@@ -152,20 +147,10 @@ class _Search:
         taken = np.bincount(events[places], minlength=int(events.max()) + 1)
         return np.asarray((used[recordings] == 0) & (taken[events] < self.per_event))
 
-    def with_one_more(self, places: list[int]) -> tuple[float, int]:
-        """The least cost of these places and another one, and that."""
-        total = self.features[places].sum(axis=0) + self.features
-        factors, every = self.pool.factors[places], self.pool.factors
-        least, most = np.minimum(factors.min(), every), np.maximum(factors.max(), every)
-        cost, _ = self.goal.judged(total, len(places) + 1, least, most)
-        cost = np.where(self.free(places), cost, math.inf)
-        best = int(np.argmin(cost))
-        return float(cost[best]), best
-
-    def grown(self, places: list[int]) -> list[int]:
-        """These places and the best next one each time."""
-        while len(places) < self.count and (more := self.with_one_more(places))[0] < math.inf:
-            places = [*places, more[1]]
+    def filled(self, places: list[int], random: np.random.Generator) -> list[int]:
+        """These places and others at random; fewer than wanted where none is free any more."""
+        while len(places) < self.count and (free := np.flatnonzero(self.free(places))).size:
+            places = [*places, int(random.choice(free))]
         return places
 
     def exchanged(self, places: list[int]) -> tuple[float, list[int]]:
