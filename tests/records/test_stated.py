@@ -79,6 +79,7 @@ def test_units_steps_counts_and_columns(tmp_path: Path, text: str, options: str)
     [
         (f"Time (s),Acceleration (g x 10)\n{TIMED}", "", "'g x 10', which is not a unit"),
         (f"Time (min),Acceleration (g)\n{TIMED}", "", "a time in 'min' is not known"),
+        (f"Time [samples],Acceleration [g]\n{TIMED}", "", "a time in 'samples' is not known"),
         (f"units: g\ndt: 0.005.3\n{ALONE}", "", "'0.005.3' is not a finite number"),
         (f"units: g\ndt: 5 min\n{ALONE}", "", "a time in 'min' is not known"),
         (f"Period [s],Spectral Acceleration [g]\n{rows(TIMES + 0.02, VALUES)}", "", "a spectrum"),

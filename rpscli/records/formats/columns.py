@@ -262,7 +262,7 @@ def _timed(
     numerals = (numerals_in(_plain(text.lines[line]))[place] for line in table.lines)
     resolution = printed_resolution(times, numerals)
     title = titles[place] if titles and titles[place].is_time else None
-    factor = 1.0 if title is None else text.time_factor(title.unit, title.line)
+    factor = 1.0 if title is None else text.time_factor(title.unit, title.line, is_unit=True)
     try:
         step = factor * uniform_step(times, resolution)
     except ValueError as error:

@@ -236,13 +236,12 @@ class RecordText:
         factor = self.time_factor(unit, stated.line)
         return value if factor == 1.0 else float(f"{factor * value:.15g}")
 
-    def time_factor(self, unit: str, line: int) -> float:
-        """The size of a unit of time [s]; words that are none say nothing."""
-        if (factor := _TIME_UNITS.get(unit.strip(" .").lower())) is not None:
-            return factor
-        if _OTHER_TIMES.fullmatch(unit.strip(" .")):
-            raise self.fault(f"a time in {unit!r} is not known; write seconds, or ms", line)
-        return 1.0
+    def time_factor(self, unit: str, line: int, *, is_unit: bool = False) -> float:
+        """The size of a unit of time [s]; other words say nothing where none has to stand."""
+        factor = _TIME_UNITS.get(unit.strip(" .").lower())
+        if factor is None and (is_unit or _OTHER_TIMES.fullmatch(unit.strip(" ."))):
+            raise self.fault(f"a time in {unit[:_SHOWN]!r} is not known; write s, or ms", line)
+        return factor or 1.0
 
     def agreed(
         self, statements: Sequence[Statement], meaning: Callable[[Statement], object]
