@@ -51,15 +51,12 @@ def test_units_have_to_be_known(tmp_path: Path) -> None:
     assert load(tmp_path, table(), "?units=g").pga == pytest.approx(0.3 * STANDARD_GRAVITY)
     assert load(tmp_path, table(), "?units=m/s2").pga == 0.3
     assert load(tmp_path, table(), "?units=cm/s^2").pga == pytest.approx(0.003)
-    assert load_record("rec.txt", folder=tmp_path, units="m/s2").pga == 0.3
 
 
 @pytest.mark.parametrize(
     ("header", "options", "message"),
     [
         ("# units: g\n", "?units=m/s2", "units = m/s2 contradicts the file, which says g"),
-        ("# units: g\n# units: gal\n", "", "units = gal contradicts units = g of line 1"),
-        ("# dt: 0.02\n# dt = 0.01\n", "?units=g", "dt = 0.01 contradicts dt = 0.02 of line 1"),
         ("# units: parsec\n", "", "not a unit of acceleration"),
         ("# dt: 0.01\n", "?units=g", r"says dt = 0.01 s and the times advance by 0.02 s"),
         ("# npts: 5\n", "?units=g", r"announces 5 values and the file holds 4"),
@@ -100,7 +97,6 @@ def test_times_that_do_not_begin_at_zero_are_a_warning(tmp_path: Path) -> None:
         ("0 .1\n.02\n.04 .2\n", "a row of 1 numbers among rows of 2"),
         ("0 .1\n.02 .1\nend\n.04 .2\n", r"rec.txt:3: 'end' stands among the values"),
         ("0 .1\n.02 nan\n", "nan"),
-        ("0,00 0,1\n0,02 0,2\n0,04 0,3\n", "decimal commas"),
         ("a\nb\n", "no known format"),
     ],
 )
@@ -127,8 +123,6 @@ def test_one_column_with_options(tmp_path: Path) -> None:
     assert load_record("rec.txt", folder=tmp_path, dt=0.01, units="g").dt == 0.01
     with pytest.raises(RecordError, match=r"does not state its sampling interval.*\?dt="):
         load_record("rec.txt?units=g", folder=tmp_path)
-    with pytest.raises(RecordError, match="does not state the units"):
-        load_record("rec.txt?dt=0.01", folder=tmp_path)
     with pytest.raises(RecordError, match=r"dt = -0\.01 s must be positive"):
         load_record("rec.txt?dt=-0.01&units=g", folder=tmp_path)
 
@@ -172,14 +166,3 @@ def test_steps_survive_the_printing_of_times(tmp_path: Path, step: float, form: 
 def test_round_steps_come_out_exactly(step: float) -> None:
     times = np.cumsum(np.full(9000, step)) - step  # as a loop t = t + dt prints them
     assert uniform_step(times, 1e-12) == step
-
-
-@pytest.mark.parametrize(
-    ("title", "kind"),
-    [("time [s], velocity [cm/s]", "velocity"), ("t (s), disp (mm)", "displacement")],
-)
-def test_columns_of_velocity_are_refused(tmp_path: Path, title: str, kind: str) -> None:
-    rows = "0.00 .1\n0.01 .2\n0.02 .3\n"
-    with pytest.raises(RecordError, match=f":1: .*this is a {kind} record; give the acceleration"):
-        load(tmp_path, f"{title}\n{rows}", "?units=g")
-    assert load(tmp_path, f"velocity file, acc [g]\n{rows}", "").npts == 3

@@ -172,6 +172,15 @@ def test_numbers_that_cannot_be_read(tmp_path: Path, text: str, message: str) ->
 
 
 @pytest.mark.parametrize("make", MAKERS)
+def test_options_that_contradict_the_file(tmp_path: Path, make: Callable[[], str]) -> None:
+    path = write(tmp_path, make(), "rec")
+    with pytest.raises(RecordError, match="units = m/s2 contradicts the file"):
+        load_record(f"{path}?units=m/s2")
+    with pytest.raises(RecordError, match=r"dt = 0\.01 s contradicts the file"):
+        load_record(f"{path}?dt=0.01")
+
+
+@pytest.mark.parametrize("make", MAKERS)
 def test_a_channel_of_many_digits(tmp_path: Path, make: Callable[[], str]) -> None:
     with pytest.raises(
         RecordError, match=r"channel (= )?7{60}(7|;| |:).*(holds one channel|file has)"

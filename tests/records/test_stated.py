@@ -83,6 +83,7 @@ def test_units_steps_counts_and_columns(tmp_path: Path, text: str, options: str)
         (f"units: g\ndt: 0.005.3\n{ALONE}", "", "'0.005.3' is not a finite number"),
         (f"units: g\ndt: 5 min\n{ALONE}", "", "a time in 'min' is not known"),
         (f"Period [s],Spectral Acceleration [g]\n{rows(TIMES + 0.02, VALUES)}", "", "a spectrum"),
+        (f"time [s],displacement [mm]\n{TIMED}", "?units=g", ":1: .*is a displacement record"),
         (f"time,displacement\n{TIMED}", "?units=g", "this is a displacement record"),
         (f"time;velocity\n{rows(TIMES, VALUES, between=' ')}", "?units=g", "a velocity record"),
         (f"{HEAD}   N-S   E-W   U-D\n{THREE}", "", r"3 channels; .*\?channel=1.*1: N-S; 2: E-W"),
@@ -116,20 +117,7 @@ def test_a_peak_that_the_header_contradicts_is_a_warning(tmp_path: Path) -> None
     assert "the header says 0.100004" in warning
 
 
-def at2(component: str, step: str = ".0050 SEC") -> str:
-    values = rows(VALUES, form="{:.7E}")
-    return (
-        "PEER NGA STRONG MOTION DATABASE RECORD\n"
-        f"Invented, 1/2/2001, Station A, {component}\n"
-        "ACCELERATION TIME SERIES IN UNITS OF G\n"
-        f"NPTS=   200, DT=   {step}\n{values}"
-    )
-
-
-def test_a_step_of_an_at2_file_in_milliseconds(tmp_path: Path) -> None:
-    made = load(tmp_path, at2("0", "5.0 MSEC"), name="x.at2")
-    assert (made.dt, made.npts, made.warnings) == (DT, COUNT, ())
-    assert (made.recording.station, made.recording.direction) == ("Station A", "0")
+AT2 = "ACCELERATION TIME SERIES IN UNITS OF G\nNPTS=   200, DT=   .0050 SEC\n"
 
 
 def csmip(line: str) -> str:
@@ -155,16 +143,10 @@ def test_volume_2_as_written_before_and_since_2000(tmp_path: Path, line: str) ->
     assert made.pga == pytest.approx(PEAK * STANDARD_GRAVITY, abs=1e-5)
 
 
-def test_volume_1_is_said_to_be_uncorrected(tmp_path: Path) -> None:
-    text = "Uncorrected Accelerogram Data             Processed: 01/02/01\nChan  1: 360 Deg\n"
-    with pytest.raises(RecordError, match=r"uncorrected accelerogram \(volume 1\)"):
-        load(tmp_path, f"{text}   200 Accelerogram points at 200 pts/sec, in g/10\n", name="x.V1")
-
-
 WRITTEN = {
     "columns": (f"units: gal, dt: 5 ms, npts: 200\n{GAL}", "x.txt"),
     "titles": (f"Time [ms],Acceleration [g]\n{rows(1e3 * TIMES, VALUES)}", "x.csv"),
-    "at2": (at2("90"), "x.at2"),
+    "at2": (f"{AT2}{rows(VALUES, form='{:.7E}')}", "x.at2"),
     "knet": (knet(), "x.EW"),
     "csmip": (csmip("points of accel data equally spaced at  .005 sec, in cm/sec2."), "x.v2"),
     "pulse": ("", "pulse:sine?amplitude=0.2 g&period=1&dt=0.005"),
