@@ -16,11 +16,14 @@ Numbers = NDArray[np.int64]
 WHOLE = 2_000_000
 """Sets at most of which all are looked at."""
 
-STARTS = 100
-"""First choices at random, each improved by exchange."""
+ROUNDS = 50
+"""Searches, of which the best one counts."""
 
-KICKS = 1000
-"""Times that the best choice is left by three motions at random, and improved again."""
+STARTS = 5
+"""First choices of a search at random, each improved by exchange."""
+
+KICKS = 50
+"""Times that the best of them is left by three motions at random, and improved again."""
 
 ROUNDING = 2e-5
 """By which a least value is passed: factors are written with six digits."""
@@ -102,11 +105,14 @@ def best_choice(pool: Pool, goal: Goal, count: int, per_event: int) -> tuple[lis
     search = _Search(pool, goal, count, per_event)
     if math.comb(len(pool.factors), count) <= WHOLE:
         return search.best_of_all(), True
-    best, random = (math.inf, list[int]()), np.random.default_rng(1)
-    for number in range(STARTS + KICKS):
-        kept = random.permutation(best[1])[min(3, count - 1) :].tolist() if number >= STARTS else []
-        best = min(best, search.exchanged(search.filled(kept, random)))
-    return best[1], False
+    found, random = [], np.random.default_rng(1)
+    for _ in range(ROUNDS):
+        best = min(search.exchanged(search.filled([], random)) for _ in range(STARTS))
+        for _ in range(KICKS):
+            kept = random.permutation(best[1])[min(3, count - 1) :].tolist()
+            best = min(best, search.exchanged(search.filled(kept, random)))
+        found.append(best)
+    return min(found)[1], False
 
 
 class _Search:

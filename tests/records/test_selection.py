@@ -67,7 +67,7 @@ def test_against_all_choices_of_random_spectra(
 ) -> None:
     """The search by exchange is no proof of the best choice, but it finds it in all of these."""
     monkeypatch.setattr(search, "WHOLE", 1e6 if whole else 0)
-    monkeypatch.setattr(search, "KICKS", 50)
+    monkeypatch.setattr(search, "ROUNDS", 2)
     rng = np.random.default_rng(7)
     for _ in range(6):
         spectra = np.exp(rng.normal(0.0, 0.4, (10, 26)))
