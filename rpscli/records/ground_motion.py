@@ -55,17 +55,13 @@ LEAST, MOST = 0.25, 4.0
 """Factors between these are usual."""
 
 
-def is_usual(factor: float) -> bool:
-    """True for a usual factor on a recorded motion; its sign does not matter."""
-    return LEAST <= abs(factor) <= MOST
-
-
-def scale_warning(name: str, factor: float) -> str:
-    """The warning for a record under a factor that is not usual."""
-    return (
+def scale_doubts(name: str, factor: float) -> tuple[str, ...]:
+    """A warning for a record under a factor that is not usual; its sign does not matter."""
+    doubt = (
         f"{name} is scaled by {factor:.4g}, beyond the usual {LEAST:g} to {MOST:g}: records of"
         " another size differ in more than their amplitude"
     )
+    return () if LEAST <= abs(factor) <= MOST else (doubt,)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -384,8 +380,8 @@ class MotionComponents(Frozen):
     def warnings(self) -> tuple[str, ...]:
         """Warnings besides those of the horizontal one: of the others, and of the factor."""
         doubts = [text for each in (self.y, self.vertical) if each for text in each.warnings]
-        if self.horizontal.format != "pulse" and not is_usual(self.scale):
-            doubts.append(scale_warning(self.horizontal.name, self.scale))
+        if self.horizontal.format != "pulse":
+            doubts += scale_doubts(self.horizontal.name, self.scale)
         return tuple(doubts)
 
 

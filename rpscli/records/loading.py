@@ -22,7 +22,7 @@ from rpscli.errors import (
 )
 from rpscli.machine import mode_of
 from rpscli.records import made, sets
-from rpscli.records.ground_motion import GroundMotion, MotionComponents, is_usual, scale_warning
+from rpscli.records.ground_motion import GroundMotion, MotionComponents, scale_doubts
 from rpscli.records.pair import rotated, turned
 from rpscli.records.quantities import LIKENESS
 from rpscli.records.recordings import earthquake, pairs_among, vertical_of, verticals
@@ -83,10 +83,9 @@ def load_record(
         motion = replace(_unscaled(read.without("factor"), folder), source=of)
     if "factor" not in of.values:
         return motion
-    doubt = () if is_usual(factor) else (scale_warning(motion.name, factor),)
     # Results of different factors go to different folders.
-    name, warnings = f"{motion.name}_x{factor:.4g}", (*motion.warnings, *doubt)
-    return replace(motion.scaled(factor), name=name, warnings=warnings)
+    name, warnings = f"{motion.name}_x{factor:.4g}", scale_doubts(motion.name, factor)
+    return replace(motion.scaled(factor), name=name, warnings=(*motion.warnings, *warnings))
 
 
 def _described(of: Source, dt: float | None, units: str | None) -> Source:

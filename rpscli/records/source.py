@@ -122,7 +122,8 @@ class Source(str):  # noqa: SLOT000 -- parts are kept beside the text
         """Values of options by their names."""
         return dict(self.options)
 
-    def _number(self, name: str, kind: str, usual: float) -> float:
+    def number(self, name: str, kind: str, usual: float | None = None) -> float:
+        """The value of an option in SI."""
         given = {key: value or "" for key, value in self.options}
         return Query(self, given).quantity(name, kind, usual)
 
@@ -134,17 +135,17 @@ class Source(str):  # noqa: SLOT000 -- parts are kept beside the text
     @property
     def rotation(self) -> float:
         """Of both from x towards y [deg]."""
-        return self._number("rotation", "direction", 0.0)
+        return self.number("rotation", "direction", 0.0)
 
     @property
     def angle(self) -> float | None:
         """Of one direction, from the first component towards the second [deg]."""
-        return self._number("angle", "direction", 0.0) if "angle" in self.values else None
+        return self.number("angle", "direction", 0.0) if "angle" in self.values else None
 
     @property
     def factor(self) -> float:
         """On the values."""
-        return self._number("factor", "ratio", 1.0)
+        return self.number("factor", "ratio", 1.0)
 
     @property
     def of_pair(self) -> bool:

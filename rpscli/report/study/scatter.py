@@ -16,7 +16,7 @@ from rpscli.case.schema.case_file import Time
 from rpscli.case.schema.fields import Quantity, Section
 from rpscli.case.study.reports import ReportOptions, VariedKeys
 from rpscli.errors import CaseError, RecordError
-from rpscli.records.quantities import Query, parse_query
+from rpscli.records.source import Source
 from rpscli.report.figures import style
 from rpscli.report.study.labels import keyed, labels
 from rpscli.report.study.panels import break_if_narrow, colour, in_panels, marker, noted
@@ -200,10 +200,6 @@ def _fits(
     return keyed(keys, heads, rows)
 
 
-PULSE_OPTIONS = (
-    "amplitude", "period", "dt", "velocity_amplitude", "cycles", "phase",
-)  # fmt: skip
-
 NEGLIGIBLE = 1e-6
 """Rotation over the critical one below which a figure shows no uplift: at an amplitude of exactly
 g tan(alpha) rounding decides about the outcome."""
@@ -337,20 +333,18 @@ def pulse_of(source: str, options: SpectrumOptions) -> PulseSection:
 
     Examples
     --------
-    >>> pulse_of("pulse:sine?amplitude=0.4g&period=1.2", SpectrumOptions())
+    >>> pulse_of("pulse:sine?amplitude=0.4g&period=1.2&factor=2", SpectrumOptions())
     PulseSection(period=1.2, amplitude=None)
     """
     given = options.pulses.get(source) or options.pulses.get(PurePath(source).name)
     if given is not None:
         return given
-    scheme, _, rest = source.partition(":")
-    if scheme != "pulse":
+    if (of := Source.parse(source)).scheme != "pulse":
         raise CaseError(
             f"{source} is not a pulse with a period such as pulse:sine?amplitude=1g&period=1; give"
             f" that of a file: pulses: {{{PurePath(source).name}: {{period: 0.8, amplitude: 3.9}}}}"
         )
-    query: Query = parse_query(rest.partition("?")[2], source, PULSE_OPTIONS)
-    return PulseSection.model_construct(period=query.quantity("period", "time"))
+    return PulseSection.model_construct(period=of.number("period", "time"))
 
 
 def records_without_period(layout: StudyPoints, options: SpectrumOptions) -> Iterator[str]:
