@@ -30,6 +30,7 @@ from rpscli.case.text.files import STDIN, read_text
 from rpscli.case.text.yaml_text import read_yaml
 from rpscli.errors import CaseError, RecordError, require_kind, stem_of
 from rpscli.model.podium import PodiumStructure
+from rpscli.records.loading import single_source
 from rpscli.records.measures import Of
 from rpscli.records.recordings import ONE_FACTOR, Pair, pairs
 from rpscli.records.source import Source
@@ -91,7 +92,7 @@ class Case(Shown):
     @cached_property
     def record_source(self) -> Source:
         """The source of the record, or of its first component, taken apart."""
-        return Source.parse(self.record.source if self.record else "", self.folder)
+        return single_source(self.record.source if self.record else "", self.folder)
 
     def record_pair(self, of: Of | None) -> Pair | None:
         """Both components that a measure of the record is of; None if it is of a single one."""

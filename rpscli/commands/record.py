@@ -48,16 +48,9 @@ def source_options(function: Command) -> Command:
     @functools.wraps(function)
     def command(*, source: str, scale: float, terminal: Terminal, dt: float | None,
                 units: str | None, **rest: Any) -> None:  # fmt: skip
-        from rpscli.records.loading import expanded, load_components
-        from rpscli.records.source import Source
+        from rpscli.records.loading import load_components
 
-        single = [source]
-        if Source.parse(source).of_pair:
-            single, notes = expanded(single)
-            terminal.warn(notes)
-        if len(single) > 1:
-            raise UsageError(f"{source}: is {len(single)} pairs; name one: {single[0]}, ...")
-        read = load_components(single[0], dt=dt, units=units)
+        read = load_components(source, dt=dt, units=units)
         read = read if scale == 1.0 else read.scaled(scale)
         motions, stem = [read.horizontal], read.horizontal.name.replace("_both", "", 1)
         if read.y is not None:

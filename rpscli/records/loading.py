@@ -72,7 +72,7 @@ def load_record(
         If there is no such record, or it cannot be read without guessing.
     """
     require_kind(source, str, "the record", "give its name as text")
-    of = Source.parse(source, folder)
+    of = single_source(source, folder)
     read, factor = _described(of, dt, units), of.factor
     if of.both:
         raise RecordError(
@@ -118,7 +118,6 @@ def _unscaled(of: Source, folder: Path | None) -> GroundMotion:
 
 def _components(of: Source, folder: Path | None) -> tuple[GroundMotion, GroundMotion]:
     """Both components of a pair, held against each other."""
-    of.require_two()
     if of.scheme == SET:  # before a component is refused that nobody wrote
         sets.require_pair(of)
     one, other = (load_record(each, folder=folder) for each in of.components or ())
@@ -164,7 +163,7 @@ def load_components(
         As `load_record`, and if the time steps of the components differ.
     """
     folder = how.get("folder")
-    of = Source.parse(source, folder)
+    of = single_source(source, folder)
     if vertical == OWN and not is_file(OWN, folder):
         vertical = vertical_of(of, folder)
     above = None if vertical is None else load_record(vertical, **how)
@@ -253,6 +252,17 @@ def expanded(sources: Sequence[str], *, folder: Path | None = None) -> Expansion
     notes = repeated(sources)
     found = [single for source in sources for single in _expand(source, folder, notes)]
     return Expansion([*dict.fromkeys(found)], [*dict.fromkeys(notes)])
+
+
+def single_source(text: str, folder: Path | None = None) -> Source:
+    """The record that a text names: of a file, folder or list the one pair that is asked for."""
+    of = Source.parse(text, folder)
+    if not of.of_pair or of.components is not None:
+        return of
+    first, *others = expanded([of], folder=folder).sources
+    if others:
+        raise RecordError(f"{of}: is {len(others) + 1} pairs; name one: {first}, ...")
+    return Source.parse(first, folder)
 
 
 def expand_sources(sources: Sequence[str], *, folder: Path | None = None) -> list[str]:

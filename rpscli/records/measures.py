@@ -249,9 +249,11 @@ def measure_label(measure: str, of: Of | None, at: str = "") -> str:
     return f"{measure}({inside})" if inside else measure
 
 
-def of_directions(values: Array, of: Of = USUAL) -> Array:
+def of_directions(values: Array, of: Of | Literal["srss"] = USUAL) -> Array:
     """Of values (180, ...) over the directions, (...)."""
     first, second = values[0], values[90]
+    if of == "srss":
+        return np.hypot(first, second)
     if of == "rotd50":
         return np.asarray(np.median(values, axis=0))
     if of == "rotd100":

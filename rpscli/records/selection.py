@@ -278,11 +278,6 @@ def _sources(motions: list[GroundMotion], of: Component) -> list[tuple[GroundMot
     ]
 
 
-def _of_pair(values: Array, of: Component) -> Array:
-    """Of values (180, ...) over the directions, (...)."""
-    return np.hypot(values[0], values[90]) if of == "srss" else of_directions(values, of)
-
-
 def _spectrum(
     motions: tuple[GroundMotion, ...], damping: float, periods: Array, of: Component
 ) -> Array:
@@ -290,7 +285,7 @@ def _spectrum(
     at = [0.0, *periods]
     if len(motions) == 1:
         return response_spectrum(motions[0], at, damping).pseudo_acceleration
-    return _of_pair(spectra_over_directions(motions[0], motions[1], at, damping), of)
+    return of_directions(spectra_over_directions(motions[0], motions[1], at, damping), of)
 
 
 def _measured(
@@ -303,7 +298,7 @@ def _measured(
         pgv, pgd = peaks.pgv, peaks.pgd
     else:
         both = (over_directions(first, motions[1], measure) for measure in ("PGV", "PGD"))
-        pgv, pgd = (float(_of_pair(peaks, of)) for peaks in both)
+        pgv, pgd = (float(of_directions(peaks, of)) for peaks in both)
     if not spectrum.all() or pgv <= 0.0:
         raise RecordError(f"{first.source}: is zero throughout; leave it out")
     return Candidate(

@@ -6,8 +6,10 @@ import pickle
 from pathlib import Path
 
 import pytest
+from case.conftest import BUILDING
 from small_records import cosmos, csmip, esm, geonet, knet, smc, write
 
+from rpscli.case.case import load_case
 from rpscli.commands.inputs import MotionRequest, single_motions
 from rpscli.errors import RecordError, UsageError
 from rpscli.records.ground_motion import Recording
@@ -132,6 +134,17 @@ def test_a_folder_as_downloaded(stations: Path) -> None:
         assert load_components(source, "own", folder=stations).samples.shape == (3, 12)
     with pytest.raises(RecordError, match=r"no record file .* only corrected acceleration can be"):
         expanded(["raw*1"], folder=stations)
+
+
+def test_the_one_pair_of_a_file_or_a_folder_is_a_record(stations: Path) -> None:
+    for source in ("three.v2?both", "CHB*?both&rotation=20"):
+        assert load_components(source, folder=stations).samples.shape == (2, 12)
+    assert load_record("three.v2?angle=30", folder=stations).name == "three_ch1_30deg"
+    with pytest.raises(RecordError, match=r"is 3 pairs; name one: CHB002.EW\?second="):
+        load_components(".?both", folder=stations)
+    (stations / "a.yaml").write_text(BUILDING.replace("motion.at2", "'three.v2?both'"))
+    case = load_case(stations / "a.yaml")
+    assert case.record_pair("rotd50") == ("three.v2?channel=1", "three.v2?channel=3")
 
 
 @pytest.mark.parametrize(
