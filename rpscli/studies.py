@@ -36,14 +36,7 @@ from rpscli.case.study.study import parse_study, shared_out, study_of
 from rpscli.case.text.document import Document, text_of_values
 from rpscli.case.text.files import read_text
 from rpscli.constants import MOST_JOBS
-from rpscli.errors import (
-    LimitExceeded,
-    RpsError,
-    StudyIncomplete,
-    UsageError,
-    hint,
-    require_kind,
-)
+from rpscli.errors import LimitExceeded, RpsError, StudyIncomplete, UsageError, hint, require_kind
 from rpscli.machine import available_cores
 from rpscli.report.figures.look import Look
 from rpscli.report.figures.style import drawable_style

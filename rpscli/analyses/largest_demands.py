@@ -336,8 +336,7 @@ class Demand(Shown):
         lambda h: h.column("max_base_shear") / h.each(_uplift_shear),
     )
     max_drifts = _Result[Array](
-        "(n,) largest storey drifts [m]; of both directions, the resultants.",
-        _drifts,
+        "(n,) largest storey drifts [m]; of both directions, the resultants.", _drifts
     )
     drift_ratio = _Optional(
         "Largest drift over storey height; None where no heights are given.",
@@ -425,8 +424,7 @@ class Demand(Shown):
         lambda h: h.of_passes("passes_as_impacts"),
     )
     closest_pass = _Optional(
-        "Least theta_min/alpha of a pass; None without passes.",
-        lambda h: h.known("closest_pass"),
+        "Least theta_min/alpha of a pass; None without passes.", lambda h: h.known("closest_pass")
     )
     shortest_pass = _Optional(
         "Least time theta_min/|theta phi'| of a pass [s]; None without passes.",

@@ -190,11 +190,9 @@ def load_pattern(building: Superstructure, pattern: PatternName | Sequence[float
         n = building.storeys
         heights = building.storey_heights
         height = np.arange(1.0, n + 1.0) if heights is None else np.cumsum(heights)
-        shape = {
-            "uniform": np.ones(n),
-            "triangular": height,
-            "first_mode": building.shapes[:, 0],
-        }[pattern]
+        shape = {"uniform": np.ones(n), "triangular": height, "first_mode": building.shapes[:, 0]}[
+            pattern
+        ]
         forces = building.masses * shape
     else:
         forces = np.asarray(pattern, dtype=float)

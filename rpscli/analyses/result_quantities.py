@@ -250,13 +250,7 @@ FLOOR_VELOCITIES = ResultQuantity(
     "floor_velocities", "m/s", "floor velocity", column="floor_velocity"
 )
 
-STOREYS = (
-    STOREY_DRIFTS,
-    STOREY_DRIFT_RATIOS,
-    STOREY_SHEARS,
-    FLOOR_ACCELERATIONS,
-    FLOOR_VELOCITIES,
-)
+STOREYS = (STOREY_DRIFTS, STOREY_DRIFT_RATIOS, STOREY_SHEARS, FLOOR_ACCELERATIONS, FLOOR_VELOCITIES)
 """Largest values in each storey from the bottom, on bearings and on a fixed base."""
 
 LIMITED = tuple(quantity for quantity in (*HISTORY, *SAMPLED) if quantity.limit)

@@ -24,13 +24,7 @@ from rpscli.records.measures import MEASURES, Measure, Of, measure_label, needs_
 from rpscli.records.recordings import By
 from rpscli.shown import Frozen, frozen
 from rpscli.sweep.context import RecordRequest, StudyContext
-from rpscli.sweep.evaluation import (
-    FAILED,
-    MISSING,
-    SCALARS,
-    PointResults,
-    reference_shears,
-)
+from rpscli.sweep.evaluation import FAILED, MISSING, SCALARS, PointResults, reference_shears
 from rpscli.sweep.points import StudyPoints
 from rpscli.sweep.store import Store
 from rpscli.units import in_si

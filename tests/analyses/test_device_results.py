@@ -12,13 +12,7 @@ from rpscli.analyses.demand import demand
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
-from rpscli.model.devices import (
-    FrictionDamper,
-    RollingResistance,
-    Stop,
-    Tendon,
-    ViscousDamper,
-)
+from rpscli.model.devices import FrictionDamper, RollingResistance, Stop, Tendon, ViscousDamper
 from rpscli.model.podium import Device
 from rpscli.physics.state import FULL_CONTACT, ROCKING, ROLLING, STUCK
 from rpscli.report.bundles import history_columns

@@ -7,15 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from paper_structures import (
-    COMPILED,
-    FLAT,
-    building,
-    ground,
-    needs_compiled_kernels,
-    podium,
-    waves,
-)
+from paper_structures import COMPILED, FLAT, building, ground, needs_compiled_kernels, podium, waves
 
 from rpscli.analyses.demand import Request, demand, demands
 from rpscli.analyses.kernels.history import sampled_history

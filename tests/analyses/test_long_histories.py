@@ -33,9 +33,7 @@ def swaying(samples: int) -> NDArray[np.float64]:
 
 @needs_compiled_kernels
 @pytest.mark.parametrize("structure", [podium(6), DAMPED], ids=["six storeys", "damper"])
-def test_memory_is_what_the_ceiling_counts(
-    structure: PodiumStructure,
-) -> None:
+def test_memory_is_what_the_ceiling_counts(structure: PodiumStructure) -> None:
     samples = 100_000
     record = ground(swaying(samples), DT)
     time_history(structure, ground(swaying(100), DT), SHORT)  # loads the kernels

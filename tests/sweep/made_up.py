@@ -71,10 +71,7 @@ def place(layout: StudyPoints, number: int) -> dict[str, object]:
 def results_of(found: Table, rows: Iterable[Stored] = (), fixed: Any = None) -> StudyResults:
     """Results of a study as reports take them; rows are what is stored of its points."""
     results = SimpleNamespace(
-        table=found,
-        context=found.layout.context,
-        stored=reader(rows),
-        fixed_base=fixed,
+        table=found, context=found.layout.context, stored=reader(rows), fixed_base=fixed
     )
     return cast("StudyResults", results)
 

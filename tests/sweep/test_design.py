@@ -21,10 +21,7 @@ from sweep.small_studies import STUDY, Make
 
 MEASURE = ("scale: [0.5, 1.0]", "scale: {measure: PGV, values: [0.3, 0.6]}")
 PERTURB = ("scale: [", "perturb: {members: 4, seed: 7}\nscale: [")
-SAMPLE = (
-    "scale: [",
-    "sample: {size: 8, ranges: {podium.cap_beam_mass_ratio: [5, 10]}}\nscale: [",
-)
+SAMPLE = ("scale: [", "sample: {size: 8, ranges: {podium.cap_beam_mass_ratio: [5, 10]}}\nscale: [")
 
 CAP, LOSS = "podium.cap_beam_mass_ratio: [5, 10]", "podium.impact.loss: [0.2, 1.4]"
 

@@ -11,11 +11,7 @@ import pytest
 from click.testing import Result
 from paper_structures import needs_compiled_kernels
 
-from rpscli.analyses.floor_spectra import (
-    PERIODS,
-    fixed_base_floor_spectra,
-    isolated_floor_spectra,
-)
+from rpscli.analyses.floor_spectra import PERIODS, fixed_base_floor_spectra, isolated_floor_spectra
 from rpscli.analyses.timehistory import time_history
 from rpscli.case.case import load_case
 from rpscli.records.loading import load_record

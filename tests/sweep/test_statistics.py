@@ -19,17 +19,7 @@ from rpscli.report.study.table import OVERTURNING, TABLE, OverturningOptions, Ta
 from rpscli.sweep.fits.bilinear import bilinear_fit
 from rpscli.sweep.points import lay_out
 from rpscli.sweep.table import groups
-from sweep.made_up import (
-    ALPHA,
-    RHO,
-    Stored,
-    cells,
-    place,
-    results_of,
-    stored,
-    table_of,
-    tabulate,
-)
+from sweep.made_up import ALPHA, RHO, Stored, cells, place, results_of, stored, table_of, tabulate
 from sweep.small_studies import STUDY, Make
 
 

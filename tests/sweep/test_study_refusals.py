@@ -83,14 +83,7 @@ def sampled(distribution: str) -> tuple[str, str]:
                 f"reports: [{{fragility: {{name: {name}}}}}]\n{SCALE}",
                 ("study.yaml:10:30: reports.0.fragility.name", "must be the name of a file"),
             )
-            for name in (
-                "../up",
-                "/top",
-                "'a:b'",
-                ".hidden",
-                "x" * 101,
-                '"two\\nlines"',
-            )
+            for name in ("../up", "/top", "'a:b'", ".hidden", "x" * 101, '"two\\nlines"')
         ),
         (
             SCALE,

@@ -44,14 +44,8 @@ def axis(key: str, count: int) -> str:
             f"vary:\n{axis(SLENDERNESS, 1000)}\n{axis(HEIGHT, 1001)}",
             r"1001000 systems \(1000 x 1001\)",
         ),
-        (
-            PRODUCT,
-            "stands for 10000000000 ground motions",
-        ),
-        (
-            f"vary:\n{axis(SLENDERNESS, 3000)}\nscale: {{low: 1, high: 2, count: 2000}}",
-            "6000000",
-        ),
+        (PRODUCT, "stands for 10000000000 ground motions"),
+        (f"vary:\n{axis(SLENDERNESS, 3000)}\nscale: {{low: 1, high: 2, count: 2000}}", "6000000"),
     ],
 )
 def test_a_study_that_is_too_large_is_refused(text: str, told: str) -> None:

@@ -73,10 +73,7 @@ def test_a_compilation_stands_in_the_bar_of_a_study_and_says_how_long_it_takes(
     monkeypatch.setattr(compilation, "_listeners", listeners)
     for quiet in (False, True):
         announce_compilation(Terminal(quiet=quiet))
-        with (
-            progress_report(Terminal(quiet=quiet), 20, 100) as report,
-            listeners[0]("kernel"),
-        ):
+        with progress_report(Terminal(quiet=quiet), 20, 100) as report, listeners[0]("kernel"):
             report(progress(40, 1))
         text = capsys.readouterr().err
         for shown in (

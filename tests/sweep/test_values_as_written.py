@@ -30,10 +30,7 @@ def measured(key: str, values: str) -> str:
 
 @pytest.mark.parametrize("columns", [60, 80, 100, 120])
 def test_a_study_fits_the_terminal_and_has_what_was_typed(
-    workplace: Path,
-    sweep: Callable[..., Result],
-    monkeypatch: pytest.MonkeyPatch,
-    columns: int,
+    workplace: Path, sweep: Callable[..., Result], monkeypatch: pytest.MonkeyPatch, columns: int
 ) -> None:
     text = measured("superstructure.storey_mass", "200 t, 300 t")
     (workplace / "study.yaml").write_text(text, encoding="utf-8")

@@ -217,13 +217,7 @@ def sampled_history(
     events = FIRST_LOG
     while True:
         run = run_of(
-            systems,
-            [motion],
-            [Request(0, 0)],
-            pairs=pairs,
-            rows=rows,
-            events=events,
-            finer=finer,
+            systems, [motion], [Request(0, 0)], pairs=pairs, rows=rows, events=events, finer=finer
         )
         follow(run, lanes=1, interruptible=seconds > WORTH_A_THREAD)
         history = run.results[0]
