@@ -29,66 +29,20 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import wraps
-from typing import Any
+from typing import Any, TypeVar, cast
 
 from rpscli.errors import UsageError
-from rpscli.report.figures.bearing import draw_bearing as bearing
-from rpscli.report.figures.bearing import draw_end as bearing_end
-from rpscli.report.figures.devices import draw_device as device
-from rpscli.report.figures.floors import draw_accelerations as floor_accelerations
-from rpscli.report.figures.floors import draw_floor_spectrum as floor_spectrum
-from rpscli.report.figures.floors import draw_shears as storey_shears
-from rpscli.report.figures.floors import draw_storey_drifts as storey_drifts
-from rpscli.report.figures.history import draw_azimuth as azimuth
-from rpscli.report.figures.history import draw_displacements as displacements
-from rpscli.report.figures.history import draw_drifts as elastic_displacements
-from rpscli.report.figures.history import draw_energy as energy
-from rpscli.report.figures.history import draw_events as events
-from rpscli.report.figures.history import draw_ground as ground_acceleration
-from rpscli.report.figures.history import draw_moment as moment
-from rpscli.report.figures.history import draw_rotation as rotation
+from rpscli.report.figures import bearing as _bearing
+from rpscli.report.figures import devices, floors, history, motions, pushover
+from rpscli.report.figures import orbit as _orbit
+from rpscli.report.figures import structure as _structure
+from rpscli.report.figures import style as _style
 from rpscli.report.figures.look import FIGURES
-from rpscli.report.figures.motions import draw_motion as motion
-from rpscli.report.figures.motions import draw_spectra as spectra
-from rpscli.report.figures.motions import draw_spectrum as spectrum
-from rpscli.report.figures.orbit import draw_orbit as orbit
-from rpscli.report.figures.pushover import draw_capacity as capacity
-from rpscli.report.figures.pushover import draw_force as storey_curve
-from rpscli.report.figures.pushover import draw_lift as lift
-from rpscli.report.figures.structure import draw_mode as mode
-from rpscli.report.figures.structure import draw_structure as structure
-from rpscli.report.figures.style import in_style as style
 
-__all__ = [
-    "azimuth",
-    "bearing",
-    "bearing_end",
-    "capacity",
-    "device",
-    "displacements",
-    "elastic_displacements",
-    "energy",
-    "events",
-    "floor_accelerations",
-    "floor_spectrum",
-    "ground_acceleration",
-    "lift",
-    "mode",
-    "moment",
-    "motion",
-    "orbit",
-    "rotation",
-    "spectra",
-    "spectrum",
-    "storey_curve",
-    "storey_drifts",
-    "storey_shears",
-    "structure",
-    "style",
-]
+Panel = TypeVar("Panel", bound=Callable[..., None])
 
 
-def _examined(draw: Callable[..., None]) -> Callable[..., None]:
+def _examined(draw: Panel) -> Panel:
     """A panel that refuses other axes and another result than it is annotated with."""
     axes_name, drawn_name, *_ = (*draw.__annotations__.values(), "")
 
@@ -105,7 +59,36 @@ def _examined(draw: Callable[..., None]) -> Callable[..., None]:
                 )
         draw(axes, drawn, *arguments, **named)
 
-    return panel
+    return cast("Panel", panel)
+
+
+azimuth = _examined(history.draw_azimuth)
+bearing = _examined(_bearing.draw_bearing)
+bearing_end = _examined(_bearing.draw_end)
+capacity = _examined(pushover.draw_capacity)
+device = _examined(devices.draw_device)
+displacements = _examined(history.draw_displacements)
+elastic_displacements = _examined(history.draw_drifts)
+energy = _examined(history.draw_energy)
+events = _examined(history.draw_events)
+floor_accelerations = _examined(floors.draw_accelerations)
+floor_spectrum = _examined(floors.draw_floor_spectrum)
+ground_acceleration = _examined(history.draw_ground)
+lift = _examined(pushover.draw_lift)
+mode = _examined(_structure.draw_mode)
+moment = _examined(history.draw_moment)
+motion = _examined(motions.draw_motion)
+orbit = _examined(_orbit.draw_orbit)
+rotation = _examined(history.draw_rotation)
+spectra = _examined(motions.draw_spectra)
+spectrum = _examined(motions.draw_spectrum)
+storey_curve = _examined(pushover.draw_force)
+storey_drifts = _examined(floors.draw_storey_drifts)
+storey_shears = _examined(floors.draw_shears)
+structure = _examined(_structure.draw_structure)
+style = _style.in_style
+
+__all__ = [name for name, value in [*globals().items()] if hasattr(value, "__wrapped__")]
 
 
 def __getattr__(name: str) -> Any:
@@ -113,7 +96,3 @@ def __getattr__(name: str) -> Any:
     if not name.startswith("_") and name in FIGURES.names():
         return FIGURES[name]
     raise AttributeError(f"module 'rpscli.figures' has no attribute {name!r}")
-
-
-for _name in __all__[: __all__.index("style")]:
-    globals()[_name] = _examined(globals()[_name])
