@@ -250,18 +250,10 @@ class Bearing:
 
     def tendon_lever(self, rotation: NDArray[np.float64]) -> NDArray[np.float64]:
         """de/dx, the arm of a tendon about the contacts at |theta| [m] (Theory (11.10))."""
-        _, _, reach = self._end_displacement(rotation)
-        _, cos_psi = self.tendon_direction(rotation)
-        return 2.0 * cos_psi * reach
-
-    def tendon_direction(
-        self, rotation: NDArray[np.float64]
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Sine and cosine of the angle psi between tendon and vertical at |theta|."""
-        across, upwards, _ = self._end_displacement(rotation)
+        across, upwards, reach = self._end_displacement(rotation)
         distance = np.hypot(across, upwards)
         some = np.where(distance > 0.0, distance, 1.0)
-        return across / some, np.where(distance > 0.0, upwards / some, 1.0)
+        return 2.0 * reach * np.where(distance > 0.0, upwards / some, 1.0)  # its cosine
 
     def _end_displacement(self, rotation: NDArray[np.float64]) -> tuple[NDArray[np.float64], ...]:
         """Ways of the middle of an end across and upwards, and the contact from there [m]."""

@@ -242,13 +242,6 @@ class Tendon(Device):
     def stroke(self, structure: PodiumStructure, rotation: Array) -> Array:
         return structure.bearing.tendon_elongation(rotation)
 
-    def beam_forces(
-        self, structure: PodiumStructure, rotation: Array, force: Array
-    ) -> tuple[Array, Array]:
-        sin_psi, cos_psi = structure.bearing.tendon_direction(rotation)
-        tension = structure.columns * force
-        return -np.sign(rotation) * tension * sin_psi, tension * cos_psi
-
     def remaining_prestress(self, permanent: float) -> float:
         return max(0.0, self.prestress - self.stiffness * permanent)
 
@@ -291,12 +284,6 @@ class RollingResistance(Device):
             return
         share = self.lever / structure.bearing.half_width
         yield Consequence("uplift_share", "over W tan(alpha)", "-", share)
-
-    def beam_forces(
-        self, structure: PodiumStructure, rotation: Array, force: Array
-    ) -> tuple[Array, Array]:
-        # It acts between the columns and what they roll on.
-        return np.zeros_like(force), np.zeros_like(force)
 
 
 def _require_positive(**values: float) -> None:

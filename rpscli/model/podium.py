@@ -397,13 +397,11 @@ class Device(ABC):
     structure
         On which it acts.
     rotation
-        |theta|, of any shape [rad]; of `beam_forces` theta.
+        |theta|, of any shape [rad].
     farthest
         Rotation to which it was drawn before [rad].
     state
         About which motions are small.
-    force
-        Of the device, as histories have it [N].
     length
         [m].
     """
@@ -448,13 +446,6 @@ class Device(ABC):
     def stroke(self, structure: PodiumStructure, rotation: Array) -> Array:
         """Its displacement or elongation [m]."""
         return structure.path(rotation)[1]
-
-    def beam_forces(
-        self, structure: PodiumStructure, rotation: Array, force: Array
-    ) -> tuple[Array, Array]:
-        """Forces on the cap beam, to the right and downwards [N]."""
-        del structure, rotation
-        return force, np.zeros_like(force)
 
     def remaining_prestress(self, permanent: float) -> float | None:
         """Prestress of one, upright, after a permanent elongation [m]; None without [N]."""

@@ -99,26 +99,6 @@ class ModalDamping:
 Profile = Literal["sine", "uniform", "linear", "flexural"]
 
 
-def profile_shape(storeys: int, profile: Profile) -> NDArray[np.float64]:
-    """First fixed-base mode that a profile asks for, (n,), 1 at the roof.
-
-    ``sine`` is the usual shear profile sin(pi i/2n) (Theory (7.1)).
-
-    Parameters
-    ----------
-    storeys
-        n.
-    profile
-        Of the mode; ``uniform``, a stiffness, counts as ``sine``.
-    """
-    height = np.arange(1, storeys + 1) / storeys
-    if profile == "linear":
-        return height
-    if profile == "flexural":
-        return 1.0 - np.cos(0.5 * math.pi * height)
-    return np.sin(0.5 * math.pi * height)
-
-
 def profile_stiffnesses(
     masses: ArrayLike, period: float, profile: Profile = "sine"
 ) -> NDArray[np.float64]:
@@ -131,7 +111,8 @@ def profile_stiffnesses(
     period
         T_1 of the building on a fixed base [s].
     profile
-        ``sine``, ``linear`` or ``flexural`` first mode, or ``uniform`` stiffness.
+        ``sine`` (the usual one, sin(pi i/2n)), ``linear`` or ``flexural`` first mode, or
+        ``uniform`` stiffness.
 
     Returns
     -------
@@ -156,7 +137,12 @@ def profile_stiffnesses(
     if profile == "uniform":
         first = shear_modes(m, np.ones_like(m))[0][0]
         return np.full_like(m, (w1 / first) ** 2)
-    shape = profile_shape(len(m), profile)
+    height = np.arange(1, len(m) + 1) / len(m)
+    shape = {
+        "sine": np.sin(0.5 * math.pi * height),
+        "linear": height,
+        "flexural": 1.0 - np.cos(0.5 * math.pi * height),
+    }[profile]
     shear = w1**2 * np.cumsum((m * shape)[::-1])[::-1]
     return np.asarray(shear / np.diff(shape, prepend=0.0))
 

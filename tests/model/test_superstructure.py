@@ -15,7 +15,6 @@ from rpscli.model.superstructure import (
     Profile,
     RayleighDamping,
     Superstructure,
-    profile_shape,
     profile_stiffnesses,
     stiffness_matrix,
 )
@@ -56,7 +55,6 @@ def test_a_profile_has_its_period_and_its_first_mode(
         "flexural": 1.0 - np.cos(np.pi * np.arange(1, n + 1) / (2 * n)),
     }[profile]
     assert first == pytest.approx(wanted, abs=1e-9)
-    assert profile_shape(n, profile) == pytest.approx(wanted, abs=1e-15)
 
 
 @given(st.integers(1, 12), st.floats(0.05, 5.0))

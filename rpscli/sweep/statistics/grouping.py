@@ -114,12 +114,11 @@ def grouping(
     table: Table,
     keys: Sequence[str] | None = None,
     besides: Sequence[str] = (),
-    within: Indices | None = None,
 ) -> Grouping:
-    """Points (`within` some) grouped by keys; `besides` are those that tell them apart inside."""
+    """Points grouped by keys; `besides` are those that tell them apart inside."""
     layout = table.layout
     keys = own_keys(layout, besides) if keys is None else tuple(keys)
-    found = (Histories(table, *group) for group in groups(layout, keys, within))
+    found = (Histories(table, *group) for group in groups(layout, keys))
     differing = pooled(layout, (*keys, *besides))
     of = f"intervals count {layout.independent}"
     if layout.alone:
