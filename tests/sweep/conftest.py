@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +12,7 @@ from click.testing import CliRunner, Result
 from rpscli.case.study.study import Study, parse_study
 from rpscli.cli import program
 from rpscli.report.study.registry import REPORTS
-from sweep.small_studies import BASE, STUDY, Make
+from sweep.small_studies import BASE, STUDY, Make, Sweep, SweepJson
 
 
 @pytest.fixture
@@ -48,21 +47,24 @@ def no_figures(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.fixture
-def sweep(workplace: Path, no_figures: None) -> Callable[..., Result]:
-    """Run `rps sweep` in this process."""
+def sweep(workplace: Path, no_figures: None) -> Sweep:
+    """Run `rps sweep` in this process, perhaps on another text of the study or its base."""
 
-    def invoke(*arguments: str) -> Result:
+    def invoke(*arguments: str, study: str = "", base: str = "") -> Result:
+        for name, text in (("study.yaml", study), ("base.yaml", base)):
+            if text:
+                (workplace / name).write_text(text, encoding="utf-8")
         return CliRunner().invoke(program, ["sweep", *arguments])
 
     return invoke
 
 
 @pytest.fixture
-def sweep_json(sweep: Callable[..., Result]) -> Callable[..., dict[str, Any]]:
+def sweep_json(sweep: Sweep) -> SweepJson:
     """Run `rps sweep ... --json`; the standard output holds one document."""
 
-    def invoke(*arguments: str, exit_code: int = 0) -> dict[str, Any]:
-        result = sweep(*arguments, "--json")
+    def invoke(*arguments: str, exit_code: int = 0, **texts: str) -> dict[str, Any]:
+        result = sweep(*arguments, "--json", **texts)
         assert result.exit_code == exit_code, result.stderr
         document: dict[str, Any] = json.loads(result.stdout)
         return document

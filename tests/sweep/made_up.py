@@ -23,9 +23,12 @@ class Stored(NamedTuple):
     results: dict[str, Any]
 
 
-Answer = Callable[[int], Stored]
+Place = dict[str, Any]
+"""Values of the varied keys of a point, the last digit of its record, its scale and its number."""
+Answer = Callable[[Place], Stored | None]
 
 RHO, ALPHA = "podium.bearing.curvature_ratio", "podium.bearing.slenderness"
+BROKEN = Stored("failed", "why", {})
 
 
 def stored(outcome: str = "survived", **results: object) -> Stored:
@@ -33,6 +36,11 @@ def stored(outcome: str = "survived", **results: object) -> Stored:
     whole: dict[str, object] = dict.fromkeys(SCALARS["timehistory"], 0.0)
     shears = results.pop("storey_shears", [3.0, 2.0, 1.0])
     return Stored(outcome, None, {**whole, "scale": 1.0, **results, "storey_shears": shears})
+
+
+def fallen(falls: object, **results: object) -> Stored:
+    """A made-up result, of a structure that overturned or survived."""
+    return stored("overturned_rolling" if falls else "survived", **results)
 
 
 def reader(rows: Iterable[Stored | None]) -> Callable[[Iterable[str]], PointResults]:
@@ -51,29 +59,29 @@ def reader(rows: Iterable[Stored | None]) -> Callable[[Iterable[str]], PointResu
     return read
 
 
-def tabulate(layout: StudyPoints, rows: Iterable[Stored | None]) -> Table:
-    return Table.of(layout, reader(rows))
-
-
-def table_of(make: Make, answer: Answer, *changes: tuple[str, str]) -> Table:
-    """The study of 2 slendernesses x 3 curvatures x 3 records x 2 scales with made-up results."""
-    layout = lay_out(make(STUDY, *changes))
-    return tabulate(layout, (answer(number) for number in range(len(layout))))
-
-
-def place(layout: StudyPoints, number: int) -> dict[str, object]:
+def place(layout: StudyPoints, number: int) -> Place:
     point = layout[number]
-    assert point.record is not None
     named = dict(zip(layout.plan.keys, point.values, strict=True))
-    return {**named, "record": int(point.record.source[-1]), "scale": point.scale}
+    source = point.record.source if point.record else "-"
+    record = int(source[-1]) if source[-1].isdigit() else source
+    return {**named, "record": record, "scale": point.scale, "number": number}
 
 
-def results_of(found: Table, rows: Iterable[Stored] = (), fixed: Any = None) -> StudyResults:
-    """Results of a study as reports take them; rows are what is stored of its points."""
-    results = SimpleNamespace(
-        table=found, context=found.layout.context, stored=reader(rows), fixed_base=fixed
-    )
+def made(
+    make: Make, answer: Answer, *changes: tuple[str, str], text: str = STUDY, fixed: Any = None
+) -> StudyResults:
+    """Results, as reports take them, of 2 slendernesses x 3 curvatures x 3 records x 2 scales."""
+    layout = lay_out(make(text, *changes))
+    read = reader(answer(place(layout, number)) for number in range(len(layout)))
+    table = Table.of(layout, read)
+    results = SimpleNamespace(table=table, context=layout.context, stored=read, fixed_base=fixed)
     return cast("StudyResults", results)
+
+
+def fixed_base(layout: StudyPoints, shears: list[float]) -> dict[Any, Any]:
+    """The same storey shears on a fixed base of all systems under all records."""
+    systems, known = range(len(layout.properties)), [each for each in layout.records if each]
+    return {(system, record): np.array(shears) for system in systems for record in known}
 
 
 def cells(found: Found, suffix: str = "") -> dict[str, list[Any]]:

@@ -1,15 +1,21 @@
-"""Texts of a small case and study, and a way to read a file with one."""
+"""Texts of a small case and study, ways to read a file with one, and what a sweep leaves."""
 
 from __future__ import annotations
 
+import csv
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
+
+from click.testing import Result
 
 from rpscli.case.study.study import Study
 from rpscli.studies import Study as LaidOut
 from rpscli.studies import load_study
 
 ROOT = Path(__file__).parents[2]
+FOLDER = Path("results/study/sweep")
+"""In the working folder: the results of its study."""
 
 BASE = """\
 rps: 1
@@ -42,10 +48,19 @@ records:
   - {source: "synthetic:?pga=0.5g&duration=4&dt=0.02", seed: [1, 2, 3]}
 scale: [0.5, 1.0]
 """
+WITHOUT_RECORDS = STUDY[: STUDY.index("records:")]
 
 Make = Callable[..., Study]
+Sweep = Callable[..., Result]
+SweepJson = Callable[..., dict[str, Any]]
 
 
 def study_file(path: Path | str, *overrides: str) -> LaidOut:
     """A study as `rps sweep` reads it."""
     return load_study(path, overrides)
+
+
+def csv_rows(name: str, folder: Path | str = FOLDER) -> list[dict[str, str]]:
+    """Lines of a CSV file."""
+    with (Path(folder) / name).open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))

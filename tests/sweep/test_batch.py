@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,12 +14,12 @@ from rpscli.analyses.modal import modal
 from rpscli.analyses.pushover import pushover
 from rpscli.analyses.result_quantities import SAMPLED
 from rpscli.analyses.timehistory import time_history
-from rpscli.records.loading import load_record
+from rpscli.records.loading import load_components
 from rpscli.sweep.context import resolved
 from rpscli.sweep.evaluation import SCALARS, PointResults, at_path, run_batch
 from rpscli.sweep.points import lay_out
 from rpscli.sweep.run import all_keys
-from sweep.small_studies import STUDY, Make
+from sweep.small_studies import BASE, STUDY, WITHOUT_RECORDS, Make
 
 PERTURB = ("scale: [", "perturb: {members: 3}\nscale: [")
 
@@ -44,17 +45,29 @@ def test_bits_do_not_depend_on_the_batch(study_of: Make) -> None:
     assert [rows(one)[0] for one in alone] == [rows(together)[number] for number in (0, 17, 35)]
 
 
-def test_results_are_those_of_a_single_time_history(study_of: Make) -> None:
+UPWARDS = "synthetic:?pga=0.3g&duration=4&dt=0.02&seed=2"
+
+
+@pytest.mark.parametrize("vertical", [None, UPWARDS])
+def test_results_are_those_of_a_single_time_history(
+    study_of: Make, workplace: Path, vertical: str | None
+) -> None:
     layout = lay_out(study_of(STUDY, PERTURB))
+    if vertical:  # which a case says beside its record
+        record = f"record: {{source: '{UPWARDS[:-1]}1', vertical: '{UPWARDS}'}}\n"
+        (workplace / "base.yaml").write_text(BASE + record, encoding="utf-8")
+        layout = lay_out(study_of(WITHOUT_RECORDS + "perturb: {members: 3}\n"))
     context = layout.context
-    for number in (3, 40, 76):
+    for number in (3, len(layout) // 3 + 1, len(layout) - 2):
         point = layout[number]
         assert point.record is not None
+        assert point.record.vertical == vertical
         case = resolved(layout.plan, point.values)
         structure = layout.system(point.system).perturbed(point.restitution_change)
         changed = case.structure.restitution * point.restitution_change
         assert structure.restitution == pytest.approx(changed, rel=1e-12)
-        motion = load_record(point.record.source).scaled(point.scale * point.scale_change)
+        motion = load_components(point.record.source, vertical)
+        motion = motion.scaled(point.scale * point.scale_change)
         single = time_history(structure, motion, case.analysis).scalars()
         (row,) = rows(run_batch(context, [point]))
         assert row["outcome"] == single["outcome"]
@@ -123,8 +136,7 @@ def test_an_exception_of_the_kernel_is_told_for_its_point_only(
 
 
 def test_modal_points_have_the_modes(study_of: Make) -> None:
-    begin = STUDY.index("records:")
-    layout = lay_out(study_of(STUDY[:begin] + "analysis: modal\n"))
+    layout = lay_out(study_of(WITHOUT_RECORDS + "analysis: modal\n"))
     columns = run_batch(layout.context, list(layout)).columns
     assert np.isnan(columns["rolling.frequency_ratio"][2]).all()  # flat
     modes = modal(layout.system(0).structure)
@@ -138,8 +150,7 @@ def test_modal_points_have_the_modes(study_of: Make) -> None:
 
 
 def test_pushover_points_have_the_curve(study_of: Make) -> None:
-    begin = STUDY.index("records:")
-    layout = lay_out(study_of(STUDY[:begin] + "analysis: pushover\n"))
+    layout = lay_out(study_of(WITHOUT_RECORDS + "analysis: pushover\n"))
     found = run_batch(layout.context, [layout[0]])
     expected = pushover(layout.system(0).structure)
     assert found.outcomes.tolist() == ["done"]

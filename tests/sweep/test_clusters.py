@@ -12,12 +12,11 @@ from rpscli.case.conditions import Condition
 from rpscli.case.design import parse_design
 from rpscli.errors import CaseError
 from rpscli.sweep.design import weights_of
-from rpscli.sweep.points import lay_out
 from rpscli.sweep.statistics.fractiles import clustered, share
 from rpscli.sweep.statistics.grouping import grouping
 from rpscli.sweep.statistics.summary import Records
 from rpscli.sweep.statistics.verdicts import judge, judged_records
-from sweep.made_up import stored, tabulate
+from sweep.made_up import made, stored
 from sweep.small_studies import STUDY, Make
 
 installed = pytest.mark.skipif(
@@ -75,12 +74,11 @@ def test_more_histories_of_a_recording_never_narrow_the_interval_beyond_its_coun
 
 @installed
 def test_a_study_counts_recordings_or_events(study_of: Make) -> None:
-    layout = lay_out(study_of(PAIRS))
-    group = grouping(tabulate(layout, [stored()] * len(layout))).groups[0]
+    group = grouping(made(study_of, lambda _: stored(), text=PAIRS).table).groups[0]
     assert str(group.overturned) == "0 of 14 from 7 recordings (95 %: below 0.35)"
     # Two from Northridge and two from Imperial Valley: (sum n)^2 / sum n^2 = 14^2/44 like ones.
-    layout = lay_out(study_of(PAIRS + "independent: events\n"))
-    group = grouping(tabulate(layout, [stored()] * len(layout))).groups[0]
+    text = PAIRS + "independent: events\n"
+    group = grouping(made(study_of, lambda _: stored(), text=text).table).groups[0]
     assert str(group.overturned) == "0 of 14 from 5 events (95 %: below 0.49)"
 
 
@@ -90,8 +88,8 @@ def test_pooled_histories_count_recordings_or_stand_for_their_record_alone(study
         ("[1, 2, 3]", "0 of 36 from 3 recordings (95 %: below 0.63)", "intervals count recordings"),
         ("[1]", "0 of 12 (95 %: below 0.22)", "say nothing of other records"),
     ):
-        layout = lay_out(study_of(STUDY, ("seed: [1, 2, 3]", f"seed: {seeds}")))
-        found = grouping(tabulate(layout, [stored()] * len(layout)), ())
+        change = ("seed: [1, 2, 3]", f"seed: {seeds}")
+        found = grouping(made(study_of, lambda _: stored(), change).table, ())
         assert str(found.groups[0].overturned) == share_text
         assert note in found.notes[0]
 

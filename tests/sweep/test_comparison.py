@@ -2,25 +2,19 @@
 
 from __future__ import annotations
 
-import csv
-import json
 import math
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any, cast
 
 import numpy as np
 import pytest
-from click.testing import Result
 
-from rpscli.case.study.study import Study
 from rpscli.errors import CaseError
 from rpscli.report.study.comparison import ComparisonOptions, comparison, uncomparable
 from rpscli.report.study.report import Found
 from rpscli.report.table import Table, records
 from rpscli.sweep.points import lay_out
-from sweep.made_up import ALPHA, place, results_of, stored, tabulate
-from sweep.small_studies import Make
+from sweep.made_up import ALPHA, Answer, Place, Stored, fallen, made
+from sweep.small_studies import Make, SweepJson, csv_rows
 
 RECORDS = 8
 STUDY = f"""\
@@ -42,22 +36,15 @@ def seen(*rows: str, head: str = "record,title,overturned") -> None:
     Path("seen.csv").write_text("\n".join([head, *rows]) + "\n", encoding="utf-8")
 
 
-def report(study: Study, answer: Callable[[dict[str, object]], Any]) -> Found:
-    layout, options = lay_out(study), ComparisonOptions()
-    table = tabulate(layout, (answer(place(layout, n)) for n in range(len(layout))))
-    assert not list(uncomparable(layout, options))
-    return comparison(results_of(table), options)
+def report(make: Make, answer: Answer) -> Found:
+    results, options = made(make, answer, text=STUDY), ComparisonOptions()
+    assert not list(uncomparable(results.table.layout, options))
+    return comparison(results, options)
 
 
-def overturns(at: dict[str, object]) -> Any:
+def overturns(at: Place) -> Stored:
     """Overturned under more records the smaller the slenderness: 6, 4 and 2 of 8."""
-    limit = {0.10: 6, 0.15: 4, 0.2: 2}[cast("float", at[ALPHA])]
-    fallen = cast("int", at["record"]) <= limit
-    return stored("overturned +" if fallen else "survived")
-
-
-def _rows(name: str) -> list[dict[str, str]]:
-    return list(csv.DictReader(Path(name).read_text(encoding="utf-8").splitlines()))
+    return fallen(at["record"] <= {0.10: 6, 0.15: 4, 0.2: 2}[at[ALPHA]])
 
 
 def half(title: str, first: int) -> list[str]:
@@ -67,7 +54,7 @@ def half(title: str, first: int) -> list[str]:
 
 def test_outcomes_are_counted_for_each_system(study_of: Make) -> None:
     seen(*half("left", 4), *half("right", 6))
-    found = report(study_of(STUDY), overturns)
+    found = report(study_of, overturns)
     table = {(row["title"], row[ALPHA]): row for row in records(found.tables[""])}
     cells = ("both", "computed_only", "observed_only", "neither")
     assert [table["left", 0.15][cell] for cell in cells] == [4, 0, 0, 4]
@@ -88,13 +75,11 @@ def test_maxima_have_ratios_and_a_distance(study_of: Make) -> None:
     )
     ratios = [0.5, 1.0, 2.0, 4.0, 1.0, 1.0, 1.0]
 
-    def answer(at: dict[str, object]) -> Any:
-        n = cast("int", at["record"])
-        if n == RECORDS:
-            return stored("overturned -")
-        return stored(max_rotation=0.01 * n * ratios[n - 1])
+    def answer(at: Place) -> Stored:
+        n = at["record"]
+        return fallen(n == RECORDS, max_rotation=0.01 * n * [*ratios, 1.0][n - 1])
 
-    found, *_ = records(report(study_of(STUDY), answer).tables["_maxima"])
+    found, *_ = records(report(study_of, answer).tables["_maxima"])
     assert (found["counted"], found["overturned_computed"]) == (7, 1)
     assert found["median_ratio"] == pytest.approx(1.0, rel=1e-12)
     assert found["dispersion"] == pytest.approx(np.std(np.log(ratios), ddof=1), rel=1e-12)
@@ -151,18 +136,12 @@ def test_what_cannot_be_compared_is_told_before(
     assert told in " ".join(uncomparable(layout, ComparisonOptions()))
 
 
-def test_sweep_leaves_tables_and_says_what_it_found(
-    sweep: Callable[..., Result], workplace: Path
-) -> None:
+def test_sweep_leaves_tables_and_says_what_it_found(sweep_json: SweepJson) -> None:
     seen(*half("left", 4))
-    (workplace / "study.yaml").write_text(STUDY, encoding="utf-8")
-    result = sweep("study.yaml", "-o", "out", "--json")
-    assert result.exit_code == 0, result.stderr
-    document = json.loads(result.stdout)
+    document = sweep_json("study.yaml", study=STUDY)
     assert "not conservative" in document["note"]
-    rows = _rows("out/comparison.csv")
+    rows = csv_rows("comparison.csv")
     assert [row["title [-]"] for row in rows] == ["left"] * 3
     assert len(document["reports"]["comparison"]["rows"]) == len(rows)
-    pairs = _rows("out/comparison_pairs.csv")
-    assert len(pairs) == 3 * RECORDS
+    assert len(csv_rows("comparison_pairs.csv")) == 3 * RECORDS
     assert any("have no observation" in warning for warning in document["warnings"])

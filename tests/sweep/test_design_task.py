@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import csv
 import json
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +20,7 @@ from rpscli.sweep.design import Search, weights_of
 from rpscli.sweep.evaluation import run_batch
 from rpscli.sweep.points import lay_out
 from rpscli.sweep.run import LARGEST_BATCH
-from sweep.small_studies import BASE, ROOT
+from sweep.small_studies import BASE, ROOT, Sweep, SweepJson, csv_rows
 from sweep.test_interruption import ended
 
 SLENDERNESS = "podium.bearing.slenderness"
@@ -78,11 +76,9 @@ minimise: max_base_shear
 search: {{first: 8, most: 20, resamples: 50}}
 """
 
-Design = Callable[..., Result]
-
 
 @pytest.fixture
-def design(workplace: Path, no_figures: None) -> Design:
+def design(workplace: Path, no_figures: None) -> Sweep:
     """Run `rps design` on a text in this process."""
 
     def invoke(text: str, *arguments: str) -> Result:
@@ -93,7 +89,7 @@ def design(workplace: Path, no_figures: None) -> Design:
 
 
 @pytest.fixture
-def design_json(design: Design) -> Callable[..., dict[str, Any]]:
+def design_json(design: Sweep) -> SweepJson:
     """The JSON document of `rps design`."""
 
     def invoke(text: str, *arguments: str, exit_code: int = 0) -> dict[str, Any]:
@@ -105,16 +101,8 @@ def design_json(design: Design) -> Callable[..., dict[str, Any]]:
     return invoke
 
 
-DesignJson = Callable[..., dict[str, Any]]
-
-
-def rows_of(file: Path) -> list[dict[str, str]]:
-    with file.open(encoding="utf-8") as text:
-        return list(csv.DictReader(text))
-
-
 @pytest.mark.evidence("design", "exact")
-def test_one_unknown_against_the_exact_answer(design_json: DesignJson, workplace: Path) -> None:
+def test_one_unknown_against_the_exact_answer(design_json: SweepJson) -> None:
     # 30 % of seven are two: the third largest peak must not lift the frame.
     found = design_json(FRAME, "--set", "search.resamples=0")
     exact, close = sorted(PEAKS)[-3], 1.01 * 0.001 * 0.3
@@ -133,12 +121,12 @@ def test_one_unknown_against_the_exact_answer(design_json: DesignJson, workplace
     assert found["best"]["passing_share"] >= 0.9
     files = {Path(name).name for name in found["files"]}
     assert {"designs.csv", "points.csv", "verdicts.csv", "requirements.png"} <= files
-    rows = rows_of(workplace / "out/designs.csv")
+    rows = csv_rows("designs.csv", "out")
     assert len(rows) == found["designs"]["looked_at"] <= 64
 
 
 @pytest.mark.evidence("design", "exact")
-def test_two_unknowns_against_the_exact_answer(design_json: DesignJson) -> None:
+def test_two_unknowns_against_the_exact_answer(design_json: SweepJson) -> None:
     settings = ("search.most=128", "search.resolution=0.01", "search.resamples=0")
     found = design_json(TWO, *(word for text in settings for word in ("--set", text)))
     values = found["best"]["values"]
@@ -150,7 +138,7 @@ def test_two_unknowns_against_the_exact_answer(design_json: DesignJson) -> None:
     assert [requirement["binds"] for requirement in found["requirements"]] == [True]
 
 
-def test_a_number_of_columns_stays_whole(design_json: DesignJson, workplace: Path) -> None:
+def test_a_number_of_columns_stays_whole(design_json: SweepJson) -> None:
     text = FRAME.replace(f"{SLENDERNESS}: [0.05, 0.35]", "podium.columns: [4, 9]")
     text = text.replace(f"  {WEDGE}: {{{SLENDERNESS}: 2, plus: 0.1}}\n", "")
     text = text.replace("linked:\n", "").replace(
@@ -158,11 +146,11 @@ def test_a_number_of_columns_stays_whole(design_json: DesignJson, workplace: Pat
     )
     found = design_json(text, "-o", "out")
     assert found["best"]["values"]["podium.columns"] == 4
-    rows = rows_of(workplace / "out/designs.csv")
+    rows = csv_rows("designs.csv", "out")
     assert {row["podium.columns [-]"] for row in rows} <= {str(n) for n in range(4, 10)}
 
 
-def test_nothing_passes(design: Design, design_json: DesignJson) -> None:
+def test_nothing_passes(design: Sweep, design_json: SweepJson) -> None:
     found = design_json(FRAME.replace("0.35]", "0.2]"), exit_code=10)
     assert found["best"] is None
     assert found["passed"] is False
@@ -178,10 +166,10 @@ def test_nothing_passes(design: Design, design_json: DesignJson) -> None:
 
 
 @needs_compiled_kernels
-def test_verdicts_are_those_of_a_study(design_json: DesignJson, workplace: Path) -> None:
+def test_verdicts_are_those_of_a_study(design_json: SweepJson) -> None:
     found = design_json(BUILDING, "-o", "out")
-    designs = rows_of(workplace / "out/designs.csv")
-    verdicts = rows_of(workplace / "out/verdicts.csv")
+    designs = csv_rows("designs.csv", "out")
+    verdicts = csv_rows("verdicts.csv", "out")
     assert len(verdicts) == 8 * len(designs)
     exceeded = [row["exceeded [-]"] == "true" for row in verdicts]
     assert 0 < sum(exceeded) < len(exceeded)
@@ -205,12 +193,12 @@ RATE = (
 
 
 @needs_compiled_kernels
-def test_a_limit_on_the_annual_rate(design_json: DesignJson, workplace: Path) -> None:
+def test_a_limit_on_the_annual_rate(design_json: SweepJson, workplace: Path) -> None:
     """The rate is the integral of the shares, linear in ln PGV, over the hazard, in small steps."""
     (workplace / "hazard.csv").write_text(HAZARD)
     unseen = "validate: {records: ['synthetic:?pga=0.8g&duration=4&dt=0.02&seed=9']}\n"
     found = design_json(RATE + unseen, "-o", "out")
-    points = rows_of(workplace / "out/points.csv")
+    points = csv_rows("points.csv", "out")
     levels = np.array([0.3, 0.6, 0.9])
     fine = np.geomspace(0.1, 20.0, 200_001)
     curve = np.array([[float(x) for x in line.split(",")] for line in HAZARD.splitlines()[1:]])
@@ -219,7 +207,7 @@ def test_a_limit_on_the_annual_rate(design_json: DesignJson, workplace: Path) ->
     rates = np.exp(np.where(fine > 2.0, beyond, np.interp(np.log(fine), x, height)))
     middle = np.log(np.sqrt(fine[1:] * fine[:-1]))
     checked = set()
-    for place, row in enumerate(rows_of(workplace / "out/designs.csv")):
+    for place, row in enumerate(csv_rows("designs.csv", "out")):
         own = points[15 * place : 15 * place + 15]
         fallen = [
             np.mean(
@@ -245,12 +233,10 @@ def test_a_limit_on_the_annual_rate(design_json: DesignJson, workplace: Path) ->
 
 
 @needs_compiled_kernels
-def test_perturbed_histories_are_parts_of_their_records(
-    design_json: DesignJson, workplace: Path
-) -> None:
+def test_perturbed_histories_are_parts_of_their_records(design_json: SweepJson) -> None:
     design_json(f"{BUILDING}perturb: {{members: 2}}\n", "-o", "out")
-    points = rows_of(workplace / "out/points.csv")
-    designs = rows_of(workplace / "out/designs.csv")
+    points = csv_rows("points.csv", "out")
+    designs = csv_rows("designs.csv", "out")
     assert len(points) == len(designs) * 5 * 2 * 2
     for place, row in enumerate(designs):
         own = points[20 * place : 20 * place + 20]
@@ -260,7 +246,7 @@ def test_perturbed_histories_are_parts_of_their_records(
             assert float(row[f"overturning at scale = {scale} [-]"]) == pytest.approx(share)
 
 
-def test_values_are_printed_as_they_were_judged(design: Design, workplace: Path) -> None:
+def test_values_are_printed_as_they_were_judged(design: Sweep) -> None:
     """One unknown and a linked key: all of it is in the table of the terminal."""
     result = design(FRAME, "-o", "out")
     assert result.exit_code == 0, result.stderr
@@ -274,7 +260,7 @@ def test_values_are_printed_as_they_were_judged(design: Design, workplace: Path)
 
 @needs_compiled_kernels
 def test_interrupted_and_resumed_or_in_two_threads_it_ends_in_the_same_bytes(
-    design: Design, workplace: Path
+    design: Sweep, workplace: Path
 ) -> None:
     assert design(BUILDING, "--jobs", "2", "-o", "calm").exit_code == 0
     interrupting = str(Path(__file__).with_name("interrupted.py"))
@@ -290,7 +276,7 @@ def test_interrupted_and_resumed_or_in_two_threads_it_ends_in_the_same_bytes(
         assert resumed.read_bytes() == (workplace / "calm" / name).read_bytes()
 
 
-def test_validation(design: Design, design_json: DesignJson, workplace: Path) -> None:
+def test_validation(design: Sweep, design_json: SweepJson, workplace: Path) -> None:
     unseen = 'validate: {records: [{source: "pulse:half_sine?period=0.4", amplitude: [%s]}]}\n'
     found = design_json(FRAME + unseen % "0.1 g, 0.2 g")
     assert found["validated"] is True
@@ -310,7 +296,7 @@ def test_validation(design: Design, design_json: DesignJson, workplace: Path) ->
     assert not set(task.unseen) & set(task.study.sources)
 
 
-def test_invalid_designs_count_as_failing(design_json: DesignJson) -> None:
+def test_invalid_designs_count_as_failing(design_json: SweepJson) -> None:
     # The wedge must be outside the flat end.
     text = FRAME.replace("2, plus: 0.1", "-1, plus: 0.55")
     found = design_json(text)
@@ -319,7 +305,7 @@ def test_invalid_designs_count_as_failing(design_json: DesignJson) -> None:
     assert any("not valid cases" in warning for warning in found["warnings"])
 
 
-def test_a_dry_run_computes_nothing(design_json: DesignJson, workplace: Path) -> None:
+def test_a_dry_run_computes_nothing(design_json: SweepJson, workplace: Path) -> None:
     found = design_json(FRAME, "--dry-run")
     assert found["systems"] == 8
     assert not (workplace / "results").exists()
@@ -366,7 +352,7 @@ def test_a_dry_run_computes_nothing(design_json: DesignJson, workplace: Path) ->
         (f"{WEDGE}: {{", f"{SLENDERNESS}: {{", "14:", "varies"),
     ],
 )
-def test_refusals(design: Design, old: str, new: str, place: str, said: str) -> None:
+def test_refusals(design: Sweep, old: str, new: str, place: str, said: str) -> None:
     assert old in FRAME
     result = design(FRAME.replace(old, new, 1), "--dry-run")
     assert result.exit_code == 3, result.stderr
@@ -379,7 +365,7 @@ def test_the_constant_of_a_sum_may_have_a_unit() -> None:
     assert parse_design(text, "design.yaml").file.linked[SIZE] == {SLENDERNESS: 2, "plus": 1.4}
 
 
-def test_cases_studies_and_designs_are_told_apart(design: Design, workplace: Path) -> None:
+def test_cases_studies_and_designs_are_told_apart(design: Sweep, workplace: Path) -> None:
     assert "is a case without `variables`" in design(BASE).stderr
     assert "is a file without `variables`" in design("rps: 1").stderr
     (workplace / "task.yaml").write_text(FRAME, encoding="utf-8")
@@ -405,7 +391,7 @@ def test_shipped_designs_keep_the_schema() -> None:
 @pytest.mark.evidence("design", "exact")
 @pytest.mark.long
 @needs_compiled_kernels
-def test_the_shipped_design_against_a_grid(workplace: Path, no_figures: None) -> None:
+def test_the_shipped_design_against_a_grid(no_figures: None) -> None:
     """The best design of a fine grid is hardly better than that of the search.
 
     Near the boundary verdicts are ragged: single designs hold among failing ones, of which grid and

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import csv
 import json
 import shlex
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import pytest
 from click.testing import CliRunner
@@ -16,10 +13,8 @@ from rpscli.cli import program
 from rpscli.records.formats.at2 import at2_text
 from rpscli.records.loading import load_record
 from rpscli.sweep.evaluation import run_batch
-from rpscli.sweep.points import reproduction
-from sweep.small_studies import BASE, STUDY, study_file
-
-Document = Callable[..., dict[str, Any]]
+from rpscli.sweep.points import reproduction, yaml_scalar
+from sweep.small_studies import BASE, FOLDER, STUDY, Sweep, SweepJson, csv_rows, study_file
 
 
 @pytest.fixture
@@ -34,67 +29,51 @@ def spoilt(workplace: Path) -> Path:
     return workplace
 
 
-def rows(folder: Path, name: str) -> list[dict[str, str]]:
-    with (folder / "results/study/sweep" / name).open(newline="") as file:
-        return list(csv.DictReader(file))
-
-
-def test_the_rest_goes_on(spoilt: Path, sweep_json: Document) -> None:
+def test_the_rest_goes_on(spoilt: Path, sweep_json: SweepJson) -> None:
     document = sweep_json("study.yaml", exit_code=5)
     assert document["status"] == "error"
-    assert document["points"]["failed"] == 12
-    assert document["outcomes"]["failed"] == 12
-    points = rows(spoilt, "points.csv")
+    assert document["points"]["failed"] == document["outcomes"]["failed"] == 12
+    points = csv_rows("points.csv")
     failed = [p for p in points if p["outcome [-]"] == "failed"]
     assert {p["record [-]"] for p in failed} == {"bad.at2"}
     assert {p["record [-]"] for p in points if p not in failed} == {"good.at2"}
     assert all(p["max_rotation [rad]"] == "" for p in failed)
     assert {p["scale [-]"] for p in failed} == {"0.5", "1.0"}
-    shares = rows(spoilt, "overturning.csv")
-    assert {(row["counted [-]"], row["failed [-]"]) for row in shares} == {
-        ("3", "3")
-    }  # at each scale
+    shares = csv_rows("overturning.csv")  # at each scale
+    assert {(row["counted [-]"], row["failed [-]"]) for row in shares} == {("3", "3")}
 
 
-def test_each_failure_has_a_command_that_reproduces_it(spoilt: Path, sweep_json: Document) -> None:
-    document = sweep_json("study.yaml", exit_code=5)
-    failure = document["failures"][0]
-    assert "bad.at2" in failure["message"]
-    words = shlex.split(failure["command"])
-    assert words[:3] == ["rps", "timehistory", "base.yaml"]
-    again = CliRunner().invoke(program, words[1:])
-    assert again.exit_code == 3
-    assert failure["message"] in again.stderr
-    assert rows(spoilt, "failed.csv")[0]["command [-]"] == failure["command"]
+def test_each_failure_has_a_command_that_reproduces_it(spoilt: Path, sweep_json: SweepJson) -> None:
+    """A case inside the study is written for it."""
+    for inside in (False, True):
+        text = (spoilt / "study.yaml").read_text()
+        if inside:
+            inner = "base:\n" + "".join(f"  {line}\n" for line in BASE.splitlines())
+            text = text.replace("base: base.yaml\n", inner)
+        failure = sweep_json("study.yaml", exit_code=5, study=text)["failures"][0]
+        assert "bad.at2" in failure["message"]
+        words = shlex.split(failure["command"])
+        assert words[:3] == ["rps", "timehistory", f"{FOLDER}/base.yaml" if inside else "base.yaml"]
+        again = CliRunner().invoke(program, words[1:])
+        assert again.exit_code == 3
+        assert failure["message"] in again.stderr
+        assert csv_rows("failed.csv")[0]["command [-]"] == failure["command"]
 
 
-def test_the_command_of_a_good_point_gives_its_numbers(spoilt: Path, sweep_json: Document) -> None:
+def test_the_command_of_a_good_point_gives_its_numbers(spoilt: Path) -> None:
     layout = study_file("study.yaml", "perturb={members: 3}", "podium.cap_beam_mass_ratio=8").layout
-    context = layout.context
     point = layout[2]
-    row = run_batch(context, [point]).columns
+    row = run_batch(layout.context, [point]).columns
     words = shlex.split(reproduction(layout, point, Path("base.yaml")))
     single = CliRunner().invoke(program, [*words[1:], "--json"])
     found = json.loads(single.stdout)
     assert found["max_rotation"] == pytest.approx(row["max_rotation"][0], rel=1e-6)
     assert found["record"]["scale"] == row["scale"][0]
-
-
-def test_a_case_inside_the_study_is_written_for_the_commands(
-    spoilt: Path, sweep_json: Document
-) -> None:
-    inner = "base:\n" + "".join(f"  {line}\n" for line in BASE.splitlines())
-    text = (spoilt / "study.yaml").read_text().replace("base: base.yaml\n", inner)
-    (spoilt / "study.yaml").write_text(text)
-    failure = sweep_json("study.yaml", exit_code=5)["failures"][0]
-    words = shlex.split(failure["command"])
-    assert words[2] == "results/study/sweep/base.yaml"
-    again = CliRunner().invoke(program, [*words[1:]])
-    assert failure["message"] in again.stderr
+    assert [yaml_scalar(value) for value in (0.1, "word", "0.1")] == ["0.1", "word", '"0.1"']
 
 
 def test_failed_points_are_tried_again_when_asked_or_repaired(
-    spoilt: Path, sweep_json: Document
+    spoilt: Path, sweep_json: SweepJson
 ) -> None:
     sweep_json("study.yaml", exit_code=5)
     kept = sweep_json("study.yaml", exit_code=5)
@@ -104,4 +83,16 @@ def test_failed_points_are_tried_again_when_asked_or_repaired(
     (spoilt / "bad.at2").write_text((spoilt / "good.at2").read_text().replace("0.4", "0.3"))
     repaired = sweep_json("study.yaml")
     assert repaired["points"]["failed"] == 0
-    assert not (spoilt / "results/study/sweep/failed.csv").exists()
+    assert not (spoilt / FOLDER / "failed.csv").exists()
+
+
+def test_components_of_two_time_steps_fail(sweep: Sweep) -> None:
+    vertical = "synthetic:?pga=0.3g&duration=4&dt=0.01&seed=2"
+    record = {"source": "synthetic:?pga=0.5g&duration=4&dt=0.02&seed=1", "vertical": vertical}
+    study = "rps: 1\nbase: base.yaml\nvary: [{podium.bearing.curvature_ratio: [0.5, 0]}]\n"
+    base = f"{BASE}record: {json.dumps(record)}\n"
+    refused = sweep("study.yaml", "--quiet", study=study, base=base)
+    assert refused.exit_code == 5
+    assert "2 of 2 points failed" in refused.stderr
+    assert "they must agree; resample one of them" in refused.stderr
+    assert f"--vertical '{vertical}'" in refused.stderr

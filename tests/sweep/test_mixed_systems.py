@@ -76,3 +76,5 @@ def test_what_no_system_has_is_refused(mixed: dict[str, Any]) -> None:
     reports = [{"fragility": {"limits": {"drift_ratio": 1}}}]
     with pytest.raises(CaseError, match=r"fragility: drift_ratio needs .*, which not every system"):
         load_study({**FRAME_AND_BUILDING, "reports": reports})
+    with pytest.raises(CaseError, match="floor_spectra: a system has no superstructure"):
+        load_study({**FRAME_AND_BUILDING, "reports": ["floor_spectra"]})

@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-import csv
 import itertools
 import math
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
-from click.testing import Result
 from scipy.integrate import quad
 from scipy.special import ndtr
 
@@ -27,11 +23,10 @@ from rpscli.sweep.fits.hazard import (
     rates_above,
     read_hazard,
 )
-from rpscli.sweep.points import lay_out
 from rpscli.sweep.statistics.summary import summary
 from rpscli.sweep.statistics.verdicts import judged
-from sweep.made_up import stored, tabulate
-from sweep.small_studies import STUDY, Make
+from sweep.made_up import Place, Stored, fallen, made
+from sweep.small_studies import STUDY, Make, Sweep, SweepJson, csv_rows
 
 KINKED = Hazard(np.array([0.1, 0.2, 0.4, 0.8, 1.6]), np.array([3e-2, 1e-2, 2e-3, 3e-4, 3e-5]))
 HEADER = "PGV [cm/s],rate [1/year]\n"
@@ -116,14 +111,12 @@ def test_a_study_judges_the_annual_rate_of_each_system(study_of: Make, tmp_path:
     (tmp_path / "hazard.csv").write_text("PGV [m/s],rate [1/year]\n0.1,1e-2\n10,1e-4\n")
     scale = "scale: {measure: PGV, values: [1.2, 0.3, 0.6]}\nhazard: {file: hazard.csv,"
     scale += " measure: PGV}\nlimits: {annual_rate: 1.5e-3}"
-    layout = lay_out(study_of(STUDY, ("scale: [0.5, 1.0]", scale)))
-    rows = [
-        stored("overturned_rocking")
-        if point.scale > (0.5, 1.0, 1.0)[layout.places[1][n]] and layout.places[0][n]
-        else stored()
-        for n, point in enumerate(layout)
-    ]
-    table = tabulate(layout, rows)
+
+    def answer(at: Place) -> Stored:
+        """All systems but the first, of nine points."""
+        return fallen(at["scale"] > (0.5, 1.0, 1.0)[at["record"] - 1] and at["number"] >= 9)
+
+    table = made(study_of, answer, ("scale: [0.5, 1.0]", scale)).table
     first, *others = judged(table, summary(table, {}))
     exact = (1e-3 / 0.3 - 1e-3 / 0.6) / 3.0 + 2.0 * (1e-3 / 0.6 - 1e-3 / 1.2) / 3.0
     assert (first.value, first.word) == (0.0, "met, not shown")  # three records show little
@@ -184,21 +177,20 @@ def test_a_hazard_file_that_is_none_is_refused(
         assert part in str(refused.value)
 
 
-def with_risk(workplace: Path, options: str, hazard: str) -> None:
-    text = STUDY.replace("scale: [0.5, 1.0]", "scale: {measure: PGV, values: [0.3, 0.9, 2.7]}")
-    (workplace / "study.yaml").write_text(
-        f"{text}reports:\n  - risk: {options}\n", encoding="utf-8"
-    )
-    (workplace / "hazard.csv").write_text(hazard, encoding="utf-8")
+MEASURED = STUDY.replace("scale: [0.5, 1.0]", "scale: {measure: PGV, values: [0.3, 0.9, 2.7]}")
 
 
-def test_a_study_reports_its_risk(workplace: Path, sweep_json: Callable[..., Any]) -> None:
+def with_risk(options: str, hazard: str) -> str:
+    """The study with this report, beside its hazard curve."""
+    Path("hazard.csv").write_text(hazard, encoding="utf-8")
+    return f"{MEASURED}reports:\n  - risk: {options}\n"
+
+
+def test_a_study_reports_its_risk(workplace: Path, sweep_json: SweepJson) -> None:
     options = "{hazard: {file: hazard.csv, measure: PGV}, limits: {rotation_ratio: 0.2}}"
-    with_risk(workplace, options, HEADER + "1,1\n10,0.1\n100,0.001\n1000,1e-7\n")
-    sweep_json("study.yaml", "-o", "out")
-    with (workplace / "out" / "risk.csv").open(encoding="utf-8") as file:
-        rows = list(csv.DictReader(file))
-    known = [row for row in rows if row["annual_rate [1/year]"]]
+    text = with_risk(options, HEADER + "1,1\n10,0.1\n100,0.001\n1000,1e-7\n")
+    sweep_json("study.yaml", "-o", "out", study=text)
+    known = [row for row in csv_rows("risk.csv", "out") if row["annual_rate [1/year]"]]
     assert known
     hazard = read_hazard(workplace / "hazard.csv", "PGV")
     for row in known:
@@ -210,30 +202,23 @@ def test_a_study_reports_its_risk(workplace: Path, sweep_json: Callable[..., Any
         assert (low == "") == (high == "")
         assert not low or float(low) < rate < float(high)
         assert float(row["probability_in_50_years [-]"]) == pytest.approx(-math.expm1(-50 * rate))
-    with (workplace / "out" / "risk_contributions.csv").open(encoding="utf-8") as file:
-        parts = list(csv.DictReader(file))
+    parts = csv_rows("risk_contributions.csv", "out")
     assert sum(float(part["share [-]"]) for part in parts) == pytest.approx(len(known), rel=1e-8)
     assert (workplace / "out" / "risk.png").exists()
 
 
 @pytest.mark.evidence("risk", "published")
 def test_margins_and_dispersions_are_those_of_fema_p695(
-    workplace: Path,
-    sweep_json: Callable[..., Any],
-    sweep: Callable[..., Result],
-    monkeypatch: pytest.MonkeyPatch,
+    workplace: Path, sweep_json: SweepJson, sweep: Sweep, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     options = (
         "{hazard: {file: hazard.csv, measure: PGV, component: component}, at: {MCE: 60 cm/s},"
         " spectral_shape: 1.2, resamples: 50, limits: {rotation_ratio: 0.2},"
         " dispersion: {design_requirements: 0.2, test_data: 0.3, modelling: 0.4}}"
     )
-    with_risk(
-        workplace,
-        options,
-        "PGV [cm/s],mean [1/year],0.84 [1/year]\n1,1,3\n10,0.1,0.3\n100,1e-3,3e-3\n",
-    )
-    found = sweep_json("study.yaml", "-o", "out")["reports"]["risk"]
+    curves = "PGV [cm/s],mean [1/year],0.84 [1/year]\n1,1,3\n10,0.1,0.3\n100,1e-3,3e-3\n"
+    text = with_risk(options, curves)
+    found = sweep_json("study.yaml", "-o", "out", study=text)["reports"]["risk"]
     known = [row for row in found["rows"] if row["median"] is not None]
     assert known
     hazard = read_hazard(workplace / "hazard.csv", "PGV")
@@ -267,23 +252,19 @@ def test_margins_and_dispersions_are_those_of_fema_p695(
     shown = sweep("study.yaml", "-o", "out").stdout
     for words in ("beta total", "rate of hazard 84 %", "ACMR", "MCE", "95 % bands of the choice"):
         assert words in " ".join(shown.split())
-    with_risk(workplace, options.replace("60 cm/s", "60 cm"), HEADER + "1,1\n10,0.1\n")
-    assert "at: is a length, but must be a velocity" in sweep("study.yaml", "-o", "out").stderr
+    refused = sweep("study.yaml", "-o", "out", study=text.replace("60 cm/s", "60 cm"))
+    assert "at: is a length, but must be a velocity" in refused.stderr
 
 
-def test_values_that_are_lists_are_groups_too(
-    workplace: Path, sweep_json: Callable[..., Any]
-) -> None:
+def test_values_that_are_lists_are_groups_too(workplace: Path, sweep_json: SweepJson) -> None:
     """Devices are lists of mappings, which cannot be keys of a dictionary."""
     devices = "vary: [podium.devices: [[], [{kind: friction, force: 1 kN}]]]\n"
-    text = STUDY[: STUDY.index("vary:")] + devices + STUDY[STUDY.index("records:") :]
-    text = text.replace("scale: [0.5, 1.0]", "scale: {measure: PGV, values: [0.3, 0.9, 2.7]}")
+    text = MEASURED[: MEASURED.index("vary:")] + devices + MEASURED[MEASURED.index("records:") :]
     options = "limits: {rotation_ratio: 0.2}"
     risk = f"risk: {{hazard: {{file: hazard.csv, measure: PGV}}, {options}}}"
     text += f"reports: [fragility: {{{options}}}, {risk}]\n"
-    (workplace / "study.yaml").write_text(text, encoding="utf-8")
     (workplace / "hazard.csv").write_text(HEADER + "1,1\n10,0.1\n", encoding="utf-8")
-    found = sweep_json("study.yaml", "-o", "out")
+    found = sweep_json("study.yaml", study=text)
     rows = found["reports"]["fragility"]["rows"]
     assert [row["podium.devices"] for row in rows] == 2 * [
         [],
@@ -301,10 +282,9 @@ def test_values_that_are_lists_are_groups_too(
     ],
 )
 def test_a_risk_without_a_hazard_is_refused(
-    options: str, parts: tuple[str, ...], workplace: Path, sweep: Callable[..., Result]
+    options: str, parts: tuple[str, ...], sweep: Sweep
 ) -> None:
-    with_risk(workplace, options, HEADER + "1,1\n10,0.1\n")
-    result = sweep("study.yaml", "--dry-run")
+    result = sweep("study.yaml", "--dry-run", study=with_risk(options, HEADER + "1,1\n10,0.1\n"))
     assert result.exit_code == 3
     for part in parts:
         assert part in result.stderr

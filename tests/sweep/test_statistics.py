@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
 from rpscli.report.study.against import RotationOptions, rotation
 from rpscli.report.study.heights import StoreyShearOptions, storey_shear, unlike_buildings
@@ -19,8 +18,20 @@ from rpscli.report.study.table import OVERTURNING, TABLE, OverturningOptions, Ta
 from rpscli.sweep.fits.bilinear import bilinear_fit
 from rpscli.sweep.points import lay_out
 from rpscli.sweep.table import groups
-from sweep.made_up import ALPHA, RHO, Stored, cells, place, results_of, stored, table_of, tabulate
-from sweep.small_studies import STUDY, Make
+from sweep.made_up import (
+    ALPHA,
+    BROKEN,
+    RHO,
+    Place,
+    Stored,
+    cells,
+    fallen,
+    fixed_base,
+    made,
+    place,
+    stored,
+)
+from sweep.small_studies import STUDY, WITHOUT_RECORDS, Make
 
 
 @settings(max_examples=30)
@@ -83,8 +94,8 @@ def test_an_overturning_table_over_lists_of_devices(study_of: Make) -> None:
     friction = "[{kind: friction, force: 300 kN}]"
     swap = "podium.bearing.curvature_ratio: [critical, 0.5, 0]"
     changes = (swap, f"podium.devices: [[], {friction}]")
-    table = table_of(study_of, lambda _: stored(), changes)
-    found = cells(OVERTURNING.make(results_of(table), OverturningOptions()))
+    results = made(study_of, lambda _: stored(), changes)
+    found = cells(OVERTURNING.make(results, OverturningOptions()))
     assert found["podium.devices=none;counted"] == [3] * 4
     assert [name for name in found if name.endswith(";number")] == [
         "podium.devices=none;number", "podium.devices=friction 300 kN;number"
@@ -92,15 +103,11 @@ def test_an_overturning_table_over_lists_of_devices(study_of: Make) -> None:
 
 
 def test_the_overturning_table_counts_and_keeps_failures_apart(study_of: Make) -> None:
-    layout = lay_out(study_of())
+    def answer(at: Place) -> Stored:
+        strong = at["scale"] == 1.0
+        return BROKEN if strong and at["record"] == 3 else fallen(strong and at[RHO] == 0)
 
-    def answer(number: int) -> Stored:
-        at = place(layout, number)
-        if at["record"] == 3 and at["scale"] == 1.0:
-            return Stored("failed", "why", {})
-        return stored("overturned_rolling" if at[RHO] == 0 and at["scale"] == 1.0 else "survived")
-
-    results = results_of(table_of(study_of, answer))
+    results = made(study_of, answer)
     apart = OVERTURNING.make(results, OverturningOptions())
     found = cells(apart)
     assert apart.notes == ()
@@ -121,20 +128,13 @@ def test_the_overturning_table_counts_and_keeps_failures_apart(study_of: Make) -
 def test_tables_show_statistics_in_which_an_overturned_history_is_the_largest(
     study_of: Make,
 ) -> None:
-    layout = lay_out(study_of())
-
-    def answer(number: int) -> Stored:
-        at = place(layout, number)
+    def answer(at: Place) -> Stored:
         falls = at["record"] == 3 and at["scale"] == 1.0
-        name = "overturned_rolling" if falls else "survived"
-        return stored(name, rotation_ratio=float(str(at["record"])))
+        return fallen(falls, rotation_ratio=float(at["record"]))
 
-    results = results_of(table_of(study_of, answer))
-    for statistic, values in (
-        ("median", [2.0, 2.0]),
-        ("largest", [3.0, "inf"]),
-        ("mean", [2, 1.5]),
-    ):
+    results = made(study_of, answer)
+    expected = {"median": [2.0, 2.0], "largest": [3.0, "inf"], "mean": [2, 1.5]}
+    for statistic, values in expected.items():
         options = TableOptions(statistic=statistic, rows=("scale",), columns=(ALPHA,))
         found = cells(TABLE.make(results, options))
         assert found[f"{ALPHA}=0.1"] == found[f"{ALPHA}=0.15"] == values
@@ -146,27 +146,22 @@ def test_tables_show_statistics_in_which_an_overturned_history_is_the_largest(
 
 
 def test_scatter_holds_what_stood(study_of: Make) -> None:
-    def answer(number: int) -> Stored:
-        outcomes = ("survived", "at_rest", "overturned_rolling")
-        return stored(outcomes[number % 3], max_lift=float(number), drift_ratio=1.0)
-
-    results = results_of(table_of(study_of, answer))
+    outcomes = ("survived", "at_rest", "overturned_rolling")
+    results = made(
+        study_of,
+        lambda at: stored(outcomes[at["number"] % 3], max_lift=at["number"], drift_ratio=1.0),
+    )
     found = scatter(results, ScatterOptions(x="max_lift", y="drift_ratio", series=(RHO,)))
     points = cells(found)
     assert sorted(points["max_lift"]) == [n for n in range(36) if n % 3 < 2]
     assert points["point"] == [int(n) + 1 for n in points["max_lift"]]
     assert set(points["outcome"]) == {"survived", "at_rest"}
-    assert (ALPHA in points, RHO in points, "scale" in points) == (True, True, True)
+    assert {ALPHA, RHO, "scale"} <= set(points)
     assert list(found.tables) == [""]
 
 
 def test_rotations_are_paired_point_by_point(study_of: Make) -> None:
-    def answer(number: int) -> Stored:
-        return stored(
-            "overturned_rocking" if number == 35 else "survived", max_rotation=float(number)
-        )
-
-    results = results_of(table_of(study_of, answer))
+    results = made(study_of, lambda at: fallen(at["number"] == 35, max_rotation=at["number"]))
     found = cells(rotation(results, RotationOptions(panels=())))
     assert (set(found[RHO]), set(found[f"reference {RHO}"])) == ({"critical", 0.5}, {0})
     # The second system, point 6, beside the reference, point 12; intensities are named.
@@ -182,39 +177,27 @@ def test_rotations_are_paired_point_by_point(study_of: Make) -> None:
 def test_demand_takes_what_lifted_off_and_stood(study_of: Make) -> None:
     outcomes = ("survived", "at_rest", "overturned_rolling", "survived")
 
-    def answer(number: int) -> Stored:
-        x = (number % 18) / 18.0 + number / 1000.0
-        return stored(
-            outcomes[number % 4], rotation_ratio=x, base_shear_ratio=1.0 + min(4.0 * x, 2.0)
-        )
+    def answer(at: Place) -> Stored:
+        n = at["number"]
+        x = (n % 18) / 18.0 + n / 1000.0
+        return stored(outcomes[n % 4], rotation_ratio=x, base_shear_ratio=1.0 + min(4.0 * x, 2.0))
 
-    results = results_of(table_of(study_of, answer))
-    found = cells(demand(results, DemandOptions(panels=(), series=(ALPHA,))))
+    found = cells(demand(made(study_of, answer), DemandOptions(panels=(), series=(ALPHA,))))
     counts = ("counted", "at_rest", "overturned", "failed")
     assert [found[name] for name in counts] == [[18], [9], [9], [0]]
     assert found["saturation_rotation_ratio"] == pytest.approx([0.5], abs=1e-9)
 
 
 def test_storey_profiles_leave_overturned_points_out(study_of: Make) -> None:
-    layout = lay_out(study_of())
+    def answer(at: Place) -> Stored:
+        falls = at["record"] == 3
+        return fallen(falls, storey_shears=[900.0] * 3 if falls else [1.0 * at["number"], 2.0, 1.0])
 
-    def answer(number: int) -> Stored:
-        falls = place(layout, number)["record"] == 3
-        shears = [900.0] * 3 if falls else [1.0 * number, 2.0, 1.0]
-        return stored("overturned_rocking" if falls else "survived", storey_shears=shears)
-
-    table = table_of(study_of, answer)
-    fixed = {
-        (system, request): np.array([10.0, 6.0, 3.0])
-        for system in range(6)
-        for request in layout.records
-        if request
-    }
-    results = results_of(table, fixed=fixed)
+    fixed = fixed_base(lay_out(study_of()), [10.0, 6.0, 3.0])
+    results = made(study_of, answer, fixed=fixed)
     pooled = storey_shear(results, StoreyShearOptions(panels=(ALPHA, RHO)))
-    notes = pooled.notes
-    assert "pools 2 intensities" in notes[0]
-    assert "12 of 36 histories overturned" in notes[1]
+    assert "pools 2 intensities" in pooled.notes[0]
+    assert "12 of 36 histories overturned" in pooled.notes[1]
     apart = cells(storey_shear(results, StoreyShearOptions()))
     assert (apart["scale"][0], apart["counted"][0], apart["overturned"][0]) == (0.5, 2, 1)
     found = cells(pooled)
@@ -230,11 +213,8 @@ def test_storey_profiles_leave_overturned_points_out(study_of: Make) -> None:
 
 
 def test_buildings_of_different_height_have_no_common_profile(study_of: Make) -> None:
-    storeys = (
-        "  - podium.bearing.curv",
-        "  - superstructure.storeys: [2, 3]\n  - podium.bearing.curv",
-    )
-    layout = lay_out(study_of(STUDY, storeys))
+    axis = "  - podium.bearing.curv"
+    layout = lay_out(study_of(STUDY, (axis, f"  - superstructure.storeys: [2, 3]\n{axis}")))
     faults = list(unlike_buildings(layout, StoreyShearOptions(panels=(RHO,))))
     assert len(faults) == 3
     assert "holds buildings of [2, 3] storeys" in faults[0]
@@ -244,15 +224,11 @@ def test_buildings_of_different_height_have_no_common_profile(study_of: Make) ->
 
 
 def test_ida_fractiles_count_overturned_points_as_infinite(study_of: Make) -> None:
-    layout = lay_out(study_of())
+    def answer(at: Place) -> Stored:
+        falls = at["scale"] == 1.0 and at["record"] > 1
+        return fallen(falls, rotation_ratio=0.1 * at["record"])
 
-    def answer(number: int) -> Stored:
-        at = place(layout, number)
-        record = int(str(at["record"]))
-        falls = at["scale"] == 1.0 and record > 1
-        return stored("overturned_rolling" if falls else "survived", rotation_ratio=0.1 * record)
-
-    found = cells(ida(results_of(table_of(study_of, answer)), IdaOptions()))
+    found = cells(ida(made(study_of, answer), IdaOptions()))
     assert found["scale"][:2] == [0.5, 1.0]
     fractiles = [found[f"rotation_ratio_{share}"] for share in (16, 50, 84)]
     assert [each[0] for each in fractiles] == pytest.approx([0.1, 0.2, 0.3])
@@ -261,20 +237,12 @@ def test_ida_fractiles_count_overturned_points_as_infinite(study_of: Make) -> No
 
 
 def test_lines_join_the_means_of_what_stood(study_of: Make) -> None:
-    layout = lay_out(study_of())
-
-    def answer(number: int) -> Stored:
-        at = place(layout, number)
+    def answer(at: Place) -> Stored:
         falls = at["record"] == 2
-        return stored(
-            "overturned_rolling" if falls else "survived",
-            max_rotation=1e3 if falls else float(str(at["scale"])),
-        )
+        return fallen(falls, max_rotation=1e3 if falls else at["scale"])
 
-    table = table_of(study_of, answer)
-    rows = [answer(number) for number in range(36)]
     options = LinesOptions(x="scale", y=("max_rotation",), panels=(ALPHA,))
-    found = cells(lines(results_of(table, rows), options))
+    found = cells(lines(made(study_of, answer), options))
     assert len(found["value"]) == 2 * 3 * 2
     assert (found[RHO][:2], found["scale"][:2], found["value"][:2]) == (
         ["critical"] * 2, [0.5, 1.0], [0.5, 1.0]
@@ -283,31 +251,26 @@ def test_lines_join_the_means_of_what_stood(study_of: Make) -> None:
 
 def test_lines_go_over_si_values_of_what_was_written_with_units(study_of: Make) -> None:
     sizes = (f"{RHO}: [critical, 0.5, 0]", "podium.bearing.semi_diagonal: [1500 mm, 2.0, 2.5 m]")
-    table = table_of(study_of, lambda _: stored(), sizes)
     options = LinesOptions(x="podium.bearing.semi_diagonal", y=("max_rotation",), series=())
-    found = cells(lines(results_of(table, [stored()] * 36), options))
+    found = cells(lines(made(study_of, lambda _: stored(), sizes), options))
     assert found["podium.bearing.semi_diagonal"] == [1.5, 2.0, 2.5]
 
 
 def test_lines_draw_one_curve_for_each_point_where_results_are_lists(study_of: Make) -> None:
-    begin = STUDY.index("records:")
-    layout = lay_out(study_of(STUDY[:begin] + "analysis: pushover\n"))
-    rows = [
-        Stored("done", None, {"curve.force": [2.0, 1.0 * n], "curve.displacement": [0.0, 1.0]})
-        for n in range(6)
-    ]
-    table = tabulate(layout, rows)
+    def answer(at: Place) -> Stored:
+        curve = {"curve.force": [2.0, at["number"]], "curve.displacement": [0.0, 1.0]}
+        return Stored("done", None, curve)
+
+    results = made(study_of, answer, text=WITHOUT_RECORDS + "analysis: pushover\n")
     options = LinesOptions(x="curve.displacement", y=("curve.force",), panels=(ALPHA,))
-    found = cells(lines(results_of(table, rows), options))
+    found = cells(lines(results, options))
     assert found["value"][:6] == [2.0, 0.0, 2.0, 1.0, 2.0, 2.0]
     assert found["curve.displacement"][:2] == [0.0, 1.0]
 
 
 def test_missing_points_are_neither_counted_nor_forgotten(study_of: Make) -> None:
-    layout = lay_out(study_of())
-    table = tabulate(layout, [stored() if n else None for n in range(36)])
-    shares: NDArray[np.bool_] = table.failed
-    assert shares.tolist() == [True] + [False] * 35
+    results = made(study_of, lambda at: stored() if at["number"] else None)
+    assert results.table.failed.tolist() == [True] + [False] * 35
 
 
 @pytest.mark.parametrize(
@@ -323,29 +286,23 @@ def test_missing_points_are_neither_counted_nor_forgotten(study_of: Make) -> Non
 def test_lines_say_what_stands_for_the_records(
     study_of: Make, statistic: str | float, values: list[float]
 ) -> None:
-    layout = lay_out(study_of())
+    def answer(at: Place) -> Stored:
+        falls = at["record"] == 3 or (at[ALPHA] == 0.15 and at[RHO] == 0)
+        return fallen(falls, max_rotation=at["record"])
 
-    def answer(number: int) -> Stored:
-        at = place(layout, number)
-        record = int(str(at["record"]))
-        falls = record == 3 or (at[ALPHA] == 0.15 and at[RHO] == 0)
-        return stored("overturned_rolling" if falls else "survived", max_rotation=float(record))
-
-    table = table_of(study_of, answer)
-    rows = [answer(number) for number in range(36)]
     options = LinesOptions(x=ALPHA, y=("max_rotation",), statistic=statistic, series=("scale",))
-    made = lines(results_of(table, rows), options)
-    assert f"pools 3 values of {RHO}" in made.notes[0]
-    found = cells(made)
-    assert found["scale"] == [0.5, 0.5, 1.0, 1.0]
+    found = lines(made(study_of, answer), options)
+    assert f"pools 3 values of {RHO}" in found.notes[0]
+    assert any("survivors: 16 of 36" in note for note in found.notes) == (statistic == "mean")
+    shown = cells(found)
+    assert shown["scale"] == [0.5, 0.5, 1.0, 1.0]
     # 1, 1, 1, 2, 2, 2 and three overturned; 1, 1, 2, 2 and five overturned
-    assert (found["counted"][:2], found["overturned"][:2]) == ([6, 4], [3, 5])
-    assert [float(value) for value in found["value"][:2]] == values
-    assert any("survivors: 16 of 36" in note for note in made.notes) == (statistic == "mean")
+    assert (shown["counted"][:2], shown["overturned"][:2]) == ([6, 4], [3, 5])
+    assert [float(value) for value in shown["value"][:2]] == values
 
 
 def test_lines_keep_intensities_apart(study_of: Make) -> None:
-    table = table_of(study_of, lambda _: stored())
-    made = lines(results_of(table, [stored()] * 36), LinesOptions(x=ALPHA, y=("max_rotation",)))
-    assert {RHO, "scale"} <= set(cells(made))
-    assert not list(made.notes)
+    options = LinesOptions(x=ALPHA, y=("max_rotation",))
+    found = lines(made(study_of, lambda _: stored()), options)
+    assert {RHO, "scale"} <= set(cells(found))
+    assert not list(found.notes)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from collections.abc import Callable
 from pathlib import Path
@@ -10,7 +9,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from click.testing import Result
 from scipy.stats import beta, binom
 
 from rpscli.case.conditions import Condition
@@ -23,8 +21,8 @@ from rpscli.sweep.statistics.grouping import own_keys, pooled
 from rpscli.sweep.statistics.summary import Summary, scale_notes, summary
 from rpscli.sweep.statistics.verdicts import Verdict, decisive, judge, judged
 from rpscli.sweep.table import Table
-from sweep.made_up import ALPHA, RHO, Stored, place, stored, table_of
-from sweep.small_studies import BASE, STUDY, Make
+from sweep.made_up import ALPHA, BROKEN, RHO, Place, Stored, fallen, fixed_base, made, stored
+from sweep.small_studies import BASE, STUDY, Make, Sweep, SweepJson, csv_rows
 
 FIVE = ("seed: [1, 2, 3]", "seed: [1, 2, 3, 4, 5]")
 
@@ -52,29 +50,20 @@ def test_shares_say_what_users_read() -> None:
     assert str(share(0, 0)) == "0 of 0 (95 %: -)"
 
 
-def made(make: Make) -> tuple[Table, Summary]:
+def judged_study(make: Make) -> tuple[Table, Summary]:
     """Flat ends overturn under records 4 and 5 at scale 1; record 3 fails at scale 0.5."""
-    layout = lay_out(make(STUDY, FIVE))
 
-    def answer(number: int) -> Stored:
-        at = place(layout, number)
-        record = int(str(at["record"]))
+    def answer(at: Place) -> Stored:
+        record = at["record"]
         if at["scale"] == 0.5 and record == 3:
-            return Stored("failed", "why", {})
-        falls = at[RHO] == 0 and at["scale"] == 1.0 and record >= 4
-        outcome = "overturned_rocking" if falls else "survived"
+            return BROKEN
         results = {"rotation_ratio": record / 10, "uplifts": 2.0, "max_base_shear": 1e6}
         results["min_column_force"] = record * 1e5
-        return stored(outcome, **results, residual_rotation=None)
+        falls = at[RHO] == 0 and at["scale"] == 1.0 and record >= 4
+        return fallen(falls, **results, residual_rotation=None)
 
-    table = table_of(make, answer, FIVE)
-    fixed = {
-        (system, request): np.array([4e6, 1.0, 1.0])
-        for system in range(6)
-        for request in layout.records
-        if request
-    }
-    return table, summary(table, fixed)
+    table = made(make, answer, FIVE).table
+    return table, summary(table, fixed_base(table.layout, [4e6, 1.0, 1.0]))
 
 
 def spread_of(result: Summary, row: int, name: str) -> tuple[float, ...]:
@@ -84,7 +73,7 @@ def spread_of(result: Summary, row: int, name: str) -> tuple[float, ...]:
 
 
 def test_every_system_at_every_intensity_has_a_row(study_of: Make) -> None:
-    _, result = made(study_of)
+    _, result = judged_study(study_of)
     assert result.keys == (ALPHA, RHO, "scale")
     assert (result.pooled, result.notes) == ((), ())
     assert [row.values[2] for row in result.rows] == [0.5, 1.0] * 6
@@ -95,7 +84,7 @@ def test_every_system_at_every_intensity_has_a_row(study_of: Make) -> None:
 
 
 def test_an_overturned_history_is_larger_than_any_demand(study_of: Make) -> None:
-    _, result = made(study_of)
+    _, result = judged_study(study_of)
     # 0.1, 0.2, 0.3, overturned, overturned: the third of five is the median.
     assert spread_of(result, 5, "rotation_ratio") == pytest.approx((0.3, math.inf, math.inf))
     # 0.1, 0.2, 0.4, 0.5 without the failed one; 84 % of four are more than three.
@@ -104,7 +93,7 @@ def test_an_overturned_history_is_larger_than_any_demand(study_of: Make) -> None
 
 
 def test_tables_show_median_fractile_and_worst(study_of: Make) -> None:
-    _, result = made(study_of)
+    _, result = judged_study(study_of)
     tables = [part for part in summary_tables(result) if isinstance(part, ShownTable)]
     cells = [cell for table in tables for row in table.rows for cell in row if "/" in cell]
     assert "0.300 / inf / inf" in cells
@@ -112,7 +101,7 @@ def test_tables_show_median_fractile_and_worst(study_of: Make) -> None:
 
 
 def test_an_overturned_history_is_less_than_any_least_force(study_of: Make) -> None:
-    _, result = made(study_of)
+    _, result = judged_study(study_of)
     # Overturned, overturned, 100, 200, 300 kN: the third of five is the median.
     name = "min_column_force"
     assert spread_of(result, 5, name) == pytest.approx((1e5, -math.inf, -math.inf))
@@ -130,7 +119,7 @@ def test_an_overturned_history_is_less_than_any_least_force(study_of: Make) -> N
 
 
 def test_the_reduction_is_against_the_fixed_base_at_the_same_scale(study_of: Make) -> None:
-    _, result = made(study_of)
+    _, result = judged_study(study_of)
     # `stored` gives every point the scale 1, so that the reference is 4 MN.
     name = "fixed_base_ratio"
     assert spread_of(result, 0, name) == pytest.approx((0.25, 0.25, 0.25))
@@ -173,7 +162,7 @@ def test_what_is_pooled_is_said(study_of: Make) -> None:
 def test_verdicts(
     study_of: Make, condition: Condition, exceeded: bool, beyond: int, fallen: int
 ) -> None:
-    table, result = made(study_of)
+    table, result = judged_study(study_of)
     (verdict,) = [
         found for found in judged(table, result, [condition]) if found.values == (0.10, 0, 1.0)
     ]
@@ -273,32 +262,22 @@ def test_columns_must_not_slide_where_their_friction_is_given(study_of: Make) ->
     ],
 )
 def test_a_study_is_judged(
-    workplace: Path,
-    sweep_json: Callable[..., dict[str, Any]],
-    limits: str,
-    options: tuple[str, ...],
-    code: int,
+    sweep_json: Callable[..., dict[str, Any]], limits: str, options: tuple[str, ...], code: int
 ) -> None:
-    (workplace / "base.yaml").write_text(BASE + f"limits: {limits}\n", encoding="utf-8")
-    document = sweep_json("study.yaml", *options, exit_code=code)
+    base = BASE + f"limits: {limits}\n"
+    document = sweep_json("study.yaml", *options, exit_code=code, base=base)
     assert (document["status"], document["exit_code"]) == ("ok", code)
     assert document["passed"] == (code == 0)
     assert any(row["exceeded"] for row in document["verdicts"]) == (code == 10)
-    with (workplace / "results/study/sweep/verdicts.csv").open(newline="") as file:
-        rows = list(csv.DictReader(file))
+    rows = csv_rows("verdicts.csv")
     assert len(rows) == len(document["verdicts"])
     assert {row["exceeded [-]"] for row in rows} <= {"true", "false"}
 
 
-def test_the_table_is_in_terminal_csv_and_json(
-    workplace: Path, sweep: Callable[..., Result], sweep_json: Callable[..., dict[str, Any]]
-) -> None:
+def test_the_table_is_in_terminal_csv_and_json(sweep: Sweep, sweep_json: SweepJson) -> None:
     document = sweep_json("study.yaml")
     text = sweep("study.yaml").stdout
-    with (workplace / "results/study/sweep/statistics.csv").open(newline="") as file:
-        rows = list(csv.DictReader(file))
-    with (workplace / "results/study/sweep/points.csv").open(newline="") as file:
-        points = list(csv.DictReader(file))
+    rows, points = csv_rows("statistics.csv"), csv_rows("points.csv")
     assert len(rows) == len(document["statistics"]) == 12
     for row, shown in zip(rows, document["statistics"], strict=True):
         system = [
@@ -332,19 +311,16 @@ def test_the_table_is_in_terminal_csv_and_json(
     ],
 )
 def test_results_that_no_system_has_are_refused_before_anything_runs(
-    workplace: Path, sweep: Callable[..., Result], addition: str, message: str
+    workplace: Path, sweep: Sweep, addition: str, message: str
 ) -> None:
-    heights = "  storey_height: 3.0\n"
-    (workplace / "base.yaml").write_text(BASE.replace(heights, ""), encoding="utf-8")
-    (workplace / "study.yaml").write_text(STUDY + addition, encoding="utf-8")
+    base = BASE.replace("  storey_height: 3.0\n", "")
     for options in (("--dry-run",), ()):
-        result = sweep("study.yaml", *options)
+        result = sweep("study.yaml", *options, base=base, study=STUDY + addition)
         assert result.exit_code == 3
         assert message in result.stderr
         assert "storey_height" in result.stderr
     assert not (workplace / "results").exists()
-    (workplace / "study.yaml").write_text(STUDY, encoding="utf-8")
-    result = sweep("study.yaml", "--set", "limits.friction_ratio=1")
+    result = sweep("study.yaml", "--set", "limits.friction_ratio=1", study=STUDY)
     assert result.exit_code == 3
     assert "podium.friction" in result.stderr
     result = sweep("study.yaml", "--fail-on", "drift_ratio=0.1")
@@ -354,11 +330,11 @@ def test_results_that_no_system_has_are_refused_before_anything_runs(
 
 def test_points_with_unusual_factors_are_counted(study_of: Make) -> None:
     """Half of 36 points at 0.1 and half at 5: 5 is nearer to 1, in ratio."""
-    table = table_of(study_of, lambda _: stored(), ("scale: [0.5, 1.0]", "scale: [0.1, 5.0]"))
-    (note,) = scale_notes(table)
+    unusual = ("scale: [0.5, 1.0]", "scale: [0.1, 5.0]")
+    (note,) = scale_notes(made(study_of, lambda _: stored(), unusual).table)
     assert note.startswith("36 of 36 points scale their record beyond the usual 0.25 to 4")
     assert note.endswith("by 0.1")
-    assert not list(scale_notes(table_of(study_of, lambda _: stored())))
+    assert not list(scale_notes(made(study_of, lambda _: stored()).table))
 
 
 def test_no_report_takes_the_place_of_the_statistics(study_of: Make) -> None:

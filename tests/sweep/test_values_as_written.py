@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-import csv
-from collections.abc import Callable
 from copy import copy
 from pathlib import Path
 
 import pytest
-from click.testing import Result
 
 from rpscli.report.study.labels import key_cells, key_columns, label
 from rpscli.report.table import records
 from rpscli.sweep.points import lay_out
 from rpscli.units import Written, in_si
-from sweep.small_studies import STUDY, Make
+from sweep.small_studies import STUDY, Make, Sweep, csv_rows
 
 MEASURED = (
     STUDY.replace("scale: [0.5, 1.0]", "scale: {measure: PGA, values: [0.2 g, 0.6 g]}")
@@ -24,28 +21,21 @@ MEASURED = (
 )
 
 
-def measured(key: str, values: str) -> str:
-    return MEASURED.replace("{}: [{}]", f"{key}: [{values}]")
-
-
 @pytest.mark.parametrize("columns", [60, 80, 100, 120])
 def test_a_study_fits_the_terminal_and_has_what_was_typed(
-    workplace: Path, sweep: Callable[..., Result], monkeypatch: pytest.MonkeyPatch, columns: int
+    sweep: Sweep, monkeypatch: pytest.MonkeyPatch, columns: int
 ) -> None:
-    text = measured("superstructure.storey_mass", "200 t, 300 t")
-    (workplace / "study.yaml").write_text(text, encoding="utf-8")
+    text = MEASURED.replace("{}: [{}]", "superstructure.storey_mass: [200 t, 300 t]")
     monkeypatch.setenv("COLUMNS", str(columns))
-    result = sweep("study.yaml", "--all")
+    result = sweep("study.yaml", "--all", study=text)
     assert result.exit_code == 10, result.stderr
     lines = [line.rstrip() for line in result.stdout.splitlines()]
     assert max(map(len, lines)) <= columns
     words = " ".join(lines)
     assert {"0.6 g", "200 t"} == {text for text in ("0.6 g", "200 t") if text in words}
     assert not [text for text in ("1.96133", "5.88399", "200000") if text in words]
-    with (workplace / "results/study/sweep/verdicts.csv").open(encoding="utf-8") as file:
-        rows = list(csv.DictReader(file))
     # 0.2 and 0.6 of standard gravity, 9.80665 m/s2 by definition.
-    assert {row["PGA [m/s2]"] for row in rows} == {"1.96133", "5.88399"}
+    assert {row["PGA [m/s2]"] for row in csv_rows("verdicts.csv")} == {"1.96133", "5.88399"}
 
 
 def test_columns_of_keys_hold_si_and_show_what_was_typed() -> None:
