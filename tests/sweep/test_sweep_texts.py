@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 import yaml
 
@@ -18,6 +19,8 @@ from rpscli.report.study.labels import labels
 from rpscli.report.study.shown import of_first_system
 from rpscli.studies import load_study
 from rpscli.sweep.run import Progress
+from rpscli.sweep.statistics.grouping import statistic_words
+from rpscli.sweep.table import _cell, array
 
 
 def progress(computed: int, failed: int = 0, seconds: float = 10.0) -> Progress:
@@ -96,6 +99,14 @@ def test_a_compilation_stands_in_the_bar_of_a_study_and_says_how_long_it_takes(
 )
 def test_labels_use_the_letters_of_the_paper(key: str, value: object, text: str) -> None:
     assert labels([key], [value]) == text
+
+
+def test_statistics_cells_and_columns() -> None:
+    assert statistic_words("mean") == "mean of survivors"
+    assert statistic_words(0.84) == "84 % fractile"
+    assert [_cell(0.1, "-"), _cell([1, 2], "-"), _cell("500 mm", "m")] == ["0.1", "[1, 2]", "0.5"]
+    np.testing.assert_equal(array([1, None, "inf"]), [1.0, np.nan, np.inf])
+    assert array([0.5, "critical"]).tolist() == [0.5, "critical"]
 
 
 def test_units_come_from_the_case_format() -> None:
