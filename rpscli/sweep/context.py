@@ -278,8 +278,8 @@ def resolved(plan: Plan, values: Sequence[Any]) -> Case:
 class StudyContext:
     """Systems and ground motions of a plan, shared by all batches of a process."""
 
-    def __init__(self, plan: Plan, records: RecordCache | None = None) -> None:
-        self.plan, self.records = plan, records or RecordCache()
+    def __init__(self, plan: Plan) -> None:
+        self.plan, self.records = plan, RecordCache()
         self._systems: Recent[int, System] = Recent(SYSTEMS_KEPT)
 
     def system(self, number: int, values: Sequence[Any], known: System | None = None) -> System:

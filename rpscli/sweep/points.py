@@ -26,7 +26,6 @@ from rpscli.sweep.context import (
     Array,
     Plan,
     Point,
-    RecordCache,
     RecordRequest,
     StudyContext,
     System,
@@ -211,17 +210,13 @@ class StudyPoints:
             return point.scale
 
 
-def lay_out(
-    study: Study, watched: Watched = iter, records: RecordCache | None = None
-) -> StudyPoints:
+def lay_out(study: Study, watched: Watched = iter) -> StudyPoints:
     """The points of a study.
 
     Parameters
     ----------
     watched
         Goes through the numbers of its systems, all of which are examined.
-    records
-        Motions that may be known already; read when they are needed by default.
     """
     file, scale = study.file, study.scale
     drawn = sample(file.sample) if file.sample else np.empty((1, 0))
@@ -236,7 +231,7 @@ def lay_out(
         whole=file.whole_histories,
         solver=solver_version(),
     )
-    context, members = StudyContext(plan, records), changes(file.perturb)
+    context, members = StudyContext(plan), changes(file.perturb)
     properties = examined(study, context, drawn, members, watched)
     values = scale.values if isinstance(scale, MeasureScale) else scale
     return StudyPoints(
