@@ -103,6 +103,7 @@ def find_design(
     look: Look,
     compute: Callable[[str, Study, Store], StudyResult],
     *,
+    overrides: tuple[str, ...] = (),
     fresh: bool = False,
 ) -> Design:
     """Search, judge what is best, and collect all files, with the points in a store of the folder.
@@ -116,7 +117,7 @@ def find_design(
 
         def computed(words: str, layout: StudyPoints) -> StudyResult:
             layout.context.records = records
-            return compute(words, Study(layout), store)
+            return compute(words, Study(layout, overrides), store)
 
         def evaluated(layout: StudyPoints) -> Any:
             nonlocal rounds

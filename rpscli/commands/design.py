@@ -59,7 +59,7 @@ def command(
     if done is None:
         return
     write(done.folder, terminal)
-    document = document_of(done, overrides)
+    document = document_of(done)
     terminal.warn_first(document["warnings"], "with --json")
     terminal.result(document, tables_of(done))
     leave(done.error)
@@ -94,17 +94,10 @@ def designed(
             terminal.note(words)
         return computed("design", study, store, chosen, terminal)
 
-    return find_design(search, folder, look, told, fresh=chosen.fresh)
+    return find_design(search, folder, look, told, overrides=overrides, fresh=chosen.fresh)
 
 
-def all_designs(done: Design, overrides: tuple[str, ...]) -> Study:
-    """All valid designs as a study."""
-    from rpscli.studies import Study
-
-    return Study(done.run.layout, overrides)
-
-
-def document_of(done: Design, overrides: tuple[str, ...]) -> dict[str, Any]:
+def document_of(done: Design) -> dict[str, Any]:
     """The answer in JSON."""
     layout = done.run.layout
     document = {
@@ -113,7 +106,7 @@ def document_of(done: Design, overrides: tuple[str, ...]) -> dict[str, Any]:
         "note": direction_note(layout.pairs) or None,
         "points": {"total": len(done.run.table), "failed": len(done.found.failures)},
         **done.document,
-        "warnings": [*done.notes, *all_designs(done, overrides).warnings],
+        "warnings": [*done.notes, *done.run.study.warnings],
         "files": [str(done.run.results.store.path), *done.folder.files],
     }
     return concluded(document, done.error)

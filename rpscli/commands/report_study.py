@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from rpscli.case.case import Case
-from rpscli.commands.design import all_designs, designed, document_of, tables_of
+from rpscli.commands.design import designed, document_of, tables_of
 from rpscli.commands.inputs import RESULTS
 from rpscli.commands.report_case import Earlier, PageDone, ends, subject_words
 from rpscli.commands.shell.options import CaseRequest, OutputRequest
@@ -177,7 +177,7 @@ def design_page(
     output, look = OutputRequest(folder, force=folder is not None), page_look(look)
     done = designed(request.source, request.overrides, SweepChoices(), output, look, terminal)
     assert done is not None, "it is no dry run"
-    document, study = document_of(done, request.overrides), all_designs(done, request.overrides)
+    document, study = document_of(done), done.run.study
     terminal.warn(notes := document["warnings"])
     at = done.judged.layout
     case = resolved(at.plan, at[0].values)
