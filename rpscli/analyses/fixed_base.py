@@ -173,19 +173,8 @@ def _grown(k: float, xi: float) -> Array:
 
 
 def oscillator(ground: Array, dt: float, omega: float, xi: float) -> tuple[Array, Array]:
-    """Exact displacement and velocity of an oscillator from rest, the ground linear in each step.
+    """Exact displacement and velocity from rest, the ground (samples,) [m/s2] linear in each step.
 
-    Parameters
-    ----------
-    ground
-        Acceleration (samples,) [m/s2].
-    dt
-        Step [s].
-    omega, xi
-        Frequency [rad/s] and damping ratio.
-
-    Notes
-    -----
     N. C. Nigam and P. C. Jennings, BSSA 59 (1969) 909-922: the state obeys a recurrence, each of
     its components alone one of second order, which is a digital filter.
     """

@@ -211,13 +211,7 @@ class StudyPoints:
 
 
 def lay_out(study: Study, watched: Watched = iter) -> StudyPoints:
-    """The points of a study.
-
-    Parameters
-    ----------
-    watched
-        Goes through the numbers of its systems, all of which are examined.
-    """
+    """The points of a study, whose systems are all examined."""
     file, scale = study.file, study.scale
     drawn = sample(file.sample) if file.sample else np.empty((1, 0))
     varied = [key for axis in study.axes for key in axis.keys]

@@ -149,19 +149,8 @@ def examined(
 ) -> tuple[SystemProperties, ...]:
     """Properties of all systems; the first ones are kept in the context.
 
-    Parameters
-    ----------
-    drawn
-        The sample (size, keys), which runs faster than the axes; (1, 0) if nothing is sampled.
-    members
-        Of the perturbation.
-    watched
-        Goes through the numbers of the systems.
-
-    Raises
-    ------
-    CaseError
-        If one is no valid case, at the places of its values. Unknown keys are among them.
+    The sample `drawn` (size, keys), (1, 0) if there is none, runs faster than the axes. A system
+    that is no valid case, perhaps by an unknown key, is refused at the places of its values.
     """
     plan = context.plan
     properties: list[SystemProperties] = []

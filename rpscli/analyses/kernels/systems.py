@@ -41,13 +41,7 @@ def stacked_systems(systems: Sequence[tuple[PodiumStructure, TimeHistorySettings
 
 
 def paired_systems(systems: Sequence[tuple[PodiumStructure, TimeHistorySettings]]) -> Record:
-    """Of each structure the system in x and behind it that in y, (2 S,).
-
-    Raises
-    ------
-    ValueError
-        If a structure can be followed in one plane only.
-    """
+    """Of each structure the system in x and behind it that in y, (2 S,); refuse planar ones."""
     both = []
     for structure, settings in systems:
         if why := structure.planar_only:
@@ -136,13 +130,7 @@ def fill_devices(record: Record, structure: PodiumStructure) -> None:
 def fill_settings(
     record: Record, structure: PodiumStructure, settings: TimeHistorySettings
 ) -> None:
-    """How the motion is followed.
-
-    Raises
-    ------
-    ValueError
-        If the structure would start beyond the overturning limit, or the model ends before it.
-    """
+    """Limits and steps; refuse a start beyond the overturning limit, or a model that ends there."""
     critical, end = structure.critical_rotation, structure.bearing.largest_rotation
     limit = settings.overturning_limit * critical
     if limit > end:
