@@ -49,7 +49,7 @@ class Design:
 
     @property
     def keeps_limits(self) -> bool | None:
-        """Whether the best design does so in the validation; None without one."""
+        """True if the best design does so in the validation; None without one."""
         if self.validated is None:
             return None
         verdicts = self.validated.judgements
@@ -72,7 +72,7 @@ class Design:
 
     @property
     def notes(self) -> Iterator[str]:
-        """What the user should know about the answer."""
+        """Remarks on the answer."""
         yield from answer_notes(self.answer, self.search.faults)
         if self.keeps_limits is False:
             yield "the best design does not keep its limits under the records of `validate`"

@@ -84,7 +84,7 @@ class OutputError(RpsError):
 def refused_by_system(
     name: object, fault: type[RpsError], verb: str, remedy: str
 ) -> Iterator[None]:
-    """What the system refuses, as an error of the program: no permission, a name too long."""
+    """Refusals of the system as errors of the program: no permission, a name too long."""
     try:
         yield
     except OSError as error:
@@ -181,7 +181,7 @@ def stem_of(path: PurePath) -> str:
 
 
 def is_number(value: object) -> bool:
-    """Whether a value is a finite real number.
+    """True of finite real numbers.
 
     >>> is_number(0.5), is_number("x"), is_number(math.nan), is_number(True)
     (True, False, False, False)

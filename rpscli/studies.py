@@ -188,12 +188,12 @@ class Study(Shown):
 
     @property
     def warnings(self) -> list[str]:
-        """What is to be said of its file, and what is unusual about its systems, each kind once."""
+        """Remarks on its file, and doubts about its systems, each kind once."""
         doubts = doubts_of_many([properties.doubts for properties in self.layout.properties])
         return [*self.layout.study.notes, *doubts]
 
     def facts(self) -> dict[str, Any]:
-        """How many of what."""
+        """Counts of points, systems, records and scales."""
         layout = self.layout
         return {
             "title": self.title,
@@ -393,12 +393,12 @@ class StudyResult(Shown):
 
     @property
     def failures(self) -> dict[int, str]:
-        """Why points failed, by their places in the columns."""
+        """Reasons of failed points, by their places in the columns."""
         return self.table.messages
 
     @property
     def outcomes(self) -> dict[str, int]:
-        """How many points ended in which way, the commonest first."""
+        """Counts of the points by their endings, the commonest first."""
         return dict(Counter(self.table.outcomes.tolist()).most_common())
 
     def to_dataframe(self) -> Any:
@@ -448,7 +448,7 @@ class StudyResult(Shown):
 
     @property
     def passed(self) -> bool:
-        """Whether no limit is exceeded and no point failed."""
+        """True if no limit is exceeded and no point failed."""
         return not self.failures and not any(verdict.exceeded for verdict in self.judgements)
 
     def _of_histories(self) -> Summary:
@@ -458,11 +458,11 @@ class StudyResult(Shown):
 
     @property
     def notes(self) -> list[str]:
-        """What must be read before statistics and reports are used: what was pooled or left out."""
+        """Warnings about statistics and reports: what was pooled or left out."""
         return self.collected(Look(())).notes
 
     def report(self, name: str) -> Found:
-        """What a report finds that the study asks for, by the name of its files.
+        """Contents of a report that the study asks for, by the name of its files.
 
         Its `tables` are the columns of its CSV files, by what follows the name.
         """

@@ -35,7 +35,7 @@ class AxialForces:
 
 
 def no_bound(name: str, structure: PodiumStructure) -> str:
-    """Why a result of both components is no bound of what a column carries; empty if it is one."""
+    """The reason why a result of both components bounds no force of a column; empty if it does."""
     if name not in ("max_column_shear", "max_column_force", "min_column_force"):
         return ""
     axial = name != "max_column_shear"

@@ -162,7 +162,7 @@ def _follow(
 
 @lru_cache(maxsize=4096)  # records of a study share their time step
 def _grown(k: float, xi: float) -> Array:
-    """What a step makes of displacement, velocity, ground and its slope, (4, 4)."""
+    """Displacement, velocity, ground and its slope after a step, from those before, (4, 4)."""
     from scipy.linalg import expm
 
     # The step is the unit of time: formulae would lose all digits where k is small.

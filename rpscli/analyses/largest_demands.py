@@ -256,7 +256,7 @@ class Demand(Shown):
 
     @property
     def failure(self) -> str | None:
-        """Why the history could not be carried to its end; None if it could."""
+        """The reason why the history could not be carried to its end; None if it could."""
         return failure_text(self.history)
 
     @property

@@ -109,12 +109,12 @@ class Bearing:
 
     @property
     def is_flat(self) -> bool:
-        """Whether the ends are flat: the column rocks from the start and never rolls."""
+        """True of flat ends: the column rocks from the start and never rolls."""
         return self.curvature_ratio == 0.0 or self.wedge_slenderness == self.slenderness
 
     @property
     def is_spherical(self) -> bool:
-        """Whether an arc takes all of the ends: the column rolls from rest, without impacts."""
+        """True if an arc takes all of the ends: the column rolls from rest, without impacts."""
         return self.slenderness == 0.0
 
     @property
@@ -211,7 +211,7 @@ class Bearing:
 
     @property
     def overturns_rolling(self) -> bool:
-        """Whether theta_cr is reached before the contact arrives at the arc's end."""
+        """True if theta_cr is reached before the contact arrives at the arc's end."""
         return self.critical_rotation < self.beta
 
     @property

@@ -64,7 +64,7 @@ class ImpactLaw:
 
     @property
     def floors_jump(self) -> bool:
-        """Whether the floors take part in the velocity jump of the cap beam."""
+        """True if the floors take part in the velocity jump of the cap beam."""
         return self.kind != "flexible"
 
     def ratio(self, bearing: Bearing, gamma: float, eta: float) -> float:

@@ -153,7 +153,7 @@ class PodiumStructure(Shown):
 
     @property
     def planar_only(self) -> str:
-        """Why both horizontal components cannot act at once; empty if they can."""
+        """The reason why both horizontal components cannot act at once; empty if they can."""
         jumps = self.impact_law.floors_jump and self.superstructure is not None
         if jumps and not self.passes_smoothly:
             return (
@@ -407,7 +407,7 @@ class Device(ABC):
     """
 
     in_each_column: ClassVar[bool] = False
-    """Whether each column has one; its force and stroke are those of one then."""
+    """True if each column has one; its force and stroke are those of one then."""
 
     @property
     @abstractmethod

@@ -17,7 +17,7 @@ POINTS = 400
 
 
 class Return(NamedTuple):
-    """Whether the storey comes back from rest at a rotation, and against how much friction."""
+    """Return of the storey from rest at a rotation, and the friction against it."""
 
     rotation: float
     """From which it starts at rest [rad]."""
@@ -28,7 +28,7 @@ class Return(NamedTuple):
     friction: float
     """Largest friction on the way [N]."""
     recentres: bool
-    """Whether it comes back to full contact."""
+    """True if it comes back to full contact."""
 
 
 def restoring_force(structure: PodiumStructure, rotation: Array, farthest: float = 0.0) -> Array:
@@ -113,7 +113,7 @@ def largest_recentring_friction(structure: PodiumStructure, rotation: float) -> 
 
 
 def recentres(structure: PodiumStructure, rotation: float) -> bool:
-    """Whether the structure comes back to full contact from rest, slowly.
+    """True if the structure comes back to full contact from rest, slowly.
 
     Parameters
     ----------
@@ -127,7 +127,7 @@ def recentres(structure: PodiumStructure, rotation: float) -> bool:
 
 
 def returns(structure: PodiumStructure) -> list[Return]:
-    """Whether the storey re-centres from some rotations; empty without friction."""
+    """Returns of the storey from some rotations; empty without friction."""
     rotations = [part * structure.critical_rotation for part in PARTS]
     return [
         Return(

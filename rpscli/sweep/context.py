@@ -1,4 +1,4 @@
-"""What a point of a study is, and what points share: systems and motions, made or read once.
+"""Points of a study, and what they share: systems and motions, made or read once.
 
 Together with `evaluation` this decides about stored numbers.
 """
@@ -46,7 +46,7 @@ DECIDING = ("superstructure", "podium", "analysis")
 """Sections of a resolved case on which results depend besides the record."""
 
 PEAKS: tuple[Measure, ...] = ("PGA", "PGV")
-"""What the table of a study tells of each scaled motion."""
+"""Measures of each scaled motion in the table of a study."""
 
 SOLVING = (
     *("constants.py", "units.py", "registry.py", "physics", "model", "records", "analyses", "case"),
@@ -95,7 +95,7 @@ class RecordRequest(NamedTuple):
 
     @property
     def is_pair(self) -> bool:
-        """Whether both horizontal components act."""
+        """True if both horizontal components act."""
         return self.y is not None or Source.parse(self.source).both
 
 
@@ -123,24 +123,24 @@ class Plan:
     """Everything besides the points that a process needs to evaluate them."""
 
     analysis: Analysis
-    """What is done at every point."""
+    """Analysis of every point."""
     keys: tuple[str, ...]
     """Dotted keys of the values of a point."""
     base: dict[str, Any]
     """The case at the base, as plain values."""
     base_name: str
     base_folder: str
-    """Where it comes from, for messages and relative file names."""
+    """Its file and folder, for messages and relative file names."""
     measure: MeasureScale | None
-    """What the records are scaled to, if not by factors."""
+    """Measure that the records are scaled to, if not by factors."""
     whole: bool
-    """Whether histories are followed with all their samples."""
+    """True if histories are followed with all their samples."""
     solver: str
     """Version of the solver that all results must come from."""
 
     @property
     def of(self) -> Of:
-        """What measures of pairs are of."""
+        """Definition of measures of pairs."""
         return (self.measure and self.measure.of) or USUAL
 
 

@@ -52,7 +52,7 @@ class Requirement(NamedTuple):
     measure: str = "scale"
     level: float | None = None
     rates: tuple[float, ...] | None = None
-    """How often a year the structure overturns for a share of one at each intensity [1/year]."""
+    """Annual rate of overturning for a share of one at each intensity [1/year]."""
 
     @property
     def result(self) -> str:
@@ -61,7 +61,7 @@ class Requirement(NamedTuple):
 
     @property
     def bound(self) -> float:
-        """What the value must keep: an admissible share of an event, or a limit."""
+        """The most that the value may be: an admissible share of an event, or a limit."""
         return self.condition.share if self.condition.name in EVENTS else self.condition.limit
 
     def judged(self, demands: Array, weights: Array) -> tuple[Array, Flags, Array]:
@@ -95,7 +95,7 @@ def _share(demands: Array, weights: Array, event: Condition) -> Array:
 
 
 def requirements_of(task: DesignTask, layout: StudyPoints) -> tuple[Requirement, ...]:
-    """What is required, in the order of verdicts; refuse a design that requires nothing."""
+    """Requirements in the order of verdicts; refuse a design that requires nothing."""
     several = len(layout.scales) > 1
     (measure,) = shown_keys(layout, (INTENSITY,))
     limits = layout.properties[0].limits

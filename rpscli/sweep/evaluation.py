@@ -41,7 +41,7 @@ MISSING = ""
 """Outcome of a point that has not been computed."""
 
 KEPT = (*rq.HISTORY, *rq.IMPACTS, rq.STOREY_SHEARS)
-"""What a study keeps of a history besides its outcome, its scale and its intensities."""
+"""Results of a history that a study keeps besides its outcome, its scale and its intensities."""
 
 Named = dict[str, ResultQuantity]
 """Quantities by their dotted paths in the results of a point."""
@@ -85,7 +85,7 @@ def quantity(analysis: Analysis, path: str) -> ResultQuantity | None:
 
 
 class PointResults(NamedTuple):
-    """What became of some points, of which each has a row.
+    """Outcomes and results of some points, of which each has a row.
 
     `outcomes` are (points,) words; `messages` say by the number of the row why points failed;
     `columns` are (points, ...) under the names of results, NaN where a point has none.
@@ -145,7 +145,7 @@ def split(path: str) -> tuple[str, tuple[int, ...]]:
 
 
 def at_path(columns: Mapping[str, Array], path: str) -> Array | None:
-    """What the points have at a dotted path; None where none can have it."""
+    """Values of the points at a dotted path; None where none can have it."""
     name, indices = split(path)
     column = columns.get(name)
     if column is None or len(indices) > column.ndim - 1:
@@ -267,7 +267,7 @@ def _pushover(structure: PodiumStructure) -> dict[str, Any]:
 
 
 def _attempt(work: Callable[..., Result], *arguments: Any) -> Result | str:
-    """What the work gives, or a text that says why it gives nothing."""
+    """The result of the work, or a text that says why there is none."""
     try:
         return work(*arguments)
     except RpsError as error:

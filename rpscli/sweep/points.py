@@ -42,7 +42,7 @@ class StudyPoints:
     """Systems, records, scales and perturbations; the last of them runs fastest."""
 
     study: Study
-    """What is laid out."""
+    """The study that is laid out."""
     context: StudyContext
     """Its plan, its systems and its motions."""
     properties: tuple[SystemProperties, ...]
@@ -123,7 +123,7 @@ class StudyPoints:
 
     @cached_property
     def identifying(self) -> dict[str, tuple[int, Sequence[Any]]]:
-        """What tells points apart: of each column which of `places`, and the values there."""
+        """Columns that tell points apart: of each which of `places`, and the values there."""
         # `scale` is missing: it is a result where records are scaled to a measure.
         of_systems = zip(*(properties.values for properties in self.properties), strict=True)
         columns: dict[str, tuple[int, Sequence[Any]]] = {
@@ -142,7 +142,7 @@ class StudyPoints:
         return columns
 
     def described(self, number: int) -> dict[str, Any]:
-        """What tells a point from the others: columns of `points.csv` before the results."""
+        """Values that tell a point from the others: columns of `points.csv` before the results."""
         places = [place[number] for place in self.places]
         return {name: values[places[of]] for name, (of, values) in self.identifying.items()}
 
@@ -159,12 +159,12 @@ class StudyPoints:
 
     @property
     def independent(self) -> By:
-        """What statistics draw and count as a whole."""
+        """Recordings or events, which statistics draw and count as a whole."""
         return self.study.file.independent
 
     @cached_property
     def alone(self) -> bool:
-        """Whether all points are under a single record, or none."""
+        """True if all points are under a single record, or none."""
         return len(set(self.identifying.get("record", (0, ()))[1])) < 2
 
     @cached_property
@@ -182,12 +182,12 @@ class StudyPoints:
 
     @cached_property
     def of(self) -> Of | None:
-        """What measures of pairs are of; None where no record is measured as a pair."""
+        """Definition of measures of pairs; None where no record is measured as a pair."""
         return self.plan.of if any(record.pair for record in self.requests) else None
 
     @property
     def scaled_to(self) -> str:
-        """What the records are scaled to, in words; empty if to nothing."""
+        """Measure that the records are scaled to, in words; empty without one."""
         if (measure := self.plan.measure) is None:
             return ""
         name, unit = measure_label(measure.measure, self.of), MEASURES[measure.measure].unit

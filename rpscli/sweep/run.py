@@ -66,7 +66,7 @@ def _motion_digest(layout: StudyPoints, point: Point) -> bytes:
 
 @dataclass(frozen=True, eq=False)
 class Start:
-    """Where a run begins."""
+    """State of a study at the beginning of a run."""
 
     keys: list[bytes]
     """Of all points, in the order of the study."""
@@ -78,9 +78,9 @@ class Start:
     """Stored points that are no longer in the study. They stay in the file, for the case
     that the study is changed back."""
     notes: tuple[str, ...]
-    """What changed since the last run, for the user."""
+    """Changes since the last run, for the user."""
     facts: dict[str, str]
-    """What the store is to know of the study."""
+    """Facts of the study for the store."""
 
 
 def start(layout: StudyPoints, store: Store, *, retry_failed: bool = False) -> Start:
@@ -124,7 +124,7 @@ def start(layout: StudyPoints, store: Store, *, retry_failed: bool = False) -> S
 
 
 def _differences(old: Any, new: Any, path: str = "") -> Iterator[str]:
-    """Where two documents differ, in words."""
+    """Differences of two documents, in words."""
     if isinstance(old, Mapping) and isinstance(new, Mapping):
         for key in dict.fromkeys((*old, *new)):
             inner = f"{path}.{key}" if path else str(key)
@@ -347,7 +347,7 @@ def compute(digest: str, plan: Plan, points: list[Point]) -> PointResults:
 
 @dataclass(frozen=True)
 class Progress:
-    """How far a study is."""
+    """Progress of a study: points, and the time that they took."""
 
     total: int
     kept: int

@@ -28,7 +28,7 @@ NAMED = 5
 
 
 def step_notes(table: Table) -> Iterator[str]:
-    """What to know of points that change with steps of half the length; nothing if none does."""
+    """Remarks on points that change with steps of half the length; nothing if none does."""
     layout, known = table.layout, np.flatnonzero(~table.failed)
     some = known[:: max(-(-len(known) // MOST), 1)].tolist()
     requests = [layout.context.history(layout[number]) for number in some]
@@ -58,7 +58,7 @@ def step_notes(table: Table) -> Iterator[str]:
 
 
 def _changes(table: Table, number: int, after: Demand) -> str:
-    """What shorter steps change of a point, in words; empty if nothing."""
+    """Changes of a point with shorter steps, in words; empty if there are none."""
     if (outcome := table.outcomes[number]) != after.outcome:
         return f"{outcome} or {after.outcome}".replace("_", " ")
     parts = []

@@ -133,7 +133,7 @@ class Store:
         self._db.execute("COMMIT")
 
     def _file(self) -> tuple[int, int] | None:
-        """What tells the file from others of its name; None if there is none."""
+        """Identity of the file among others of its name; None if there is none."""
         try:
             status = self.path.stat()
         except OSError:
@@ -174,7 +174,7 @@ class Store:
                 yield json.loads(fields[1]), fields[2]
 
     def facts(self) -> dict[str, str]:
-        """What was noted about the study."""
+        """Facts that were noted about the study."""
         return {name: text for head, _ in self._entries(FACTS) for name, text in head.items()}
 
     def note(self, **facts: str) -> None:

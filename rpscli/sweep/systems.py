@@ -62,7 +62,7 @@ def unit_cube(section: SampleSection, dimensions: int) -> Array:
 
 
 def balance_note(section: SampleSection) -> str | None:
-    """What the user should know about the size of a Sobol sample."""
+    """Remark on the size of a Sobol sample; None if it is even."""
     size = section.size
     if section.method != "sobol" or size & (size - 1) == 0:
         return None
@@ -116,7 +116,7 @@ def changes(section: PerturbSection | None) -> tuple[Change, ...]:
 
 
 class SystemProperties(NamedTuple):
-    """What the layout of points and statistics must know of a system, SI units.
+    """Properties of a system for the layout of points and statistics, SI units.
 
     `values` are those of the varied keys; `period` is T1 on a fixed base, `frequency_parameter`
     that of the rigid frame, p_hat; `building` is a digest of the superstructure, empty without one;
@@ -263,7 +263,7 @@ def lacking(study: Study, case: Case) -> frozenset[str]:
 
 
 def needs_of(name: str, which: str = "not every") -> str:
-    """What a study must have for a result, in words."""
+    """Needs of a result in a study, in words."""
     needs = {q.name: NEEDS.get(q.needs, "") for q in (*HISTORY, *SAMPLED)}[name]
     if name in {quantity.name for quantity in SAMPLED}:
         alike = f", and in all systems {needs}" if needs else ""
@@ -292,7 +292,7 @@ HAS: dict[str, Callable[[PodiumStructure], bool]] = {
     "stop": _device_with("max_stop_force"),
     "tendon": _device_with("lost_prestress"),
 }
-"""Whether a structure has what a result needs, by the names of `NEEDS`."""
+"""True of structures that have what a result needs, by the names of `NEEDS`."""
 
 
 def _placed(
@@ -330,7 +330,7 @@ def _refuse_restitution(study: Study, case: Case, members: Sequence[Change]) -> 
 
 
 def _refuse_missing(study: Study, context: StudyContext, case: Case) -> None:
-    """What a point needs besides a valid case."""
+    """Refuse a case that lacks what a point needs besides."""
     if (plan := context.plan).analysis != "timehistory":
         return
     if not study.sources and case.record is None:

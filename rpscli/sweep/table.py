@@ -57,7 +57,7 @@ class Outcomes(Frozen):
     clusters: Indices
     """(points,) numbers of what is independent."""
     independent: By
-    """What that is."""
+    """Kind of what is independent."""
 
     def __len__(self) -> int:
         return len(self.outcomes)
@@ -102,7 +102,7 @@ class Table(Outcomes):
     scale: Array
     """(points,) factors on the records; NaN where it is not known."""
     messages: dict[int, str]
-    """Why points failed, by their number."""
+    """Reasons of failed points, by their number."""
     storey_shears: Array
     """(points, most storeys) largest storey shears from the bottom [N], NaN above the roof."""
 
@@ -331,7 +331,7 @@ class StudyResults:
         return self.table.layout.context
 
     def stored(self, names: Iterable[str]) -> PointResults:
-        """What is stored of each point by name; elements of lists by their index."""
+        """Stored results of each point by name; elements of lists by their index."""
         with self.store:
             return self.store.results(self.keys, names)
 

@@ -1,4 +1,4 @@
-"""Whether a kernel has to be compiled, and who wants to know before it happens."""
+"""Compilation of kernels: if it is needed, and listeners that are told before it begins."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def announce_to(listener: Listener) -> None:
 
 
 def is_ready(ways: int, lanes: int) -> bool:
-    """Whether the kernel was compiled before, so that calling it starts at once."""
+    """True if the kernel was compiled before, so that calling it starts at once."""
     from rpscli.physics.compile import is_compiled
 
     name = KERNELS[ways, lanes]

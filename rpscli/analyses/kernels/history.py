@@ -68,7 +68,7 @@ def run_of(
     events: int = 0,
     finer: int = 1,
 ) -> Run:
-    """What the kernel needs, with room for results, and rows and events of the first history.
+    """Input of the kernel, with room for results, and rows and events of the first history.
 
     With `pairs` all motions have two horizontal components, and systems are `paired_systems`.
     """
@@ -153,7 +153,7 @@ def longest_history(
 
 
 def numbers_of_a_sample(structure: PodiumStructure) -> int:
-    """What is known at each sample of a history with everything that follows from it."""
+    """Count of the numbers at each sample of a history and all that follows from it."""
     # Of a floor u, u', u'', drift and shear, and u, u'' on a fixed base; of the podium time,
     # ground, u_b, v_b, moment, four forces of all columns and of one, and what is stored.
     return 7 * structure.storeys + len(SAMPLE) + 14 + 4 * len(structure.devices)

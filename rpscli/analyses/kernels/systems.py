@@ -185,9 +185,9 @@ LOSS = 1.06e-5
 """A step of angle z takes this times z^8 from a vibration's energy: of the rule of order 6."""
 
 MOST_LOST = 5e-6
-"""What steps may take from the energy of the fastest vibration, which has `USUAL_SHARE` of all at
-most. It shortens the steps of buildings with less than some 7 % of damping in their last mode, of
-one storey, whose only mode may have all energy, with less than some 30 %."""
+"""Part of its energy that steps may take from the fastest vibration, which has `USUAL_SHARE` of all
+at most. It shortens the steps of buildings with less than some 7 % of damping in their last mode,
+of one storey, whose only mode may have all energy, with less than some 30 %."""
 
 USUAL_SHARE = 0.2
 """Effective mass of the last mode over all, which is its share of what impacts give: less than
@@ -300,7 +300,7 @@ SWINGS = 2.0
 
 
 def longest_free_vibration(structure: PodiumStructure, settings: TimeHistorySettings) -> float:
-    """How long a history may be followed after its record [s]."""
+    """Longest time that a history may be followed after its record [s]."""
     if settings.free_vibration is not None:
         return settings.free_vibration
     period = structure.rolling_period

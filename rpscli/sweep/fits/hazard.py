@@ -155,7 +155,7 @@ def rate_of_shares(hazard: Hazard, intensities: Array, shares: Array) -> float:
 
 
 def annual_rate(hazard: Hazard, median: float, beta: float) -> float:
-    """How often a year the limit is exceeded by motions above the curve's first point [1/year]."""
+    """Annual rate at which motions above the curve's first point exceed the limit [1/year]."""
     low = hazard.intensity[:1]
     return float(rates_above(hazard, median, beta, low)[0])
 

@@ -35,7 +35,7 @@ NOTHING: Band = (math.nan, math.nan)
 
 
 class Bootstrap(NamedTuple):
-    """How many samples the bands come from, the probability inside them, and the seed."""
+    """Number of the samples that bands come from, the probability inside them, and the seed."""
 
     resamples: int
     confidence: float
@@ -66,7 +66,7 @@ class Lognormal:
 
     @property
     def fitted(self) -> bool:
-        """Whether there is a curve."""
+        """True if there is a curve."""
         return self.method != "none"
 
 
@@ -114,7 +114,7 @@ def lognormal_fit(
 
 
 def _hopeless(level: Array, y: NDArray[np.bool_]) -> str | None:
-    """Why no fragility can be had from the data."""
+    """The reason why the data give no fragility; None if they may."""
     if not len(level):
         return "no point is left"
     if not y.any():
@@ -196,7 +196,7 @@ def bands(values: Array, confidence: float) -> tuple[Array, Array]:
 
 
 def band(values: Array, confidence: float) -> Band:
-    """The same of single values (samples,)."""
+    """Ends that enclose the confidence of single values (samples,)."""
     low, high = bands(values, confidence)
     return float(low), float(high)
 
@@ -220,7 +220,7 @@ LARGEST = 25.0
 CLOSE_ENOUGH = 1e-10
 """Change of both coefficients, in units of the standardised variable, at which a fit is over."""
 CLOSE_ENOUGH_RESAMPLED = 1e-4
-"""The same for fits to bootstrap samples, whose percentiles are rough anyway."""
+"""Such a change for fits to bootstrap samples, whose percentiles are rough anyway."""
 
 
 class Probit(NamedTuple):

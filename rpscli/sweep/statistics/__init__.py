@@ -1,1 +1,1 @@
-"""What the histories of a study say together: shares, fractiles, verdicts."""
+"""Statistics of the histories of a study: shares, fractiles, verdicts."""

@@ -64,7 +64,7 @@ class Share(NamedTuple):
 
     @property
     def behind(self) -> str:
-        """How many recordings or events are behind the histories, where these are fewer."""
+        """Number of recordings or events behind the histories, where these are fewer."""
         if self.recordings == self.of:
             return ""
         return f" from {self.recordings} {self.by[:-1] if self.recordings == 1 else self.by}"
@@ -124,7 +124,7 @@ def _interval(number: float, of: float) -> tuple[float, float]:
 
 @lru_cache(maxsize=4096)
 def shown_by(found: Share, admissible: float) -> int:
-    """How many recordings would end the interval at an admissible share, with no more beyond."""
+    """Number of recordings that would end the interval at an admissible share, no more beyond."""
     effective = found.of if math.isnan(found.effective) else found.effective
     number = found.number if effective == found.of else found.number * effective / found.of
     each = found.recordings / effective
@@ -164,7 +164,7 @@ def fractiles(demands: Array, shares: Sequence[float]) -> Array:
 
 @lru_cache(maxsize=4096)
 def _places(shares: tuple[float, ...], total: int) -> list[int]:
-    """Where the least of so many ordered values stand that so large shares do not exceed."""
+    """Places of the least of so many ordered values that so large shares do not exceed."""
     return [max(math.ceil(share * total - ROUNDING), 1) - 1 for share in shares]
 
 

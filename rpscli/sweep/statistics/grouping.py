@@ -20,7 +20,7 @@ from rpscli.sweep.statistics.fractiles import Share, demand, fractiles, share_of
 from rpscli.sweep.table import Array, Indices, Table, groups, leading_keys
 
 INTENSITY = "scale"
-"""How the groups of a table call the axis of factors and intensities."""
+"""Name of the axis of factors and intensities in groups of a table."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,7 +128,7 @@ def grouping(
 
 
 def own_keys(layout: StudyPoints, besides: Sequence[str] = ()) -> tuple[str, ...]:
-    """What tells systems and intensities apart, without keys that vary with one of `besides`."""
+    """Keys of systems and intensities, without those that vary with one of `besides`."""
     together = {key for other in besides for key in axis_keys(layout, other)}
     keys = tuple(key for key in leading_keys(layout) if key not in together)
     several = len(layout.scales) > 1 and INTENSITY not in besides

@@ -74,7 +74,7 @@ def _left_out(
 
 
 def unpaired(layout: StudyPoints) -> Iterator[str]:
-    """What keeps a study from being compared with its observations."""
+    """Reasons that keep a study from being compared with its observations."""
     observed = layout.study.observed
     if observed is None:
         yield "the study names no observations; add `observed: FILE.csv`"
@@ -97,7 +97,7 @@ Flags = NDArray[np.bool_]
 
 
 class Agreement(NamedTuple):
-    """How often computed and observed outcomes are the same, and the share of that."""
+    """Counts of computed and observed outcomes, and the share of those that are the same."""
 
     both: int
     computed_only: int

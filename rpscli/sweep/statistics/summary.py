@@ -119,7 +119,7 @@ def shear_over_fixed_base(table: Table, fixed: FixedBaseReferences) -> Array:
 
 
 def scale_notes(table: Table) -> Iterator[str]:
-    """What pairs and single records are scaled to; factors that are unusual."""
+    """Remarks on single records that are scaled like pairs, and on factors that are unusual."""
     layout = table.layout
     alone = [record.source for record in layout.records if record and record.pair is None]
     if layout.plan.measure is not None and layout.of is not None and alone:

@@ -21,7 +21,7 @@ from rpscli.sweep.table import Array, Indices, Outcomes, Table
 
 @dataclass(frozen=True)
 class Verdict:
-    """What became of a condition on some histories.
+    """Verdict on a condition on some histories.
 
     `values` are those of the keys of a summary. `beyond` are histories that exceed the limit: every
     overturned one does, `overturned` of them where the condition is on a result. `value` is the
@@ -54,12 +54,12 @@ class Verdict:
 
     @property
     def fails(self) -> bool:
-        """Whether it counts for the exit code."""
+        """True if it counts for the exit code."""
         return self.exceeded or (self.strictly and not self.shown)
 
     @property
     def shown(self) -> bool:
-        """Whether it is met, and the records are enough to say so of the probability."""
+        """True if it is met, and the records are enough to say so of the probability."""
         if self.interval is not None:
             return not self.exceeded and self.interval[1] <= self.condition.limit
         admissible, several = self.condition.admissible, self.beyond.of > 1
@@ -68,7 +68,7 @@ class Verdict:
 
     @property
     def shown_by(self) -> int | None:
-        """How many recordings would show it if no more were beyond; None where it is shown."""
+        """Number of recordings that would show it, with no more beyond; None where it is shown."""
         if self.exceeded or self.shown or self.interval is not None:
             return None
         return shown_by(self.beyond, self.condition.admissible)
@@ -94,7 +94,7 @@ def rates_of_levels(layout: StudyPoints) -> tuple[Array, float]:
 
 
 def component_notes(of: Of | None, own: Of | None) -> Iterator[str]:
-    """Whether a hazard curve and the intensities of a study are of the same of a pair."""
+    """Remarks on a hazard curve that is of another measure of a pair than the study."""
     own = own or "component"
     if of != own:
         known = f"is of {SHOWN.get(of, of)}" if of else "does not say what of a pair it is of"
@@ -105,7 +105,7 @@ def component_notes(of: Of | None, own: Of | None) -> Iterator[str]:
 
 
 def rate_notes(layout: StudyPoints) -> Iterator[str]:
-    """What a limit on a rate takes for granted; refuse one that the study cannot tell of."""
+    """Assumptions of a limit on a rate; refuse one that the study cannot tell of."""
     section = layout.study.file.hazard
     if section and any(limit.name == RATE for limit in layout.properties[0].limits):
         _, beyond = rates_of_levels(layout)
@@ -173,7 +173,7 @@ def decisive(demands: Array, weights: Array, condition: Condition) -> Array:
 
 
 def _admissible(condition: Condition, total: Array) -> Array:
-    """How many of so many histories, which may be parts of one, may be beyond the limit."""
+    """Number of histories, which may be parts of one, that may be beyond the limit."""
     # The fractile from below is itself one of those that keep the limit.
     below = condition.fractile is not None and condition.from_below
     return np.asarray(condition.admissible * total + (-2.0 * ROUNDING if below else ROUNDING))
