@@ -55,12 +55,6 @@ DOCUMENTS = [
     ROOT / "CHANGELOG.md",
     *sorted((ROOT / "cases").rglob("README.md")),
 ]
-SOURCES = sorted(
-    path
-    for folder in ("rpscli", "tests", "cases")
-    for path in (ROOT / folder).rglob("*")
-    if path.suffix in {".py", ".yaml", ".md"} and path != Path(__file__)
-)
 BLOCKS = [*blocks(README), *blocks(GUIDE)]
 """In the order in which a reader meets them: the guide goes on where the tour ends."""
 
@@ -328,25 +322,3 @@ def test_relative_links_exist(document: Path) -> None:
     assert relative or document.name == "CHANGELOG.md" or document.parent.name == "compdyn2021"
     missing = [link for link in relative if not (document.parent / link).exists()]
     assert not missing
-
-
-def referred_sections(text: str) -> set[int]:
-    """Numbers after "Theory, section" (also "sections 1 and 2", over line ends) and "Theory 8"."""
-    joined = re.sub(r"\s*\n\s*(?:#:?\s*)?", " ", text)
-    lists = re.findall(
-        r"T(?:heory|HEORY\.md),? (?:sections? )?(\d+(?:(?:, | and | to )\d+)*)", joined
-    )
-    return {int(number) for group in lists for number in re.findall(r"\d+", group)}
-
-
-def test_sections_of_the_theory_that_are_cited_exist() -> None:
-    headings = re.findall(r"^## (\d+)\. ", THEORY.read_text("utf-8"), re.MULTILINE)
-    sections = [int(number) for number in headings]
-    assert sections == list(range(1, len(sections) + 1))
-    cited = {path: referred_sections(path.read_text("utf-8")) for path in SOURCES}
-    assert sum(map(len, cited.values())) > 20
-    assert {
-        path.name: numbers - set(sections)
-        for path, numbers in cited.items()
-        if numbers - set(sections)
-    } == {}

@@ -96,6 +96,27 @@ def test_formulas_that_are_cited_exist() -> None:
     } == {}
 
 
+def referred_sections(text: str) -> set[int]:
+    """Numbers after "Theory, section" (also "sections 1 and 2", over line ends) and "Theory 8"."""
+    joined = re.sub(r"\s*\n\s*(?:#:?\s*)?", " ", text)
+    lists = re.findall(
+        r"T(?:heory|HEORY\.md),? (?:sections? )?(\d+(?:(?:, | and | to )\d+)*)", joined
+    )
+    return {int(number) for group in lists for number in re.findall(r"\d+", group)}
+
+
+def test_sections_of_the_theory_that_are_cited_exist() -> None:
+    sections = [int(number) for number in re.findall(r"^## (\d+)\. ", TEXT, re.MULTILINE)]
+    assert sections == list(range(1, len(sections) + 1))
+    cited = {path: referred_sections(path.read_text("utf-8")) for path in SOURCES}
+    assert sum(map(len, cited.values())) > 20
+    assert {
+        path.name: numbers - set(sections)
+        for path, numbers in cited.items()
+        if numbers - set(sections)
+    } == {}
+
+
 @pytest.mark.parametrize(("storeys", "per_cent"), [(3, 0.5), (9, 1.7)])
 def test_weight_on_drifting_storeys(storeys: int, per_cent: float) -> None:
     """Weight above over height and stiffness of the softest storey, buildings of section 7."""

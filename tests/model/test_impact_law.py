@@ -69,14 +69,6 @@ def test_restitution_is_the_momentum_balance(bearing: Bearing, gamma: float, eta
         assert law(bearing, gamma, eta) == pytest.approx(expected, abs=1e-11)
 
 
-@given(bearings, ratios)
-def test_without_a_building_both_laws_are_one(bearing: Bearing, gamma: float) -> None:
-    rigid, flexible = (
-        law(bearing, gamma, 0.0) for law in (rigid_restitution, flexible_restitution)
-    )
-    assert rigid == pytest.approx(flexible, abs=1e-14)
-
-
 @pytest.mark.evidence("impact laws", "published")
 @given(st.floats(0.01, 0.5))
 def test_a_rectangular_block_has_housners_restitution(tan_alpha: float) -> None:

@@ -41,15 +41,6 @@ def test_ratios_of_the_paper() -> None:
     assert podium(0).eta == podium(0).static_base_shear == 0.0
 
 
-@given(structures)
-def test_force_falls_from_w_tan_alpha_to_zero_at_theta_cr(structure: PodiumStructure) -> None:
-    force, u, v = structure.path(np.array([0.0, structure.critical_rotation]))
-    assert force[0] == pytest.approx(structure.uplift_force, rel=1e-13)
-    assert abs(force[1]) < 1e-12 * structure.weight
-    assert u[0] == v[0] == 0.0
-    assert v[1] > 0.0
-
-
 @given(structures, st.floats(0.05, 1.5))
 def test_the_force_does_the_work_that_lifts_the_weight(
     structure: PodiumStructure, share: float
@@ -78,29 +69,6 @@ def test_initial_stiffness_is_the_slope_of_the_curve(structure: PodiumStructure)
     slope = np.polynomial.Polynomial.fit(u, force, 3, domain=[0.0, u[-1]]).deriv()(0.0)
     size = structure.weight / structure.bearing.semi_diagonal
     assert structure.initial_stiffness == pytest.approx(float(slope), abs=1e-6 * size)
-
-
-@pytest.mark.parametrize(("rho", "sign"), [(FLAT, -1), (0.25, -1), (0.5, 0), (1.5, 1)])
-@pytest.mark.parametrize("tan_alpha", [0.05, 0.15])
-def test_the_curvature_sets_the_sign_of_the_stiffness(
-    rho: float, sign: int, tan_alpha: float
-) -> None:
-    structure = podium(0, tan_alpha, rho)
-    first_order = structure.weight * (2.0 * rho - 1.0) / 3.0
-    size = abs(first_order) or 0.4 * structure.weight / 3.0
-    assert structure.initial_stiffness == pytest.approx(first_order, abs=5.0 * tan_alpha**2 * size)
-    assert sign == 0 or math.copysign(1.0, structure.initial_stiffness) == sign
-
-
-@pytest.mark.parametrize(("rho", "trend"), [(0.26, -1), (1.5, 1)])
-def test_the_slope_of_the_curve_after_uplift(rho: float, trend: int) -> None:
-    """The pushover curve falls or rises with the curvature, and is nearly level between."""
-    structure, level = podium(0, 0.10, rho), podium(0, 0.10, 0.5)
-    x = np.linspace(0.0, 0.9 * min(structure.bearing.beta, structure.critical_rotation), 50)
-    force, u, _ = structure.path(x)
-    assert np.all(trend * np.diff(force) / np.diff(u) > 0.0)
-    flat_part, _, _ = level.path(np.linspace(0.0, level.bearing.beta, 50))
-    assert np.ptp(flat_part) < 0.03 * level.uplift_force
 
 
 def test_the_rigid_frequency_parameter_of_a_block_is_housners() -> None:

@@ -19,7 +19,6 @@ from rpscli.sweep.run import LARGEST_BATCH, all_keys, batches
 from rpscli.sweep.systems import balance_note, changes, sample
 from sweep.small_studies import STUDY, Make
 
-MEASURE = ("scale: [0.5, 1.0]", "scale: {measure: PGV, values: [0.3, 0.6]}")
 PERTURB = ("scale: [", "perturb: {members: 4, seed: 7}\nscale: [")
 SAMPLE = ("scale: [", "sample: {size: 8, ranges: {podium.cap_beam_mass_ratio: [5, 10]}}\nscale: [")
 
@@ -99,22 +98,16 @@ def test_uneven_sobol_sizes_are_remarked_on() -> None:
     assert "64" in str(balance_note(SampleSection(size=100, ranges=ranges)))
 
 
-def test_records_are_scaled_to_a_measure(study_of: Make) -> None:
-    design = lay_out(study_of(STUDY, MEASURE))
-    context = design.context
+@pytest.mark.parametrize("measure", ["PGV", "Arias"])
+def test_records_are_scaled_to_a_measure(study_of: Make, measure: str) -> None:
+    """Arias intensity grows with the square."""
+    scale = f"scale: {{measure: {measure}, values: [0.3, 0.6]}}"
+    design = lay_out(study_of(STUDY, ("scale: [0.5, 1.0]", scale)))
     for point in (design[0], design[9]):
         assert point.record is not None
-        motion = load_record(point.record.source).scaled(context.factor(point))
-        assert intensity_measures(motion).pgv == pytest.approx(point.scale, rel=1e-12)
-
-
-def test_arias_intensity_grows_with_the_square(study_of: Make) -> None:
-    arias = ("scale: [0.5, 1.0]", "scale: {measure: Arias, values: [0.3, 0.6]}")
-    design = lay_out(study_of(STUDY, arias))
-    point = design[1]
-    assert point.record is not None
-    motion = load_record(point.record.source).scaled(design.context.factor(point))
-    assert intensity_measures(motion).arias == pytest.approx(0.6, rel=1e-12)
+        motion = load_record(point.record.source).scaled(design.context.factor(point))
+        found = getattr(intensity_measures(motion), measure.lower())
+        assert found == pytest.approx(point.scale, rel=1e-12)
 
 
 def test_sa_is_taken_at_the_first_period_of_each_system(study_of: Make) -> None:

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import numpy as np
 import pytest
-from paper_structures import building, ground, podium, stillness
+from paper_structures import building, podium, stillness
 
 from rpscli.analyses.kernels.history import MOST_STEPS
 from rpscli.analyses.kernels.systems import most_steps
@@ -127,15 +126,6 @@ def test_a_study_that_is_too_large_is_refused(text: str, told: str) -> None:
 def test_the_largest_study_is_none_too_many() -> None:
     text = f"sample: {{size: {MOST_SYSTEMS}, ranges: {{{SLENDERNESS}: [0.1, 0.2]}}}}"
     parse_study(f"rps: 1\nbase: cases/six_storey.yaml\n{text}\n", name="s.yaml", kinds=REPORTS)
-
-
-def test_a_history_of_endless_samples_is_refused() -> None:
-    record = ground(np.zeros(5), 1e-8)
-    with pytest.raises(
-        CaseError, match=r"samples .* more than 8 GB; .*free_vibration, or resample"
-    ):
-        time_history(podium(0), record)
-    assert time_history(podium(0), record, TimeHistorySettings(free_vibration=1e-7)).duration < 1e-6
 
 
 def test_a_history_of_endless_steps_is_refused() -> None:
