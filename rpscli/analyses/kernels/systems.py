@@ -9,7 +9,6 @@ from functools import lru_cache
 import numpy as np
 
 from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
-from rpscli.model.contact import Bed
 from rpscli.model.devices import DEVICES
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import Superstructure
@@ -87,7 +86,7 @@ def _system(structure: PodiumStructure, settings: TimeHistorySettings) -> Record
 
 
 def fill_podium(record: Record, structure: PodiumStructure) -> None:
-    """The rocking storey."""
+    """The rocking storey, its devices with the constants of their laws, and what it stands on."""
     b = structure.bearing
     record["n"] = structure.storeys
     record["R"], record["alpha"], record["beta"] = b.semi_diagonal, b.alpha, b.beta
@@ -103,28 +102,18 @@ def fill_podium(record: Record, structure: PodiumStructure) -> None:
     record["contact_time"] = structure.impact_law.contact_time
     record["shock_time"] = structure.shock_time
     record["floors_jump"] = structure.impact_law.floors_jump
-    fill_devices(record, structure)
-    if (bed := structure.bed) is not None:
-        fill_bed(record, bed)
-
-
-def fill_bed(record: Record, bed: Bed) -> None:
-    """Compliance of full contact; u_b goes on from there."""
-    record["compliant"], record["bed_uplift"] = 1, bed.uplift_rotation
-    record["bed_full"], record["bed_height"] = bed.full_rotation, bed.height
-    record["bed_k"], record["bed_c"] = bed.spring, bed.damper
-    record["sink"], record["root"], record["lifts"] = bed.sink, bed.root, bed.kept
-    for phase in ("rolling", "rocking"):
-        record[phase][3] += bed.shift
-
-
-def fill_devices(record: Record, structure: PodiumStructure) -> None:
-    """The devices, each with the constants of its law."""
     record["columns"], record["devices"] = structure.columns, len(structure.devices)
     for i, device in enumerate(structure.devices):
         record["device_kind"][i] = DEVICE_KINDS[type(device)]
         constants = device.constants(structure)
         record["device_constants"][i, : len(constants)] = constants
+    if (bed := structure.bed) is not None:
+        record["compliant"], record["bed_uplift"] = 1, bed.uplift_rotation
+        record["bed_full"], record["bed_height"] = bed.full_rotation, bed.height
+        record["bed_k"], record["bed_c"] = bed.spring, bed.damper
+        record["sink"], record["root"], record["lifts"] = bed.sink, bed.root, bed.kept
+        for phase in ("rolling", "rocking"):  # u_b goes on from there
+            record[phase][3] += bed.shift
 
 
 def fill_settings(
