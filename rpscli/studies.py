@@ -52,7 +52,6 @@ from rpscli.report.study.statistics import (
 )
 from rpscli.report.table import Column, Heading, Part, columns_of, csv_text
 from rpscli.shown import Shown, data_frame, frozen
-from rpscli.sweep.context import StudyContext
 from rpscli.sweep.points import StudyPoints, lay_out, reproduction
 from rpscli.sweep.run import Engine, Progress, Start, run, start
 from rpscli.sweep.statistics.summary import Summary, scale_notes, summary
@@ -175,11 +174,6 @@ class Study(Shown):
     def title(self) -> str:
         """Heading of reports."""
         return self.layout.study.title
-
-    @property
-    def context(self) -> StudyContext:
-        """Its systems and motions."""
-        return self.layout.context
 
     @property
     def reports(self) -> dict[str, ReportRequest]:

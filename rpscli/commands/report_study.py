@@ -139,7 +139,7 @@ def motions_of(study: Study) -> tuple[list[GroundMotion], list[str]]:
     for request in dict.fromkeys((*layout.records, *own)):
         try:
             if request is not None:
-                motions.append(study.context.records.motion(request).horizontal)
+                motions.append(study.layout.context.records.motion(request).horizontal)
         except RecordError as error:
             reasons.append(str(error))
     return motions, reasons
