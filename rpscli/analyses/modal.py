@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from rpscli.analyses.result_quantities import FIXED_BASE_MODES, LINEAR, UPLIFTED, values_of
 from rpscli.analyses.settings import require_structure
+from rpscli.model.bearing import UpliftedState, uplifted_state
 from rpscli.model.podium import PodiumStructure
-from rpscli.model.uplifted_state import UpliftedState, uplifted_state
 from rpscli.physics import geometry
 from rpscli.shown import Shown, frozen
 

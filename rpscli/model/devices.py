@@ -8,9 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rpscli.model.bearing import Bearing
+from rpscli.model.bearing import Bearing, UpliftedState
 from rpscli.model.podium import Array, AtRest, Consequence, Device, Linear, PodiumStructure
-from rpscli.model.uplifted_state import UpliftedState
 
 
 @dataclass(frozen=True)

@@ -15,11 +15,10 @@ from numpy.typing import NDArray
 
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import is_number
-from rpscli.model.bearing import Bearing
+from rpscli.model.bearing import Bearing, UpliftedState
 from rpscli.model.contact import Bed, Contact, bed_of
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.superstructure import Superstructure
-from rpscli.model.uplifted_state import UpliftedState
 from rpscli.physics import geometry
 from rpscli.shown import Shown, with_unit
 

@@ -19,6 +19,7 @@ from rpscli.analyses.modal import linearised_matrices, modal
 from rpscli.analyses.pushover import pushover
 from rpscli.analyses.result_quantities import HISTORY
 from rpscli.case.schema.case_file import DEVICE_KEYS, DeviceSection
+from rpscli.model.bearing import uplifted_state
 from rpscli.model.devices import (
     DEVICES,
     FrictionDamper,
@@ -29,7 +30,6 @@ from rpscli.model.devices import (
 )
 from rpscli.model.podium import Device, PodiumStructure
 from rpscli.model.statics import device_consequences, returns, secant_period, uplift_force
-from rpscli.model.uplifted_state import uplifted_state
 from rpscli.report.figures.devices import DRAWN
 
 EQUIPMENT: tuple[Device, ...] = (

@@ -11,9 +11,8 @@ from hypothesis import strategies as st
 from paper_structures import FLAT, podium
 
 from rpscli.analyses.modal import linearised_matrices
-from rpscli.model.bearing import Bearing
+from rpscli.model.bearing import Bearing, uplifted_state
 from rpscli.model.podium import PodiumStructure
-from rpscli.model.uplifted_state import uplifted_state
 from rpscli.physics.geometry import contact_arm, contact_height
 from rpscli.physics.state import ROCKING, ROLLING
 
