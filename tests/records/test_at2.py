@@ -114,6 +114,10 @@ def test_text_after_the_values_is_a_warning(tmp_path: Path) -> None:
         ("ACCELERATION TIME SERIES IN UNITS OF CM/SEC/SEC", "cm/s2", 0.01),
         ("ACCELERATION TIME SERIES, UNITS: (m/s^2)", "m/s2", 1.0),
         ("ACCELERATION IN GAL", "gal", 0.01),
+        ("ACCELERATION TIME SERIES. The units are (g)", "g", 9.80665),
+        ("UNITS: g's", "g", 9.80665),
+        ("ACCELERATION IN UNITS OF GRAVITY", "g", 9.80665),
+        ("Units are g", "g", 9.80665),
     ],
 )
 def test_units_are_those_of_the_units_line(
