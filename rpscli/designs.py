@@ -17,13 +17,8 @@ from rpscli.report.design import (
 )
 from rpscli.report.figures.look import Look, figure_files
 from rpscli.report.files import OutputFolder
-from rpscli.report.study.statistics import (
-    VERDICT,
-    verdict_columns,
-    verdict_document,
-    verdict_lines,
-    verdict_texts,
-)
+from rpscli.report.limits import VERDICT, verdict_texts
+from rpscli.report.study.statistics import verdict_columns, verdict_document, verdict_lines
 from rpscli.report.table import Heading, Part, Table, csv_text
 from rpscli.studies import Collected, Study, StudyResult
 from rpscli.sweep.design import Answer, Search

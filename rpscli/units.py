@@ -51,6 +51,12 @@ class Written(float):
 
     text: str
 
+    @property
+    def unit(self) -> str:
+        """That of the text; empty for a number without one."""
+        match = WITH_UNIT.match(self.text)
+        return (match and match[2]) or ""
+
     def __new__(cls, value: float, text: str = "") -> Self:
         """The number and its text."""
         made = super().__new__(cls, value)

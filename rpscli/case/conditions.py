@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from rpscli.analyses.result_quantities import LIMITED
 from rpscli.errors import UsageError, hint
-from rpscli.units import KINDS, bare_or_si
+from rpscli.units import KINDS, Written, bare_or_si
 
 if TYPE_CHECKING:
     from rpscli.case.schema.limits import LimitsSection
@@ -62,11 +62,6 @@ class Condition:
             return self.share
         return self.fractile if self.from_below else 1.0 - self.fractile
 
-    @property
-    def bound(self) -> str:
-        """The limit in words."""
-        return f"at {'least' if self.from_below else 'most'} {self.limit:g}"
-
 
 def parse_condition(text: str) -> Condition:
     """A condition of `--fail-on`: ``overturning``, with a share ``=0.1``, or ``NAME=VALUE``."""
@@ -79,7 +74,7 @@ def parse_condition(text: str) -> Condition:
         raise UsageError(f"--fail-on {text}: {name or 'the name'} is not known; {meant}")
     unit = LIMITS[name].unit if name in LIMITS else "-"
     try:
-        limit = bare_or_si(value, unit)
+        limit: float = Written(bare_or_si(value, unit), value)
     except ValueError:
         limit = math.nan
     if name in EVENTS:
@@ -125,16 +120,3 @@ def with_friction(
     if structure.friction is None or any(each.name == "friction_ratio" for each in given):
         return given
     return (*given, Condition("friction_ratio", 1.0, FRICTION))
-
-
-def condition_text(condition: Condition) -> str:
-    """A condition in words."""
-    if condition.name == RATE:
-        return f"at most {condition.limit:.3g} a year"
-    if condition.fractile is not None:
-        return f"{condition.bound} at the {100.0 * condition.fractile:g} % fractile"
-    percent = f"{100.0 * condition.share:g} %"
-    if condition.name in EVENTS:
-        return f"at most {percent} of the records" if condition.share else "no record"
-    rest = f" except in {percent} of the records" if condition.share else " in every record"
-    return f"{condition.bound}{rest}"

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from rpscli.case.conditions import Condition, condition_text, conditions_of
+from rpscli.case.conditions import Condition, conditions_of
 from rpscli.commands.inputs import (
     MotionRequest,
     case_folder,
@@ -144,7 +144,11 @@ def check_tables(document: Mapping[str, Any], limits: Sequence[Condition]) -> It
         ]
         yield Table.listing(lines)
     if limits:
-        yield Table.of_texts(("limit", ""), [(c.name, condition_text(c)) for c in limits], words=2)
+        from rpscli.report.limits import requirement_text
+
+        yield Table.of_texts(
+            ("limit", ""), [(c.name, requirement_text(c)) for c in limits], words=2
+        )
 
 
 def device_tables(structure: PodiumStructure) -> Iterator[Part]:

@@ -28,6 +28,7 @@ from rpscli.report.html.case_page import (
     page_sections,
 )
 from rpscli.report.html.page import Block, Picture, Section, page_look, pictures
+from rpscli.report.limits import verdicts_in_short
 from rpscli.report.study.labels import label
 from rpscli.report.study.shown import cut, of_first_system, summary_tables, verdict_table
 from rpscli.report.table import Heading, Table
@@ -118,8 +119,6 @@ def _sections(
 
 
 def _in_short(run: StudyResult) -> Iterator[Block]:
-    from rpscli.report.study.statistics import verdicts_in_short
-
     counts = {"points": len(run.table), **run.outcomes}
     yield Table.of_texts(tuple(counts), [tuple(map(str, counts.values()))], words=0)
     if aim := run.layout.scaled_to:

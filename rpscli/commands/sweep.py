@@ -88,7 +88,7 @@ def command(
     if chosen.dry_run:
         show_dry_run(given, chosen, terminal)
         return
-    from rpscli.report.study.statistics import verdicts_in_short
+    from rpscli.report.limits import verdicts_in_short
     from rpscli.sweep.store import Store
 
     place = output.place or RESULTS / given.layout.study.name / "sweep"

@@ -15,7 +15,7 @@ from rpscli.analyses.neighbours import Neighbour, neighbours
 from rpscli.analyses.result_quantities import LIMITED, NEEDS, ResultQuantity
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.timehistory import time_history
-from rpscli.case.conditions import EVENTS, LIMITS, Condition, case_conditions, with_friction
+from rpscli.case.conditions import LIMITS, Condition, case_conditions, with_friction
 from rpscli.case.rules.plausibility import doubts_of_directions
 from rpscli.commands.inputs import (
     RESULTS,
@@ -39,15 +39,13 @@ from rpscli.report.figures.animation import history_film
 from rpscli.report.figures.film import FilmRequest
 from rpscli.report.figures.look import Look, drawn_with
 from rpscli.report.files import OutputFolder
+from rpscli.report.limits import VERDICT, excess_text, verdict_texts, worst_text
 from rpscli.report.study.statistics import (
-    VERDICT,
     demand_columns,
     records_columns,
-    shown_by_text,
     summary_document,
     verdict_document,
     verdict_lines,
-    verdict_texts,
 )
 from rpscli.report.table import Heading, Part, Table, csv_text, headed, large, shown
 from rpscli.report.tables.timehistory import (
@@ -164,7 +162,9 @@ def compute(
             _refuse_unknown(limit, result)
         records = Records.of([result.outcome], [demands], [result.record.source])
         verdicts = judged_records(records, [request.label], limits)
-        over = [f"limit exceeded: {_excess(verdict)}" for verdict in verdicts if verdict.exceeded]
+        over = [
+            f"limit exceeded: {excess_text(verdict)}" for verdict in verdicts if verdict.exceeded
+        ]
         error = LimitExceeded("\n".join(over)) if over else None
     document = _document(request, result)
     document["verdicts"] = [verdict_document((), verdict) for verdict in verdicts]
@@ -179,17 +179,6 @@ def _refuse_unknown(limit: Condition, result: TimeHistoryResult) -> None:
     incomplete = needs == "columns" and result.left_out_of_columns
     if needs and (getattr(result, limit.name) is None or incomplete):
         raise UsageError(f"{limit.source}: {limit.name} needs {NEEDS[needs]}")
-
-
-def _excess(verdict: Verdict) -> str:
-    condition = verdict.condition
-    if condition.name in EVENTS:
-        return f"{condition.name} ({condition.source})"
-    if verdict.overturned:
-        return f"{condition.name}: overturned ({condition.source})"
-    beyond = "is below" if condition.from_below else "exceeds"
-    value = f"{verdict.value:.4g} {beyond} {condition.limit:g}"
-    return f"{condition.name} = {value} ({condition.source})"
 
 
 def _document(request: HistoryRequest, result: TimeHistoryResult) -> dict[str, Any]:
@@ -441,11 +430,5 @@ def _verdict_table(computed: Sequence[Computed]) -> Table:
     for case in computed:
         for verdict in case.verdicts:
             *texts, _ = verdict_texts(verdict)
-            which = "least" if verdict.condition.from_below else "largest"
-            value = shown(verdict.value) if math.isfinite(verdict.value) else "overturned"
-            event = verdict.condition.name in EVENTS
-            worst = "" if event else f", {which} {value} ({verdict.record})"
-            result = f"{verdict.beyond.number} of {verdict.beyond.of} beyond{worst}"
-            result += f"; {shown_by_text(verdict)}" if verdict.shown_by else ""
-            rows.append([case.first.case_label, *texts, result])
+            rows.append([case.first.case_label, *texts, worst_text(verdict)])
     return Table.of_texts(["case", *VERDICT], rows, words=5, keys=2)

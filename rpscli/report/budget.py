@@ -19,6 +19,7 @@ from rpscli.report.bundles import Files
 from rpscli.report.figures import style
 from rpscli.report.figures.look import Look, figure_files
 from rpscli.report.html.page import Block, Picture, Section, page_look, pictures
+from rpscli.report.limits import bound_text
 from rpscli.report.table import Table, columns_of, csv_text, headed, large, shown
 from rpscli.sweep.statistics.fractiles import HIGH, LOW, Share, fractiles, share_of
 from rpscli.sweep.statistics.summary import Records
@@ -167,7 +168,7 @@ class Budget:
             text = "overturned" if np.isinf(value) else shown(large(value, quantity.unit)[0])
             ratio = value / effect.values[0] if effect.values[0] else np.nan
             cells.append([name, text, f"{ratio:.3g}" if np.isfinite(ratio) else "-", word])
-        bound = "" if effect.limit is None else effect.limit.bound
+        bound = "" if effect.limit is None else bound_text(effect.limit)
         return Table.of_texts(["", headed(quantity.label, quantity.unit), "ratio", bound], cells)
 
     def document(self) -> dict[str, Any]:

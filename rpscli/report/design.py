@@ -11,19 +11,14 @@ from typing import Any
 
 import numpy as np
 
-from rpscli.case.conditions import LIMITS, RATE, condition_text
+from rpscli.case.conditions import LIMITS, RATE
 from rpscli.case.design import Objective
 from rpscli.report.figures import style
 from rpscli.report.figures.look import Draw
+from rpscli.report.limits import VERDICT, limit_unit, requirement_text, verdict_texts
 from rpscli.report.study.labels import axis_label, key_columns, label, symbol
 from rpscli.report.study.panels import MOST_TICKS
-from rpscli.report.study.statistics import (
-    VERDICT,
-    limit_unit,
-    reached,
-    verdict_document,
-    verdict_texts,
-)
+from rpscli.report.study.statistics import reached, verdict_document
 from rpscli.report.table import Column, Part, Table, large, shown
 from rpscli.sweep.design import ROBUST, Answer, Requirement
 from rpscli.sweep.statistics.fractiles import CONFIDENCE
@@ -178,7 +173,7 @@ def nothing_passes(answer: Answer) -> str:
     for row in rows[np.argsort(answer.excess[rows, place], kind="stable")].tolist():
         requirement = answer.requirements[row]
         lines.append(
-            f"{requirement_label(requirement)}: {condition_text(requirement.condition)};"
+            f"{requirement_label(requirement)}: {requirement_text(requirement.condition)};"
             f" {shown(float(answer.results[row, 0, place]), DIGITS)} in the least violated design,"
             f" {100.0 * answer.excess[row, place]:.3g} % of the records too many;"
             f" {answer.met[row, 0].sum()} designs meet it"

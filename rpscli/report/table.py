@@ -14,6 +14,8 @@ from dataclasses import dataclass, replace
 from itertools import islice
 from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
+from rpscli.units import Written, si_factor
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -51,8 +53,10 @@ def headed(label: str, unit: str) -> str:
     return f"{label} {large(None, unit)[1]}".strip()
 
 
-def measured(value: float | None, unit: str) -> str:
-    """A value in SI as text with its unit."""
+def measured(value: float | None, unit: str, like: float | None = None) -> str:
+    """A value in SI as text with its unit: that in which another one was written, if it was."""
+    if value is not None and isinstance(like, Written) and like.unit:
+        return f"{shown(value / si_factor(like.unit, unit))} {like.unit}"
     number, name = large(value, unit)
     return shown(number) if value is None or not name else f"{shown(number)} {name}"
 

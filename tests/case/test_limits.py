@@ -6,8 +6,9 @@ import pytest
 
 from rpscli.analyses.result_quantities import LIMITED
 from rpscli.case.case import parse_case
-from rpscli.case.conditions import Condition, condition_text, conditions_of, parse_condition
+from rpscli.case.conditions import Condition, conditions_of, parse_condition
 from rpscli.errors import UsageError
+from rpscli.report.limits import requirement_text
 
 from .conftest import BUILDING
 
@@ -35,17 +36,17 @@ def condition(
         ("{rotation_ratio: 0.25}", condition("rotation_ratio", 0.25),
          "at most 0.25 in every record"),
         ("{max_lift: {at_most: 300 mm, share: 0.1}}", condition("max_lift", 0.3, 0.1),
-         "at most 0.3 except in 10 % of the records"),
+         "at most 300 mm except in 10 % of the records"),
         ("{drift_ratio: {at_most: 0.005, fractile: 0.84}}",
          condition("drift_ratio", 0.005, fractile=0.84), "at most 0.005 at the 84 % fractile"),
         ("{overturning: 0.05}", condition("overturning", 0.0, 0.05), "at most 5 % of the records"),
         ("{overturning: 0}", condition("overturning", 0.0), "no record"),
         ("{min_column_force: {at_least: 100 kN, share: 0.1}}",
-         condition("min_column_force", 1e5, 0.1), "at least 100000 except in 10 % of the records"),
+         condition("min_column_force", 1e5, 0.1), "at least 100 kN except in 10 % of the records"),
         ("{min_column_force: {at_least: 100 kN, fractile: 0.1}}",
-         condition("min_column_force", 1e5, fractile=0.1), "at least 100000 at the 10 % fractile"),
+         condition("min_column_force", 1e5, fractile=0.1), "at least 100 kN at the 10 % fractile"),
         ("{min_column_force: 0}", condition("min_column_force", 0.0),  # no tension
-         "at least 0 in every record"),
+         "at least 0 kN in every record"),
         # full contact is entered, which is limited from above, and lasts, from below
         ("{reentries: 20}", condition("reentries", 20.0), "at most 20 in every record"),
         ("{full_contact_share: {at_least: 0.5, share: 0.1}}",
@@ -57,7 +58,7 @@ def test_a_limit_is_a_number_or_has_a_share_or_a_fractile(
 ) -> None:
     (found,) = limited(text)
     assert found == expected
-    assert condition_text(found) == words
+    assert requirement_text(found) == words
     assert found.sign == (-1.0 if "least" in words else 1.0)
 
 

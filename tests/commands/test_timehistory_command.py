@@ -175,7 +175,7 @@ def test_a_least_force_is_judged_from_below(rps: Invoke) -> None:
     assert rps(*words, "min_column_force=-1e9").exit_code == 0
     result = rps(*words, "min_column_force=1e9")
     assert result.exit_code == 10
-    assert "is below 1e+09 (--fail-on)" in result.stderr
+    assert "kN is below 1e+06 kN (--fail-on)" in result.stderr
     assert "at least 1e+09" in result.stdout
 
 

@@ -28,12 +28,11 @@ from rpscli.report.figures.look import Draw, Look, figure_files
 from rpscli.report.figures.motions import record_figure, spectra_figure
 from rpscli.report.figures.structure import structure_figure
 from rpscli.report.html.page import Block, Code, Notice, Picture, Section, page_look, pictures
-from rpscli.report.study.statistics import verdicts_in_short
+from rpscli.report.limits import limits_table, verdicts_in_short
 from rpscli.report.table import Column, Table, shown
 from rpscli.report.tables.derived import derivations, first_shape
 from rpscli.report.tables.motions import record_table
 from rpscli.report.tables.timehistory import (
-    limits_table,
     neighbours_texts,
     outcome_table,
     outcome_text,

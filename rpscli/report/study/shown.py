@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
+from rpscli.report.limits import VERDICT, verdict_texts
 from rpscli.report.study.labels import key_cells, key_columns, symbol
 from rpscli.report.study.registry import REPORTS
-from rpscli.report.study.statistics import VERDICT, verdict_texts
 from rpscli.report.table import Part, Table, headed, large, shown
 from rpscli.report.tables.timehistory import overturned_text, restitution_text
 from rpscli.sweep.points import StudyPoints

@@ -8,9 +8,9 @@ from dataclasses import asdict
 from typing import Any
 
 from rpscli.analyses.result_quantities import HISTORY
-from rpscli.case.conditions import LIMITS, RATE, condition_text
+from rpscli.report.limits import limit_unit, requirement_text, verdict_text
 from rpscli.report.study.labels import key_columns, labels
-from rpscli.report.table import Column, shown
+from rpscli.report.table import Column
 from rpscli.sweep.statistics.fractiles import Share
 from rpscli.sweep.statistics.summary import Summary
 from rpscli.sweep.statistics.verdicts import Verdict
@@ -117,11 +117,6 @@ def verdict_columns(keys: Sequence[str], verdicts: Sequence[Verdict]) -> list[Co
     ]
 
 
-def limit_unit(name: str) -> str:
-    """SI unit of what is limited."""
-    return LIMITS[name].unit if name in LIMITS else "1/year" if name == RATE else "-"
-
-
 def summary_document(summary: Summary) -> list[dict[str, Any]]:
     """The rows in JSON; a demand is null where so many overturned."""
     return [
@@ -169,42 +164,6 @@ def verdict_document(keys: Sequence[str], verdict: Verdict) -> dict[str, Any]:
     }
 
 
-def verdict_text(verdict: Verdict) -> str:
-    """What a verdict rests on, in words."""
-    if verdict.interval:
-        low, high = verdict.interval
-        return f"{verdict.value:.3g} a year ({low:.2g} to {high:.2g})"
-    needed = f"; {shown_by_text(verdict)}" if verdict.shown_by else ""
-    if verdict.fractile is not None:
-        demand = "overturned" if math.isinf(verdict.fractile) else shown(verdict.fractile)
-        return f"{demand} there, n = {verdict.beyond.of}{needed}"
-    fallen = f", {verdict.overturned} overturned" if verdict.overturned else ""
-    return f"{verdict.beyond}{fallen}{needed}"
-
-
-def shown_by_text(verdict: Verdict) -> str:
-    """How many recordings, or events, would show that a limit is met: with no more beyond."""
-    return f"{verdict.shown_by} would show it"
-
-
-def verdicts_in_short(verdicts: Sequence[Verdict], what: str) -> str:
-    """How many limits are exceeded, or met, or met without being shown."""
-    exceeded = sum(verdict.exceeded for verdict in verdicts)
-    unsure = sum(not (verdict.exceeded or verdict.shown) for verdict in verdicts)
-    first = f"{exceeded} of {what} exceeded" if exceeded else f"All {what} are met"
-    return f"{first}{f', {unsure} met but not shown' * bool(unsure)}."
-
-
-VERDICT = ("limit", "", "requirement", "result")
-"""Heads of `verdict_texts`."""
-
-
-def verdict_texts(verdict: Verdict) -> tuple[str, str, str, str]:
-    """A verdict as a row of a table."""
-    condition = verdict.condition
-    return condition.name, verdict.word, condition_text(condition), verdict_text(verdict)
-
-
 def verdict_lines(keys: Sequence[str], verdicts: Sequence[Verdict], of: str = "") -> list[str]:
     """Each limit that fails in a line."""
     lines = []
@@ -212,7 +171,7 @@ def verdict_lines(keys: Sequence[str], verdicts: Sequence[Verdict], of: str = ""
         if verdict.fails:
             what = "limit exceeded" if verdict.exceeded else "limit not shown to be met"
             system = labels(keys, verdict.values)
-            asked = f"{verdict.condition.name}: {condition_text(verdict.condition)}"
+            asked = f"{verdict.condition.name}: {requirement_text(verdict.condition)}"
             where = f" ({system})" if system else ""
             lines.append(
                 f"{what}: {of}{asked}; {verdict_text(verdict)}{where}, {verdict.condition.source}"

@@ -14,8 +14,8 @@ from rpscli.analyses.neighbours import OTHER_LOSS, Neighbour
 from rpscli.analyses.result_quantities import HISTORY, PAIR, SAMPLED
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
-from rpscli.case.conditions import EVENTS
 from rpscli.model.podium import PodiumStructure
+from rpscli.report.limits import limits_table
 from rpscli.report.table import Heading, Part, Table, measured, percent, shown
 from rpscli.sweep.statistics.verdicts import Verdict
 
@@ -338,17 +338,6 @@ def devices_table(result: TimeHistoryResult) -> Table:
         for left in (demand.remaining_prestress,)
     ]
     return Table.of_texts(["device", "force", "stroke", "velocity", "energy", ""], rows)
-
-
-def limits_table(verdicts: Sequence[Verdict]) -> Table:
-    """Every limit with its value."""
-    rows = []
-    for verdict in verdicts:
-        condition = verdict.condition
-        value = "overturned" if verdict.overturned else shown(verdict.value)
-        numbers = ("", "not allowed") if condition.name in EVENTS else (value, condition.bound)
-        rows.append((condition.name, verdict.word, condition.source, *numbers))
-    return Table.of_texts(["limit", "", "from", "value", "requirement"], rows, words=3)
 
 
 Array = NDArray[np.float64]

@@ -1,0 +1,117 @@
+"""Limits and verdicts in words: values in the unit in which their limit was written."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from rpscli.case.conditions import EVENTS, LIMITS, RATE, Condition
+from rpscli.report.table import Table, large, measured
+from rpscli.sweep.statistics.verdicts import Verdict
+from rpscli.units import Written
+
+VERDICT = ("limit", "", "requirement", "result")
+"""Heads of `verdict_texts`."""
+
+
+def limit_unit(name: str) -> str:
+    """SI unit of what is limited."""
+    return LIMITS[name].unit if name in LIMITS else "1/year" if name == RATE else "-"
+
+
+def _bound(condition: Condition) -> str:
+    """The number of a limit, as it was written or with all of its digits."""
+    limit = condition.limit
+    if isinstance(limit, Written) and limit.unit:
+        return limit.text
+    number, unit = large(limit, limit_unit(condition.name))
+    return f"{number:g} {unit}".strip()
+
+
+def _reached(condition: Condition, value: float) -> str:
+    """A demand in the unit of its limit."""
+    if math.isinf(value):
+        return "overturned"
+    return measured(value, limit_unit(condition.name), condition.limit)
+
+
+def bound_text(condition: Condition) -> str:
+    """The limit in words."""
+    return f"at {'least' if condition.from_below else 'most'} {_bound(condition)}"
+
+
+def requirement_text(condition: Condition) -> str:
+    """A condition in words."""
+    if condition.name == RATE:
+        return f"at most {condition.limit:.3g} a year"
+    if condition.fractile is not None:
+        return f"{bound_text(condition)} at the {100.0 * condition.fractile:g} % fractile"
+    percent = f"{100.0 * condition.share:g} %"
+    if condition.name in EVENTS:
+        return f"at most {percent} of the records" if condition.share else "no record"
+    rest = f" except in {percent} of the records" if condition.share else " in every record"
+    return f"{bound_text(condition)}{rest}"
+
+
+def verdict_text(verdict: Verdict) -> str:
+    """What a verdict rests on, in words."""
+    if verdict.interval:
+        low, high = verdict.interval
+        return f"{verdict.value:.3g} a year ({low:.2g} to {high:.2g})"
+    if verdict.fractile is not None:
+        demand = _reached(verdict.condition, verdict.fractile)
+        return f"{demand} there, n = {verdict.beyond.of}{_shown_by(verdict)}"
+    fallen = f", {verdict.overturned} overturned" if verdict.overturned else ""
+    return f"{verdict.beyond}{fallen}{_shown_by(verdict)}"
+
+
+def _shown_by(verdict: Verdict) -> str:
+    """How many recordings, or events, would show that a limit is met: with no more beyond."""
+    return f"; {verdict.shown_by} would show it" if verdict.shown_by else ""
+
+
+def worst_text(verdict: Verdict) -> str:
+    """How many of several records are beyond a limit, and the worst of them."""
+    which = "least" if verdict.condition.from_below else "largest"
+    worst = f", {which} {_reached(verdict.condition, verdict.value)} ({verdict.record})"
+    worst = "" if verdict.condition.name in EVENTS else worst
+    return f"{verdict.beyond.number} of {verdict.beyond.of} beyond{worst}{_shown_by(verdict)}"
+
+
+def excess_text(verdict: Verdict) -> str:
+    """The limit that a single history exceeds."""
+    condition = verdict.condition
+    if condition.name in EVENTS:
+        return f"{condition.name} ({condition.source})"
+    value = _reached(condition, verdict.value)
+    if verdict.overturned:
+        return f"{condition.name}: {value} ({condition.source})"
+    beyond = "is below" if condition.from_below else "exceeds"
+    return f"{condition.name} = {value} {beyond} {_bound(condition)} ({condition.source})"
+
+
+def verdicts_in_short(verdicts: Sequence[Verdict], what: str) -> str:
+    """How many limits are exceeded, or met, or met without being shown."""
+    exceeded = sum(verdict.exceeded for verdict in verdicts)
+    unsure = sum(not (verdict.exceeded or verdict.shown) for verdict in verdicts)
+    first = f"{exceeded} of {what} exceeded" if exceeded else f"All {what} are met"
+    return f"{first}{f', {unsure} met but not shown' * bool(unsure)}."
+
+
+def verdict_texts(verdict: Verdict) -> tuple[str, str, str, str]:
+    """A verdict as a row of a table."""
+    condition = verdict.condition
+    return condition.name, verdict.word, requirement_text(condition), verdict_text(verdict)
+
+
+def limits_table(verdicts: Sequence[Verdict]) -> Table:
+    """Every limit of a single history with its value."""
+    rows = []
+    for verdict in verdicts:
+        condition = verdict.condition
+        numbers = "", "not allowed"
+        if condition.name not in EVENTS:
+            value = math.inf if verdict.overturned else verdict.value
+            numbers = _reached(condition, value), bound_text(condition)
+        rows.append((condition.name, verdict.word, condition.source, *numbers))
+    return Table.of_texts(["limit", "", "from", "value", "requirement"], rows, words=3)
