@@ -135,16 +135,18 @@ def command(
 
 def _shown(result: StudyResult, found: Collected, *, whole: bool) -> list[Part]:
     """All, or as many rows of each table as fit into some lines: statistics are cut first."""
+    from rpscli.report.limits import counts_of_limits
     from rpscli.report.study.shown import asked, cut
 
-    told = list(_told(result, found))
+    judged, told = result.judgements, list(_told(result, found))
     if whole:
         return [*_head(result), *_statistics(result, None), *told]
     head, statistics = list(_head(result)), list(_statistics(result, asked(result.layout)))
     few: list[Part] = []
     for rows, of_reports in [(n, FEWER[0]) for n in FEWER] + [(0, n) for n in FEWER]:
         some = cut(statistics, rows, ALL) if rows else [f"statistics are in statistics.csv{ALL}"]
-        few = [*head, *some, *cut(told, of_reports, ALL)]
+        counts = [counts_of_limits(judged)] if len(judged) > of_reports else []
+        few = [*head, *some, *counts, *cut(told, of_reports, ALL)]
         if rendered(few).count("\n") <= MOST_LINES:
             break
     return few

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import math
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -47,7 +48,7 @@ from rpscli.report.study.statistics import (
     verdict_document,
     verdict_lines,
 )
-from rpscli.report.table import Heading, Part, Table, csv_text, headed, large, shown
+from rpscli.report.table import Heading, Part, Table, csv_text, headed, large, shown, standing
 from rpscli.report.tables.timehistory import (
     neighbours_texts,
     overturned_text,
@@ -279,7 +280,7 @@ def run_all(
         write(case.folder, terminal)
     error = set_error(computed)
     document = all_document(computed, error)
-    terminal.warn_first(document["warnings"], "in the documents")
+    terminal.warn(document["warnings"])
     terminal.result(document, set_tables(computed))
     leave(error)
 
@@ -354,20 +355,28 @@ def all_document(computed: Sequence[Computed], error: RpsError | None) -> dict[s
     histories = [history for case in computed for history in case.histories]
     files = [file for history in histories for file in history.document.get("files", ())]
     files += [file for case in computed if case.folder is not None for file in case.folder.files]
-    warnings = [
-        f"{history.request.name}: {text}"
-        for history in histories
-        for text in history.document["warnings"]
-    ]
     document = {
         **heading(COMMAND),
         "note": _note(computed) or None,
         "histories": [history.document for history in histories],
         "sets": [set_document(case) for case in computed],
-        "warnings": warnings,
+        "warnings": list(_warnings(histories)),
         "files": files,
     }
     return concluded(document, error)
+
+
+def _warnings(histories: Sequence[HistoryResult]) -> Iterator[str]:
+    """Each kind of warning once, with its number of histories and the numbers of the first."""
+    kinds: dict[str, list[tuple[str, str]]] = {}
+    for history in histories:
+        for text in history.document["warnings"]:
+            kind = re.sub(r"[-+\d.]+", "", text)
+            kinds.setdefault(kind, []).append((history.request.name, text))
+    for given in kinds.values():
+        name, text = given[0]
+        others = f"{len(given)} of {len(histories)} histories, such as " * (len(given) > 1)
+        yield f"{others}{name}: {text}"
 
 
 def set_document(case: Computed) -> dict[str, Any]:
@@ -394,7 +403,8 @@ def set_tables(computed: Sequence[Computed]) -> Iterator[Part]:
         for first in range(0, len(main), A_TABLE):
             yield _records_table(case, dict(main[first : first + A_TABLE]))
         if len(case.histories) > 1:
-            yield f"overturned: {row.overturned}; {CODES}"
+            undefined = ", so the mean of maxima is not defined" * bool(row.overturned.number)
+            yield f"overturned: {row.overturned}{undefined}; {CODES}"
         own = case.first.given.case
         yield overturned_text(own.structure, own.analysis)
         yield restitution_text(own.structure)
@@ -418,9 +428,11 @@ def _records_table(case: Computed, quantities: dict[ResultQuantity, Spread]) -> 
         rows.append([label, word, *(shown(value, DIGITS) for value in values)])
     if len(case.histories) > 1:
         words = {"mean": "mean of maxima", "median": "median", "high": "84 %", "largest": "largest"}
+        if case.together.rows[0].overturned.number:
+            words |= {"low_stands": "least that stands", "high_stands": "largest that stands"}
         for name, label in words.items():
             values = [large(getattr(each, name), q.unit)[0] for q, each in quantities.items()]
-            rows.append([label, "", *(shown(value, DIGITS) for value in values)])
+            rows.append([label, "", *(standing(value, DIGITS) for value in values)])
     heads = [headed(q.label, q.unit) for q in quantities]
     return Table.of_texts(["record", "", *heads], rows, words=2)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Sequence
 
 from rpscli.case.conditions import EVENTS, LIMITS, RATE, Condition
@@ -96,6 +97,17 @@ def verdicts_in_short(verdicts: Sequence[Verdict], what: str) -> str:
     unsure = sum(not (verdict.exceeded or verdict.shown) for verdict in verdicts)
     first = f"{exceeded} of {what} exceeded" if exceeded else f"All {what} are met"
     return f"{first}{f', {unsure} met but not shown' * bool(unsure)}."
+
+
+def counts_of_limits(verdicts: Sequence[Verdict]) -> Table:
+    """Every limit of a study once, with how many of its verdicts end in which way."""
+    words = ("EXCEEDED", "met, not shown", "met")
+    counts: dict[tuple[str, str], Counter[str]] = {}
+    for verdict in verdicts:
+        row = verdict.condition.name, requirement_text(verdict.condition)
+        counts.setdefault(row, Counter())[verdict.word] += 1
+    rows = [(*row, *(str(found[word]) for word in words)) for row, found in counts.items()]
+    return Table.of_texts(("limit", "requirement", *words), rows, words=2)
 
 
 def verdict_texts(verdict: Verdict) -> tuple[str, str, str, str]:

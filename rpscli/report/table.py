@@ -37,6 +37,11 @@ def shown(value: float | str | None, digits: int = 4) -> str:
     return f"{value:.{decimals}f}"
 
 
+def standing(value: float | None, digits: int = 4) -> str:
+    """A demand; ``-`` of those that an overturned history takes to infinity."""
+    return shown(value if value is not None and math.isfinite(value) else None, digits)
+
+
 LARGE_UNITS = {"N": "kN", "J": "kJ", "kg": "t", "N/m": "kN/m"}
 """Names for a thousand of an SI unit; other units are shown as they are."""
 

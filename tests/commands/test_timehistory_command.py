@@ -176,7 +176,10 @@ def test_a_least_force_is_judged_from_below(rps: Invoke) -> None:
     result = rps(*words, "min_column_force=1e9")
     assert result.exit_code == 10
     assert "kN is below 1e+06 kN (--fail-on)" in result.stderr
-    assert "at least 1e+09" in result.stdout
+    assert "at least 1e+06 kN" in result.stdout
+    result = rps(*words, "min_column_force=2 MN")
+    assert "MN is below 2 MN (--fail-on)" in result.stderr
+    assert "at least 2 MN" in result.stdout
 
 
 def test_what_falls_meets_no_limit(rps: Invoke, rps_json: InvokeJson) -> None:

@@ -100,8 +100,19 @@ def test_an_overturned_history_is_larger_than_any_demand(rps: Invoke, rps_json: 
     assert together["demands"]["drift_ratio"]["largest"] is None
     assert together["demands"]["drift_ratio"]["median"] == document["histories"][0]["drift_ratio"]
     shown = rps(*words).stdout
-    assert "inf" in next(line for line in shown.splitlines() if line.startswith("mean of maxima"))
+    rows = {line[:19].strip(): line[19:].split() for line in shown.splitlines()}
+    assert "inf" not in shown
+    assert {*rows["mean of maxima"]} == {"-"}
+    assert rows["least that stands"] == rows["largest that stands"] != {"-"}
     assert "overturned: 1 of 2" in shown
+    assert "mean of maxima is not defined" in shown
+
+
+def test_one_kind_of_warning_is_one_line(rps: Invoke) -> None:
+    slides = ("--set", "podium.friction=0.01")
+    warned = rps("timehistory", "small.yaml", *slides, *asked(PULSES)).stderr
+    (line,) = (line for line in warned.splitlines() if "the columns slide" in line)
+    assert line.startswith("warning: 3 of 3 histories, such as small, ")
 
 
 def test_limits_judge_the_set(rps_json: InvokeJson) -> None:

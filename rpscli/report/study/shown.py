@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Sequence
 
 from rpscli.report.limits import VERDICT, verdict_texts
 from rpscli.report.study.labels import key_cells, key_columns, symbol
 from rpscli.report.study.registry import REPORTS
-from rpscli.report.table import Part, Table, headed, large, shown
+from rpscli.report.table import Part, Table, headed, large, standing
 from rpscli.report.tables.timehistory import overturned_text, restitution_text
 from rpscli.sweep.points import StudyPoints
 from rpscli.sweep.statistics.fractiles import Spread
@@ -58,16 +59,17 @@ def summary_tables(summary: Summary, wanted: set[str] | None = None) -> Iterator
         yield _of_systems(summary, systems, named, spreads)
     if main:
         yield (
-            "demands: median / 84 % fractile / largest; an overturned history is larger than any"
-            " demand (inf)"
+            "demands: median / 84 % fractile / largest; - where so many overturned, and in brackets"
+            " the least and the largest of those that stand"
         )
     if summary.pooled:
         yield f"each row is over all records and {' and '.join(summary.pooled)}"
 
 
 def _spread(spread: Spread, unit: str) -> str:
-    values = [large(value, unit)[0] for value in spread[:3]]  # the mean is in JSON
-    return " / ".join(shown(value, DIGITS) for value in values)
+    *three, _, low, high = (standing(large(value, unit)[0], DIGITS) for value in spread)
+    some = math.isinf(spread.largest) and not math.isnan(spread.low_stands)
+    return " / ".join(three) + f" ({low} to {high})" * some  # the mean is in JSON
 
 
 def verdict_table(summary: Summary, verdicts: Sequence[Verdict]) -> Table:

@@ -140,12 +140,15 @@ class Spread(NamedTuple):
     """Median, 84 % fractile, largest value and mean; infinite where so many overturned.
 
     Of a result of which small values are bad: median, 16 % fractile, least value and mean.
+    `low_stands` and `high_stands` are the least and the largest that did not overturn.
     """
 
     median: float
     high: float
     largest: float
     mean: float
+    low_stands: float
+    high_stands: float
 
 
 def demand(table: Outcomes, values: Array, *, from_below: bool = False) -> Array:
@@ -171,7 +174,9 @@ def _places(shares: tuple[float, ...], total: int) -> list[int]:
 def spread(demands: Array, *, from_below: bool = False) -> Spread:
     """Median, fractile, worst and mean of demands; NaN where a history that stood has none."""
     if np.isnan(demands).any() or not len(demands):
-        return Spread(np.nan, np.nan, np.nan, np.nan)
+        return Spread(*[np.nan] * len(Spread._fields))
     shares = (0.5, LOW, 0.0) if from_below else (0.5, HIGH, 1.0)
     median, high, largest = fractiles(demands, shares).tolist()
-    return Spread(median, high, largest, float(np.mean(demands)))
+    standing = demands[np.isfinite(demands)]
+    ends = [float(end(standing)) if len(standing) else np.nan for end in (np.min, np.max)]
+    return Spread(median, high, largest, float(np.mean(demands)), *ends)
