@@ -124,13 +124,20 @@ def check_tables(document: Mapping[str, Any], limits: Sequence[Condition]) -> It
     for rows in (LEADING, GEOMETRY, dynamics, BOTH)[: 4 if pair else 3]:
         texts = []
         for row in rows:
-            if row in LEADING and rows is not LEADING:
+            if row.name.endswith("_paper") or (row in LEADING and rows is not LEADING):
                 continue
             of_some = row in (*on_bed, *BOTH) or row.name == "rolling_period"
             if document[row.name] is None and of_some:
                 continue  # columns with a flat part, edges, or curved ends have none
             value, unit = large(document[row.name], row.unit)
             texts.append((row.label, row.symbol, shown(value), unit))
+        if (
+            rows is LEADING
+            and (stiffness := document["stiffnesses"]) is not None
+            and len(stiffness)
+        ):
+            ends = (("bottom", stiffness[0]), ("roof", stiffness[-1]))[: len(stiffness)]
+            texts += [(f"storey stiffness, {n}", "", shown(1e-3 * k), "kN/m") for n, k in ends]
         yield Table.of_texts(heads, texts, words=2)
     if record := document["record"]:
         lines = [

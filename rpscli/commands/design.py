@@ -22,7 +22,7 @@ from rpscli.commands.study import (
     show_dry_run,
     study_heading,
 )
-from rpscli.report.documents import direction_note, heading
+from rpscli.report.documents import heading
 from rpscli.report.figures.look import Look
 from rpscli.report.table import Heading, Part, Table
 
@@ -99,11 +99,13 @@ def designed(
 
 def document_of(done: Design) -> dict[str, Any]:
     """The answer in JSON."""
+    from rpscli.report.study.shown import note_of_directions
+
     layout = done.run.layout
     document = {
         **heading("design"),
         "study": study_heading(layout),
-        "note": direction_note(layout.pairs) or None,
+        "note": note_of_directions(layout) or None,
         "points": {"total": len(done.run.table), "failed": len(done.found.failures)},
         **done.document,
         "warnings": [*done.notes, *done.run.study.warnings],
@@ -119,7 +121,7 @@ def tables_of(done: Design) -> Iterator[Part]:
     counts = [(name.replace("_", " "), str(n)) for name, n in document["designs"].items()]
     yield Table.listing([*counts, ("records scaled to", layout.scaled_to)])
     yield from done.tables
-    from rpscli.report.study.shown import of_first_system
+    from rpscli.report.study.shown import note_of_directions, of_first_system
 
     yield of_first_system(done.judged.layout)
-    yield from filter(None, [direction_note(layout.pairs)])
+    yield from filter(None, [note_of_directions(layout)])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 @click.command("modal")
 @case_options
 @film_options
+@click.option("--first-order", "paper", is_flag=True, help="Also show the values of the paper.")
 @result_options
 def command(
     request: CaseRequest,
@@ -37,10 +38,10 @@ def command(
     terminal: Terminal,
     look: Look,
     film: FilmRequest | None,
+    *,
+    paper: bool,
 ) -> None:
     """Modes of CASE in full contact and, linearised where they begin, rolling and rocking.
-
-    The paper's values, of first order in alpha, are given beside the exact ones.
 
     Writes modes.csv, shapes.csv, eigenvalues.csv and the figure modes.
     """
@@ -57,16 +58,19 @@ def command(
         with counted("drawing the animation", terminal) as progress:
             draw = partial(modes_film, result, given.case.title, film, progress)
             folder.add_at(film.file, drawn_with(look, film.ending, draw))
-    conclude(given, folder, result.results(), _tables(result, given.case.title), terminal)
+    tables = _tables(result, given.case.title, () if paper else (FIRST_ORDER,))
+    conclude(given, folder, result.results(), tables, terminal)
 
 
 ORDER = (
     "Uplifted states are linearised exactly where they begin: rolling at 0, rocking at beta (0 for"
-    " flat ends). First order is the paper's: small alpha, rocking continued to 0."
+    " flat ends)."
 )
+FIRST_ORDER = "first order"
+"""Head of the paper's values: small alpha, rocking continued to 0."""
 
 
-def _tables(result: ModalResult, title: str) -> Iterator[Part]:
+def _tables(result: ModalResult, title: str, left_out: Collection[str]) -> Iterator[Part]:
     storey, vibrations = [], []
     for name, (modes, paper) in result.both_orders.items():
         numbers = modes.frequency_parameter, paper.frequency_parameter
@@ -78,9 +82,8 @@ def _tables(result: ModalResult, title: str) -> Iterator[Part]:
             cells = shown(w), shown(paper.frequencies[i]), ratios[0], *xi, ratios[1]
             vibrations.append((name, str(i + 1), *cells))
     yield Heading(title)
-    yield Table.of_texts(
-        ("storey's own mode", "", "p_ext rad/s", "first order", "rigid estimate"), storey, words=2
-    )
+    heads: tuple[str, ...] = "storey's own mode", "", "p_ext rad/s", FIRST_ORDER, "rigid estimate"
+    yield Table.of_texts(heads, storey, words=2).without(left_out)
     yield ORDER
     if result.left_out:
         yield f"Not linear, and left out: {listed(result.left_out, 'and')}."
@@ -96,8 +99,9 @@ def _tables(result: ModalResult, title: str) -> Iterator[Part]:
     if (fixed := result.fixed_base) is None:
         return
     yield _mode_table(result.fixed_base_state.replace("_", " "), fixed)
-    heads = "rad/s", "first order", "of fixed base", "xi %", "first order", "of fixed base"
-    yield Table.of_texts(("uplifted", "mode", *heads), vibrations, words=1, keys=2)
+    heads = "rad/s", FIRST_ORDER, "of fixed base", "xi %", FIRST_ORDER, "of fixed base"
+    table = Table.of_texts(("uplifted", "mode", *heads), vibrations, words=1, keys=2)
+    yield table.without(left_out)
 
 
 def _mode_table(state: str, modes: FixedBaseModes) -> Table:

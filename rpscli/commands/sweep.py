@@ -29,7 +29,7 @@ from rpscli.commands.study import (
     study_heading,
 )
 from rpscli.errors import LimitExceeded
-from rpscli.report.documents import direction_note, heading
+from rpscli.report.documents import heading
 from rpscli.report.figures.look import Look
 from rpscli.report.table import Heading, Part, Table
 
@@ -188,4 +188,6 @@ def _told(result: StudyResult, found: Collected) -> Iterator[Part]:
 
 
 def _note(result: StudyResult) -> str:
-    return direction_note(result.layout.pairs) if result.summary else ""
+    from rpscli.report.study.shown import note_of_directions
+
+    return note_of_directions(result.layout) if result.summary else ""

@@ -186,7 +186,7 @@ def _document(request: HistoryRequest, result: TimeHistoryResult) -> dict[str, A
     given, ground = request.given, request.ground
     document = {
         **heading(COMMAND),
-        "note": direction_note([ground.y is not None]) or None,
+        "note": direction_note([ground.y is not None], result.structure.planar_only) or None,
         "case": case_heading(given),
         **timehistory_document(result),
     }
@@ -416,7 +416,8 @@ def set_tables(computed: Sequence[Computed]) -> Iterator[Part]:
 
 def _note(computed: Sequence[Computed]) -> str:
     grounds = (history.request.ground for case in computed for history in case.histories)
-    return direction_note(ground.y is not None for ground in grounds)
+    planar = computed[0].first.given.case.structure.planar_only
+    return direction_note((ground.y is not None for ground in grounds), planar)
 
 
 def _records_table(case: Computed, quantities: dict[ResultQuantity, Spread]) -> Table:

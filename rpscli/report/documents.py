@@ -59,16 +59,18 @@ Document = dict[str, Any]
 OF_RECORD = ("name", "source", "npts", "dt", "pga")
 """Attributes of its record in the document of a history."""
 
-ONE_DIRECTION = (
-    "one horizontal direction at a time, which is not conservative: write ?both behind a pair, as"
-    " in fema_p695:farfield/1?both, and both components act together"
+BOTH = (
+    "write ?both behind a pair, as in fema_p695:farfield/1?both, and both components act together"
 )
-"""Stands wherever results of histories are read."""
 
 
-def direction_note(pairs: Iterable[bool]) -> str:
-    """That sentence; empty where both components act in every history."""
-    return "" if all(pairs) else ONE_DIRECTION
+def direction_note(pairs: Iterable[bool], refused: str) -> str:
+    """That one direction says too little, and what to do; empty where all histories have both.
+
+    It stands wherever results of histories are read. `refused` is why a structure cannot have both.
+    """
+    remedy = f"both components together cannot be followed: {refused}" if refused else BOTH
+    return "" if all(pairs) else f"one horizontal direction at a time, not conservative: {remedy}"
 
 
 def heading(command: str = "", status: str = "ok") -> Document:

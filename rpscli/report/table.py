@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 import math
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import islice
 from typing import TYPE_CHECKING, Any, NamedTuple, cast
@@ -138,6 +138,10 @@ class Table:
         """The table with so many of its rows."""
         few = [each._replace(values=list(each.values)[:rows]) for each in self.columns]
         return replace(self, columns=few)
+
+    def without(self, heads: Collection[str]) -> Table:
+        """The table without columns of these heads."""
+        return replace(self, columns=[each for each in self.columns if each.label not in heads])
 
     @property
     def rows(self) -> list[tuple[str, ...]]:

@@ -55,6 +55,18 @@ def test_check(rps_json: InvokeJson, case: Path) -> None:
     assert not Path("results").exists()
 
 
+def test_check_begins_with_what_is_asked_of_every_case(rps: Invoke) -> None:
+    shown = rps("check", "small.yaml").stdout
+    first = shown[: shown.index("semi-diagonal")]
+    building = load_case("small.yaml").structure.superstructure
+    assert building is not None
+    for end, stiffness in zip(
+        ("bottom", "roof"), building.stiffnesses[[0, -1]] * 1e-3, strict=True
+    ):
+        assert f"{stiffness:.0f}" in next(line for line in first.splitlines() if end in line)
+    assert shown.count("critical rotation") == first.count("critical rotation") == 1
+
+
 def test_check_draws_the_bearing(rps_json: InvokeJson) -> None:
     document = rps_json("check", "small.yaml", "--draw", "--figures", "svg,pdf", "-o", "drawn")
     assert document["files"] == [
@@ -179,3 +191,8 @@ def test_patterns_need_a_building(rps: Invoke) -> None:
 def test_an_override_is_seen(rps_json: InvokeJson) -> None:
     flat = rps_json("modal", "small.yaml", "--set", "podium.bearing.curvature_ratio=0")
     assert flat["rolling"] is None
+
+
+def test_values_of_the_paper_are_an_option(rps: Invoke) -> None:
+    assert "first order" not in rps("modal", "small.yaml").stdout
+    assert "first order" in rps("modal", "small.yaml", "--first-order").stdout

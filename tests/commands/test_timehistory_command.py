@@ -308,3 +308,15 @@ def test_an_unusual_scale_is_named(rps_json: InvokeJson) -> None:
         document = rps_json("timehistory", "small.yaml", *arguments)
         told = [text for text in document["warnings"] if f"is scaled by {scale}" in text]
         assert len(told) == named
+
+
+@pytest.mark.parametrize(
+    "more", [(), ("--scale", "0.5", "--record", "pulse:sine?amplitude=1&period=1")]
+)
+def test_both_components_are_advised_where_they_can_act(rps: Invoke, more: tuple[str, ...]) -> None:
+    words = ("timehistory", "small.yaml", *more, "--record", STRONG)
+    friction = "podium.devices=[{kind: friction, force: 1 kN}]"
+    assert "write ?both" in rps(*words).stdout
+    refused = rps(*words, "--set", friction).stdout
+    assert "write ?both" not in refused
+    assert "in one plane only" in refused

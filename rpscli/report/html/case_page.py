@@ -265,7 +265,8 @@ def history_short(
         yield limits_table(verdicts)
     yield restitution_text(result.structure)
     yield from map(Notice, neighbours_texts(result, beside))
-    yield from filter(None, [direction_note([result.motion.y is not None])])
+    both, planar = [result.motion.y is not None], result.structure.planar_only
+    yield from filter(None, [direction_note(both, planar)])
 
 
 def limits_in_short(verdicts: Sequence[Verdict]) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Sequence
 
+from rpscli.report.documents import direction_note
 from rpscli.report.limits import VERDICT, verdict_texts
 from rpscli.report.study.labels import key_cells, key_columns, symbol
 from rpscli.report.study.registry import REPORTS
@@ -105,6 +106,11 @@ def of_first_system(layout: StudyPoints) -> str:
     of_base = layout.plan.base.get("limits") if layout.study.file.limits else None
     replaced = "" if not of_base else f"; own limits replace all of the base: {', '.join(of_base)}"
     return text + replaced
+
+
+def note_of_directions(layout: StudyPoints) -> str:
+    """That histories have one direction only; by the first system, whether they could have both."""
+    return direction_note(layout.pairs, layout.system(0).structure.planar_only)
 
 
 def cut(parts: Iterable[Part], rows: int = MOST_ROWS, others: str = "") -> Iterator[Part]:
