@@ -92,19 +92,26 @@ def refused_by_system(
         raise fault(f"{str(name)[:200]}: cannot be {verb}: {reason}; {remedy}") from None
 
 
-def nearest(word: str, known: Iterable[str], likeness: float = 0.7) -> str | None:
-    """The known word that was probably meant; None if `likeness`, of letters in common, is less.
+def alike(word: str, known: Iterable[str], most: int, likeness: float = 0.0) -> list[str]:
+    """The known words that are nearest to one, of which `likeness` is the part of equal letters.
 
-    >>> nearest("slendernes", ["slenderness", "semi_diagonal"])
-    'slenderness'
-    >>> nearest("colour", ["slenderness"]) is None
-    True
+    >>> alike("slendernes", ["semi_diagonal", "slenderness", "radius"], 2)
+    ['slenderness', 'semi_diagonal']
     """
     import difflib  # needed by those who made a mistake only
 
     folded = {name.lower().replace("-", "_"): name for name in known}
-    found = difflib.get_close_matches(word.lower().replace("-", "_"), folded, 1, likeness)
-    return folded[found[0]] if found else None
+    found = difflib.get_close_matches(word.lower().replace("-", "_"), folded, most, likeness)
+    return [folded[name] for name in found]
+
+
+def nearest(word: str, known: Iterable[str], likeness: float = 0.7) -> str | None:
+    """The known word that was probably meant; None if `likeness` is less.
+
+    >>> nearest("colour", ["slenderness"]) is None
+    True
+    """
+    return next(iter(alike(word, known, 1, likeness)), None)
 
 
 def hint(word: str, known: Iterable[str], otherwise: str, likeness: float = 0.7) -> str:

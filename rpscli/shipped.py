@@ -27,10 +27,10 @@ def examples() -> dict[str, str]:
 
 
 def example_files(name: str) -> dict[str, bytes]:
-    """An example and the files that it names, in comments too, by their paths in the folder."""
+    """An example, or all of a folder, and the files that they name, in comments too, by path."""
     place = shipped_cases()
     contents: dict[Path, bytes] = {}
-    waiting = [place / f"{name}.yaml"]
+    waiting = [place / f"{name}.yaml", *sorted((place / name).rglob("*.yaml"), reverse=True)]
     while waiting:
         file = waiting.pop()
         if file in contents or not file.is_file() or place not in file.parents:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rpscli.analyses.result_quantities import LIMITED
-from rpscli.errors import UsageError, hint
+from rpscli.errors import UsageError, alike, hint
 from rpscli.units import KINDS, Written, bare_or_si
 
 if TYPE_CHECKING:
@@ -69,8 +69,12 @@ def parse_condition(text: str) -> Condition:
     if (name in EVENTS or name == NOT_SHOWN) and not sign:
         return Condition(name, 0.0, "--fail-on")
     if name not in LIMITS and name not in EVENTS:
-        known = [*EVENTS, NOT_SHOWN, *(f"{limited}=VALUE" for limited in LIMITS)]
-        meant = hint(name, [*EVENTS, *LIMITS], f"known are {', '.join(known)}", 0.6)
+        from rpscli.case.schema.keys import REMOVED  # pydantic is slow
+
+        if now := REMOVED.get(f"analysis.{name}"):
+            raise UsageError(f"--fail-on {text}: {name} is gone: {now}")
+        some = ", ".join(alike(name, known := [*EVENTS, *LIMITS, NOT_SHOWN], 3))
+        meant = hint(name, known, f"near are {some}; `rps explain limits` lists all", 0.6)
         raise UsageError(f"--fail-on {text}: {name or 'the name'} is not known; {meant}")
     unit = LIMITS[name].unit if name in LIMITS else "-"
     try:

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Annotated, NamedTuple, Self, TypeGuard
+from typing import Annotated, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,12 +17,20 @@ from pydantic import BeforeValidator, Field, PlainValidator, WithJsonSchema, mod
 from rpscli.analyses.result_quantities import DEMANDS, SAMPLED
 from rpscli.case.overrides import apply_overrides
 from rpscli.case.schema.check import schema_check
-from rpscli.case.schema.fields import LARGEST, Quantity, Section, Whole, is_finite, must_be, refuse
+from rpscli.case.schema.fields import LARGEST, Quantity, Section, Whole, must_be, refuse
 from rpscli.case.schema.keys import is_whole, unit
 from rpscli.case.schema.limits import Fractile
-from rpscli.case.study.axes import Axis, sources_of
+from rpscli.case.study.axes import Axis, linked_value, sources_of
 from rpscli.case.study.rules import fixed_faults, record_rules, twice, unknown_keys, varied_paths
-from rpscli.case.study.schema import Seed, Sources, StudyParts
+from rpscli.case.study.schema import (
+    PLUS,
+    Linked,
+    Seed,
+    Sources,
+    StudyParts,
+    is_number,
+    with_keys,
+)
 from rpscli.case.study.study import Study, shared_out, study_of
 from rpscli.case.text.document import Document, Fault, is_case, is_design
 from rpscli.case.text.files import read_text
@@ -31,10 +39,6 @@ from rpscli.errors import CaseError, hint, listed
 from rpscli.records.recordings import clusters
 from rpscli.registry import Registry
 from rpscli.units import in_si
-
-PLUS = "plus"
-"""What is added to a linear sum."""
-
 
 GONE = {
     "find": "write `variables`",
@@ -48,8 +52,6 @@ GONE = {
 
 Array = NDArray[np.float64]
 
-DIGITS = 6
-"""Of what is linked to the values of a design: nobody builds more, and files stay readable."""
 STEPS = 3
 """Decimals of a range, or of its least end, to which values are rounded, judged and printed."""
 
@@ -117,21 +119,11 @@ class Unknown(NamedTuple):
         return STEPS - math.floor(math.log10(min(sizes)))
 
 
-def _is_number(value: object) -> TypeGuard[float]:
-    """A number whose sums and products with others stay finite."""
-    return is_finite(value) and abs(value) <= LARGEST
-
-
-def _with_keys(value: object) -> object:
-    """Each value with its key, whose unit it may have."""
-    return {key: (key, of) for key, of in value.items()} if isinstance(value, dict) else value
-
-
 def _unknown(given: tuple[str, object]) -> Unknown:
     """The range of a key, in SI units."""
     key, bounds = given
     si = in_si(bounds, unit(key))
-    if not isinstance(si, list) or len(si) != 2 or not all(map(_is_number, si)):
+    if not isinstance(si, list) or len(si) != 2 or not all(map(is_number, si)):
         words = "numbers" if unit(key) == "-" else f"numbers in {unit(key)} or with a unit"
         refuse(f"must be two {words}, [least, largest], up to {LARGEST:g}")
     if not si[0] < si[1]:
@@ -142,29 +134,13 @@ def _unknown(given: tuple[str, object]) -> Unknown:
     return Unknown(key, float(si[0]), float(si[1]))
 
 
-def _linear(given: tuple[str, object]) -> dict[str, float]:
-    key, terms = given
-    if isinstance(terms, dict) and PLUS in terms:
-        terms = terms | {PLUS: in_si(terms[PLUS], unit(key))}
-    if not isinstance(terms, dict) or not all(map(_is_number, terms.values())):
-        refuse(f"must be a linear sum, {{key: factor, plus: number}}, of numbers up to {LARGEST:g}")
-    return terms
-
-
 _BOUNDS = {"type": "array", "items": {"type": ["number", "string"]}, "minItems": 2, "maxItems": 2}
 Variables = Annotated[
     dict[str, Annotated[Unknown, PlainValidator(_unknown), WithJsonSchema(_BOUNDS)]],
-    BeforeValidator(_with_keys),
+    BeforeValidator(with_keys),
     must_be(
         dict, "keys with their ranges, as in {podium.bearing.slenderness: [0.1, 0.3]}", filled=True
     ),
-]
-_TERMS = {"type": "object", "additionalProperties": {"type": "number"}} | {
-    "properties": {PLUS: {"type": ["number", "string"]}}
-}
-Sums = Annotated[
-    dict[str, Annotated[dict[str, float], PlainValidator(_linear), WithJsonSchema(_TERMS)]],
-    BeforeValidator(_with_keys),
 ]
 
 
@@ -205,7 +181,7 @@ class DesignFile(StudyParts):
 
     variables: Variables
     """dotted case keys with [least, largest]: what may change"""
-    linked: Sums = Field(
+    linked: Linked = Field(
         {}, description="further keys as linear sums of these, {key: factor, plus: constant}"
     )
     minimise: Objective
@@ -243,11 +219,8 @@ class DesignTask:
             values = low + (high - low) * at
             found[key] = np.array([round(value, of.digits) for value in values.tolist()])
         for key, terms in self.file.linked.items():
-            sums = (terms[name] * found[name] for name in terms if name != PLUS)
-            total = sum(sums, np.full(len(places), terms.get(PLUS, 0.0)))
-            found[key] = np.array([float(f"{value:.{DIGITS}g}") for value in total.tolist()])
-            if is_whole(key):
-                found[key] = np.round(total)
+            columns = zip(*(found[name].tolist() for name in terms if name != PLUS), strict=True)
+            found[key] = np.array([linked_value(key, terms, row) for row in columns], dtype=float)
         return np.column_stack(list(found.values()))
 
     def rows(self, values: Array) -> tuple[tuple[float | int, ...], ...]:

@@ -25,7 +25,13 @@ from rpscli.commands.inputs import (
     read_case,
     single_motions,
 )
-from rpscli.commands.shell.options import CaseRequest, OutputRequest, case_options, result_options
+from rpscli.commands.shell.options import (
+    CaseRequest,
+    FiniteRange,
+    OutputRequest,
+    case_options,
+    result_options,
+)
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.commands.shell.waiting import announce_compilation, counted
 from rpscli.errors import AnalysisError, RpsError, all_made
@@ -49,7 +55,7 @@ Wish = tuple[str, tuple[str, ...], MotionRequest | str]
 @motion_options
 @click.option(
     "--period-ratio",
-    type=click.FloatRange(min=1.0, min_open=True),
+    type=FiniteRange(min=1.0, min_open=True),
     metavar="RATIO",
     help="First period in full contact over that on a fixed base, of the rows edges and plane; that"
     f" of the case, else {PERIOD_RATIO}.",

@@ -9,7 +9,13 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from rpscli.commands.inputs import case_heading, read_case
-from rpscli.commands.shell.options import FILE, CaseRequest, case_options, terminal_options
+from rpscli.commands.shell.options import (
+    FILE,
+    CaseRequest,
+    FiniteRange,
+    case_options,
+    terminal_options,
+)
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.commands.shell.waiting import announce_compilation, passing_time
 from rpscli.errors import AnalysisError, RecordError, Refused, UsageError, listed
@@ -35,8 +41,12 @@ LARGEST = 1e15
 @case_options
 @click.argument("data", metavar="DATA.csv", type=FILE)
 @click.argument("test", metavar="|".join(TESTS), type=click.Choice(TESTS))
-@click.option("--from", "first", type=float, metavar="S", help="Ignore samples before this time.")
-@click.option("--to", "last", type=float, metavar="S", help="Ignore samples after this time.")
+@click.option(
+    "--from", "first", type=FiniteRange(), metavar="S", help="Ignore samples before this time."
+)
+@click.option(
+    "--to", "last", type=FiniteRange(), metavar="S", help="Ignore samples after this time."
+)
 @click.option("-o", "--output", "place", type=click.Path(path_type=Path), metavar="FILE.yaml",
               help="A copy of CASE with the identified values; comments are kept.")  # fmt: skip
 @click.option("--force", is_flag=True, help="Overwrite that file.")

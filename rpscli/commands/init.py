@@ -28,8 +28,8 @@ from rpscli.shipped import FOLDER, example_files, examples
     flag_value="",
     metavar="[NAME]",
     **completing(examples),
-    help="Write a case or study that comes with rps, and the files that it names, into the"
-    " folder FILE (cases by default); without NAME, list them.",
+    help="Write a case or study that comes with rps, or a folder of them, and the files that they"
+    " name, into the folder FILE (cases by default); without NAME, list them.",
 )
 @click.option(
     "--editor",
@@ -79,10 +79,10 @@ def _example(name: str, folder: Path, terminal: Terminal, *, force: bool) -> Non
         document = {**heading("init"), "files": [], "examples": known}
         terminal.result(document, [Table.listing(known.items())])
         return
-    if name not in known:
+    files = {folder / path: content for path, content in example_files(name).items()}
+    if not files:
         meant = hint(name, known, "`rps init --example` lists all")
         raise UsageError(f"--example {name}: there is none of this name; {meant}")
-    files = {folder / path: content for path, content in example_files(name).items()}
     _write(files, terminal, force=force)
 
 

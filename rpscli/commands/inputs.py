@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -13,6 +12,7 @@ import click
 from rpscli.commands.shell.options import (
     FILE,
     CaseRequest,
+    FiniteRange,
     OutputRequest,
     completing,
     gathered,
@@ -121,7 +121,7 @@ def case_heading(given: CaseInput) -> dict[str, str]:
     return {"name": given.case.name, "title": given.case.title, "source": given.case.source}
 
 
-class _Factor(click.types.FloatParamType):
+class _Factor(FiniteRange):
     """A number; whoever gives an intensity is told where it goes."""
 
     name = "factor"
@@ -130,7 +130,7 @@ class _Factor(click.types.FloatParamType):
         try:
             return super().convert(value, param, ctx)
         except click.BadParameter:
-            text = f"{value!r} is not a number; scale to an intensity by --scale-to PGA=0.4g"
+            text = f"{value!r} is not a finite number; scale to an intensity by --scale-to PGA=0.4g"
             self.fail(text, param, ctx)
 
 
@@ -153,8 +153,6 @@ class MotionRequest:
     def __post_init__(self) -> None:
         if self.scale is not None and self.scale_to is not None:
             raise UsageError("--scale and --scale-to both fix the factor; keep one of them")
-        if self.scale is not None and not math.isfinite(self.scale):
-            raise UsageError(f"--scale {self.scale}: must be a finite number")
 
 
 motion_options = gathered(

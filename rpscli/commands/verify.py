@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import click
 
 from rpscli.commands.inputs import MotionRequest, load_motion
-from rpscli.commands.shell.options import FILE, terminal_options
+from rpscli.commands.shell.options import FILE, FiniteRange, terminal_options
 from rpscli.commands.shell.terminal import Terminal, concluded, leave
 from rpscli.commands.shell.waiting import announce_compilation
 from rpscli.errors import Refused, UsageError, VerificationMismatch
@@ -48,7 +48,7 @@ OF_OTHERS = "are missing, or have less than {:g} digits right; the pages say how
 )
 @click.option(
     "--digits",
-    type=click.FloatRange(min=0.0, max=12.0),
+    type=FiniteRange(min=0.0, max=12.0),
     default=3.0,
     show_default=True,
     help="Correct digits that --score requires; fewer in one answer end with exit code 6.",

@@ -102,7 +102,9 @@ def _described(of: Source, dt: float | None, units: str | None) -> Source:
 
 def _unscaled(of: Source, folder: Path | None) -> GroundMotion:
     if of.scheme == LIST:
-        raise RecordError(f"{of}: stands for several records; name one of its lines")
+        raise RecordError(
+            f"{of}: stands for several records; name one of its lines, or give the list by --record"
+        )
     if (angle := of.angle) is None:
         if "second" in of.values:
             raise RecordError(

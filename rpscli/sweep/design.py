@@ -268,9 +268,10 @@ class Search:
         self.task, self.faults = task, dict[str, None]()
         self.weights = weights_of(task.clusters, search.resamples, search.seed)
         size = search.first or min(512, 2 ** (unknowns + 4))
-        self.most = max(search.most or ROUNDS * size, size)
+        size = min(size, search.most or size)
+        self.most = search.most or ROUNDS * size
         self.size = max(4, size // ROUNDS)
-        self.first = self._round(first_places(unknowns, size, search.seed))
+        self.first = self._round(first_places(unknowns, size, search.seed)[: self.most])
         # If no design is a valid case, the first one tells why, at its place in the file.
         self.layout = self.first.layout or lay_out(task.study_of(self.first.values[:1]))
         self.requirements = requirements_of(task, self.layout)

@@ -95,6 +95,8 @@ def test_syntax_is_refused_with_place_and_remedy(text: str, parts: list[str]) ->
         ("a: !local 3\n", "1:4", ["!local"]),
         ("a: !!int x\n", "1:4", ["'x' is not a YAML int"]),
         (f"a: {'9' * 5000}\n", "1:4", ["5000 digits"]),
+        ("a: [0,15, 0.2, 0,25]\n", "1:4", ["a: 0,15 has a decimal comma", "write 0.15"]),
+        ("a: [200,5 t, 3 t]\n", "1:4", ["write 200.5 t, or for two numbers a blank"]),
     ],
 )
 def test_what_reading_survives_is_reported_with_the_rest(
@@ -104,6 +106,11 @@ def test_what_reading_survives_is_reported_with_the_rest(
     assert any(line.startswith(f"c.yaml:{place}: ") and parts[0] in line for line in lines)
     assert all(part in "\n".join(lines) for part in parts)
     assert any("podium is missing" in line for line in lines)
+
+
+def test_lists_without_a_decimal_comma_are_read() -> None:
+    read = read_yaml("a: [1,2]\nb: [1,2,3, 4]\nc: [1.5,2, 0.5]\nd: [a,1, b]\n", "c.yaml").content
+    assert [len(read[key]) for key in "abcd"] == [2, 4, 3, 3]
 
 
 @given(st.text(alphabet=" \n\t-:[]{},&*!|>'\"%@`#?abc01.", max_size=40))

@@ -140,6 +140,14 @@ def test_what_a_word_means(rps: Invoke, word: str, said: list[str]) -> None:
         assert text in " ".join(result.stdout.split()) or text in result.stdout
 
 
+def test_meanings_are_one_line(rps_json: InvokeJson) -> None:
+    found = [
+        *rps_json("explain", "of")["keys"],
+        *rps_json("explain", "inertia_ratio_axial")["keys"],
+    ]
+    assert not any("\n" in item["meaning"] for item in found)
+
+
 def test_every_key_is_explained(rps_json: InvokeJson) -> None:
     for path in known_paths(CaseFile)[::7]:
         key = ".".join(map(str, path))
@@ -246,6 +254,12 @@ def test_examples_share_files_and_overwrite_none(rps: Invoke) -> None:
     assert rps("init", "--example", "compdyn2021/figure_9").exit_code == 7
     assert not Path("cases/compdyn2021/figure_9.yaml").exists()
     assert rps("init", "--example", "compdyn2021/figure_9", "--force").exit_code == 0
+
+
+def test_a_folder_of_examples_is_written_whole(rps: Invoke) -> None:
+    assert rps("init", "--example", "compdyn2021", "paper").exit_code == 0
+    written = {path.name for path in Path("paper/compdyn2021").iterdir()}
+    assert written == {path.name for path in (ROOT / "cases" / "compdyn2021").iterdir()}
 
 
 def test_an_example_that_is_not_there_is_told(rps: Invoke) -> None:

@@ -105,6 +105,16 @@ def sampled(distribution: str) -> tuple[str, str]:
             *axis("- record.scale: [1, 2]"),
             ("record.scale must not vary beside", "remove one of them"),
         ),
+        (
+            SCALE,
+            f"{SCALE}\nlinked: {{podium.friction: {{scale: 2}}}}",
+            ("scale, which no axis of",),
+        ),
+        (
+            SCALE,
+            f"{SCALE}\nlinked: {{podium.friction: {{podium.bearing.curvature_ratio: 2}}}}",
+            ("linked.podium.friction is a sum of numbers",),
+        ),
         # results
         (
             *added("limits: {max_floor_velocity: 1}"),

@@ -170,6 +170,14 @@ def test_columns_of_keys_hold_si_and_show_what_was_typed() -> None:
     assert label("PGA", Written(5.88399, " 0.6 g ")) == "PGA = 0.6 g"
 
 
+def test_keys_are_linked_to_those_of_an_axis(study_of: Make) -> None:
+    linked = "linked: {podium.columns: {podium.bearing.semi_diagonal: 4, plus: 1}}\n"
+    vary = "  - podium.bearing.semi_diagonal: [1 m, 150 cm, 2.0]\n"
+    (axis, _) = study_of(STUDY.replace("vary:\n", linked + "vary:\n" + vary)).axes[:2]
+    assert axis.keys == ("podium.bearing.semi_diagonal", "podium.columns")
+    assert [columns for _, columns in axis.rows] == [5, 7, 9]
+
+
 def test_what_is_written_goes_with_the_number() -> None:
     value = copy(in_si("0.6 g", "m/s2"))  # as to workers of Dask
     assert isinstance(value, Written)

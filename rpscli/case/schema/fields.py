@@ -41,6 +41,12 @@ class Section(BaseModel):
         extra="forbid", frozen=True, use_attribute_docstrings=True, defer_build=True
     )
 
+    @classmethod
+    def __pydantic_init_subclass__(cls, **_: object) -> None:
+        """Descriptions are one line, however they stand in the source."""
+        for each in cls.model_fields.values():
+            each.description = each.description and " ".join(each.description.split())
+
 
 SMALLEST, LARGEST = 1e-15, 1e15
 """Magnitudes outside are slips: no building has them in SI units, and squares would overflow."""

@@ -11,10 +11,13 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from rpscli.case.study.schema import RecordPattern
+from rpscli.case.schema.fields import is_finite
+from rpscli.case.schema.keys import is_whole, unit
+from rpscli.case.study.schema import PLUS, RecordPattern
 from rpscli.case.text.document import Document, Fault, Path, Place, dotted
-from rpscli.errors import RecordError
+from rpscli.errors import RecordError, listed
 from rpscli.records.loading import expanded, repeated
+from rpscli.units import in_si
 
 Values = tuple[Any, ...]
 
@@ -73,6 +76,44 @@ def axes_of(document: Document, vary: Vary) -> tuple[Axis, ...]:
         )
         for i, columns in enumerate(vary)
     )
+
+
+DIGITS = 6
+"""Of what is linked to other values: nobody builds more, and files stay readable."""
+
+
+def linked_value(key: str, terms: Mapping[str, float], values: Sequence[float]) -> float | int:
+    """A linear sum of the values of its keys, as a case takes it."""
+    factors = (factor for name, factor in terms.items() if name != PLUS)
+    products = (factor * value for factor, value in zip(factors, values, strict=True))
+    total = sum(products, terms.get(PLUS, 0.0))
+    return round(total) if is_whole(key) else float(f"{total:.{DIGITS}g}")
+
+
+def with_linked(
+    axes: tuple[Axis, ...], linked: Mapping[str, Mapping[str, float]], document: Document
+) -> tuple[Axis, ...]:
+    """The axes with keys that are linear sums of others of theirs."""
+    for key, terms in linked.items():
+        path, names = ("linked", key), [name for name in terms if name != PLUS]
+        axis = next((each for each in axes if names and {*names} <= {*each.keys}), None)
+        if axis is None:
+            text = (
+                f"linked.{key} needs {listed(names or ['a key'], 'and')}, which no axis of vary has"
+            )
+            document.refuse([Fault(path, f"{text}; sums are of keys of one axis")])
+            continue
+        columns = [(axis.keys.index(name), unit(name)) for name in names]
+        rows: list[list[Any]] = [[in_si(row[at], si) for at, si in columns] for row in axis.rows]
+        if not all(map(is_finite, itertools.chain(*rows))):
+            document.refuse([Fault(path, f"linked.{key} is a sum of numbers; {names} are not")])
+        values = [
+            (*old, linked_value(key, terms, row)) for old, row in zip(axis.rows, rows, strict=True)
+        ]
+        places = (*axis.places, (document.value_place(path),))
+        longer = Axis((*axis.keys, key), tuple(values), places)
+        axes = tuple(longer if each is axis else each for each in axes)
+    return axes
 
 
 def sources_of(

@@ -133,7 +133,7 @@ def _title_faults(columns: Sequence[_Column], known: Sequence[str]) -> Iterator[
         yield "has no column `record`, which names the ground motion; add it"
         return  # another file than was meant, of which nothing is told
     if not _UNITS.keys() & {*names}:
-        yield f"has no column of what was observed; add one of {listed(_UNITS)}"
+        yield f"has no column of what was observed; add {OVERTURNED}, or a result"
     for place, column in enumerate(columns):
         if column.name in names[:place]:
             yield f"the column {shown(column.name)} appears twice; remove one"

@@ -7,7 +7,7 @@ that join several keys stand in `rules`.
 from __future__ import annotations
 
 from functools import cache
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Any, Literal, Self, TypeGuard
 
 from pydantic import (
     BeforeValidator,
@@ -27,6 +27,7 @@ from pydantic_core import CoreSchema
 from rpscli.case.schema.case_file import FORMAT_VERSION, DocumentSection, PositiveRatio, Time
 from rpscli.case.schema.fields import (
     CHECKED_BY_ITSELF,
+    LARGEST,
     DampingRatio,
     OneOf,
     Quantity,
@@ -34,14 +35,17 @@ from rpscli.case.schema.fields import (
     Several,
     Text,
     Whole,
+    is_finite,
     must_be,
     refuse,
 )
+from rpscli.case.schema.keys import unit
 from rpscli.case.schema.limits import StudyLimits
 from rpscli.case.schema.scale_to import MeasuredValue, MeasureName, at_period, measured_value
 from rpscli.case.text.document import shown
 from rpscli.records.measures import Of
 from rpscli.records.recordings import By
+from rpscli.units import in_si
 
 Number = Annotated[float, Quantity()]
 Seed = Annotated[int, Whole(0)]
@@ -98,6 +102,39 @@ Axes = Annotated[
     must_be(list, "a list of axes, each a mapping: `- dotted.key: [value, value]`"),
 ]
 """Values of keys that vary together, axis by axis."""
+
+
+PLUS = "plus"
+"""What is added to a linear sum."""
+
+
+def is_number(value: object) -> TypeGuard[float]:
+    """A number whose sums and products with others stay finite."""
+    return is_finite(value) and abs(value) <= LARGEST
+
+
+def with_keys(value: object) -> object:
+    """Each value with its key, whose unit it may have."""
+    return {key: (key, of) for key, of in value.items()} if isinstance(value, dict) else value
+
+
+def _linear(given: tuple[str, object]) -> dict[str, float]:
+    key, terms = given
+    if isinstance(terms, dict) and PLUS in terms:
+        terms = terms | {PLUS: in_si(terms[PLUS], unit(key))}
+    if not isinstance(terms, dict) or not all(map(is_number, terms.values())):
+        refuse(f"must be a linear sum, {{key: factor, plus: number}}, of numbers up to {LARGEST:g}")
+    return terms
+
+
+_TERMS = {"type": "object", "additionalProperties": {"type": "number"}} | {
+    "properties": {PLUS: {"type": ["number", "string"]}}
+}
+Linked = Annotated[
+    dict[str, Annotated[dict[str, float], PlainValidator(_linear), WithJsonSchema(_TERMS)]],
+    BeforeValidator(with_keys),
+]
+"""Keys that are linear sums of others."""
 
 
 Analysis = Literal["timehistory", "modal", "pushover"]
@@ -298,6 +335,9 @@ class StudyFile(StudyParts):
     """what is done at every point"""
     vary: Axes = ()
     """axes of a product; the keys of one axis go together"""
+    linked: Linked = Field(
+        {}, description="further keys as sums of those of an axis, {key: factor, plus: constant}"
+    )
     sample: SampleSection | None = None
     """uncertain parameters; one more axis"""
     observed: Text | None = None

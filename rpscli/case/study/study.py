@@ -14,7 +14,7 @@ from rpscli.case.overrides import apply_overrides
 from rpscli.case.schema.check import checked
 from rpscli.case.schema.keys import fields_of
 from rpscli.case.schema.scale_to import ScaleToSection
-from rpscli.case.study.axes import Axis, axes_of, sources_of, unequal
+from rpscli.case.study.axes import Axis, axes_of, sources_of, unequal, with_linked
 from rpscli.case.study.observed import Observed, read_observed
 from rpscli.case.study.reports import (
     ReportRequest,
@@ -131,7 +131,7 @@ def study_of(
     faults += [*record_rules(document), *reliability_rules(document)]
     faults += [*analysis_rules(file, reports, asked), *fixed_faults(document, base_overrides)]
     document.refuse(faults)
-    axes = axes_of(document, file.vary)
+    axes = with_linked(axes_of(document, file.vary), file.linked, document)
     observed = read_observed(file.observed, folder, axes, document)
     document.refuse(report_rules(document, file, axes, reports, asked))
     document.refuse(size_faults(file, axes, sources))

@@ -183,6 +183,8 @@ class _Reader:
         tag = node.tag.removeprefix(TAG)
         if isinstance(node, MappingNode) and tag == "map":
             value = {key: self.value(item, (*path, key)) for key, item in self.pairs(node, path)}
+        elif isinstance(node, SequenceNode) and tag == "seq" and (text := _comma_in_list(node)):
+            self.fault(path, node, f"{dotted(path)}: {text}" if path else text)
         elif isinstance(node, SequenceNode) and tag == "seq":
             value = [self.value(item, (*path, i)) for i, item in enumerate(node.value)]
         elif isinstance(node, ScalarNode) and tag in SCALARS:
@@ -248,6 +250,25 @@ def _decimal_commas(node: MappingNode) -> dict[int, ScalarNode]:
         and nothing.tag == TAG + "null"
         and fraction.start_mark.index == value.end_mark.index + 1
     }
+
+
+def _comma_in_list(node: SequenceNode) -> str:
+    """The first decimal comma, as in ``[0,15, 0,2]``, in words; empty where blanks tell of none."""
+    pairs = list(itertools.pairwise(node.value)) if node.flow_style else []
+    close = [(a, b) for a, b in pairs if b.start_mark.index == a.end_mark.index + 1]
+    lone = all(a is not b for (_, a), (b, _) in itertools.pairwise(close))
+    if not close or len(close) == len(pairs) or not lone or not all(map(_is_fraction, close)):
+        return ""
+    whole, fraction = (part.value for part in close[0])
+    return (
+        f"{whole},{fraction} has a decimal comma; write {whole}.{fraction}, or for two numbers a"
+        " blank behind the comma"
+    )
+
+
+def _is_fraction(parts: tuple[Node, Node]) -> bool:
+    whole, fraction = parts
+    return whole.tag == TAG + "int" and str(fraction.value)[:1].isdigit()
 
 
 def _scalar(tag: str, text: str) -> bool | int | float | str | None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from inspect import signature
@@ -22,6 +23,17 @@ from rpscli.report.figures.style import drawable_style
 
 FILE = click.Path(allow_dash=True, readable=False)
 """A file, of which the command itself says what is wrong with it."""
+
+
+class FiniteRange(click.FloatRange):
+    """A number in a range; NaN and infinity, which compare with bounds as they like, are none."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """The number, or a refusal."""
+        number = super().convert(value, param, ctx)
+        if not math.isfinite(number):
+            self.fail(f"{value!r} is not a finite number", param, ctx)
+        return number
 
 
 Words = Mapping[str, str | None] | Iterable[str]
@@ -255,12 +267,12 @@ _FILM = (
         help=f"Width of the animation; {USUAL_SIZE} by default.",
     ),
 )
-_SECOND = click.FloatRange(min=0.0)
+_SECOND = FiniteRange(min=0.0)
 _PART = (
     click.option(
         "--animate-speed",
         "speed",
-        type=click.FloatRange(min=0.0, min_open=True),
+        type=FiniteRange(min=0.0, min_open=True),
         metavar="FACTOR",
         help="Speed over real time, such as 0.5; by default the animation lasts 9 s.",
     ),
