@@ -47,7 +47,7 @@ def test_outcomes_are_explained_with_the_sentences_that_are_printed() -> None:
     entries = [entry for entry, _ in glossary()]
     for outcome in (*OUTCOMES.values(), "failed"):
         (entry,) = (entry for entry in entries if outcome in re.split(r", | \(", entry))
-        assert SENTENCES[outcome].partition(",")[0] in re.split(r"[,()]", entry)
+        assert SENTENCES[outcome].rpartition(": ")[2].partition(",")[0] in re.split(r"[,()]", entry)
 
 
 def test_no_word_is_explained_twice() -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -108,19 +107,24 @@ def conditions_of(limits: LimitsSection, source: str) -> tuple[Condition, ...]:
     return tuple(conditions)
 
 
-def case_conditions(limits: LimitsSection, *, overturning: bool = False) -> list[Condition]:
-    """The limits that a case sets; if asked for, that it does not overturn is said besides."""
-    conditions = conditions_of(limits, "limits of the case")
-    if not overturning or not conditions or any(each.name == "overturning" for each in conditions):
-        return list(conditions)
-    return [Condition("overturning", 0.0, "limits of the case"), *conditions]
+def case_conditions(
+    limits: LimitsSection, structure: PodiumStructure, records: int = 1
+) -> tuple[Condition, ...]:
+    """The limits that a case sets for so many records, with those that follow from others.
+
+    What overturns exceeds every limit: where one is for every record, no record may overturn.
+    """
+    found = conditions_of(limits, "limits of the case")
+    every = found if records == 1 else [each for each in found if each.admissible == 0.0]
+    if every and not any(each.name == "overturning" for each in found):
+        found = (Condition("overturning", 0.0, "limits of the case"), *found)
+    return with_friction(found, structure)
 
 
 def with_friction(
-    conditions: Iterable[Condition], structure: PodiumStructure
+    conditions: tuple[Condition, ...], structure: PodiumStructure
 ) -> tuple[Condition, ...]:
     """The conditions, and that columns do not slide, unless the friction ratio has a limit."""
-    given = tuple(conditions)
-    if structure.friction is None or any(each.name == "friction_ratio" for each in given):
-        return given
-    return (*given, Condition("friction_ratio", 1.0, FRICTION))
+    if structure.friction is None or any(each.name == "friction_ratio" for each in conditions):
+        return conditions
+    return (*conditions, Condition("friction_ratio", 1.0, FRICTION))

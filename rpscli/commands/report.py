@@ -21,6 +21,7 @@ from rpscli.commands.report_case import (
     earlier_case,
     earlier_results,
     kind_of,
+    typed_together,
 )
 from rpscli.commands.shell.options import (
     CaseRequest,
@@ -115,7 +116,7 @@ def command(
     else:
         if earlier is not None:
             given, motions = earlier_case(earlier)
-            typed: list[Asked] = [([each.record] if each.record else [], each) for each in motions]
+            typed = typed_together(given.case, motions)
         else:
             given, motions = (
                 read_case(request, terminal),

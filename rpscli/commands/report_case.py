@@ -16,6 +16,7 @@ from rpscli.commands.shell.options import CaseRequest, OutputRequest
 from rpscli.commands.shell.terminal import Terminal, concluded
 from rpscli.commands.shell.waiting import announce_compilation
 from rpscli.errors import UsageError
+from rpscli.records.source import Source
 from rpscli.report.documents import as_text, heading, results_of
 from rpscli.report.figures.look import Look
 from rpscli.report.files import RUN_FILE
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
     from rpscli.commands.timehistory_run import HistoryRequest
     from rpscli.errors import RpsError
 
-SUMMARY = "summary.json"
+SUMMARY, STORE = "summary.json", "study.sqlite"
 HISTORY, SWEEP, DESIGN = "timehistory", "sweep", "design"
 
 
@@ -83,6 +84,11 @@ def earlier_results(folder: Path) -> Earlier:
     inside = sorted(path.parent for path in folder.glob(f"*/{RUN_FILE}"))
     hint = f"; name one of the folders in it, such as {inside[0]}" if inside else ""
     what = f"holds results of `rps {command}`" if command else f"has no {RUN_FILE} of rps"
+    if command is None and (folder / STORE).exists():
+        raise UsageError(
+            f"{folder}: {STORE} has points of a study that has not ended; `rps sweep STUDY -o"
+            f" {folder}` goes on with it"
+        )
     raise UsageError(
         f"{folder}: {what}, and a report is made of time histories of one case, of one study or of"
         f" one design{hint}"
@@ -116,6 +122,17 @@ def earlier_case(earlier: Earlier) -> tuple[CaseInput, list[MotionRequest]]:
     request = CaseRequest(name, tuple(run["inputs"]["overrides"]))
     motions = [_earlier_motion(case, record) for record in earlier.records]
     return CaseInput(case, request), motions
+
+
+def typed_together(case: Case, motions: Sequence[MotionRequest]) -> list[Asked]:
+    """Motions as they may be typed, those that differ in their record alone together."""
+    own, alike = case.record, dict[MotionRequest, list[str]]()
+    plain = own and Source.parse(own.source).scheme and not (own.y or own.rotation or own.vertical)
+    for motion in motions:
+        record = motion.record or (own.source if own and plain and len(motions) > 1 else None)
+        key = replace(motion, record=None if record is None else "")
+        alike.setdefault(key, []).extend([record] if record else [])
+    return [(records, motion) for motion, records in alike.items()]
 
 
 def _earlier_motion(case: Case, given: Mapping[str, Any]) -> MotionRequest:
@@ -247,7 +264,9 @@ def case_page(
         warnings=document["warnings"],
         inputs=case_input(case, given.request.overrides, grounds),
         results=results,
-        commands=_commands(given, asked, with_budget=with_budget),
+        commands=_commands(
+            given, asked, None if earlier is None else earlier.folder, with_budget=with_budget
+        ),
         stored=stored,
     )
     return PageDone(case.title, title, sections, document, error, case.file.document)
@@ -274,22 +293,22 @@ def subject_words(source: str, overrides: Iterable[str]) -> list[str]:
     return [source, *(word for override in overrides for word in ("--set", override))]
 
 
-def _commands(given: CaseInput, asked: Sequence[Asked], *, with_budget: bool) -> list[list[str]]:
-    """Commands that make the history and the page again."""
+def _commands(
+    given: CaseInput, asked: Sequence[Asked], folder: Path | None, *, with_budget: bool
+) -> list[list[str]]:
+    """Commands that make the histories and the page again, which may be that of a folder."""
     words = subject_words(given.request.source, given.request.overrides)
-    if given.case.record is None and not any(records for records, _ in asked):
-        return [["rps", "report", *words]]
-    found = []
-    for command in ("timehistory", "report"):
-        budget = ["--budget"] * (with_budget and command == "report")
-        for records, motion in asked:
-            options = [("--record", record) for record in records]
-            options += [("--vertical", motion.vertical)] if motion.vertical else []
-            options += [] if motion.scale is None else [("--scale", repr(motion.scale))]
-            options += [("--scale-to", motion.scale_to)] if motion.scale_to else []
-            asked_for = [word for option in options for word in option]
-            found.append(["rps", command, *words, *asked_for, *budget])
-    return found
+    histories = []
+    for records, motion in asked:
+        options = [("--record", record) for record in records]
+        options += [("--vertical", motion.vertical)] if motion.vertical else []
+        options += [] if motion.scale is None else [("--scale", repr(motion.scale))]
+        options += [("--scale-to", motion.scale_to)] if motion.scale_to else []
+        histories.append([*words, *(word for option in options for word in option)])
+    subjects = histories if folder is None else [[str(folder)]]
+    pages = [["rps", "report", *each, *["--budget"] * with_budget] for each in subjects]
+    without = given.case.record is None and not any(records for records, _ in asked)
+    return pages if without else [*(["rps", HISTORY, *each] for each in histories), *pages]
 
 
 def _stored(

@@ -16,7 +16,7 @@ from rpscli.analyses.neighbours import Neighbour, neighbours
 from rpscli.analyses.result_quantities import LIMITED, NEEDS, ResultQuantity
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.timehistory import time_history
-from rpscli.case.conditions import LIMITS, Condition, case_conditions, with_friction
+from rpscli.case.conditions import LIMITS, Condition, case_conditions
 from rpscli.case.rules.plausibility import doubts_of_directions
 from rpscli.commands.inputs import (
     RESULTS,
@@ -157,8 +157,7 @@ def compute(
     verdicts: list[Verdict] = []
     error: RpsError | None = AnalysisError(result.failure) if result.failure else None
     if error is None:
-        limits = case_conditions(case.limits, overturning=True)
-        limits = [*with_friction(limits, case.structure), *conditions]
+        limits = [*case_conditions(case.limits, case.structure), *conditions]
         for limit in limits:
             _refuse_unknown(limit, result)
         records = Records.of([result.outcome], [demands], [result.record.source])
@@ -305,7 +304,7 @@ def computed_set(
     sources = [request.ground.horizontal.source for request in group]
     records = Records.of(outcomes, [history.demands for history in histories], sources)
     judged = group[0].given.case
-    limits = with_friction(case_conditions(judged.limits), judged.structure)
+    limits = case_conditions(judged.limits, judged.structure, len(group))
     verdicts = judged_records(records, [each.label for each in group], [*limits, *conditions])
     return Computed(histories, summary_of_records(records), verdicts, folder)
 

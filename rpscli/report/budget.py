@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from rpscli.analyses.result_quantities import LIMITED, NEEDS, ResultQuantity
 from rpscli.case.case import Case
-from rpscli.case.conditions import LIMITS, Condition, case_conditions, with_friction
+from rpscli.case.conditions import LIMITS, Condition, case_conditions
 from rpscli.errors import UsageError
 from rpscli.report.bundles import Files
 from rpscli.report.figures import style
@@ -104,7 +104,7 @@ class Budget:
 
     def _effects(self) -> Iterator[Effect]:
         case, rows = self.case, self.rows
-        limits = with_friction(case_conditions(case.limits, overturning=True), case.structure)
+        limits = case_conditions(case.limits, case.structure)
         judged: dict[str, Condition | None] = {each.name: each for each in limits}
         values = [row.values for row in rows]
         table = Records.of([r.outcome for r in rows], values, [r.record for r in rows])

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Callable
+from html import unescape
 from pathlib import Path
 from typing import Any
 
@@ -226,7 +227,8 @@ def test_several_records_are_on_one_page(rps: Invoke, rps_json: Callable[..., An
     same = re.search(r"(\d+) of (\d+) stored results are the same to the last digit", again)
     assert same
     assert int(same[1]) == int(same[2]) > 4
-    assert again.count("--scale 1.1") == 4  # two commands for each record
+    typed = " ".join(f"--record '{pulse.removeprefix('--record=')}'" for pulse in PULSES)
+    assert f"rps timehistory small.yaml {typed} --scale 1.1 rps report set" in unescape(again)
 
 
 def test_what_moves_the_worst_history_stands_on_its_page(
@@ -312,3 +314,11 @@ def test_a_design_has_a_page(rps: Invoke) -> None:
     refused = rps("report", "design.yaml", "--record", "x.at2")
     assert "a design has records of its own" in refused.stderr
     assert "limits of its own" in rps("report", "design.yaml", "--fail-on", "uplift").stderr
+
+
+def test_the_folder_of_a_study_that_has_not_ended_says_what_to_do(rps: Invoke) -> None:
+    Path("begun").mkdir()
+    Path("begun/study.sqlite").touch()
+    result = rps("report", "begun")
+    assert result.exit_code == 2
+    assert "`rps sweep STUDY -o begun` goes on with it" in result.stderr

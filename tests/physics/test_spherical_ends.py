@@ -323,6 +323,6 @@ def test_what_does_not_stand_or_strike_is_refused() -> None:
 
 def test_the_outcome_speaks_of_rolling_where_nothing_uplifts() -> None:
     result = time_history(on_spheres(1), waves(0.3, 0.02, 4.0, seed=3))
-    assert outcome_text(result).startswith("rolls and comes back")
+    assert outcome_text(result).startswith("survived: rolls and comes back")
     flat = time_history(on_spheres(1, flat=0.02), waves(3.0, 0.02, 4.0, seed=3))
-    assert outcome_text(flat).startswith(("uplifts and", "overturns"))
+    assert outcome_text(flat).startswith(("survived: uplifts and", "overturned"))

@@ -20,11 +20,11 @@ from rpscli.report.table import Heading, Part, Table, measured, percent, shown
 from rpscli.sweep.statistics.verdicts import Verdict
 
 OUTCOMES = {
-    "at_rest": "stays in full contact",
-    "survived": "uplifts and comes back",
-    "stays_tilted": "uplifts and stays tilted, held by friction",
-    "overturned_rolling": "overturns, rolling",
-    "overturned_rocking": "overturns, rocking",
+    "at_rest": "at rest: stays in full contact",
+    "survived": "survived: uplifts and comes back",
+    "stays_tilted": "stays tilted: uplifts, and friction holds it",
+    "overturned_rolling": "overturned, rolling",
+    "overturned_rocking": "overturned, rocking",
     "failed": "the analysis failed",
 }
 
