@@ -196,6 +196,19 @@ def is_number(value: object) -> bool:
     return isinstance(value, Real) and not isinstance(value, bool) and math.isfinite(value)
 
 
+SMALLEST, LARGEST = 1e-15, 1e15
+"""Magnitudes outside are slips: no building has them in SI units, and squares would overflow."""
+
+
+def is_size(value: object) -> bool:
+    """Whether a value is a number above zero that a building may have.
+
+    >>> is_size(0.5), is_size(1e-300), is_size(-1.0)
+    (True, False, False)
+    """
+    return is_number(value) and SMALLEST <= value <= LARGEST  # type: ignore[operator]
+
+
 def require_kind(value: object, kinds: type | tuple[type, ...], what: str, remedy: str) -> None:
     """Refuse what a function cannot take, in one sentence."""
     if not isinstance(value, kinds):

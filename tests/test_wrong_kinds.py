@@ -17,6 +17,7 @@ import rpscli
 from rpscli.case.schema.scale_to import scale_to_of
 from rpscli.cli import program
 from rpscli.errors import RecordError, UsageError
+from rpscli.model.contact import Contact
 
 PULSE = "pulse:half_sine?amplitude=0.3g&period=0.6&dt=0.05"
 api: Any = rpscli
@@ -42,6 +43,11 @@ CASE = {
         (lambda _, r: api.time_history(rpscli.Case, r), "load_case.*structure"),
         (lambda s, _: api.demand(s, np.zeros(9)), "GroundMotion.samples"),
         (lambda *_: api.response_spectrum("x.at2", [0.1]), "load_record"),
+        (
+            lambda s, r: api.time_history(s, r, vertical="text"),
+            "vertical was given as str",
+        ),
+        (lambda *_: api.MotionComponents(None), "horizontal was given as NoneType; load_record"),
         (lambda *_: api.load_case(5), "name of a file, or a mapping"),
         (lambda *_: api.load_study(5), "name of a file, or a mapping"),
         (lambda *_: api.load_record(5), "name as text"),
@@ -72,12 +78,25 @@ def test_wrong_values_of_motions(call: Callable[..., Any]) -> None:
     "given",
     [
         {"friction": -1.0}, {"friction": math.nan}, {"friction": "x"}, {"columns": math.nan},
-        {"columns": 2.5}, {"columns": 1e300}, {"columns_mass": math.inf},
+        {"columns": 2.5}, {"columns": 1e300}, {"columns_mass": math.inf}, {"rows": (1e-300, 0.0)},
     ],
 )  # fmt: skip
 def test_wrong_values_of_structures(given: dict[str, Any]) -> None:
     with pytest.raises(ValueError, match=f"{next(iter(given))}.* must be"):
         replace(podium(0), **given)
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda: api.Superstructure([1e5] * 3, [1e-300] * 3, api.ModalDamping(0.05)),
+        lambda: Contact("plane", 1e300),
+        lambda: api.TimeHistorySettings(max_events=2.5),
+    ],
+)
+def test_sizes_of_nothing_and_parts_of_events(make: Callable[[], Any]) -> None:
+    with pytest.raises(ValueError, match="must be"):
+        make()
 
 
 @pytest.mark.parametrize(

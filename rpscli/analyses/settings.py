@@ -52,7 +52,10 @@ class TimeHistorySettings:
             "recontact_tolerance": (0.0 <= self.recontact_tolerance < 1.0, "from 0 to below 1"),
             "overturning_limit": (0.0 < self.overturning_limit < math.inf, "finite and > 0"),
             "accuracy": (0.0 < self.accuracy < math.inf, "finite and > 0"),
-            "max_events": (1 <= self.max_events <= 10**9, "from 1 to 1e9"),
+            "max_events": (
+                1 <= self.max_events <= 10**9 and self.max_events % 1 == 0,
+                "a whole number from 1 to 1e9",
+            ),
             "initial_rotation": (math.isfinite(self.initial_rotation), "finite"),
         }
         for name, (holds, rule) in rules.items():

@@ -17,7 +17,7 @@ from pydantic import BeforeValidator, Field, PlainValidator, WithJsonSchema, mod
 from rpscli.analyses.result_quantities import DEMANDS, SAMPLED
 from rpscli.case.overrides import apply_overrides
 from rpscli.case.schema.check import schema_check
-from rpscli.case.schema.fields import LARGEST, Quantity, Section, Whole, must_be, refuse
+from rpscli.case.schema.fields import Quantity, Section, Whole, must_be, refuse
 from rpscli.case.schema.keys import is_whole, unit
 from rpscli.case.schema.limits import Fractile
 from rpscli.case.study.axes import Axis, linked_value, sources_of
@@ -35,7 +35,7 @@ from rpscli.case.study.study import Study, shared_out, study_of
 from rpscli.case.text.document import Document, Fault, is_case, is_design
 from rpscli.case.text.files import read_text
 from rpscli.case.text.yaml_text import read_yaml
-from rpscli.errors import CaseError, hint, listed
+from rpscli.errors import LARGEST, CaseError, hint, listed
 from rpscli.records.recordings import clusters
 from rpscli.registry import Registry
 from rpscli.units import in_si

@@ -9,6 +9,7 @@ from typing import Any, Literal, NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from rpscli.errors import is_size
 from rpscli.physics import geometry, plane_bed
 
 Array: TypeAlias = NDArray[np.float64]
@@ -71,8 +72,10 @@ class Contact:
                 f"contact {self.kind} takes one of period_ratio, stiffness, settlement;"
                 f" {len(given)} are given"
             )
-        if not all(0.0 < x < math.inf for x in given) or not 0.0 <= self.damping < math.inf:
-            raise ValueError("sizes of the contact must be > 0, its damping >= 0, all finite")
+        if not all(map(is_size, given)) or not 0.0 <= self.damping < math.inf:
+            raise ValueError(
+                "sizes of the contact must be > 0, its damping >= 0, none of them huge"
+            )
         if self.period_ratio is not None and self.period_ratio <= 1.0:
             raise ValueError(
                 f"period_ratio = {self.period_ratio:g} must be above 1: compliant ends lengthen"

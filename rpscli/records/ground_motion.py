@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.errors import RecordError, is_number
+from rpscli.errors import RecordError, is_number, require_kind
 from rpscli.shown import Frozen, Shown, frozen, with_unit
 
 if TYPE_CHECKING:
@@ -318,7 +318,8 @@ class MotionComponents(Frozen):
     y: GroundMotion | None = None
 
     def __post_init__(self) -> None:
-        for name, motion in self.named.items():
+        for name, motion in {"horizontal": self.horizontal, **self.named}.items():
+            require_kind(motion, GroundMotion, name, "load_record(...) gives a motion")
             require_one_step(self.horizontal, motion, name)
 
     @property

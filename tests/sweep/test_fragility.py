@@ -150,6 +150,15 @@ def test_samples_that_determine_nothing_count_beyond_both_ends() -> None:
     assert np.isnan(band(values, 0.9)).all()  # more than a tail of 5 %
 
 
+def test_a_share_that_hardly_grows_has_no_beta_beyond_all_sense() -> None:
+    random = np.random.default_rng(3)
+    im = np.exp(random.uniform(-1.0, 1.0, 60))
+    found = fit(im, random.uniform(size=60) < 0.45 + 0.05 * im, resamples=400)
+    assert found.fitted
+    assert np.nanmax(found.resampled[1]) < 100.0
+    assert np.isnan(found.beta_band).all()
+
+
 def test_variations_of_the_same_motions_do_not_pretend_to_more_data() -> None:
     im = np.array([0.3, 0.5, 0.9, 1.5])
     once = fit(im, im > 0.7, resamples=0)

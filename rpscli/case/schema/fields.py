@@ -26,7 +26,7 @@ from pydantic import (
 )
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
-from rpscli.errors import hint, listed, nearest
+from rpscli.errors import LARGEST, SMALLEST, hint, listed, nearest
 from rpscli.registry import Registry
 from rpscli.units import KINDS, si_value
 
@@ -48,8 +48,6 @@ class Section(BaseModel):
             each.description = each.description and " ".join(each.description.split())
 
 
-SMALLEST, LARGEST = 1e-15, 1e15
-"""Magnitudes outside are slips: no building has them in SI units, and squares would overflow."""
 PLAIN = "1"
 """Unit of a plain number."""
 CHECKED_BY_ITSELF = "checked by itself"

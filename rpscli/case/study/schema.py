@@ -27,7 +27,6 @@ from pydantic_core import CoreSchema
 from rpscli.case.schema.case_file import FORMAT_VERSION, DocumentSection, PositiveRatio, Time
 from rpscli.case.schema.fields import (
     CHECKED_BY_ITSELF,
-    LARGEST,
     DampingRatio,
     OneOf,
     Quantity,
@@ -43,6 +42,7 @@ from rpscli.case.schema.keys import unit
 from rpscli.case.schema.limits import StudyLimits
 from rpscli.case.schema.scale_to import MeasuredValue, MeasureName, at_period, measured_value
 from rpscli.case.text.document import shown
+from rpscli.errors import LARGEST
 from rpscli.records.measures import Of
 from rpscli.records.recordings import By
 from rpscli.units import in_si

@@ -341,7 +341,8 @@ class RecordText:
             name or self.name,
             self.source,
             form,
-            f"{description}; values in {unit}",
+            # A file that was written by rps says the unit of the one before it too.
+            f"{re.sub('; values in [^;]*', '', description)}; values in {unit}",
             doubts,
             recording=stated.recording,
         )

@@ -28,6 +28,8 @@ Indices = NDArray[np.int64]
 Method = Literal["maximum likelihood", "penalised", "none"]
 Band = tuple[float, float]
 
+LEAST_SLOPE = 0.01
+"""Of a sample of the records that determines a fragility; beta is above 100 below it."""
 LARGEST_ARRAY = 1_000_000
 """Resamples times points that are fitted at once: a dozen arrays of this size are held."""
 
@@ -174,7 +176,7 @@ def _resampled(
         fit = probit_fit(x, y, weights, unknown, CLOSE_ENOUGH_RESAMPLED)
         parts.append(fit._replace(converged=fit.converged & ~unknown))
     found = Probit(*(np.concatenate(values) for values in zip(*parts, strict=True)))
-    kept = found.converged & (found.slope > 0.0)
+    kept = found.converged & (found.slope > LEAST_SLOPE)
     intercept, slope = (np.where(kept, values, math.nan) for values in found[:2])
     note = None
     if lost := int((~kept).sum()):
