@@ -209,6 +209,11 @@ def is_size(value: object) -> bool:
     return is_number(value) and SMALLEST <= value <= LARGEST  # type: ignore[operator]
 
 
+def told(value: object) -> str:
+    """A value in a message: texts in quotes, numbers of numpy as any others."""
+    return str(value) if isinstance(value, Real) else repr(value)
+
+
 def require_kind(value: object, kinds: type | tuple[type, ...], what: str, remedy: str) -> None:
     """Refuse what a function cannot take, in one sentence."""
     if not isinstance(value, kinds):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
-from rpscli.errors import require_kind
+from rpscli.errors import require_kind, told
 from rpscli.model.podium import PodiumStructure
 from rpscli.records.ground_motion import GroundMotion, MotionComponents
 
@@ -60,7 +60,7 @@ class TimeHistorySettings:
         }
         for name, (holds, rule) in rules.items():
             if not holds:
-                raise ValueError(f"{name} = {getattr(self, name)!r} must be {rule}")
+                raise ValueError(f"{name} = {told(getattr(self, name))} must be {rule}")
 
 
 LONGEST_FREE_VIBRATION = 120.0

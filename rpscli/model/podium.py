@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.constants import STANDARD_GRAVITY
-from rpscli.errors import is_number, is_size
+from rpscli.errors import is_number, is_size, told
 from rpscli.model.bearing import Bearing, UpliftedState
 from rpscli.model.contact import Bed, Contact, bed_of
 from rpscli.model.impact import ImpactLaw
@@ -104,12 +104,12 @@ class PodiumStructure(Shown):
         ):
             raise ValueError("columns_mass and gravity must be > 0, cap_beam_mass >= 0, all finite")
         if self.friction is not None and not (is_number(self.friction) and self.friction >= 0.0):
-            raise ValueError(f"friction = {self.friction!r} must be a number >= 0, or None")
+            raise ValueError(f"friction = {told(self.friction)} must be a number >= 0, or None")
         self._refuse_buildings()
         if self.rows and (len(self.rows) < 2 or not is_size(max(self.rows) - min(self.rows))):
             raise ValueError("rows must be at least two positions that differ")
         if not (isinstance(self.columns, Integral) and 1 <= self.columns <= MOST_COLUMNS):
-            raise ValueError(f"columns = {self.columns!r} must be a whole number from 1 on")
+            raise ValueError(f"columns = {told(self.columns)} must be a whole number from 1 on")
         if len(self.devices) > MOST_DEVICES:
             raise ValueError(
                 f"{len(self.devices)} devices must be at most {MOST_DEVICES}; write equal ones as"

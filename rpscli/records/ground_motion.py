@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.errors import RecordError, is_number, require_kind
+from rpscli.errors import RecordError, is_number, require_kind, told
 from rpscli.shown import Frozen, Shown, frozen, with_unit
 
 if TYPE_CHECKING:
@@ -218,7 +218,7 @@ class GroundMotion(Shown):
     def scaled(self, factor: float) -> GroundMotion:
         """The same motion times `factor`, with a description that says so."""
         if not is_number(factor):
-            raise RecordError(f"{self.source}: the factor {factor!r} must be a finite number")
+            raise RecordError(f"{self.source}: the factor {told(factor)} must be a finite number")
         note = f"{self.description}; scaled by {factor:g}".lstrip("; ")
         return replace(self, acceleration=self.acceleration * factor, description=note)
 
@@ -271,7 +271,7 @@ class GroundMotion(Shown):
         elif measures.needs_period(measure) and period is None:
             fault = f"{measure} is scaled to at a period; give period=... in s"
         elif not (is_number(value) and value > 0.0):
-            fault = f"{measure} = {value!r} must be a number > 0, in SI, to scale to it"
+            fault = f"{measure} = {told(value)} must be a number > 0, in SI, to scale to it"
         if fault:
             raise RecordError(f"{self.source}: {fault}")
         if second is None:
