@@ -34,7 +34,7 @@ from rpscli.case.rules.plausibility import doubts_of_many
 from rpscli.case.study.schema import StudyFile
 from rpscli.case.study.study import parse_study, shared_out, study_of
 from rpscli.case.text.document import Document, text_of_values
-from rpscli.case.text.files import read_text
+from rpscli.case.text.files import opened
 from rpscli.constants import MOST_JOBS
 from rpscli.errors import LimitExceeded, RpsError, StudyIncomplete, UsageError, hint, require_kind
 from rpscli.machine import available_cores
@@ -125,14 +125,7 @@ def load_study(
         checked = study_of(document, of_base, kinds=REPORTS, folder=Path(), digest=digest)
     else:
         require_kind(source, (str, Path), "the study", "give the name of a file, or a mapping")
-        piped = str(source) == "-"
-        checked = parse_study(
-            read_text(source),
-            name="<stdin>" if piped else str(source),
-            kinds=REPORTS,
-            folder=None if piped else Path(source).parent,
-            overrides=overrides,
-        )
+        checked = parse_study(**opened(source)._asdict(), kinds=REPORTS, overrides=overrides)
     study = Study(lay_out(checked, watched), tuple(overrides), tuple(conditions))
     study.require_results()
     return study

@@ -77,8 +77,9 @@ def test_wrong_values_of_motions(call: Callable[..., Any]) -> None:
 @pytest.mark.parametrize(
     "given",
     [
-        {"friction": -1.0}, {"friction": np.float64("nan")}, {"friction": "x"}, {"columns": math.nan},
-        {"columns": 2.5}, {"columns": 1e300}, {"columns_mass": math.inf}, {"rows": (1e-300, 0.0)},
+        {"friction": -1.0}, {"friction": np.float64("nan")}, {"friction": "x"},
+        {"columns": math.nan}, {"columns": 2.5}, {"columns": 1e300}, {"columns_mass": math.inf},
+        {"rows": (1e-300, 0.0)},
     ],
 )  # fmt: skip
 def test_wrong_values_of_structures(given: dict[str, Any]) -> None:

@@ -26,7 +26,7 @@ from rpscli.case.schema.case_file import CaseFile, RecordSection
 from rpscli.case.schema.check import checked
 from rpscli.case.schema.limits import LimitsSection
 from rpscli.case.text.document import Document, dotted, is_design, is_study, text_of_values
-from rpscli.case.text.files import STDIN, read_text
+from rpscli.case.text.files import opened
 from rpscli.case.text.yaml_text import read_yaml
 from rpscli.errors import CaseError, RecordError, require_kind, stem_of
 from rpscli.model.podium import PodiumStructure
@@ -162,10 +162,7 @@ def load_case(source: str | Path | Mapping[str, Any], overrides: Overrides = ())
         case = case_from_mapping(json.loads(text), "<case>", None, overrides)
         return replace(case, digest=hashlib.sha256(text.encode()).hexdigest())
     require_kind(source, (str, Path), "the case", "give the name of a file, or a mapping")
-    text = read_text(source)
-    if str(source) == STDIN:
-        return parse_case(text, name="<stdin>", overrides=overrides)
-    return parse_case(text, name=str(source), folder=Path(source).parent, overrides=overrides)
+    return parse_case(**opened(source)._asdict(), overrides=overrides)
 
 
 def parse_case(

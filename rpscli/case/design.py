@@ -33,7 +33,6 @@ from rpscli.case.study.schema import (
 )
 from rpscli.case.study.study import Study, shared_out, study_of
 from rpscli.case.text.document import Document, Fault, is_case, is_design
-from rpscli.case.text.files import read_text
 from rpscli.case.text.yaml_text import read_yaml
 from rpscli.errors import LARGEST, CaseError, hint, listed
 from rpscli.records.recordings import clusters
@@ -245,15 +244,6 @@ class DesignTask:
         axis = Axis(self.keys, self.rows(values), places)
         own = self.study.sources if sources is None else sources
         return replace(self.study, axes=(axis,), sources=own)
-
-
-def read_design(source: str, overrides: Sequence[str] = ()) -> DesignTask:
-    """A design task from a file, or from the standard input (``-``)."""
-    piped = source == "-"
-    folder = Path() if piped else Path(source).parent
-    return parse_design(
-        read_text(source), "<stdin>" if piped else source, folder=folder, overrides=overrides
-    )
 
 
 def parse_design(

@@ -41,11 +41,6 @@ def json_schema_of(model: type[BaseModel]) -> dict[str, Any]:
     return {"$schema": DIALECT, **schema}
 
 
-def case_json_schema() -> dict[str, Any]:
-    """JSON schema of a case file: keys, types, units and bounds, not what joins keys."""
-    return json_schema_of(CaseFile)
-
-
 def study_json_schema(model: type[StudyParts]) -> dict[str, Any]:
     """JSON schema of a study or design file; its base may lack what keys bring."""
     models: dict[type[BaseModel], None] = dict.fromkeys((model, CaseFile))

@@ -74,12 +74,13 @@ def designed(
     terminal: Terminal,
 ) -> Design | None:
     """Search, and collect the files; None after a dry run."""
-    from rpscli.case.design import read_design
+    from rpscli.case.design import parse_design
+    from rpscli.case.text.files import opened
     from rpscli.designs import find_design
     from rpscli.studies import Study
     from rpscli.sweep.design import Search
 
-    search = Search(read_design(design, overrides))
+    search = Search(parse_design(**opened(design)._asdict(), overrides=overrides))
     first = Study(search.layout, overrides)
     first.require_results()
     if chosen.dry_run:

@@ -136,12 +136,15 @@ def command(
 def _shown(result: StudyResult, found: Collected, *, whole: bool) -> list[Part]:
     """All, or as many rows of each table as fit into some lines: statistics are cut first."""
     from rpscli.report.limits import counts_of_limits
-    from rpscli.report.study.shown import asked, cut
+    from rpscli.report.study.shown import asked, cut, summary_tables
 
     judged, told = result.judgements, list(_told(result, found))
     if whole:
-        return [*_head(result), *_statistics(result, None), *told]
-    head, statistics = list(_head(result)), list(_statistics(result, asked(result.layout)))
+        return [*_head(result), *summary_tables(result.summary), *told]
+    head, statistics = (
+        list(_head(result)),
+        list(summary_tables(result.summary, asked(result.layout))),
+    )
     few: list[Part] = []
     for rows, of_reports in [(n, FEWER[0]) for n in FEWER] + [(0, n) for n in FEWER]:
         some = cut(statistics, rows, ALL) if rows else [f"statistics are in statistics.csv{ALL}"]
@@ -160,14 +163,6 @@ def _head(result: StudyResult) -> Iterator[Part]:
     if aim := result.layout.scaled_to:
         listing.append(("records scaled to", aim))
     yield Table.listing(listing)
-
-
-def _statistics(result: StudyResult, wanted: set[str] | None) -> Iterator[Part]:
-    """Outcomes and fractiles of demands of each system and intensity."""
-    from rpscli.report.study.shown import summary_tables
-
-    if result.summary is not None:
-        yield from summary_tables(result.summary, wanted)
 
 
 def _told(result: StudyResult, found: Collected) -> Iterator[Part]:

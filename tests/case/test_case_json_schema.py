@@ -8,13 +8,13 @@ from typing import Any
 import pytest
 
 from rpscli.analyses.result_quantities import LIMITED
-from rpscli.case.json_schema import case_json_schema
+from rpscli.case.json_schema import json_schema_of
 from rpscli.case.schema.case_file import CaseFile
 from rpscli.case.schema.keys import field_at, known_paths, section_of
 from rpscli.case.text.document import path_of
 from rpscli.units import KINDS
 
-SCHEMA = case_json_schema()
+SCHEMA = json_schema_of(CaseFile)
 UNITS = {
     "superstructure.storey_mass": "kg", "superstructure.stiffness": "N/m",
     "superstructure.period": "s", "superstructure.damping.ratio": "1",

@@ -94,6 +94,7 @@ def read_observed(
     """The observations that a study names; the document refuses what is wrong with them."""
     if name is None:
         return None
+    rows: list[tuple[int, list[str]]] = []
     try:
         rows = csv_rows(read_text(folder / name), name)
     except CaseError as error:

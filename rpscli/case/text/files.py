@@ -8,7 +8,7 @@ import stat
 import sys
 from importlib import resources
 from pathlib import Path
-from typing import BinaryIO
+from typing import BinaryIO, NamedTuple
 
 from rpscli.errors import CaseError, nearest, require_visible
 
@@ -43,6 +43,21 @@ def read_text(source: str | Path) -> str:
         raise CaseError(
             f"{str(source)[:200]}: cannot be read: {reason}; check the name and the permissions"
         ) from None
+
+
+class Opened(NamedTuple):
+    """A file: its text, its name in messages, and where its relative names start."""
+
+    text: str
+    name: str
+    folder: Path
+
+
+def opened(source: str | Path) -> Opened:
+    """A case, study or design from a file, or from the standard input (``-``)."""
+    piped = str(source) == STDIN
+    name, folder = ("<stdin>", Path()) if piped else (str(source), Path(source).parent)
+    return Opened(read_text(source), name, folder)
 
 
 def _opened(path: Path, kind: int) -> BinaryIO:

@@ -31,8 +31,10 @@ def asked(layout: StudyPoints) -> set[str] | None:
     return set().union(*(REPORTS[each.kind].results(each.options) for each in requests))
 
 
-def summary_tables(summary: Summary, wanted: set[str] | None = None) -> Iterator[Part]:
+def summary_tables(summary: Summary | None, wanted: set[str] | None = None) -> Iterator[Part]:
     """Outcomes; then median, 84 % fractile and largest value of demands: the main or some."""
+    if summary is None:
+        return
     rows = summary.rows
     outcomes = []
     behind = [row.overturned.by for row in rows if row.overturned.behind][:1]
