@@ -201,12 +201,12 @@ SMALLEST, LARGEST = 1e-15, 1e15
 
 
 def is_size(value: object) -> bool:
-    """Whether a value is a number above zero that a building may have.
+    """Whether a value is a number above zero that follows from what a building may have.
 
     >>> is_size(0.5), is_size(1e-300), is_size(-1.0)
     (True, False, False)
     """
-    return is_number(value) and SMALLEST <= value <= LARGEST  # type: ignore[operator]
+    return is_number(value) and SMALLEST**2 <= value <= LARGEST**2  # type: ignore[operator]
 
 
 def told(value: object) -> str:

@@ -11,14 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from rpscli.analyses.settings import TimeHistorySettings
-from rpscli.case.build import (
-    bearing_of,
-    impact_law_of,
-    masses_of,
-    shape_of,
-    structure_of,
-    time_history_settings,
-)
+from rpscli.case import build
 from rpscli.case.overrides import Overrides, apply_overrides
 from rpscli.case.rules.consistency import Consistency
 from rpscli.case.rules.plausibility import Doubt, doubts_of_structure, doubts_of_text
@@ -110,7 +103,7 @@ class Case(Shown):
     @cached_property
     def analysis(self) -> TimeHistorySettings:
         """Settings of the time history."""
-        return time_history_settings(self.file.analysis, self.structure.bearing)
+        return build.time_history_settings(self.file.analysis, self.structure.bearing)
 
     @cached_property
     def doubts(self) -> tuple[Doubt, ...]:
@@ -207,13 +200,16 @@ def _structure(file: CaseFile, document: Document) -> PodiumStructure:
     """The structure of valid sections, if they are consistent and the model takes it."""
     rules = Consistency(file, document)
     document.refuse(rules.faults())
-    shape = shape_of(file.podium.bearing)
+    shape = build.shape_of(file.podium.bearing)
     document.refuse(rules.faults_of_shape(shape))
     try:
-        bearing, law = bearing_of(file.podium.bearing, shape), impact_law_of(file.podium)
-        masses = masses_of(file)
+        bearing, law = (
+            build.bearing_of(file.podium.bearing, shape),
+            build.impact_law_of(file.podium),
+        )
+        masses = build.masses_of(file)
         document.refuse(rules.faults_of_motion(bearing, law, masses))
-        structure = structure_of(bearing, law, masses, file)
+        structure = build.structure_of(bearing, law, masses, file)
         if structure.bed is not None:
             structure.bed.refuse_start(file.analysis.initial_rotation)
     except ValueError as error:

@@ -16,7 +16,7 @@ from pydantic import BeforeValidator, Field, PlainValidator, WithJsonSchema, mod
 
 from rpscli.analyses.result_quantities import DEMANDS, SAMPLED
 from rpscli.case.overrides import apply_overrides
-from rpscli.case.schema.check import schema_check
+from rpscli.case.schema.check import checked
 from rpscli.case.schema.fields import Quantity, Section, Whole, must_be, refuse
 from rpscli.case.schema.keys import is_whole, unit
 from rpscli.case.schema.limits import Fractile
@@ -265,15 +265,11 @@ def parse_design(
     )
     of_design, of_base = shared_out(overrides, DesignFile)
     document = apply_overrides(document, of_design, model=DesignFile)
-    check = schema_check(DesignFile, document)
-    unseen, unreadable = _unseen(document, folder)
-    faults = [*check.faults, *unreadable, *sources_of(document, folder)[1]]
+    file = checked(DesignFile, document)
+    unseen, faults = _unseen(document, folder)
     faults += [*_fixed_properties(document), *unknown_keys(document), *twice(document)]
-    faults += record_rules(document)
-    document.refuse([*faults, *fixed_faults(document, of_base)])
-    file = check.read
-    assert file is not None, "without faults the file is read"
-    document.refuse(_name_faults(file))
+    faults += [*record_rules(document), *fixed_faults(document, of_base), *_name_faults(file)]
+    document.refuse(faults)
     shared = {k: v for k, v in document.content.items() if k in StudyParts.model_fields}
     study = study_of(
         replace(document, content=shared),

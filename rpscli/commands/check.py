@@ -9,15 +9,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from rpscli.case.conditions import Condition, conditions_of
-from rpscli.commands.inputs import (
-    MotionRequest,
-    case_folder,
-    case_heading,
-    load_motion,
-    read_case,
-    write,
-)
-from rpscli.commands.shell.options import CaseRequest, OutputRequest, case_options, result_options
+from rpscli.commands import inputs
+from rpscli.commands.shell import options
 from rpscli.commands.shell.terminal import Terminal, concluded, leave
 from rpscli.errors import CaseError, RecordError, RpsError, UsageError
 from rpscli.report.documents import heading
@@ -49,25 +42,30 @@ RECORD = ("name", "source", "format", "description", "npts", "dt", "duration", "
 
 
 @click.command("check")
-@case_options
+@options.case_options
 @click.option(
     "--draw",
     is_flag=True,
     help="Also draw the bearing with its dimensions: at rest, where rolling ends, at the critical"
     " rotation, and the restoring force; the figure bearing.",
 )
-@result_options
+@options.result_options
 def command(
-    request: CaseRequest, output: OutputRequest, terminal: Terminal, look: Look, *, draw: bool
+    request: options.CaseRequest,
+    output: options.OutputRequest,
+    terminal: Terminal,
+    look: Look,
+    *,
+    draw: bool,
 ) -> None:
     """What follows from CASE: geometry, masses, statics, periods.
 
     Nothing is analysed, and nothing is written without --draw. A case with mistakes ends with exit
     code 3 and a line for each of them; so does a record that cannot be read.
     """
-    if not draw and (output != OutputRequest(None, force=False) or look != USUAL):
+    if not draw and (output != options.OutputRequest(None, force=False) or look != USUAL):
         raise UsageError("only --draw writes something; options of files and figures go with it")
-    given = read_case(request, terminal)
+    given = inputs.read_case(request, terminal)
     from rpscli.model.statics import device_consequences
     from rpscli.report.tables.derived import derived_quantities
 
@@ -76,7 +74,7 @@ def command(
     record, error = _record(given.case)
     document = {
         **heading("check"),
-        "case": case_heading(given),
+        "case": inputs.case_heading(given),
         **derived,
         "record": record,
         "limits": given.case.limits.model_dump(exclude_none=True),
@@ -85,9 +83,9 @@ def command(
     if draw:
         from rpscli.report.bundles import bearing_files
 
-        folder = case_folder(given, output, "check")
+        folder = inputs.case_folder(given, output, "check")
         folder.add_all(bearing_files(structure, given.case.title, look))
-        write(folder, terminal)
+        inputs.write(folder, terminal)
         document["files"] = folder.files
     terminal.warn((record or {}).get("warnings", ()))
     limits = conditions_of(given.case.limits, "limits of the case")
@@ -103,7 +101,7 @@ def _record(case: Case) -> tuple[dict[str, Any] | None, RpsError | None]:
     if case.record is None:
         return None, None
     try:
-        motion = load_motion(case, MotionRequest())
+        motion = inputs.load_motion(case, inputs.MotionRequest())
     except (RecordError, CaseError) as error:
         return None, error
     found = motion.horizontal

@@ -8,13 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from rpscli.commands.inputs import RESULTS, write
-from rpscli.commands.shell.options import (
-    FILE,
-    OutputRequest,
-    overrides_option,
-    result_options,
-    run_options,
-)
+from rpscli.commands.shell import options
 from rpscli.commands.shell.terminal import Terminal, concluded, leave
 from rpscli.commands.study import (
     SweepChoices,
@@ -33,14 +27,14 @@ if TYPE_CHECKING:
 
 
 @click.command("design")
-@click.argument("design", metavar="DESIGN", type=FILE)
-@overrides_option("Override a value of the file (--set search.most=64) or of its base case")
-@run_options
-@result_options
+@click.argument("design", metavar="DESIGN", type=options.FILE)
+@options.overrides_option("Override a value of the file (--set search.most=64) or of its base case")
+@options.run_options
+@options.result_options
 def command(
     design: str,
     overrides: tuple[str, ...],
-    output: OutputRequest,
+    output: options.OutputRequest,
     terminal: Terminal,
     look: Look,
     **choices: Any,
@@ -69,7 +63,7 @@ def designed(
     design: str,
     overrides: tuple[str, ...],
     chosen: SweepChoices,
-    output: OutputRequest,
+    output: options.OutputRequest,
     look: Look,
     terminal: Terminal,
 ) -> Design | None:

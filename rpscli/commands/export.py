@@ -6,25 +6,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from rpscli.commands.inputs import (
-    RESULTS,
-    MotionRequest,
-    case_folder,
-    conclude,
-    load_motion,
-    motion_inputs,
-    motion_source,
-    read_case,
-    single_motions,
-)
-from rpscli.commands.shell.options import (
-    CaseRequest,
-    OutputRequest,
-    case_options,
-    output_options,
-    records_option,
-    terminal_options,
-)
+from rpscli.commands import inputs
+from rpscli.commands.shell import options
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.errors import AnalysisError, UsageError
 
@@ -40,16 +23,16 @@ case says (e = {:.4g}). Columns do not slide. Arcs never end: tilts must stay be
 
 
 @click.command("export")
-@case_options
+@options.case_options
 @click.argument("program", metavar="|".join(PROGRAMS), type=click.Choice([*PROGRAMS]))
-@records_option
-@output_options
-@terminal_options
+@options.records_option
+@options.output_options
+@options.terminal_options
 def command(
-    request: CaseRequest,
+    request: options.CaseRequest,
     program: str,
     records: tuple[str, ...],
-    output: OutputRequest,
+    output: options.OutputRequest,
     terminal: Terminal,
 ) -> None:
     """Write CASE and its record as a model for another program.
@@ -67,11 +50,11 @@ def command(
     from rpscli.report.bundles import history_columns
     from rpscli.report.table import Column, csv_lines
 
-    given = read_case(request, terminal)
-    motions = list(single_motions(records, MotionRequest(), terminal.warn))
+    given = inputs.read_case(request, terminal)
+    motions = list(inputs.single_motions(records, inputs.MotionRequest(), terminal.warn))
     if len(motions) > 1:
         raise UsageError(f"--record: a model has one motion, not {len(motions)}; name one of them")
-    ground = load_motion(given.case, motions[0])
+    ground = inputs.load_motion(given.case, motions[0])
     structure = given.case.structure
     vertical = ground.vertical if program == "opensees" else None
     left = {"podium.devices": structure.devices, "record.vertical": vertical,
@@ -82,11 +65,11 @@ def command(
     if why:
         text = f"{given.case.source}: {why[0]}, so that both programs compute the same"
         raise UsageError(text)
-    own = RESULTS / given.case.name / "export" / program
-    place = OutputRequest(output.place or own, output.force)
-    inputs = {"program": program, "record": motion_inputs(ground)}
-    source = motion_source(given.case, motions[0])
-    folder = case_folder(given, place, "export", record_source=source, **inputs)
+    own = inputs.RESULTS / given.case.name / "export" / program
+    place = options.OutputRequest(output.place or own, output.force)
+    resolved = {"program": program, "record": inputs.motion_inputs(ground)}
+    source = inputs.motion_source(given.case, motions[0])
+    folder = inputs.case_folder(given, place, "export", record_source=source, **resolved)
     announce_compilation(terminal)
     result = time_history(structure, ground, given.case.analysis)
     if result.failure:
@@ -100,7 +83,9 @@ def command(
     folder.add("timehistory.csv", csv_lines(columns))
     folder.add(RERUN, resources.files("rpscli.report.export").joinpath(RERUN).read_text("utf-8"))
     document = {"program": program, "limits": limits}
-    conclude(given, folder, document, [limits, f"next: python {folder.folder / RERUN}"], terminal)
+    inputs.conclude(
+        given, folder, document, [limits, f"next: python {folder.folder / RERUN}"], terminal
+    )
 
 
 def _model(program: str, result: TimeHistoryResult, title: str) -> tuple[str, str]:

@@ -9,13 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from rpscli.commands.inputs import case_heading, read_case
-from rpscli.commands.shell.options import (
-    FILE,
-    CaseRequest,
-    FiniteRange,
-    case_options,
-    terminal_options,
-)
+from rpscli.commands.shell import options
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.commands.shell.waiting import announce_compilation, passing_time
 from rpscli.errors import AnalysisError, RecordError, Refused, UsageError, listed
@@ -38,21 +32,25 @@ LARGEST = 1e15
 
 
 @click.command("identify")
-@case_options
-@click.argument("data", metavar="DATA.csv", type=FILE)
+@options.case_options
+@click.argument("data", metavar="DATA.csv", type=options.FILE)
 @click.argument("test", metavar="|".join(TESTS), type=click.Choice(TESTS))
 @click.option(
-    "--from", "first", type=FiniteRange(), metavar="S", help="Ignore samples before this time."
+    "--from",
+    "first",
+    type=options.FiniteRange(),
+    metavar="S",
+    help="Ignore samples before this time.",
 )
 @click.option(
-    "--to", "last", type=FiniteRange(), metavar="S", help="Ignore samples after this time."
+    "--to", "last", type=options.FiniteRange(), metavar="S", help="Ignore samples after this time."
 )
 @click.option("-o", "--output", "place", type=click.Path(path_type=Path), metavar="FILE.yaml",
               help="A copy of CASE with the identified values; comments are kept.")  # fmt: skip
 @click.option("--force", is_flag=True, help="Overwrite that file.")
-@terminal_options
+@options.terminal_options
 def command(
-    request: CaseRequest,
+    request: options.CaseRequest,
     data: str,
     test: str,
     first: float | None,
@@ -108,7 +106,7 @@ def command(
 
 
 def write_copy(
-    place: Path, request: CaseRequest, keys: Mapping[str, str], terminal: Terminal
+    place: Path, request: options.CaseRequest, keys: Mapping[str, str], terminal: Terminal
 ) -> None:
     """A copy of the case with values of keys, which is valid."""
     from rpscli.case.text.files import read_text
@@ -117,7 +115,7 @@ def write_copy(
     if not keys:
         raise UsageError(f"-o {place}: nothing was identified that has a key in a case")
     changes = (f"{key}={value}" for key, value in keys.items())
-    read_case(CaseRequest(request.source, (*request.overrides, *changes)), terminal)
+    read_case(options.CaseRequest(request.source, (*request.overrides, *changes)), terminal)
     text = edited(read_text(request.source), request.source, keys)
     write_whole({place: encoded(text)})
     terminal.note(f"written to {place}")

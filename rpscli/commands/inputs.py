@@ -9,16 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from rpscli.commands.shell.options import (
-    FILE,
-    CaseRequest,
-    FiniteRange,
-    OutputRequest,
-    completing,
-    gathered,
-    measures,
-    records_option,
-)
+from rpscli.commands.shell import options
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.errors import CaseError, UsageError
 from rpscli.report.documents import heading
@@ -42,7 +33,7 @@ class CaseInput:
     """A case, and where it came from."""
 
     case: Case
-    request: CaseRequest
+    request: options.CaseRequest
 
     @property
     def file(self) -> Path | None:
@@ -50,7 +41,7 @@ class CaseInput:
         return None if self.request.source == "-" else Path(self.request.source)
 
 
-def read_case(request: CaseRequest, terminal: Terminal) -> CaseInput:
+def read_case(request: options.CaseRequest, terminal: Terminal) -> CaseInput:
     """Read and check a case; its warnings go to the terminal."""
     from rpscli.case.case import load_case
 
@@ -61,7 +52,7 @@ def read_case(request: CaseRequest, terminal: Terminal) -> CaseInput:
 
 def case_folder(
     given: CaseInput,
-    output: OutputRequest,
+    output: options.OutputRequest,
     command: str,
     *,
     record_source: Path | str | None = None,
@@ -121,7 +112,7 @@ def case_heading(given: CaseInput) -> dict[str, str]:
     return {"name": given.case.name, "title": given.case.title, "source": given.case.source}
 
 
-class _Factor(FiniteRange):
+class _Factor(options.FiniteRange):
     """A number; whoever gives an intensity is told where it goes."""
 
     name = "factor"
@@ -155,21 +146,21 @@ class MotionRequest:
             raise UsageError("--scale and --scale-to both fix the factor; keep one of them")
 
 
-motion_options = gathered(
+motion_options = options.gathered(
     "motion",
     MotionRequest,
-    records_option,
+    options.records_option,
     click.option(
         "--vertical",
         metavar="SRC",
-        type=FILE,
+        type=options.FILE,
         help="Vertical component, with the same time step; own: that of the recording.",
     ),
     click.option("--scale", type=FACTOR, metavar="FACTOR", help="Factor on the acceleration."),
     click.option(
         "--scale-to",
         metavar="MEASURE=VALUE",
-        **completing(measures),
+        **options.completing(options.measures),
         help="Scale each record to PGA=0.4g, PGV='50 cm/s', 'Sa(0.6 s)=1g', AvgSa, FIV3, PGD,"
         " Housner, CAV or Arias.",
     ),

@@ -9,13 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from rpscli.commands.inputs import case_folder, conclude, read_case
-from rpscli.commands.shell.options import (
-    CaseRequest,
-    OutputRequest,
-    case_options,
-    film_options,
-    result_options,
-)
+from rpscli.commands.shell import options
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.commands.shell.waiting import counted
 from rpscli.errors import listed
@@ -28,13 +22,13 @@ if TYPE_CHECKING:
 
 
 @click.command("modal")
-@case_options
-@film_options
+@options.case_options
+@options.film_options
 @click.option("--first-order", "paper", is_flag=True, help="Also show the values of the paper.")
-@result_options
+@options.result_options
 def command(
-    request: CaseRequest,
-    output: OutputRequest,
+    request: options.CaseRequest,
+    output: options.OutputRequest,
     terminal: Terminal,
     look: Look,
     film: FilmRequest | None,

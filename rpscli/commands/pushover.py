@@ -9,7 +9,7 @@ import click
 
 from rpscli.analyses.result_quantities import PUSHOVER
 from rpscli.commands.inputs import case_folder, conclude, read_case
-from rpscli.commands.shell.options import CaseRequest, OutputRequest, case_options, result_options
+from rpscli.commands.shell import options
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.errors import UsageError
 from rpscli.report.figures.look import Look
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 @click.command("pushover")
-@case_options
+@options.case_options
 @click.option(
     "--pattern",
     "patterns",
@@ -29,10 +29,10 @@ if TYPE_CHECKING:
     help="Floor forces: uniform, triangular, first_mode, or f1,f2,... from the bottom; repeatable."
     " All three named ones by default.",
 )
-@result_options
+@options.result_options
 def command(
-    request: CaseRequest,
-    output: OutputRequest,
+    request: options.CaseRequest,
+    output: options.OutputRequest,
     terminal: Terminal,
     look: Look,
     patterns: tuple[str, ...],

@@ -10,26 +10,8 @@ from pathlib import Path
 import click
 
 from rpscli.case.conditions import Condition
-from rpscli.commands.inputs import RESULTS, MotionRequest, motion_options, read_case, single_motions
-from rpscli.commands.report_case import (
-    DESIGN,
-    HISTORY,
-    SWEEP,
-    Asked,
-    PageDone,
-    case_page,
-    earlier_case,
-    earlier_results,
-    kind_of,
-    typed_together,
-)
-from rpscli.commands.shell.options import (
-    CaseRequest,
-    fail_on_option,
-    overrides_option,
-    style_option,
-    terminal_options,
-)
+from rpscli.commands import inputs, report_case
+from rpscli.commands.shell import options
 from rpscli.commands.shell.terminal import Terminal, leave
 from rpscli.errors import Refused, UsageError
 from rpscli.report.figures.look import Look
@@ -48,9 +30,9 @@ from rpscli.version import VERSION
     metavar="FILE.html",
     help="The page; results/<name>/report.html by default.",
 )
-@overrides_option("Override a value of the case or study")
-@motion_options
-@fail_on_option("A further limit, as in `rps timehistory`; repeatable.")
+@options.overrides_option("Override a value of the case or study")
+@inputs.motion_options
+@options.fail_on_option("A further limit, as in `rps timehistory`; repeatable.")
 @click.option("--project", metavar="TEXT", help="Name or number of the project, for the page.")
 @click.option("--author", metavar="NAME", help="Who made the page and signs it.")
 @click.option("--checker", metavar="NAME", help="Who checks the page and signs it.")
@@ -60,9 +42,9 @@ from rpscli.version import VERSION
     is_flag=True,
     help="Add the sensitivity of each limited result of a CASE, as in `rps budget`.",
 )
-@style_option
+@options.style_option
 @click.option("--force", is_flag=True, help="Overwrite a file that is not a report.")
-@terminal_options
+@options.terminal_options
 def command(
     subject: str,
     place: Path | None,
@@ -74,7 +56,7 @@ def command(
     checker: str | None,
     style_file: Path | None,
     terminal: Terminal,
-    motion: MotionRequest,
+    motion: inputs.MotionRequest,
     *,
     with_budget: bool,
     force: bool,
@@ -90,22 +72,22 @@ def command(
     if place is not None and place.suffix.lower() not in {".html", ".htm"}:
         raise UsageError(f"-o {place}: the page is HTML; name a file that ends with .html")
     look = Look(style={} if style_file is None else drawable_style(style_file))
-    request, asked = CaseRequest(subject, overrides), motion
-    earlier = earlier_results(Path(subject)) if Path(subject).is_dir() else None
-    kind = kind_of(subject) if earlier is None else earlier.run["command"]
+    request, asked = options.CaseRequest(subject, overrides), motion
+    earlier = report_case.earlier_results(Path(subject)) if Path(subject).is_dir() else None
+    kind = report_case.kind_of(subject) if earlier is None else earlier.run["command"]
     _require_sense(subject, (records, asked), overrides, kind, stored=earlier is not None)
-    if with_budget and kind != HISTORY:
+    if with_budget and kind != report_case.HISTORY:
         raise UsageError(f"{subject}: --budget is about one history; name a case")
     name: str
-    make: Callable[[], PageDone]
-    if kind == DESIGN:
+    make: Callable[[], report_case.PageDone]
+    if kind == report_case.DESIGN:
         from rpscli.commands.report_study import design_page
 
         if conditions:
             raise UsageError(f"{subject}: a design has limits of its own; leave --fail-on out")
         name = Path(subject).stem if earlier is None else earlier.run["name"]
         make = partial(design_page, subject, overrides, earlier, look, terminal)
-    elif kind == SWEEP:
+    elif kind == report_case.SWEEP:
         from rpscli.commands.report_study import study_page
         from rpscli.commands.study import read
 
@@ -115,18 +97,18 @@ def command(
         make = partial(study_page, made, folder, look, terminal)
     else:
         if earlier is not None:
-            given, motions = earlier_case(earlier)
-            typed = typed_together(given.case, motions)
+            given, motions = report_case.earlier_case(earlier)
+            typed = report_case.typed_together(given.case, motions)
         else:
             given, motions = (
-                read_case(request, terminal),
-                [*single_motions(records, asked, terminal.warn)],
+                inputs.read_case(request, terminal),
+                [*inputs.single_motions(records, asked, terminal.warn)],
             )
             typed = [(records, asked)]
         name = given.case.name
         told = (given, motions, typed, conditions, look, earlier, terminal)
-        make = partial(case_page, *told, with_budget=with_budget)
-    file = place or RESULTS / name / "report.html"
+        make = partial(report_case.case_page, *told, with_budget=with_budget)
+    file = place or inputs.RESULTS / name / "report.html"
     _require_free(file, name, force=force)
     done = make()
     own = done.signed
@@ -140,15 +122,17 @@ def command(
 
 
 def _require_sense(
-    subject: str, motion: Asked, overrides: tuple[str, ...], kind: str, *, stored: bool
+    subject: str, motion: report_case.Asked, overrides: tuple[str, ...], kind: str, *, stored: bool
 ) -> None:
     """Refuse options that the subject does not take."""
     if stored and overrides:
         raise UsageError(f"{subject}: stored results keep the values they have; leave --set out")
-    if (kind != HISTORY or stored) and motion != ((), MotionRequest()):
+    if (kind != report_case.HISTORY or stored) and motion != ((), inputs.MotionRequest()):
         reason = "a stored history has its record"
-        if kind != HISTORY:
-            reason = f"a {'study' if kind == SWEEP else 'design'} has records of its own"
+        if kind != report_case.HISTORY:
+            reason = (
+                f"a {'study' if kind == report_case.SWEEP else 'design'} has records of its own"
+            )
         raise UsageError(f"{subject}: {reason}; leave --record, --vertical and --scale out")
 
 
@@ -171,7 +155,11 @@ def _require_free(file: Path, name: str, *, force: bool) -> None:
 
 
 def _write(
-    file: Path, name: str, done: PageDone, signed: dict[str, str | None], terminal: Terminal
+    file: Path,
+    name: str,
+    done: report_case.PageDone,
+    signed: dict[str, str | None],
+    terminal: Terminal,
 ) -> None:
     from rpscli.report.html.page import MOST_BYTES, page
 

@@ -10,15 +10,7 @@ import click
 
 from rpscli.case.conditions import Condition
 from rpscli.commands.inputs import RESULTS, write
-from rpscli.commands.shell.options import (
-    FILE,
-    CaseRequest,
-    OutputRequest,
-    fail_on_option,
-    overrides_option,
-    result_options,
-    run_options,
-)
+from rpscli.commands.shell import options
 from rpscli.commands.shell.terminal import Terminal, concluded, leave, rendered
 from rpscli.commands.shell.waiting import passing_time
 from rpscli.commands.study import (
@@ -46,13 +38,13 @@ ALL = "; --all prints them"
 
 
 @click.command("sweep")
-@click.argument("study", metavar="STUDY", type=FILE)
-@overrides_option(
+@click.argument("study", metavar="STUDY", type=options.FILE)
+@options.overrides_option(
     "Override a value of the study (--set 'scale=[1, 2]') or of its base case"
     " (--set podium.bearing.slenderness=0.2)"
 )
-@run_options
-@fail_on_option(
+@options.run_options
+@options.fail_on_option(
     "End with exit code 10 if overturning=0.1 (more than this share of the records of a system"
     " at an intensity), or a result of any record exceeds a value, as rotation_ratio=0.5 (SI"
     " units), or not-shown if too few records show that a limit is met; repeatable. The limits of"
@@ -65,11 +57,11 @@ ALL = "; --all prints them"
     is_flag=True,
     help=f"Print statistics of all demands, and all rows; at most {MOST_LINES} lines without it.",
 )
-@result_options
+@options.result_options
 def command(
     study: str,
     overrides: tuple[str, ...],
-    output: OutputRequest,
+    output: options.OutputRequest,
     terminal: Terminal,
     conditions: list[Condition],
     look: Look,
@@ -84,7 +76,7 @@ def command(
     is 10 if a limit of the study, of its base case or of --fail-on is exceeded.
     """
     chosen = SweepChoices(**choices)
-    given = read(CaseRequest(study, overrides), conditions, terminal)
+    given = read(options.CaseRequest(study, overrides), conditions, terminal)
     if chosen.dry_run:
         show_dry_run(given, chosen, terminal)
         return

@@ -9,14 +9,7 @@ import click
 from rpscli.analyses.result_quantities import LIMITED
 from rpscli.case.conditions import Condition
 from rpscli.commands.inputs import MotionRequest, motion_options, read_case, single_motions
-from rpscli.commands.shell.options import (
-    CaseRequest,
-    OutputRequest,
-    fail_on_option,
-    history_film_options,
-    result_options,
-    several_cases_options,
-)
+from rpscli.commands.shell import options
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.commands.shell.waiting import announce_compilation
 from rpscli.errors import CaseError, UsageError, all_made
@@ -25,24 +18,24 @@ from rpscli.report.figures.look import Look
 
 
 @click.command("timehistory")
-@several_cases_options
+@options.several_cases_options
 @motion_options
-@fail_on_option(
+@options.fail_on_option(
     "End with exit code 10 on overturning, on uplift, or if a result is beyond a value, as in"
     f" {', '.join(f'{result.name}={result.limit}' for result in LIMITED)} (SI units), or"
     " not-shown if several records are too few to show that a limit is met; repeatable."
 )
-@history_film_options
+@options.history_film_options
 @click.option(
     "--floor-spectra",
     is_flag=True,
     help="Also compute spectra of every floor, on bearings and on a fixed base.",
 )
-@result_options
+@options.result_options
 def command(
-    requests: list[CaseRequest],
+    requests: list[options.CaseRequest],
     records: tuple[str, ...],
-    output: OutputRequest,
+    output: options.OutputRequest,
     terminal: Terminal,
     conditions: list[Condition],
     film: FilmRequest | None,

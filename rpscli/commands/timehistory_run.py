@@ -18,17 +18,7 @@ from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.timehistory import time_history
 from rpscli.case.conditions import LIMITS, Condition, case_conditions
 from rpscli.case.rules.plausibility import doubts_of_directions
-from rpscli.commands.inputs import (
-    RESULTS,
-    CaseInput,
-    MotionRequest,
-    case_folder,
-    case_heading,
-    load_motion,
-    motion_inputs,
-    motion_source,
-    write,
-)
+from rpscli.commands import inputs
 from rpscli.commands.shell.options import OutputRequest
 from rpscli.commands.shell.terminal import Terminal, concluded, leave
 from rpscli.commands.shell.waiting import counted, patience
@@ -75,7 +65,7 @@ CODES = (
 class HistoryRequest:
     """A case, its motion, the folder of the results; spectra of floors where they are asked for."""
 
-    given: CaseInput
+    given: inputs.CaseInput
     case_label: str
     ground: MotionComponents
     label: str
@@ -99,8 +89,8 @@ class HistoryResult(NamedTuple):
 
 
 def history_requests(
-    cases: Sequence[CaseInput],
-    motions: Sequence[MotionRequest],
+    cases: Sequence[inputs.CaseInput],
+    motions: Sequence[inputs.MotionRequest],
     output: OutputRequest,
     *,
     floor_spectra: bool = False,
@@ -109,19 +99,19 @@ def history_requests(
     requests = []
     case_labels = unique([given.case.name for given in cases])
     for given, case_label in zip(cases, case_labels, strict=True):
-        grounds = all_made(partial(load_motion, given.case), motions, RecordError)
+        grounds = all_made(partial(inputs.load_motion, given.case), motions, RecordError)
         labels = unique([_label(ground) for ground in grounds])
         for motion, ground, label in zip(motions, grounds, labels, strict=True):
-            place = RESULTS / case_label / COMMAND / label
+            place = inputs.RESULTS / case_label / COMMAND / label
             if output.place is not None:
                 inside = [case_label] * (len(cases) > 1) + [label] * (len(motions) > 1)
                 place = output.place.joinpath(*inside)
-            folder = case_folder(
+            folder = inputs.case_folder(
                 given,
                 OutputRequest(place, output.force),
                 COMMAND,
-                record_source=motion_source(given.case, motion),
-                record=motion_inputs(ground),
+                record_source=inputs.motion_source(given.case, motion),
+                record=inputs.motion_inputs(ground),
             )
             requests.append(HistoryRequest(given, case_label, ground, label, folder, floor_spectra))
     return requests
@@ -186,7 +176,7 @@ def _document(request: HistoryRequest, result: TimeHistoryResult) -> dict[str, A
     document = {
         **heading(COMMAND),
         "note": direction_note([ground.y is not None], result.structure.planar_only) or None,
-        "case": case_heading(given),
+        "case": inputs.case_heading(given),
         **timehistory_document(result),
     }
     document["record"] |= {"scale": ground.scale, "scaled_to": ground.scaled_to or None}
@@ -227,7 +217,7 @@ def run_one(
             draw = partial(history_film, result, title, film, progress)
             moving = drawn_with(look, film.ending, draw)
         request.folder.add_at(film.file, moving)
-    write(_add_summary(done), terminal)
+    inputs.write(_add_summary(done), terminal)
     terminal.warn(done.document["warnings"])
     tables = timehistory_tables(result, done.verdicts, title, request.ground.scaled_to)
     texts = [*neighbours_texts(result, beside), passes_text(result), done.document["note"]]
@@ -276,7 +266,7 @@ def run_all(
         case.folder.add("records.csv", csv_text(records_columns(case.labels, scalars)))
         case.folder.add("statistics.csv", csv_text(demand_columns(case.together)))
         case.folder.add("summary.json", json_text({**heading(), **set_document(case)}))
-        write(case.folder, terminal)
+        inputs.write(case.folder, terminal)
     error = set_error(computed)
     document = all_document(computed, error)
     terminal.warn(document["warnings"])
@@ -319,15 +309,15 @@ def _set_folder(
     grounds = (request.ground.named for request in group)
     motions = "".join(each[name].digest for each in grounds for name in each if name != "vertical")
     name = f"{len(group)}_records_{hashlib.sha256(motions.encode()).hexdigest()[:6]}"
-    place = RESULTS / first.case_label / COMMAND / name
+    place = inputs.RESULTS / first.case_label / COMMAND / name
     if output.place is not None:
         place = output.place if alone else output.place / first.case_label
-    return case_folder(
+    return inputs.case_folder(
         first.given,
         OutputRequest(place, output.force),
         COMMAND,
         record_source=name,
-        records=[motion_inputs(request.ground) for request in group],
+        records=[inputs.motion_inputs(request.ground) for request in group],
     )
 
 

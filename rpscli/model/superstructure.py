@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rpscli.constants import MOST_STOREYS
-from rpscli.errors import LARGEST, SMALLEST, is_size
+from rpscli.errors import is_size
 from rpscli.shown import Shown, frozen
 
 Array = NDArray[np.float64]
@@ -296,8 +296,5 @@ class Superstructure(Shown):
 def _positive(name: str, values: Sequence[float] | NDArray[np.float64]) -> NDArray[np.float64]:
     array = np.array(values, dtype=float)
     if array.ndim != 1 or not all(map(is_size, array.tolist())):
-        raise ValueError(
-            f"{name} must be a list of finite values > 0, from the bottom, of {SMALLEST:g} to"
-            f" {LARGEST:g} in SI units"
-        )
+        raise ValueError(f"{name} must be a list of finite sizes > 0, from the bottom")
     return frozen(array)

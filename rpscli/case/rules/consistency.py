@@ -8,13 +8,7 @@ from dataclasses import dataclass
 
 from rpscli.analyses.result_quantities import LIMITED
 from rpscli.case.build import Masses, Shape, overturning_limit
-from rpscli.case.schema.case_file import (
-    DEVICE_KEYS,
-    AcrossSection,
-    CaseFile,
-    DeviceSection,
-    SuperstructureSection,
-)
+from rpscli.case.schema import case_file
 from rpscli.case.text.document import Document, Fault, path_of, shown
 from rpscli.errors import RecordError, listed
 from rpscli.model.bearing import Bearing
@@ -53,7 +47,7 @@ def _given(section: object, *keys: str) -> list[str]:
 class Consistency:
     """A case whose sections are valid, and what joins their keys."""
 
-    file: CaseFile
+    file: case_file.CaseFile
     document: Document
 
     def faults(self) -> Iterator[Fault]:
@@ -77,7 +71,7 @@ class Consistency:
     def _written(self, key: str) -> str:
         return shown(self.document.at(path_of(key)))
 
-    def _building(self, building: SuperstructureSection) -> Iterator[Fault]:
+    def _building(self, building: case_file.SuperstructureSection) -> Iterator[Fault]:
         """A building needs masses, stiffness and damping, each given once."""
         if building.storey_mass is None:
             meaning = "floor mass, one value or a list from the bottom, as in '200 t'"
@@ -98,7 +92,7 @@ class Consistency:
                 yield from self._stiffness(owner, section)
 
     def _stiffness(
-        self, owner: str, section: SuperstructureSection | AcrossSection
+        self, owner: str, section: case_file.SuperstructureSection | case_file.AcrossSection
     ) -> Iterator[Fault]:
         """Stiffnesses follow from a period or are given; lists have one value a storey."""
         storeys = self.file.superstructure.storeys
@@ -247,13 +241,13 @@ class Consistency:
                 " is in each column, but podium.columns, their number, is missing",
             )
 
-    def _device(self, owner: str, device: DeviceSection) -> Iterator[Fault]:
+    def _device(self, owner: str, device: case_file.DeviceSection) -> Iterator[Fault]:
         """The keys that a kind needs, and none of another kind; a tendon carries its prestress."""
-        needed, optional = DEVICE_KEYS[device.kind]
-        given = _given(device, *DeviceSection.model_fields)
+        needed, optional = case_file.DEVICE_KEYS[device.kind]
+        given = _given(device, *case_file.DeviceSection.model_fields)
         for key in needed:
             if key not in given:
-                meaning = DeviceSection.model_fields[key].description
+                meaning = case_file.DeviceSection.model_fields[key].description
                 yield _at_key(f"{owner}.{key}", f" is missing: {meaning}")
         for key in given:
             if key not in ("kind", *needed, *optional):

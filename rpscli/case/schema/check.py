@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from typing import Any, Generic, NamedTuple, TypeVar
+from typing import Any, TypeVar
 
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
@@ -20,23 +20,8 @@ KEYS_SHOWN = 12
 """Keys of a section in a message; `rps explain` has all."""
 
 
-class SchemaCheck(NamedTuple, Generic[Model]):
-    """Faults of a document, and what was read of it if there are none."""
-
-    faults: list[Fault]
-    read: Model | None
-
-
 def checked(model: type[Model], document: Document) -> Model:
     """The sections of a document, each valid in itself; raises CaseError with all faults."""
-    check = schema_check(model, document)
-    document.refuse(check.faults)
-    assert check.read is not None, "without faults the document is read"
-    return check.read
-
-
-def schema_check(model: type[Model], document: Document) -> SchemaCheck[Model]:
-    """Faults of a document in the eyes of a model, key by key."""
     content = dict(document.content)
     by_itself = {
         key: content.pop(key)
@@ -53,8 +38,9 @@ def schema_check(model: type[Model], document: Document) -> SchemaCheck[Model]:
         lacks = any(path == inner[: len(path)] for inner in empty)
         if not lacks or error["type"] == "extra_forbidden":  # else faulty by what is told already
             faults.add(error, path)
-    told = faults.told()
-    return SchemaCheck(told, None if told else read)
+    document.refuse(faults.told())
+    assert read is not None, "without faults the document is read"
+    return read
 
 
 class _Faults:

@@ -14,6 +14,7 @@ from rpscli.case.overrides import apply_overrides
 from rpscli.case.schema.check import checked
 from rpscli.case.schema.keys import fields_of
 from rpscli.case.schema.scale_to import ScaleToSection
+from rpscli.case.study import rules
 from rpscli.case.study.axes import Axis, axes_of, sources_of, unequal, with_linked
 from rpscli.case.study.observed import Observed, read_observed
 from rpscli.case.study.reports import (
@@ -22,16 +23,6 @@ from rpscli.case.study.reports import (
     kinds_in,
     requests_of,
     written_out,
-)
-from rpscli.case.study.rules import (
-    analysis_rules,
-    fixed_faults,
-    record_rules,
-    reliability_rules,
-    report_rules,
-    size_faults,
-    twice,
-    unknown_keys,
 )
 from rpscli.case.study.schema import MeasureScale, StudyFile, StudyParts
 from rpscli.case.text.document import Document, is_case, is_design, is_study, shown
@@ -127,14 +118,17 @@ def study_of(
     file = checked(format_with(asked), whole)
     reports = requests_of(whole, file)
     sources, faults, notes = sources_of(document, folder)
-    faults += [*unequal(document, file.vary), *unknown_keys(document), *twice(document)]
-    faults += [*record_rules(document), *reliability_rules(document)]
-    faults += [*analysis_rules(file, reports, asked), *fixed_faults(document, base_overrides)]
+    faults += [*unequal(document, file.vary), *rules.unknown_keys(document), *rules.twice(document)]
+    faults += [*rules.record_rules(document), *rules.reliability_rules(document)]
+    faults += [
+        *rules.analysis_rules(file, reports, asked),
+        *rules.fixed_faults(document, base_overrides),
+    ]
     document.refuse(faults)
     axes = with_linked(axes_of(document, file.vary), file.linked, document)
     observed = read_observed(file.observed, folder, axes, document)
-    document.refuse(report_rules(document, file, axes, reports, asked))
-    document.refuse(size_faults(file, axes, sources))
+    document.refuse(rules.report_rules(document, file, axes, reports, asked))
+    document.refuse(rules.size_faults(file, axes, sources))
     base, base_file = _base(document, folder)
     return Study(
         name=stem_of(Path(document.name.strip("<>"))) or "study",
