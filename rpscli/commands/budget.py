@@ -36,13 +36,6 @@ Wish = tuple[str, tuple[str, ...], inputs.MotionRequest | str]
 @click.command("budget")
 @options.case_options
 @inputs.motion_options
-@click.option(
-    "--period-ratio",
-    type=options.FiniteRange(min=1.0, min_open=True),
-    metavar="RATIO",
-    help="First period in full contact over that on a fixed base, of the rows edges and plane; that"
-    f" of the case, else {PERIOD_RATIO}.",
-)
 @options.result_options
 def command(
     request: options.CaseRequest,
@@ -51,7 +44,6 @@ def command(
     terminal: Terminal,
     look: Look,
     motion: inputs.MotionRequest,
-    period_ratio: float | None,
 ) -> None:
     """Change of each limited result of CASE for one input at a time, in the unit of its limit.
 
@@ -63,15 +55,11 @@ def command(
     given = inputs.read_case(request, terminal)
     motions = list(inputs.single_motions(records, motion, terminal.warn))
     grounds = all_made(partial(inputs.load_motion, given.case), motions, RpsError)
-    resolved = {
-        "record": inputs.motion_inputs(grounds[0]),
-        "records": records,
-        "period_ratio": period_ratio,
-    }
+    resolved = {"record": inputs.motion_inputs(grounds[0]), "records": records}
     source = inputs.motion_source(given.case, motions[0])
     folder = inputs.case_folder(given, output, "budget", record_source=source, **resolved)
     announce_compilation(terminal)
-    found = case_budget(given, motions, grounds, period_ratio, terminal)
+    found = case_budget(given, motions, grounds, terminal)
     folder.add_all(found.files(look))
     plane = grounds[0].y is None
     inputs.conclude(given, folder, found.document(), found.tables(), terminal, plane=plane)
@@ -81,15 +69,12 @@ def case_budget(
     given: inputs.CaseInput,
     motions: Sequence[inputs.MotionRequest],
     grounds: Sequence[MotionComponents],
-    period_ratio: float | None,
     terminal: Terminal,
 ) -> Budget:
     """All rows of a case under the first of its motions."""
     from rpscli.report.budget import Budget
 
-    bed = given.case.structure.bed
-    ratio = period_ratio or (bed and bed.period_ratio) or PERIOD_RATIO
-    wishes = [("as it is", (), motions[0]), *_wishes(given.case, motions, grounds, ratio)]
+    wishes = [("as it is", (), motions[0]), *_wishes(given.case, motions, grounds)]
     rows = []
     with counted(f"{len(wishes)} histories", terminal) as tell:
         for wish in wishes:
@@ -132,14 +117,11 @@ def _row(
 
 
 def _wishes(
-    case: Case,
-    motions: Sequence[inputs.MotionRequest],
-    grounds: Sequence[MotionComponents],
-    ratio: float,
+    case: Case, motions: Sequence[inputs.MotionRequest], grounds: Sequence[MotionComponents]
 ) -> Iterator[Wish]:
     """All changes, in the order of the tables."""
     motion, ground = motions[0], grounds[0]
-    for cause, text in _values(case, ratio):
+    for cause, text in _values(case):
         yield cause, (text,), motion
     if case.file.superstructure.damping is None:
         yield "damping", (), "the case has no storeys, and no damping of theirs"
@@ -165,7 +147,7 @@ def _with_own_vertical(case: Case, motion: inputs.MotionRequest) -> inputs.Motio
     return both
 
 
-def _values(case: Case, ratio: float) -> Iterator[tuple[str, str]]:
+def _values(case: Case) -> Iterator[tuple[str, str]]:
     """Changes of a value of the case."""
     file, bearing = case.file, case.file.podium.bearing
     for factor in (2.0, 4.0):
@@ -174,6 +156,8 @@ def _values(case: Case, ratio: float) -> Iterator[tuple[str, str]]:
         tolerance = factor * file.analysis.recontact_tolerance
         yield "numerics", f"analysis.recontact_tolerance={tolerance:g}"
     yield from (("impact loss", f"podium.impact.loss={loss:g}") for loss in LOSSES)
+    bed = case.structure.bed
+    ratio = (bed and bed.period_ratio) or PERIOD_RATIO
     sizes = f"period_ratio: {ratio:g}, damping: {file.podium.contact.damping:g}"
     for kind in ("rigid", f"edges, {sizes}", f"plane, {sizes}"):
         yield "contact", f"podium.contact={{kind: {kind}}}"

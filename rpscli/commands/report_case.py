@@ -284,7 +284,7 @@ def _budget(
 
     given, order = requests[0].given, sorted(range(len(motions)), key=lambda n: n != first)
     grounds = [requests[n].ground for n in order]
-    found = case_budget(given, [motions[n] for n in order], grounds, None, terminal)
+    found = case_budget(given, [motions[n] for n in order], grounds, terminal)
     return [found.section(look, requests[first].label)]
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from pathlib import Path
 
 from rpscli.case.case import Case
@@ -32,19 +32,14 @@ from rpscli.report.limits import verdicts_in_short
 from rpscli.report.study.labels import label
 from rpscli.report.study.shown import cut, of_first_system, summary_tables, verdict_table
 from rpscli.report.table import Heading, Table
-from rpscli.studies import Collected, Study, StudyResult
+from rpscli.studies import Study, StudyResult
 from rpscli.sweep.context import resolved
 from rpscli.sweep.store import Store
 
 FAILURES_SHOWN = 20
 
 
-def study_page(
-    study: Study,
-    place: Path | None,
-    look: Look,
-    terminal: Terminal,
-) -> PageDone:
+def study_page(study: Study, place: Path | None, look: Look, terminal: Terminal) -> PageDone:
     """Compute the points that are not stored yet, and put all in order."""
     look, layout = page_look(look), study.layout
     folder = place or RESULTS / layout.study.name / "sweep"
@@ -66,45 +61,29 @@ def study_page(
     }
     terminal.warn(notes)
     varied = any(key.startswith("podium.contact") for key in layout.plan.keys)
-    contact = ", contact varied" if varied else ends(resolved(layout.plan, layout[0].values))
-    return PageDone(
-        study.title,
-        f"Study of {len(run.table)} points{contact}",
-        _sections(study, run, found, notes, folder, look),
-        concluded(document, error),
-        error,
-        layout.study.file.document,
-    )
-
-
-def _sections(
-    study: Study, run: StudyResult, found: Collected, notes: Sequence[str], folder: Path, look: Look
-) -> list[Section]:
-    layout = study.layout
     first = resolved(layout.plan, layout[0].values)
+    contact = ", contact varied" if varied else ends(first)
     drawn = [Picture(each, _caption(study, stem)) for stem, each in pictures(found.files.items())]
     results = [Section("Figures", drawn)]
     if run.summary:
-        statistics = Section(
-            "Statistics",
-            [*cut([*summary_tables(run.summary), of_first_system(run.layout), *found.parts])],
-        )
-        results = [motions_section(*motions_of(study), study.title, look), statistics, *results]
+        statistics = [*summary_tables(run.summary), of_first_system(run.layout), *found.parts]
+        motions = motions_section(*motions_of(study), study.title, look)
+        results = [motions, Section("Statistics", [*cut(statistics)]), *results]
     which = []
     if (systems := len(layout.properties)) > 1:
         values = zip(layout.plan.keys, layout[0].values, strict=True)
         named = ", ".join(label(key, value) for key, value in values)
         which = [f"The first of {systems} systems: {named}."]
     words = subject_words(layout.study.source, study.overrides)
-    stored = (
-        f"Every point is stored in {folder}; points.csv there has them all, failed.csv the"
-        " command that computes each failed point alone."
-    )
     warnings = [*notes, *(str(error) for error in found.broken)]
     warnings += [f"Point {f.point} failed: {f.message}" for f in found.failures[:FAILURES_SHOWN]]
     if (failed := len(found.failures)) > FAILURES_SHOWN:
         warnings.append(f"{failed} points failed; these are the first of them")
-    return page_sections(
+    stored = (
+        f"Every point is stored in {folder}; points.csv there has them all, failed.csv the"
+        " command that computes each failed point alone."
+    )
+    sections = page_sections(
         first,
         study.title,
         look,
@@ -116,6 +95,9 @@ def _sections(
         stored=[stored],
         which=which,
     )
+    subtitle = f"Study of {len(run.table)} points{contact}"
+    signed = layout.study.file.document
+    return PageDone(study.title, subtitle, sections, concluded(document, error), error, signed)
 
 
 def _in_short(run: StudyResult) -> Iterator[Block]:

@@ -60,7 +60,6 @@ FAILURES = [
     (("timehistory", "small.yaml", "--scale", "nan"), 2, "UsageError", "finite"),
     (("timehistory", "small.yaml", "--animate-from", "nan"), 2, "UsageError", "finite"),
     (("verify", "--score", "a.csv", "--digits", "nan"), 2, "UsageError", "finite"),
-    (("budget", "small.yaml", "--period-ratio", "inf"), 2, "UsageError", "finite"),
     (("identify", "small.yaml", "a.csv", "rocking", "--from", "nan"), 2, "UsageError", "finite"),
     (("timehistory", "small.yaml", "--animate", "film.avi"), 2, "UsageError", ".gif"),
     (("modal", "small.yaml", "--animate-size", "500"), 2, "UsageError", "--animate FILE"),
