@@ -199,11 +199,11 @@ def case_page(
         ground_section,
         history_short,
         horizontal,
-        limits_in_short,
         motions_section,
         page_sections,
         response_section,
     )
+    from rpscli.report.limits import verdicts_in_short
 
     case, title = given.case, f"Structure{ends(given.case)}"
     document = {**heading(), "case": case_heading(given), "warnings": list(case.warnings)}
@@ -230,7 +230,7 @@ def case_page(
         done, result = compute(worst, conditions, page_look(look), terminal)
         files = [(path.name, content) for path, content in worst.folder.contents.items()]
         if len(requests) > 1:
-            short = [limits_in_short(found.verdicts), *[*set_tables([found])][1:]]
+            short = [verdicts_in_short(found.verdicts), *[*set_tables([found])][1:]]
             motions_of = horizontal(*(request.ground for request in requests))
             name, seen = f"{len(motions_of)} records", "as they were scaled"
             about = f"with the largest rotation of the columns, {record_name(result)}"

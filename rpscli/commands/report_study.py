@@ -105,12 +105,10 @@ def _in_short(run: StudyResult) -> Iterator[Block]:
     yield Table.of_texts(tuple(counts), [tuple(map(str, counts.values()))], words=0)
     if aim := run.layout.scaled_to:
         yield f"Records are scaled to {aim}."
-    if run.summary is not None and run.judgements:
-        what = f"{len(run.judgements)} limits of a system at an intensity"
-        yield verdicts_in_short(run.judgements, what)
-        yield from cut([verdict_table(run.summary, run.judgements)])
-    elif run.summary is not None:
-        yield "No limits were set."
+    if run.summary is not None:
+        yield verdicts_in_short(run.judgements, " of a system at an intensity")
+        if run.judgements:
+            yield from cut([verdict_table(run.summary, run.judgements)])
 
 
 def motions_of(study: Study) -> tuple[list[GroundMotion], list[str]]:

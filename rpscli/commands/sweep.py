@@ -119,9 +119,7 @@ def command(
     terminal.result(concluded(document, error), _shown(result, found, whole=whole))
     if isinstance(error, LimitExceeded) and not (terminal.as_json or terminal.quiet):
         # The table has them one by one.
-        error = LimitExceeded(
-            verdicts_in_short(result.judgements, f"{len(result.judgements)} limits")
-        )
+        error = LimitExceeded(verdicts_in_short(result.judgements))
     leave(error)
 
 

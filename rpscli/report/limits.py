@@ -91,8 +91,11 @@ def excess_text(verdict: Verdict) -> str:
     return f"{condition.name} = {value} {beyond} {_bound(condition)} ({condition.source})"
 
 
-def verdicts_in_short(verdicts: Sequence[Verdict], what: str) -> str:
-    """How many limits are exceeded, or met, or met without being shown."""
+def verdicts_in_short(verdicts: Sequence[Verdict], of: str = "") -> str:
+    """How many limits of something are exceeded, or met, or met without being shown."""
+    if not verdicts:
+        return "No limits were set."
+    what = f"{len(verdicts)} limits{of}"
     exceeded = sum(verdict.exceeded for verdict in verdicts)
     unsure = sum(not (verdict.exceeded or verdict.shown) for verdict in verdicts)
     first = f"{exceeded} of {what} exceeded" if exceeded else f"All {what} are met"

@@ -20,13 +20,13 @@ def fields_of(section: type[BaseModel]) -> dict[str, FieldInfo]:
     return {field.alias or name: field for name, field in section.model_fields.items()}
 
 
-def _inside(annotation: Any) -> Iterator[Any]:
+def inside(annotation: Any) -> Iterator[Any]:
     """An annotation or a field, and all types and marks that it is made of."""
     yield annotation
     field = isinstance(annotation, FieldInfo)
     parts = (annotation.annotation, *annotation.metadata) if field else get_args(annotation)
     for part in parts:
-        yield from _inside(part)
+        yield from inside(part)
 
 
 def _is_section(annotation: Any) -> bool:
@@ -35,7 +35,7 @@ def _is_section(annotation: Any) -> bool:
 
 def sections_of(annotation: Any) -> Iterator[type[BaseModel]]:
     """The models inside an annotation (``Model | None``) or a field."""
-    for part in _inside(annotation):
+    for part in inside(annotation):
         if _is_section(part):
             yield part
         elif isinstance(part, Several) and part.spaced:
@@ -49,7 +49,7 @@ def section_of(annotation: Any) -> type[BaseModel] | None:
 
 def _chosen_by_user(annotation: Any) -> Any:
     """Annotation of values at keys that the user chooses, if it holds such a mapping."""
-    for part in _inside(annotation):
+    for part in inside(annotation):
         if get_origin(part) is dict:
             return get_args(part)[1]
         if _is_section(part) and part.model_config.get("extra") == "allow":
@@ -71,7 +71,7 @@ def _keys_in(annotation: Any) -> dict[str, Any]:
     fields: dict[str, Any] = {}
     for section in sections_of(annotation):
         fields = fields_of(section) | fields
-    kinds = (part.sections for part in _inside(annotation) if isinstance(part, OneOf))
+    kinds = (part.sections for part in inside(annotation) if isinstance(part, OneOf))
     return {**fields, **next(kinds, {})}
 
 
@@ -131,9 +131,9 @@ def unknown_key(model: type[BaseModel], path: Path) -> tuple[Fault, Path | None]
         return Fault(path, f"{dotted(path)} is gone: {now}", at_key=True), None
     suggestion = suggestion_for(model, path)
     siblings = fields_of(section_at(model, path[:-1]) or model)
-    inside = [name for name in siblings if f"_{path[-1]}_" in f"_{name}_"]
-    if suggestion is None and inside:
-        suggestion = (*path[:-1], inside[0])
+    longer = [name for name in siblings if f"_{path[-1]}_" in f"_{name}_"]
+    if suggestion is None and longer:
+        suggestion = (*path[:-1], longer[0])
     text = f"{dotted(path)} is not a key of the format"
     if suggestion is None:
         section = section_at(model, path[:-1])
@@ -165,7 +165,7 @@ def is_whole(key: str) -> bool:
 def _marks_of(key: str) -> list[object]:
     path = tuple(part for part in key.split(".") if not part.isdecimal())
     field = field_at(CaseFile, path)
-    return list(_inside(field))
+    return list(inside(field))
 
 
 SECTIONS = {
@@ -206,7 +206,7 @@ def key_references(model: type[BaseModel]) -> Iterator[KeyReference]:
 
 def _reference(key: str, field: FieldInfo) -> KeyReference:
     parents = [key.rsplit(".", depth)[0] for depth in range(key.count(".") + 1)]
-    marks = list(_inside(field))
+    marks = list(inside(field))
     quantity = next((mark for mark in marks if isinstance(mark, Quantity)), None)
     whole = next((mark for mark in marks if isinstance(mark, Whole)), None)
     literals = (get_args(part) for part in marks if get_origin(part) is Literal)

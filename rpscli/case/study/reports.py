@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Annotated, Any, Generic, TypeVar, get_args
+from typing import Annotated, Any, Generic, TypeVar
 
 from pydantic import AfterValidator
 
 from rpscli.case.schema.fields import Section, Text, refuse
+from rpscli.case.schema.keys import inside
 from rpscli.case.study.axes import Axis
 from rpscli.case.study.schema import Analysis, AnyKeys, StudyFile, study_file
 from rpscli.case.text.document import Document, Fault, Path
@@ -27,16 +28,9 @@ def varied_keys(options: Section, path: Path = ()) -> Iterator[tuple[Path, str]]
         value = getattr(options, name)
         if isinstance(value, Section):
             yield from varied_keys(value, (*path, name))
-        elif value is not None and (
-            _VARIED in key_field.metadata or _is_varied(key_field.annotation)
-        ):
+        elif value is not None and _VARIED in inside(key_field):
             for key in (value,) if isinstance(value, str) else value:
                 yield (*path, name), key
-
-
-def _is_varied(annotation: Any) -> bool:
-    parts = get_args(annotation)
-    return _VARIED in getattr(annotation, "__metadata__", ()) or any(map(_is_varied, parts))
 
 
 def _file_name(text: str) -> str:

@@ -260,20 +260,13 @@ def history_short(
     yield f"Outcome: {outcome_text(result)}."
     if result.failure:
         yield Notice(result.failure)
-    yield limits_in_short(verdicts)
+    yield verdicts_in_short(verdicts)
     if verdicts:
         yield limits_table(verdicts)
     yield restitution_text(result.structure)
     yield from map(Notice, neighbours_texts(result, beside))
     both, planar = [result.motion.y is not None], result.structure.planar_only
     yield from filter(None, [direction_note(both, planar)])
-
-
-def limits_in_short(verdicts: Sequence[Verdict]) -> str:
-    """The number of limits that are exceeded."""
-    if not verdicts:
-        return "No limits were set."
-    return verdicts_in_short(verdicts, f"{len(verdicts)} limits")
 
 
 def ground_section(ground: MotionComponents, structure: PodiumStructure, look: Look) -> Section:
