@@ -125,7 +125,7 @@ def load_study(
         checked = study_of(document, of_base, kinds=REPORTS, folder=Path(), digest=digest)
     else:
         require_kind(source, (str, Path), "the study", "give the name of a file, or a mapping")
-        checked = parse_study(**opened(source)._asdict(), kinds=REPORTS, overrides=overrides)
+        checked = parse_study(**opened(source), kinds=REPORTS, overrides=overrides)
     study = Study(lay_out(checked, watched), tuple(overrides), tuple(conditions))
     study.require_results()
     return study

@@ -155,7 +155,7 @@ def load_case(source: str | Path | Mapping[str, Any], overrides: Overrides = ())
         case = case_from_mapping(json.loads(text), "<case>", None, overrides)
         return replace(case, digest=hashlib.sha256(text.encode()).hexdigest())
     require_kind(source, (str, Path), "the case", "give the name of a file, or a mapping")
-    return parse_case(**opened(source)._asdict(), overrides=overrides)
+    return parse_case(**opened(source), overrides=overrides)
 
 
 def parse_case(

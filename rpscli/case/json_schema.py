@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from pydantic import BaseModel
-from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue, models_json_schema
+from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
 from pydantic_core import core_schema
 
 from rpscli.case.schema.case_file import CaseFile
@@ -43,22 +43,12 @@ def json_schema_of(model: type[BaseModel]) -> dict[str, Any]:
 
 def study_json_schema(model: type[StudyParts]) -> dict[str, Any]:
     """JSON schema of a study or design file; its base may lack what keys bring."""
-    models: dict[type[BaseModel], None] = dict.fromkeys((model, CaseFile))
-    references, schema = models_json_schema(
-        [(model, "validation") for model in models], schema_generator=PresentKeys
-    )
-    definitions: dict[str, Any] = schema["$defs"]
-
-    def definition(model: Any) -> dict[str, Any]:
-        name = references[model, "validation"]["$ref"].rsplit("/", 1)[1]
-        schema: dict[str, Any] = definitions.pop(name)
-        return schema
-
-    study, base = definition(model), definition(CaseFile)
-    base.pop("required")
+    study, base = json_schema_of(model), json_schema_of(CaseFile)
+    definitions = {**base.pop("$defs"), **study.pop("$defs")}
+    del base["required"], base["$schema"]
     described = study["properties"]["base"]["description"]
     study["properties"]["base"] = {
         "anyOf": [{"type": "string", "minLength": 1}, base],
         "description": described,
     }
-    return {"$schema": DIALECT, **study, "$defs": definitions}
+    return {**study, "$defs": definitions}

@@ -74,7 +74,7 @@ def designed(
     from rpscli.studies import Study
     from rpscli.sweep.design import Search
 
-    search = Search(parse_design(**opened(design)._asdict(), overrides=overrides))
+    search = Search(parse_design(**opened(design), overrides=overrides))
     first = Study(search.layout, overrides)
     first.require_results()
     if chosen.dry_run:

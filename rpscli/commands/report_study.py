@@ -21,12 +21,7 @@ from rpscli.errors import RecordError
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.report.documents import heading
 from rpscli.report.figures.look import Look
-from rpscli.report.html.case_page import (
-    input_table,
-    listing,
-    motions_section,
-    page_sections,
-)
+from rpscli.report.html import case_page
 from rpscli.report.html.page import Block, Picture, Section, page_look, pictures
 from rpscli.report.limits import verdicts_in_short
 from rpscli.report.study.labels import label
@@ -67,7 +62,7 @@ def study_page(study: Study, place: Path | None, look: Look, terminal: Terminal)
     results = [Section("Figures", drawn)]
     if run.summary:
         statistics = [*summary_tables(run.summary), of_first_system(run.layout), *found.parts]
-        motions = motions_section(*motions_of(study), study.title, look)
+        motions = case_page.motions_section(*motions_of(study), study.title, look)
         results = [motions, Section("Statistics", [*cut(statistics)]), *results]
     which = []
     if (systems := len(layout.properties)) > 1:
@@ -83,7 +78,7 @@ def study_page(study: Study, place: Path | None, look: Look, terminal: Terminal)
         f"Every point is stored in {folder}; points.csv there has them all, failed.csv the"
         " command that computes each failed point alone."
     )
-    sections = page_sections(
+    sections = case_page.page_sections(
         first,
         study.title,
         look,
@@ -134,7 +129,7 @@ def _caption(study: Study, stem: str) -> str:
 def study_input(study: Study, first: Case, which: str) -> Iterator[Block]:
     """The file as it is written, and a case of it."""
     checked, plan = study.layout.study, study.layout.plan
-    yield listing([
+    yield case_page.listing([
         ("file", checked.source),
         ("SHA-256 of its text", checked.digest),
         ("case at its base", str(checked.base_file) if checked.base_file else "in the study"),
@@ -142,9 +137,9 @@ def study_input(study: Study, first: Case, which: str) -> Iterator[Block]:
         ("solver", plan.solver),
     ])  # fmt: skip
     yield "What it says:"
-    yield input_table(checked.document.content)
+    yield case_page.input_table(checked.document.content)
     yield f"{which}, as it is written and in SI units, with all defaults:"
-    yield input_table(first.document, first.written)
+    yield case_page.input_table(first.document, first.written)
 
 
 def design_page(
@@ -168,11 +163,14 @@ def design_page(
     short = [
         part for part in tables_of(done) if not (isinstance(part, Heading) and part == study.title)
     ]
-    results = [motions_section(*motions_of(study), study.title, look), Section("Figures", drawn)]
+    results = [
+        case_page.motions_section(*motions_of(study), study.title, look),
+        Section("Figures", drawn),
+    ]
     words = subject_words(source, overrides)
     stored = f"Every point is stored in {done.folder.folder}."
     title = "the best design" if document["best"] else "the least violated design"
-    sections = page_sections(
+    sections = case_page.page_sections(
         case,
         study.title,
         look,

@@ -11,15 +11,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from rpscli.case.conditions import Condition
+from rpscli.commands.shell import waiting
 from rpscli.commands.shell.options import CaseRequest
 from rpscli.commands.shell.terminal import INTERRUPTED, Terminal
-from rpscli.commands.shell.waiting import (
-    announce_compilation,
-    duration,
-    passing_time,
-    progress_report,
-    watched,
-)
 from rpscli.errors import Refused, UsageError
 from rpscli.report.documents import failure_document, heading
 from rpscli.report.table import Heading, Part, Table
@@ -61,7 +55,7 @@ def read(request: CaseRequest, conditions: Iterable[Condition], terminal: Termin
     from rpscli.studies import load_study
     from rpscli.sweep.systems import balance_note
 
-    examined = partial(watched, "systems examined", terminal)
+    examined = partial(waiting.watched, "systems examined", terminal)
     study = load_study(request.source, request.overrides, conditions=conditions, watched=examined)
     if (section := study.layout.study.file.sample) and (note := balance_note(section)):
         terminal.warn([note])
@@ -89,8 +83,8 @@ def computed(
         if pending and begin.kept:
             terminal.note(f"continuing: {begin.kept} of {total} points are stored already")
         if pending and layout.plan.analysis == "timehistory" and not choices.scheduler:
-            announce_compilation(terminal)
-        with progress_report(terminal, begin.kept, begin.kept + pending) as report:
+            waiting.announce_compilation(terminal)
+        with waiting.progress_report(terminal, begin.kept, begin.kept + pending) as report:
             yield report
 
     def announce() -> None:
@@ -119,7 +113,9 @@ def computed(
     if count := result.done.computed:
         seconds = result.done.seconds
         rate = count / seconds if seconds else 0.0
-        terminal.note(f"computed {count} points in {duration(seconds)}, {rate:.3g} points/s")
+        terminal.note(
+            f"computed {count} points in {waiting.duration(seconds)}, {rate:.3g} points/s"
+        )
     return result
 
 
@@ -153,7 +149,7 @@ def show_dry_run(study: Study, choices: SweepChoices, terminal: Terminal) -> Non
         seconds = GUESSED_POINT_SECONDS * count / jobs
         source = "a guess, since the kernel is not compiled yet"
     else:
-        with passing_time("trying some of the points", terminal):
+        with waiting.passing_time("trying some of the points", terminal):
             seconds = estimated_seconds(layout, jobs)
         source = "trying some of the points"
     document: dict[str, Any] = {
@@ -180,7 +176,7 @@ def _dry_run_tables(document: dict[str, Any], points: Iterable[dict[str, Any]]) 
     yield Heading(document["study"]["title"])
     names = ("points", "systems", "records", "scales", "members")
     expected = document["estimate"]
-    text = f"about {duration(expected['seconds'])} on {expected['jobs']} cores"
+    text = f"about {waiting.duration(expected['seconds'])} on {expected['jobs']} cores"
     counts = [(name, str(document[name])) for name in names]
     yield Table.listing([*counts, ("time", f"{text}, by {expected['source']}")])
     rows = []

@@ -31,13 +31,7 @@ from rpscli.report.figures.film import FilmRequest
 from rpscli.report.figures.look import Look, drawn_with
 from rpscli.report.files import OutputFolder
 from rpscli.report.limits import VERDICT, excess_text, verdict_texts, worst_text
-from rpscli.report.study.statistics import (
-    demand_columns,
-    records_columns,
-    summary_document,
-    verdict_document,
-    verdict_lines,
-)
+from rpscli.report.study import statistics
 from rpscli.report.table import Heading, Part, Table, csv_text, headed, large, shown, standing
 from rpscli.report.tables.timehistory import (
     neighbours_texts,
@@ -157,7 +151,7 @@ def compute(
         ]
         error = LimitExceeded("\n".join(over)) if over else None
     document = _document(request, result)
-    document["verdicts"] = [verdict_document((), verdict) for verdict in verdicts]
+    document["verdicts"] = [statistics.verdict_document((), verdict) for verdict in verdicts]
     return HistoryResult(request, concluded(document, error), demands, verdicts, error), result
 
 
@@ -263,8 +257,8 @@ def run_all(
             terminal.note(f"written to {case.first.folder.folder}")
             continue
         scalars = [history.document for history in case.histories]
-        case.folder.add("records.csv", csv_text(records_columns(case.labels, scalars)))
-        case.folder.add("statistics.csv", csv_text(demand_columns(case.together)))
+        case.folder.add("records.csv", csv_text(statistics.records_columns(case.labels, scalars)))
+        case.folder.add("statistics.csv", csv_text(statistics.demand_columns(case.together)))
         case.folder.add("summary.json", json_text({**heading(), **set_document(case)}))
         inputs.write(case.folder, terminal)
     error = set_error(computed)
@@ -334,7 +328,7 @@ def set_error(computed: Sequence[Computed]) -> RpsError | None:
     lines = [
         line
         for case in computed
-        for line in verdict_lines((), case.verdicts, f"{case.first.case_label}: ")
+        for line in statistics.verdict_lines((), case.verdicts, f"{case.first.case_label}: ")
     ]
     return LimitExceeded("\n".join(lines)) if lines else None
 
@@ -373,8 +367,8 @@ def set_document(case: Computed) -> dict[str, Any]:
     return {
         "case": case.histories[0].document["case"],
         "records": case.labels,
-        **summary_document(case.together)[0],
-        "verdicts": [verdict_document((), verdict) for verdict in case.verdicts],
+        **statistics.summary_document(case.together)[0],
+        "verdicts": [statistics.verdict_document((), verdict) for verdict in case.verdicts],
     }
 
 

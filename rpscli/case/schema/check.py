@@ -84,12 +84,11 @@ class _Faults:
     def _add_unknown(self, path: Path) -> None:
         if self._of_another_file:
             return
-        fault, suggestion = (
-            Fault(path, f"{dotted(path)} is not a key of the format", at_key=True),
-            None,
-        )
-        if len(self._all) <= MOST_FAULTS:  # beyond these there is no use in what was meant
-            fault, suggestion = unknown_key(self._model, path)
+        if len(self._all) > MOST_FAULTS:  # there is no use in what was meant
+            fault = Fault(path, f"{dotted(path)} is not a key of the format", at_key=True)
+            self._all.append(fault)
+            return
+        fault, suggestion = unknown_key(self._model, path)
         self._all.append(fault)
         self._meant.add(suggestion)
 

@@ -8,7 +8,7 @@ import stat
 import sys
 from importlib import resources
 from pathlib import Path
-from typing import BinaryIO, NamedTuple
+from typing import Any, BinaryIO
 
 from rpscli.errors import CaseError, nearest, require_visible
 
@@ -45,19 +45,11 @@ def read_text(source: str | Path) -> str:
         ) from None
 
 
-class Opened(NamedTuple):
-    """A file: its text, its name in messages, and where its relative names start."""
-
-    text: str
-    name: str
-    folder: Path
-
-
-def opened(source: str | Path) -> Opened:
-    """A case, study or design from a file, or from the standard input (``-``)."""
-    piped = str(source) == STDIN
-    name, folder = ("<stdin>", Path()) if piped else (str(source), Path(source).parent)
-    return Opened(read_text(source), name, folder)
+def opened(source: str | Path) -> dict[str, Any]:
+    """Text, name in messages, and folder of relative names of a file, or of the standard input."""
+    if str(source) == STDIN:
+        return {"text": read_text(source), "name": "<stdin>", "folder": Path()}
+    return {"text": read_text(source), "name": str(source), "folder": Path(source).parent}
 
 
 def _opened(path: Path, kind: int) -> BinaryIO:
