@@ -36,7 +36,15 @@ from rpscli.case.study.study import parse_study, shared_out, study_of
 from rpscli.case.text.document import Document, text_of_values
 from rpscli.case.text.files import opened
 from rpscli.constants import MOST_JOBS
-from rpscli.errors import LimitExceeded, RpsError, StudyIncomplete, UsageError, hint, require_kind
+from rpscli.errors import (
+    LimitExceeded,
+    RpsError,
+    StudyIncomplete,
+    UsageError,
+    alike,
+    hint,
+    require_kind,
+)
 from rpscli.machine import available_cores
 from rpscli.report.figures.look import Look
 from rpscli.report.figures.style import drawable_style
@@ -362,10 +370,8 @@ class StudyResult(Shown):
     def __getitem__(self, name: str) -> Any:
         """(points,) of a varied key or a result, as `points.csv` names it."""
         if name not in self.columns:
-            there_are = f"there are {', '.join(self.columns)}"
-            raise KeyError(
-                f"{name} is not a column; {hint(str(name), self.columns, there_are, 0.6)}"
-            )
+            near = f"near are {', '.join(alike(str(name), self.columns, 3))}; `columns` has all"
+            raise KeyError(f"{name} is not a column; {hint(str(name), self.columns, near, 0.6)}")
         return self.columns[name]
 
     @cached_property

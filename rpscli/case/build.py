@@ -12,7 +12,6 @@ from rpscli.case.schema.case_file import (
     AnalysisSection,
     BearingSection,
     CaseFile,
-    PlanSection,
     PodiumSection,
     SuperstructureSection,
 )
@@ -111,7 +110,7 @@ def structure_of(
     bearing: Bearing, law: ImpactLaw, masses: Masses, file: CaseFile
 ) -> PodiumStructure:
     """The whole structure: columns and cap beam with the building on them."""
-    podium, floors = file.podium, file.superstructure
+    podium, floors, plan = file.podium, file.superstructure, file.podium.plan
     across = None if floors.y is None else floors.model_copy(update=floors.y.model_dump())
     return PodiumStructure(
         bearing=bearing,
@@ -126,16 +125,10 @@ def structure_of(
         ),
         columns=podium.columns or 1,
         friction=podium.friction,
-        rows=_rows(podium.plan),
+        rows=() if plan is None else plan.rows or (0.0, plan.length or 0.0),
         superstructure_y=None if across is None else building(across),
         contact=Contact(**podium.contact.model_dump()),
     )
-
-
-def _rows(plan: PlanSection | None) -> tuple[float, ...]:
-    if plan is None:
-        return ()
-    return plan.rows or (0.0, plan.length or 0.0)
 
 
 def building(section: SuperstructureSection) -> Superstructure | None:

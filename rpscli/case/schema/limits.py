@@ -7,18 +7,11 @@ Results of which small values are bad have `at_least` in place of `at_most`.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cache
 from typing import Annotated, Any, Self
 
-from pydantic import (
-    Discriminator,
-    Field,
-    Tag,
-    ValidatorFunctionWrapHandler,
-    WrapValidator,
-    create_model,
-    model_validator,
-)
+from pydantic import Discriminator, Field, Tag, WrapValidator, create_model, model_validator
 
 from rpscli.analyses.result_quantities import LIMITED, ResultQuantity
 from rpscli.case.schema.fields import PLAIN, Quantity, Section, refuse
@@ -45,10 +38,9 @@ class LimitRule(Section, use_attribute_docstrings=False):
         return self
 
 
-def _as_written(value: object, number: ValidatorFunctionWrapHandler) -> float:
+def _as_written(value: object, number: Callable[[object], float]) -> float:
     """A number in SI that knows the text with which it was given."""
-    found: float = number(value)
-    return Written(found, value) if isinstance(value, str) else found
+    return Written(number(value), value) if isinstance(value, str) else number(value)
 
 
 def _form(value: object) -> str:
