@@ -253,7 +253,7 @@ def of_directions(values: Array, of: Of | Literal["srss"] = USUAL) -> Array:
     """Of values (180, ...) over the directions, (...)."""
     first, second = values[0], values[90]
     if of == "srss":
-        return np.hypot(first, second)
+        return np.asarray(np.hypot(first, second))
     if of == "rotd50":
         return np.asarray(np.median(values, axis=0))
     if of == "rotd100":
