@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import click
@@ -9,17 +10,13 @@ import click
 from rpscli.commands import inputs
 from rpscli.commands.shell import options
 from rpscli.commands.shell.terminal import Terminal
-from rpscli.errors import AnalysisError, UsageError
+from rpscli.errors import AnalysisError, UsageError, visible
 
 if TYPE_CHECKING:
     from rpscli.analyses.results import TimeHistoryResult
 
 RERUN = "rerun.py"
 PROGRAMS = {"mujoco": "model.xml", "opensees": "model.py"}
-BODIES = """\
-Columns are rigid bodies in contact with ground and cap beam, which close within 0.1 ms and give
-nothing back: impacts take what comes of that, as the law `flexible` with a loss of 1, whatever the
-case says (e = {:.4g}). Columns do not slide. Arcs never end: tilts must stay below {:.4g} rad."""
 
 
 @click.command("export")
@@ -42,8 +39,7 @@ def command(
     that rps computes, and rerun.py, which runs the model and draws both; it needs openseespy or
     mujoco, and matplotlib, but not rps.
     """
-    from importlib import resources
-
+    from rpscli.analyses.result_quantities import plain
     from rpscli.analyses.timehistory import time_history
     from rpscli.analyses.trace import prolonged
     from rpscli.commands.shell.waiting import announce_compilation
@@ -74,31 +70,61 @@ def command(
     result = time_history(structure, ground, given.case.analysis)
     if result.failure:
         raise AnalysisError(result.failure)
-    text, limits = _model(program, result, given.case.title)
+    until = _comparable(result)
+    text, limits = _model(program, result, visible(given.case.title), until)
     folder.add(PROGRAMS[program], text)
     columns = history_columns(result)
     if ground.vertical is not None:
         up = prolonged(ground.vertical.acceleration, len([*columns[0].values]))
         columns.append(Column("ground_acceleration_up", "m/s2", up))
     folder.add("timehistory.csv", csv_lines(columns))
-    folder.add(RERUN, resources.files("rpscli.report.export").joinpath(RERUN).read_text("utf-8"))
-    document = {"program": program, "limits": limits}
-    inputs.conclude(
-        given, folder, document, [limits, f"next: python {folder.folder / RERUN}"], terminal
-    )
+    folder.add(RERUN, _script(result, until))
+    document = {"program": program, "limits": limits, "comparable_until": plain(until)}
+    lines = [limits, f"next: python {folder.folder / RERUN}"]
+    inputs.conclude(given, folder, document, lines, terminal)
 
 
-def _model(program: str, result: TimeHistoryResult, title: str) -> tuple[str, str]:
+def _model(program: str, result: TimeHistoryResult, title: str, until: float) -> tuple[str, str]:
     """The text of the model, and its limits in words."""
-    structure = result.structure
+    from rpscli.report.export import multibody, opensees
+
+    note = "Under 0.9999 and 1.0001 times the motion, displacements of rps stay within 1 % of the\n"
+    parts = f"up to {until:.4g} s; further on, programs that agree part as well"
+    note += f"largest {parts if until < math.inf else 'to the end'}."
+    if result.overturned:
+        note += f"\nIn rps it overturns at {result.duration:.4g} s, where history and record end."
     if program == "opensees":
-        from rpscli.report.export.opensees import model_text
+        return opensees.model_text(result, title, note)
+    return multibody.model_text(result.structure, title, note)
 
-        return model_text(structure, title, result.max_cap_beam_displacement)
-    from rpscli.report.export.multibody import bodies_of, description
 
-    bearing = structure.bearing
-    limits = BODIES.format(structure.restitution, bearing.beta or bearing.critical_rotation)
-    remark = f"{title}\n\n{limits}".replace("--", "- -")
-    columns = 2 if structure.cap_beam_mass else 1
-    return f"<!-- {remark} -->{description(bodies_of(structure), columns)}\n", limits
+def _script(result: TimeHistoryResult, until: float) -> str:
+    """The script that runs the model, with what it has to know of the history."""
+    from importlib import resources
+
+    import numpy as np
+
+    structure = result.structure
+    rotation = result.settings.overturning_limit * structure.critical_rotation
+    farthest = float(structure.path(np.array([rotation]))[1][0])
+    text = resources.files("rpscli.report.export").joinpath(RERUN).read_text("utf-8")
+    for name, value in (("COMPARABLE", until), ("OVERTURNED", farthest)):
+        text = text.replace(f"{name} = inf", f"{name} = {value!r}")
+    return text
+
+
+def _comparable(result: TimeHistoryResult) -> float:
+    """Time from which slight changes of the motion move the cap beam [s]; infinite if none does."""
+    import numpy as np
+
+    from rpscli.analyses.timehistory import time_history
+
+    own, first = result.trace.cap_beam_displacement, math.inf
+    for factor in (0.9999, 1.0001):
+        motion = result.motion.scaled(factor)
+        beside = time_history(result.structure, motion, result.settings, with_fixed_base=False)
+        both = min(len(own), len(beside.trace.time))
+        away = np.abs(beside.trace.cap_beam_displacement[:both] - own[:both])
+        apart = np.flatnonzero(away > 0.01 * np.abs(own).max())
+        first = min([first, *beside.trace.time[apart[:1]].tolist()])
+    return first

@@ -5,11 +5,14 @@ from __future__ import annotations
 import ast
 import csv
 import importlib.util
+import json
+import os
 import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
+from xml.etree.ElementTree import fromstring
 
 import numpy as np
 import pytest
@@ -39,10 +42,18 @@ analysis: {free_vibration: 3}
 """
 
 
+def ran(folder: Path, **environment: str) -> subprocess.CompletedProcess[str]:
+    """The script, run to its end."""
+    script = [sys.executable, str(folder / "rerun.py")]
+    return subprocess.run(
+        script, check=False, capture_output=True, text=True, timeout=300,
+        env={**os.environ, **environment},
+    )  # fmt: skip
+
+
 def rerun(folder: Path) -> tuple[dict[str, Any], dict[str, Any]]:
     """Columns of both programs after the script has run."""
-    script = [sys.executable, str(folder / "rerun.py")]
-    done = subprocess.run(script, check=False, capture_output=True, text=True, timeout=300)
+    done = ran(folder)
     assert done.returncode == 0, done.stderr
     assert (folder / "rerun.png").stat().st_size > 10_000
     both = []
@@ -162,3 +173,82 @@ def test_vertical_motion_is_beside_the_model(workplace: Path, rps: Invoke) -> No
     motion = load_record(UP.partition("=")[2]).acceleration
     assert up[: len(motion)] == pytest.approx(motion.tolist(), rel=1e-8)  # ten digits are written
     assert not any(up[len(motion) :])
+
+
+OVERTURNING = "synthetic:?pga=0.4g&seed=1&duration=20&dt=0.01"
+OTHER = """\
+DISPLACEMENTS, STOREYS = [], 0
+class ops:
+    step = 0
+    def analyze(parts, dt): ops.step += 1; return 0
+    def nodeDisp(node, way): return 0.01 * 1.5**ops.step
+def build(ground, dt, released): pass
+"""
+"""In place of a model: it runs away."""
+
+
+def other_program(folder: Path, text: str) -> str:
+    """A package of that name, as the script finds it."""
+    (folder / "site" / "openseespy").mkdir(parents=True)
+    (folder / "site" / "openseespy" / "opensees.py").write_text(text, encoding="utf-8")
+    return str(folder / "site")
+
+
+def test_a_model_that_overturns_stops_and_says_so(workplace: Path, rps: Invoke) -> None:
+    assert rps("export", "small.yaml", "opensees", "-o", "o").exit_code == 0
+    (workplace / "o" / "model.py").write_text(OTHER, encoding="utf-8")
+    done = ran(workplace / "o", PYTHONPATH=other_program(workplace, ""))
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.startswith("overturned at ")
+    found = (workplace / "o" / "rerun.csv").read_text(encoding="utf-8").splitlines()
+    *_, before, last = (abs(float(line.split(",")[1])) for line in found[1:])
+    beyond = float(done.stdout.split(" m\n")[0].split()[-1])
+    assert before < beyond <= last
+    assert beyond < 4.0  # columns are 3 m long
+
+
+def test_what_the_other_program_lacks_is_one_sentence(workplace: Path, rps: Invoke) -> None:
+    assert rps("export", "small.yaml", "opensees", "-o", "o").exit_code == 0
+    site = other_program(
+        workplace,
+        "try:\n    raise ImportError('libblas.so.3: cannot open')\n"
+        "except ImportError:\n    raise RuntimeError('Failed to import openseespy')\n",
+    )
+    done = ran(workplace / "o", PYTHONPATH=site)
+    assert done.returncode == 1
+    (line,) = done.stderr.splitlines()
+    assert line.startswith("openseespy cannot be loaded: libblas.so.3: cannot open; install it")
+
+
+def test_the_time_up_to_which_programs_compare_is_said(
+    workplace: Path, rps_json: Callable[..., Any]
+) -> None:
+    """A frame that rocks for long under a record that is none of a pulse."""
+    (workplace / "slender.yaml").write_text(SLENDER, encoding="utf-8")
+    calm = rps_json("export", "slender.yaml", "mujoco", "-o", "calm")
+    assert calm["comparable_until"] is None
+    assert "1 % of the\nlargest to the end." in calm["limits"]
+    assert "the case has 1, and histories part at the first impact" in calm["limits"]
+    shaken = "synthetic:?pga=0.25g&seed=2&duration=20&dt=0.01"
+    wild = rps_json("export", "slender.yaml", "mujoco", "-o", "wild", "--record", shaken)
+    until = wild["comparable_until"]
+    assert 1.0 < until < 20.0
+    assert f"up to {until:.4g} s" in wild["limits"]
+    fallen = rps_json("export", "slender.yaml", "mujoco", "-o", "f", "--record", OVERTURNING)
+    assert "In rps it overturns at " in fallen["limits"]
+    assert f"COMPARABLE = {until!r}\n" in (workplace / "wild" / "rerun.py").read_text("utf-8")
+
+
+def test_a_title_stays_text(workplace: Path, rps: Invoke) -> None:
+    title = 'a --> <b> & """ \'\' \\ {c} \x07'
+    text = SMALL_CASE.replace('"Three storeys [test]"', json.dumps(title))
+    (workplace / "small.yaml").write_text(text, encoding="utf-8")
+    for program in ("mujoco", "opensees"):
+        assert rps("export", "small.yaml", program, "-o", program).exit_code == 0
+    shown = title.replace("\x07", "\ufffd")
+    model = fromstring((workplace / "mujoco/model.xml").read_text("utf-8"))  # noqa: S314 -- ours
+    assert model.attrib == {"model": shown}
+    assert len(model.findall("worldbody/body")) == 3
+    lines = (workplace / "opensees" / "model.py").read_text(encoding="utf-8").splitlines()
+    (said,) = (line for line in lines if line.startswith("TITLE = "))
+    assert ast.literal_eval(said.removeprefix("TITLE = ")) == shown

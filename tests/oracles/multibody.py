@@ -13,19 +13,18 @@ engine has not. What bodies do otherwise than the model assumes are changes of t
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
+from xml.etree.ElementTree import Element, SubElement, tostring
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.report.export.multibody import (
     SPACING,
-    STIFF_FRICTION,
     THICKNESS,
     TIME_STEP,
-    Added,
     Bodies,
     description,
     half_sizes,
@@ -149,15 +148,14 @@ def simulate(
     import mujoco  # an extra
 
     upright = None if vertical_period is None else Upright(system, vertical_period)
-    text = description(
-        _bodies(system),
-        columns,
-        time_step=time_step,
-        closing_damping=closing_damping,
-        level=level,
-        added=_added(system, columns, time_step, devices, upright),
+    bodies = Bodies(*(getattr(system, name) for name in Bodies._fields))
+    described = description(
+        bodies, columns, time_step=time_step, closing_damping=closing_damping, level=level
     )
-    specification = mujoco.MjSpec.from_string(text)
+    add_devices(described, devices, columns, half_sizes(bodies)[0], time_step)
+    if upright:
+        upright.add(described)
+    specification = mujoco.MjSpec.from_string(tostring(described, "unicode"))
     departures.apply(specification, columns, len(system.masses))
     model = specification.compile()
     data = mujoco.MjData(model)
@@ -210,19 +208,19 @@ class Upright:
         self.damping = self.stiffness * 2.0 * 0.05 * period / (2.0 * math.pi)
         self.weights = system.gravity * np.cumsum(self.masses[::-1])[::-1]
 
-    def joint(self, i: int) -> str:
-        """The freedom of a floor to rise, with the spring to the beam for the first."""
-        spring = f'stiffness="{self.stiffness}" springref="{self.rest(0)}"' if i == 0 else ""
-        damping = f'damping="{self.damping}"' if i == 0 else ""
-        return f'<joint name="lift {i}" type="slide" axis="0 0 1" {spring} {damping}/>'
-
-    def spring(self, i: int) -> str:
-        """Between a floor and the one below."""
-        return (
-            f'<fixed stiffness="{self.stiffness}" damping="{self.damping}"'
-            f' springlength="{self.rest(i)}"><joint joint="lift {i}" coef="1"/>'
-            f'<joint joint="lift {i - 1}" coef="-1"/></fixed>'
-        )
+    def add(self, described: Element) -> None:
+        """The freedom of each floor to rise, on a spring to what is below."""
+        tendons = described.findall("tendon")[0]
+        for i in range(len(self.masses)):
+            law = {"stiffness": f"{self.stiffness}", "damping": f"{self.damping}"}
+            rest = f"{self.rest(i)}"
+            lift = {"name": f"lift {i}", "type": "slide", "axis": "0 0 1"}
+            floor = owner(described, f"floor {i}")
+            SubElement(floor, "joint", lift if i else lift | law | {"springref": rest})
+            if i:
+                spring = SubElement(tendons, "fixed", law | {"springlength": rest})
+                for joint, sign in ((i, "1"), (i - 1, "-1")):
+                    SubElement(spring, "joint", joint=f"lift {joint}", coef=sign)
 
     def rest(self, i: int) -> float:
         """How far the weight above compresses a spring [m]."""
@@ -234,31 +232,9 @@ class Upright:
         return float(force / self.weights[0])
 
 
-def _bodies(system: OracleSystem) -> Bodies:
-    return Bodies(*(getattr(system, name) for name in Bodies._fields))
-
-
-def _added(
-    system: OracleSystem, columns: int, time_step: float, devices: Sequence[OracleDevice],
-    upright: Upright | None,
-) -> Added:  # fmt: skip
-    """Devices, and floors on vertical springs.
-
-    Where contacts resist rolling friction is as stiff as the normal direction, or columns that come
-    down after the others stay behind for good.
-    """
-    above = [upright.spring(i) for i in range(1, len(system.masses))] if upright else []
-    rolling = any(isinstance(device, RollingResistance) for device in devices)
-    return Added(
-        beam_joint(devices, time_step),
-        contact_friction(devices),
-        1 if rolling else STIFF_FRICTION,
-        anchors,
-        ducts,
-        lambda column, place: holds(column, place, -0.5 * THICKNESS),
-        upright.joint if upright else lambda _: "",
-        [*above, *springs(devices, columns, half_sizes(_bodies(system))[0])],
-    )
+def owner(described: Element, joint: str) -> Element:
+    """The body that moves by a joint."""
+    return described.findall(f".//joint[@name='{joint}']/..")[0]
 
 
 def _place(data: Any, system: OracleSystem, columns: int, rotation: float) -> None:
@@ -287,55 +263,45 @@ def _longest(flags: NDArray[np.bool_]) -> int:
     return int(np.max(edges[1::2] - edges[::2], initial=0))
 
 
-def beam_joint(devices: Sequence[OracleDevice], time_step: float) -> str:
-    """Attributes of the joint along which the beam slides."""
+def add_devices(
+    described: Element, devices: Sequence[OracleDevice], columns: int, H: float, time_step: float
+) -> None:
+    """Dampers and friction along the beam's way, resistance of contacts, stops and cables."""
     damping = sum(d.coefficient for d in devices if isinstance(d, Viscous) and d.exponent == 1.0)
     friction = sum(d.force for d in devices if isinstance(d, Friction))
-    return (
-        f'damping="{damping}" frictionloss="{friction}"'
-        f' solreffriction="{2.0 * time_step} 1" solimpfriction="0.9999 0.9999 0.001"'
-    )
-
-
-def contact_friction(devices: Sequence[OracleDevice]) -> str:
-    """Attributes of all contacts: they do not slide; six dimensions if they resist rolling."""
     lever = sum(d.lever for d in devices if isinstance(d, RollingResistance))
-    return f'friction="3 0 {lever}" condim="{6 if lever else 3}"'
-
-
-def anchors(column: int, place: float) -> str:
-    """Where a cable begins in the ground."""
-    return f'<site name="ground {column}" pos="{place} 0 {-ANCHORED}"/>'
-
-
-def ducts(column: int, H: float) -> str:
-    """The middle of both ends of a column."""
-    return f'<site name="foot {column}" pos="0 0 {-H}"/><site name="head {column}" pos="0 0 {H}"/>'
-
-
-def holds(column: int, place: float, underside: float) -> str:
-    """Where it ends in the beam."""
-    return f'<site name="beam {column}" pos="{place} 0 {underside + ANCHORED}"/>'
-
-
-def springs(devices: Sequence[OracleDevice], columns: int, H: float) -> Iterator[str]:
-    """Stops and cables."""
-    length = 2.0 * (H + ANCHORED)
+    for joint in described.findall(".//joint[@name='beam across']"):
+        joint.attrib |= {
+            "damping": f"{damping}", "frictionloss": f"{friction}",
+            "solreffriction": f"{2.0 * time_step} 1", "solimpfriction": "0.9999 0.9999 0.001",
+        }  # fmt: skip
+    if lever:  # in six dimensions
+        described.findall("default/geom")[0].attrib |= {"friction": f"3 0 {lever}", "condim": "6"}
+        # As stiff as the normal direction, or columns that come down later stay behind for good.
+        described.findall("option")[0].set("impratio", "1")
+    tendons = described.findall("tendon")[0]
     for device in devices:
         if isinstance(device, Stop):
-            yield (
-                f'<fixed stiffness="{device.stiffness}"'
-                f' springlength="{-device.gap} {device.gap}">'
-                '<joint joint="beam across" coef="1"/></fixed>'
+            law = {"stiffness": f"{device.stiffness}"}
+            spring = SubElement(
+                tendons, "fixed", law | {"springlength": f"{-device.gap} {device.gap}"}
             )
+            SubElement(spring, "joint", joint="beam across", coef="1")
         elif isinstance(device, Tendon):
-            slack = length - device.prestress / device.stiffness
-            each = device.columns / columns
+            slack = 2.0 * (H + ANCHORED) - device.prestress / device.stiffness
+            law = {"stiffness": f"{device.columns / columns * device.stiffness}"}
             for c in range(columns):
-                sites = "".join(
-                    f'<site site="{name} {c}"/>' for name in ("ground", "foot", "head", "beam")
-                )
-                yield (
-                    f'<spatial stiffness="{each * device.stiffness}" springlength="0 {slack}">'
-                    f"{sites}</spatial>"
-                )
+                cable = SubElement(tendons, "spatial", law | {"springlength": f"0 {slack}"})
+                for name in ("ground", "foot", "head", "beam"):
+                    SubElement(cable, "site", site=f"{name} {c}")
+    for c in range(columns if any(isinstance(device, Tendon) for device in devices) else 0):
+        column = owner(described, f"tilt {c}")
+        place = column.attrib["pos"].split()[0]
+        # Where a cable begins in the ground, the middle of both ends, where it ends in the beam.
+        for name, body, pos in (
+            ("ground", described.findall("worldbody")[0], f"{place} 0 {-ANCHORED}"),
+            ("foot", column, f"0 0 {-H}"),
+            ("head", column, f"0 0 {H}"),
+            ("beam", owner(described, "beam across"), f"{place} 0 {ANCHORED - 0.5 * THICKNESS}"),
+        ):
+            SubElement(body, "site", name=f"{name} {c}", pos=pos)

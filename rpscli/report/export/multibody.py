@@ -11,9 +11,12 @@ when they close: nothing says when the storey lifts, or what happens at an impac
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Sequence
+from dataclasses import replace
 from typing import NamedTuple
+from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
+from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import Array, PodiumStructure
 
 TIME_STEP = 2e-5
@@ -31,10 +34,20 @@ SPACING = 6.0
 THICKNESS = 0.5
 """Of the cap beam [m]; without influence."""
 
-STIFF_FRICTION = 100
-"""Over that of the normal direction (`impratio`), so that contacts do not creep."""
+OPTIONS: dict[str, object] = {
+    "integrator": "implicitfast", "cone": "elliptic", "tolerance": 1e-12, "iterations": 100,
+    "impratio": 100,  # friction over the normal direction, so that contacts do not creep
+}  # fmt: skip
+CONTACTS = {"solimp": "0.999 0.999 0.001", "friction": "3 0 0", "condim": 3, "mass": 0}
 
-OPTIONS = 'integrator="implicitfast" cone="elliptic" tolerance="1e-12" iterations="100"'
+
+LIMITS = """\
+Columns are rigid bodies in contact with ground and cap beam, which close within 0.1 ms and give
+nothing back: impacts take what comes of that, e = {engine:.4g} as by the law `flexible` with a loss
+of 1{other}. Columns do not slide. Arcs never end: tilts must stay below {tilt:.4g} rad.
+{note}"""
+SAME = 1e-3
+"""Difference of two restitutions that does not show."""
 
 
 class Bodies(NamedTuple):
@@ -50,22 +63,6 @@ class Bodies(NamedTuple):
     stiffnesses: Sequence[float] | Array
     damping_matrix: Sequence[Sequence[float]] | Array
     gravity: float
-
-
-class Added(NamedTuple):
-    """Further parts of the model: attributes, joints and sites, springs."""
-
-    beam_joint: str = ""
-    contacts: str = 'friction="3 0 0" condim="3"'
-    friction: int = STIFF_FRICTION
-    in_ground: Callable[[int, float], str] = lambda _, __: ""
-    in_column: Callable[[int, float], str] = lambda _, __: ""
-    in_beam: Callable[[int, float], str] = lambda _, __: ""
-    on_floor: Callable[[int], str] = lambda _: ""
-    springs: Iterable[str] = ()
-
-
-PLAIN = Added()
 
 
 def bodies_of(structure: PodiumStructure) -> Bodies:
@@ -87,26 +84,45 @@ def description(
     time_step: float = TIME_STEP,
     closing_damping: float = 1.0,
     level: bool = True,
-    added: Added = PLAIN,
-) -> str:
+) -> Element:
     """The structure in the engine's language; without a cap beam columns stand free."""
-    bodies = [_column(of, c, columns, added) for c in range(columns)]
-    bodies += [added.in_ground(c, _place_of(c, columns)) for c in range(columns)]
+    model = Element("mujoco")
+    _part(model, "compiler", angle="radian", inertiafromgeom="false")
+    _part(model, "option", timestep=time_step, gravity=f"0 0 {-of.gravity}", **OPTIONS)
+    closing = f"{CLOSING_STEPS * time_step} {closing_damping}"
+    _part(_part(model, "default"), "geom", solref=closing, **CONTACTS)
+    world, springs = _part(model, "worldbody"), _part(model, "tendon")
+    _part(world, "geom", type="plane", size="0 0 1", contype=0, conaffinity=1)
+    for number in range(columns):
+        _add_column(world, of, number, columns)
     if of.cap_beam_mass:
-        bodies.append(_cap_beam(of, columns, added, level=level))
-    return f"""
-<mujoco>
-  <compiler angle="radian" inertiafromgeom="false"/>
-  <option timestep="{time_step}" gravity="0 0 {-of.gravity}" impratio="{added.friction}" {OPTIONS}/>
-  <default>
-    <geom solref="{CLOSING_STEPS * time_step} {closing_damping}" solimp="0.999 0.999 0.001"
-          {added.contacts} mass="0"/>
-  </default>
-  <worldbody>
-    <geom type="plane" size="0 0 1" contype="0" conaffinity="1"/>{"".join(bodies)}
-  </worldbody>
-  <tendon>{"".join((*_storeys(of), *added.springs))}</tendon>
-</mujoco>"""
+        _add_cap_beam(world, of, columns, level=level)
+    # Those of the first storey are in its joint.
+    for i in range(1, len(of.masses)):
+        law = {"stiffness": of.stiffnesses[i], "damping": -of.damping_matrix[i - 1][i]}
+        between = _part(springs, "fixed", **law)
+        for joint, sign in ((i, 1), (i - 1, -1)):
+            _part(between, "joint", joint=f"floor {joint}", coef=sign)
+    return model
+
+
+def _part(of: Element, tag: str, **said: object) -> Element:
+    return SubElement(of, tag, {name: str(value) for name, value in said.items()})
+
+
+def model_text(structure: PodiumStructure, title: str, note: str) -> tuple[str, str]:
+    """The model as a file, and its limits in words."""
+    bearing, engine = structure.bearing, replace(structure, impact_law=ImpactLaw()).restitution
+    other = f"; the case has {structure.restitution:.4g}, and histories part at the first impact"
+    limits = LIMITS.format(
+        engine=engine, other="" if abs(engine - structure.restitution) < SAME else other,
+        tilt=bearing.beta or bearing.critical_rotation, note=note,
+    )  # fmt: skip
+    model = description(bodies_of(structure), 2 if structure.cap_beam_mass else 1)
+    model.set("model", title)
+    _part(_part(model, "custom"), "text", name="limits", data=limits)
+    indent(model)
+    return tostring(model, "unicode") + "\n", limits
 
 
 def half_sizes(of: Bodies) -> tuple[float, float, float]:
@@ -115,57 +131,37 @@ def half_sizes(of: Bodies) -> tuple[float, float, float]:
     return height, height * of.tan_alpha, 2.0 * of.rho * height
 
 
-def _column(of: Bodies, number: int, columns: int, added: Added) -> str:
+def _add_column(world: Element, of: Bodies, number: int, columns: int) -> None:
     H, B, r = half_sizes(of)
     r = r or CORNER
     mass = of.columns_mass / columns
     spin = (of.inertia_ratio - 1.0) * mass * of.R**2
+    column = _part(world, "body", pos=f"{(number - 0.5 * (columns - 1)) * SPACING} 0 {H}")
+    _part(column, "inertial", pos="0 0 0", mass=mass, diaginertia=f"{spin} {spin} {spin}")
+    _part(column, "joint", name=f"across {number}", type="slide", axis="1 0 0")
+    _part(column, "joint", name=f"up {number}", type="slide", axis="0 0 1")
+    _part(column, "joint", name=f"tilt {number}", type="hinge", axis="0 1 0")
     # the lower spheres meet the ground (bit 1), the upper ones the beam (bit 2)
-    ends = "".join(
-        f'\n      <geom type="sphere" size="{r}" pos="{side * B} 0 {end * (H - r)}"'
-        f' contype="{1 if end < 0 else 2}" conaffinity="0"/>'
-        for end in (-1, 1)
-        for side in (-1, 1)
-    )
-    return f"""
-    <body pos="{_place_of(number, columns)} 0 {H}">
-      <inertial pos="0 0 0" mass="{mass}" diaginertia="{spin} {spin} {spin}"/>
-      <joint name="across {number}" type="slide" axis="1 0 0"/>
-      <joint name="up {number}" type="slide" axis="0 0 1"/>
-      <joint name="tilt {number}" type="hinge" axis="0 1 0"/>{ends}{added.in_column(number, H)}
-    </body>"""
+    for end, meets in ((-1, 1), (1, 2)):
+        for side in (-1, 1):
+            place = f"{side * B} 0 {end * (H - r)}"
+            _part(column, "geom", type="sphere", size=r, pos=place, contype=meets, conaffinity=0)
 
 
-def _place_of(number: int, columns: int) -> float:
-    return (number - 0.5 * (columns - 1)) * SPACING
-
-
-def _cap_beam(of: Bodies, columns: int, added: Added, *, level: bool) -> str:
+def _add_cap_beam(world: Element, of: Bodies, columns: int, *, level: bool) -> None:
     H, half, reach = half_sizes(of)[0], 0.5 * THICKNESS, 0.5 * columns * SPACING
     spin = of.cap_beam_mass * (half**2 + reach**2) / 3.0
+    beam = _part(world, "body", pos=f"0 0 {2.0 * H + half}")
+    inertia = f"{spin} {spin} {spin}"
+    _part(beam, "inertial", pos="0 0 0", mass=of.cap_beam_mass, diaginertia=inertia)
+    _part(beam, "joint", name="beam across", type="slide", axis="1 0 0")
+    _part(beam, "joint", name="beam up", type="slide", axis="0 0 1")
+    if not level:
+        _part(beam, "joint", name="beam tilt", type="hinge", axis="0 1 0")
+    _part(beam, "geom", type="box", size=f"{reach} 1 {half}", contype=0, conaffinity=2)
     # Rayleigh damping: what is left of C after the storeys' dampers acts against the beam.
-    floors = "".join(
-        f'\n      <body><inertial pos="0 0 0" mass="{mass}" diaginertia="1 1 1"/>'
-        f'<joint name="floor {i}" type="slide" axis="1 0 0" damping="{sum(row)}"'
-        f' stiffness="{0.0 if i else of.stiffnesses[0]}"/>{added.on_floor(i)}</body>'
-        for i, (mass, row) in enumerate(zip(of.masses, of.damping_matrix, strict=True))
-    )
-    return f"""
-    <body pos="0 0 {2.0 * H + half}">
-      <inertial pos="0 0 0" mass="{of.cap_beam_mass}" diaginertia="{spin} {spin} {spin}"/>
-      <joint name="beam across" type="slide" axis="1 0 0" {added.beam_joint}/>
-      <joint name="beam up" type="slide" axis="0 0 1"/>
-      {"" if level else '<joint name="beam tilt" type="hinge" axis="0 1 0"/>'}
-      <geom type="box" size="{reach} 1 {half}" contype="0" conaffinity="2"/>
-      {"".join(added.in_beam(c, _place_of(c, columns)) for c in range(columns))}{floors}
-    </body>"""
-
-
-def _storeys(of: Bodies) -> Iterator[str]:
-    """Springs and dampers between the floors; those of the first storey are in its joint."""
-    for i in range(1, len(of.masses)):
-        yield (
-            f'\n    <fixed stiffness="{of.stiffnesses[i]}"'
-            f' damping="{-of.damping_matrix[i - 1][i]}">'
-            f'<joint joint="floor {i}" coef="1"/><joint joint="floor {i - 1}" coef="-1"/></fixed>'
-        )
+    for i, (mass, row) in enumerate(zip(of.masses, of.damping_matrix, strict=True)):
+        floor = _part(beam, "body")
+        _part(floor, "inertial", pos="0 0 0", mass=mass, diaginertia="1 1 1")
+        law = {"damping": sum(row), "stiffness": 0.0 if i else of.stiffnesses[0]}
+        _part(floor, "joint", name=f"floor {i}", type="slide", axis="1 0 0", **law)

@@ -4,21 +4,20 @@ from __future__ import annotations
 
 import numpy as np
 
-from rpscli.model.podium import PodiumStructure
+from rpscli.analyses.results import TimeHistoryResult
 
 BEFORE_UPLIFT = 1e-4
-"""Displacement of the cap beam at which the spring uplifts, over the largest of the spring."""
+"""Displacement of the cap beam at which the spring uplifts, over the critical one."""
 
-POINTS = 60
+POINTS = 120
 """Of the spring on each side."""
 
-_MODEL = '''"""{title}
-
-{limits}
+_MODEL = '''"""{limits}
 """
 
 import openseespy.opensees as ops
 
+TITLE = {title}
 STOREYS = {storeys}
 BEAM = {beam}  # kg: cap beam, and what of the columns moves with it
 PUSHED = {pushed}  # kg: what the ground's acceleration pushes
@@ -63,22 +62,30 @@ def build(ground, dt, released=0.0):
 LIMITS = """\
 A spring between ground and cap beam follows the static force of the columns, linear up to
 {before:.2g} m, where it uplifts, out and back on the same path. It leaves out the inertia of what
-rises, of the order of tan(alpha)^2 = {square:.2g}, and overturning. Impacts, e = {e:.4g}, are a
-damper of {loss:.4g} N s/m, which takes as much in one swing from {amplitude:.4g} m, the largest of
-the history of rps, as an impact in its middle; of smaller swings it takes a smaller share."""
+rises, of the order of tan(alpha)^2 = {square:.2g}. Impacts, e = {e:.4g}, are a damper of
+{loss:.4g} N s/m, which takes as much in one swing from {amplitude:.4g} m, the largest in rps that
+the weight restores, as an impact in its middle; of smaller swings it takes a smaller share.
+{note}"""
 
 
-def model_text(structure: PodiumStructure, title: str, largest: float) -> tuple[str, str]:
-    """The model, and its limits; the damper is that of a swing from a displacement [m]."""
-    bearing, above = structure.bearing, structure.superstructure
-    rotation = np.linspace(0.0, 1.2 * structure.critical_rotation, POINTS + 1)
+def model_text(result: TimeHistoryResult, title: str, note: str) -> tuple[str, str]:
+    """The model as a file, and its limits in words."""
+    structure = result.structure
+    bearing, above, critical = (
+        structure.bearing,
+        structure.superstructure,
+        structure.critical_rotation,
+    )
+    farthest = max(1.2, result.settings.overturning_limit) * critical
+    rotation = np.linspace(0.0, min(farthest, bearing.largest_rotation), POINTS + 1)
     force, beam, _ = structure.path(rotation)
-    before = BEFORE_UPLIFT * float(beam.max())
+    limit = float(np.interp(critical, rotation, beam))
+    before = BEFORE_UPLIFT * limit
     sides = np.concatenate(([before], beam[1:])), np.concatenate((force[:1], force[1:]))
     displacements, forces = (np.concatenate((-x[::-1], [0.0], x)) for x in sides)
     spin = (bearing.inertia_ratio - 1.0) * (1.0 + bearing.slenderness**2)
     moving = 0.25 * structure.columns_mass * (spin + 1.0) + structure.cap_beam_mass
-    amplitude = max(largest, 10.0 * before)
+    amplitude = max(min(result.max_cap_beam_displacement, limit), 10.0 * before)
     # Of one swing through: the speed where the beam is, of the energy at its end.
     u = np.linspace(0.0, amplitude, 2001)
     held = np.interp(u, displacements, forces)
@@ -90,7 +97,7 @@ def model_text(structure: PodiumStructure, title: str, largest: float) -> tuple[
     loss = 0.5 * lost / float(np.trapezoid(speed, u))
     limits = LIMITS.format(
         before=before, square=bearing.slenderness**2, e=structure.restitution, loss=loss,
-        amplitude=amplitude,
+        amplitude=amplitude, note=note,
     )  # fmt: skip
     C = np.zeros((0, 0)) if above is None else above.damping_matrix
     n = len(C)
@@ -98,7 +105,7 @@ def model_text(structure: PodiumStructure, title: str, largest: float) -> tuple[
     dampers += [(i + 1, j + 1, -float(C[i, j])) for i in range(n) for j in range(i + 1, n)]
     stiffnesses = [] if above is None else above.stiffnesses.tolist()
     text = _MODEL.format(
-        title=title.replace('"', "'").replace("\\", "/"), limits=limits, storeys=structure.storeys,
+        title=repr(title), limits=limits, storeys=structure.storeys,
         beam=moving, pushed=0.5 * structure.columns_mass + structure.cap_beam_mass,
         masses=[] if above is None else above.masses.tolist(), springs=stiffnesses,
         dampers=[each for each in dampers if abs(each[2]) > 1e-9 * abs(C).max()],

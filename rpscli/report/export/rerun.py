@@ -8,12 +8,19 @@ from __future__ import annotations
 
 import runpy
 import sys
+from collections.abc import Iterator
+from importlib import import_module
+from math import inf
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 HERE = Path(__file__).parent
+COMPARABLE = inf
+"""Time up to which motions of rps agree that differ by 1e-4 [s]."""
+OVERTURNED = inf
+"""Displacement of the cap beam from which rps counts it as overturned [m]."""
 STEPS_TOGETHER = 10
 """Of mujoco, under one value of the ground acceleration, that of their middle."""
 SETTLING = 0.02
@@ -22,11 +29,13 @@ UP = "ground_acceleration_up [m/s2]"
 AT_ONCE = 5e-4
 """Longest step of OpenSees [s]."""
 
+Rows = Iterator[tuple[float, float, float]]
+"""Time, cap beam displacement and drift of the lowest storey."""
 
-def by_mujoco(time: Any, ground: Any, up: Any, start: dict[str, float]) -> tuple[Any, Any, Any]:
-    """Time, cap beam displacement and drift of the lowest storey, after each few steps."""
-    import mujoco
 
+def by_mujoco(time: Any, ground: Any, up: Any, start: dict[str, float]) -> Rows:
+    """After each few steps."""
+    mujoco = loaded("mujoco")
     model = mujoco.MjModel.from_xml_path(str(HERE / "model.xml"))
     data = mujoco.MjData(model)
     joints = {model.joint(i).name: int(model.joint(i).qposadr[0]) for i in range(model.njnt)}
@@ -37,31 +46,42 @@ def by_mujoco(time: Any, ground: Any, up: Any, start: dict[str, float]) -> tuple
         mujoco.mj_step(model, data, round(SETTLING / model.opt.timestep))
     interval = STEPS_TOGETHER * model.opt.timestep
     count = round(time[-1] / interval)
-    found = np.zeros((count + 1, 2))
     middles, weight = (np.arange(count) + 0.5) * interval, model.opt.gravity[2]
     pushes, lifts = (np.interp(middles, time, each) for each in (ground, up))
     for i in range(count + 1):
         if i:
             model.opt.gravity[[0, 2]] = -pushes[i - 1], weight - lifts[i - 1]
             mujoco.mj_step(model, data, STEPS_TOGETHER)
-        found[i, 0] = 2.0 * data.qpos[across].mean()  # a centre moves half as far as the beam
-        found[i, 1] = data.qpos[joints["floor 0"]] if "floor 0" in joints else 0.0
-    return np.arange(count + 1) * interval, found[:, 0], found[:, 1]
+        # a centre moves half as far as the beam
+        drift = data.qpos[joints["floor 0"]] if "floor 0" in joints else 0.0
+        yield i * interval, 2.0 * data.qpos[across].mean(), drift
 
 
-def by_opensees(time: Any, ground: Any, _: Any, start: dict[str, float]) -> tuple[Any, Any, Any]:
-    """Time, displacement and drift at the samples of the record, without vertical motion."""
+def by_opensees(time: Any, ground: Any, _: Any, start: dict[str, float]) -> Rows:
+    """At the samples of the record, without vertical motion."""
+    loaded("openseespy.opensees")
     model = runpy.run_path(str(HERE / "model.py"))
     ops, dt = model["ops"], float(time[1] - time[0])
     model["build"](ground.tolist(), dt, float(start["beam across"]))
     parts = int(np.ceil(dt / AT_ONCE))
-    found = np.zeros((len(time), 2))
     for i in range(len(time)):
         if i and ops.analyze(parts, dt / parts) != 0:
-            raise RuntimeError(f"OpenSees did not converge at {time[i]:g} s")
-        found[i] = ops.nodeDisp(1, 1)
-        found[i, 1] = ops.nodeDisp(2, 1) - found[i, 0] if model["STOREYS"] else 0.0
-    return time, found[:, 0], found[:, 1]
+            sys.exit(f"OpenSees did not converge at {time[i]:g} s; make AT_ONCE in {__file__} less")
+        beam = ops.nodeDisp(1, 1)
+        yield time[i], beam, ops.nodeDisp(2, 1) - beam if model["STOREYS"] else 0.0
+
+
+def loaded(name: str) -> Any:
+    """The other program, or one sentence that names what it lacks."""
+    try:
+        return import_module(name)
+    except Exception as error:  # noqa: BLE001 -- openseespy raises RuntimeError
+        cause: BaseException = error
+        while inner := cause.__cause__ or cause.__context__:
+            cause = inner
+        package = name.partition(".")[0]
+        sys.exit(f"{package} cannot be loaded: {cause}; install it (pip install {package}), and the"
+                 " libraries of the system that this names")  # fmt: skip
 
 
 def main() -> None:
@@ -74,11 +94,17 @@ def main() -> None:
     program = by_mujoco if (HERE / "model.xml").exists() else by_opensees
     known = ours.dtype.names or ()
     up = ours[UP] if UP in known else np.zeros(len(ours))
-    found = program(ours["time [s]"], ours["ground_acceleration [m/s2]"], up, start)
+    rows = []
+    for row in program(ours["time [s]"], ours["ground_acceleration [m/s2]"], up, start):
+        rows.append(row)
+        if not abs(row[1]) < OVERTURNED:
+            sys.stdout.write(f"overturned at {row[0]:.4g} s, beyond {OVERTURNED:.4g} m\n")
+            break
     heads = ",".join(["time [s]", *names])
-    np.savetxt(HERE / "rerun.csv", np.array(found).T, "%.9g", ",", header=heads, comments="")
+    np.savetxt(HERE / "rerun.csv", rows, "%.9g", ",", header=heads, comments="")
     from matplotlib.figure import Figure
 
+    found = np.transpose(rows)
     figure = Figure(figsize=(7.0, 6.0), layout="constrained")
     for axes, name, other in zip(figure.subplots(2, sharex=True), names, found[1:], strict=True):
         mine = ours[name] if name in known else np.zeros(len(ours))
@@ -87,6 +113,9 @@ def main() -> None:
         axes.plot(ours["time [s]"], mine, label="rps")
         axes.plot(found[0], other, "--", label=program.__name__.removeprefix("by_"))
         axes.set(xlabel="time [s]", ylabel=name)
+        if np.isfinite(COMPARABLE):
+            label = f"$\\pm$1e-4 of the motion agree up to {COMPARABLE:.4g} s"
+            axes.axvline(COMPARABLE, color="black", linestyle=":", label=label)
     figure.axes[0].legend(loc="upper right")
     figure.savefig(HERE / "rerun.png", dpi=150)
 
