@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from numbers import Real
 from pathlib import PurePath
 from typing import TypeVar
@@ -190,10 +190,14 @@ def stem_of(path: PurePath) -> str:
 def is_number(value: object) -> bool:
     """True of finite real numbers.
 
-    >>> is_number(0.5), is_number("x"), is_number(math.nan), is_number(True)
-    (True, False, False, False)
+    >>> is_number(0.5), is_number("x"), is_number(float("nan")), is_number(True), is_number(10**400)
+    (True, False, False, False, False)
     """
-    return isinstance(value, Real) and not isinstance(value, bool) and math.isfinite(value)
+    if not isinstance(value, Real) or isinstance(value, bool):
+        return False
+    with suppress(OverflowError):
+        return math.isfinite(value)
+    return False
 
 
 SMALLEST, LARGEST = 1e-15, 1e15

@@ -12,7 +12,9 @@ Each entry point has a name, which users write, and belongs to one of these grou
 - `rpscli.figures`: a function that draws a result into axes, as those of `rpscli.figures` do;
   ``--figures png,NAME`` makes files of it.
 
-Names of ours cannot be taken. Nothing of a package is imported before one of its names is asked
+Names are letters, digits, _ and -; names of ours cannot be taken. What a function gives must be of
+the kind that its annotation in rps says, and numbers finite: what is not, and every error, is told
+as a fault of the package. Nothing of a package is imported before one of its names is asked
 for; `rps explain plugins` lists all. What stands here changes as slowly as `rpscli.__all__`.
 tests/example_package in the source tree has one of each.
 """

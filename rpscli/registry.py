@@ -6,13 +6,22 @@ broken is named where it is asked for, and left out where others are.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from dataclasses import fields, is_dataclass, replace
+from collections.abc import Callable, Collection, Iterable, Iterator
+from contextlib import AbstractContextManager, contextmanager
+from dataclasses import is_dataclass, replace
 from functools import cache, wraps
-from inspect import isgenerator
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar, cast
+from typing import (
+    TYPE_CHECKING,
+    Any,
+    Literal,
+    NamedTuple,
+    TypeVar,
+    get_args,
+    get_origin,
+    get_type_hints,
+)
 
-from rpscli.errors import PluginError, RpsError
+from rpscli.errors import PluginError, RpsError, is_number
 
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
@@ -34,25 +43,35 @@ class Offer(NamedTuple):
 class Registry(dict[str, Item]):
     """Ours by name, of one `kind`; subscripts also find what other packages add.
 
-    Each of theirs must be an `item`, or a function where that is None. Its functions are guarded:
-    what they raise by mistake is a `PluginError` that names the package.
+    Theirs must be an `item`, a dataclass or a `Callable[[...], ...]`, and their functions give what
+    it says: all else is a `PluginError` that names the package. Some names are `taken`.
     """
 
-    def __init__(self, kind: str, ours: dict[str, Item], item: type | None = None) -> None:
+    def __init__(
+        self, kind: str, ours: dict[str, Item], item: Any, taken: Collection[str] = ()
+    ) -> None:
         super().__init__(ours)
-        self.kind, self._item = kind, item
+        self.kind, self._item, self._taken = kind, item, taken
 
     def __missing__(self, name: str) -> Item:
         point = _points(self.kind).get(name)
         if point is None:
             raise KeyError(name)
-        offered, what = _loaded(point), _named(point)
-        fits = callable(offered) if self._item is None else isinstance(offered, self._item)
-        if not fits:
-            wanted = "a function" if self._item is None else f"a {self._item.__name__}"
-            raise PluginError(f"{what} is a {type(offered).__name__}, and must be {wanted}")
-        item: Item = _guarded(offered, what)
+        with self.blaming(name):
+            if fault := self._fault(name):
+                raise ValueError(fault)
+            item: Item = _sound(_loaded(point), self._item, "it", _named(point))
         return item
+
+    def _fault(self, name: str) -> str:
+        if name in self or name in self._taken:
+            return "rps has one of this name, which is taken"
+        known = name.replace("-", "_").isidentifier()
+        return "" if known else f"{name!r} must be letters, digits, _ and -, a letter first"
+
+    def blaming(self, name: str) -> AbstractContextManager[None]:
+        """Errors of what follows are those of the package that adds a name."""
+        return _blaming(_named(_points(self.kind)[name]))
 
     def names(self) -> list[str]:
         """All names, ours first; nothing is imported."""
@@ -82,10 +101,11 @@ class Registry(dict[str, Item]):
     def offers(self) -> Iterator[Offer]:
         """Items of other packages, usable or not."""
         for name, point in _points(self.kind).items():
-            meaning, fault = "", "rps has one of this name, which is taken" if name in self else ""
+            meaning, fault = "", self._fault(name)
             if not fault:
                 try:
-                    meaning = _meaning(self[name])
+                    with self.blaming(name):
+                        meaning = _meaning(self[name])
                 except PluginError as error:
                     fault = str(error)
             yield Offer(self.kind, name, _package(point), point.value, meaning, fault)
@@ -109,38 +129,61 @@ def _named(point: EntryPoint) -> str:
 
 @cache
 def _loaded(point: EntryPoint) -> Any:
+    return point.load()
+
+
+@contextmanager
+def _blaming(what: str) -> Iterator[None]:
     try:
-        return point.load()
-    except Exception as error:
-        raise PluginError(f"{_named(point)}: {type(error).__name__}: {error}") from error
+        yield
+    except RpsError:
+        raise
+    except (Exception, SystemExit) as error:
+        raise PluginError(f"{what}: {type(error).__name__}: {error}") from error
 
 
-def _parts(item: Any) -> dict[str, Any]:
-    """Functions and classes that a dataclass holds."""
-    values = {each.name: getattr(item, each.name) for each in fields(item)}
-    return {name: value for name, value in values.items() if callable(value)}
+def _sound(value: Any, kind: Any, name: str, what: str) -> Any:
+    """A value of the kind that an annotation names; its functions give what theirs say."""
+    origin, kinds = get_origin(kind) or kind, get_args(kind)
+    if origin is Callable and callable(value):
+        return _guarded(value, kinds[-1], what)
+    if type(None) in kinds:
+        return None if value is None else _sound(value, kinds[0], name, what)
+    if origin is bool or (origin is float and is_number(value)):
+        return origin(value)
+    if origin is Iterable:
+        return [_sound(each, kinds[0], name, what) for each in value]
+    fits = value in kinds if origin is Literal else origin is Any or isinstance(value, origin)
+    if origin is float or not fits:
+        shown = f"{value}" if isinstance(value, float) else f"of type {type(value).__name__}"
+        known = {float: "a finite number", Callable: "a function"}
+        wanted = known.get(origin) or getattr(origin, "__name__", kind)
+        raise TypeError(f"{name} is {shown}, and must be {wanted}")
+    hints = get_type_hints(origin) if is_dataclass(origin) else {}
+    each = [part for kind in hints.values() for part in (kind, *get_args(kind))]
+    if not any(get_origin(part) is Callable for part in each):
+        return value  # which has guarded itself
+    return replace(value, **{n: _sound(getattr(value, n), k, n, what) for n, k in hints.items()})
 
 
-def _guarded(item: Any, what: str) -> Any:
-    if isinstance(item, type):
-        return item
-    if is_dataclass(item):
-        parts = {name: _guarded(part, what) for name, part in _parts(item).items()}
-        return replace(cast("Any", item), **parts)
+def _guarded(function: Callable[..., Any], kind: Any, what: str) -> Callable[..., Any]:
+    name = f"what {getattr(function, '__name__', 'it')} gives"
 
-    @wraps(item)
-    def function(*arguments: Any, **named: Any) -> Any:
-        try:
-            made = item(*arguments, **named)
-            return list(made) if isgenerator(made) else made
-        except RpsError:
-            raise
-        except Exception as error:
-            raise PluginError(f"{what}: {type(error).__name__}: {error}") from error
+    @wraps(function)
+    def guarded(*arguments: Any, **named: Any) -> Any:
+        import numpy as np  # slow
 
-    return function
+        with _blaming(what):
+            made = _sound(function(*arguments, **named), kind, name, what)
+            if isinstance(made, np.ndarray):
+                good = made.shape == np.shape(arguments[0]) and np.all(np.isfinite(made))
+                if not good:
+                    raise ValueError(f"{name} must be finite, a number for each that it gets")
+            return made
+
+    return guarded
 
 
 def _meaning(item: Any) -> str:
-    described = next(iter(_parts(item).values())) if is_dataclass(item) else item
-    return (described.__doc__ or "").strip().split("\n")[0]
+    functions = filter(callable, vars(item).values()) if is_dataclass(item) else iter([item])
+    return (next(functions).__doc__ or "").strip().split("\n")[0]

@@ -274,7 +274,7 @@ def parse_design(
     study = study_of(
         replace(document, content=shared),
         of_base,
-        kinds=Registry("none", {}),
+        kinds=Registry("none", {}, None),
         folder=folder,
         digest=hashlib.sha256(text.encode()).hexdigest(),
     )

@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.constants import STANDARD_GRAVITY
-from rpscli.errors import RecordError
+from rpscli.errors import RecordError, is_number, listed
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.pair import rotated
 from rpscli.records.spectrum import (
@@ -32,6 +32,7 @@ from rpscli.records.spectrum import (
     spectral_acceleration,
 )
 from rpscli.registry import Registry
+from rpscli.units import KINDS
 
 Array = NDArray[np.float64]
 AVERAGED = {"AvgSa": np.linspace(0.2, 3.0, 10), "Housner": np.linspace(0.1, 2.5, 97)}
@@ -181,6 +182,13 @@ class IntensityMeasure:
     """True if it depends on the period, which is NaN otherwise."""
     power: float = 1.0
     """Of the factor on a motion, by which the measure grows."""
+
+    def __post_init__(self) -> None:
+        """Refuse a unit that no value can have."""
+        if self.unit not in (known := [*KINDS, "-"]):
+            raise ValueError(f"unit = {self.unit!r} must be {listed(known)}")
+        if not (is_number(self.power) and self.power > 0.0):
+            raise ValueError(f"power = {self.power!r} must be > 0")
 
 
 def _summary(name: str) -> Callable[[GroundMotion, float, float], float]:

@@ -301,6 +301,7 @@ CODES: Registry[Callable[[str, str], TargetSpectrum]] = Registry(
         "asce7": asce7_spectrum,
         "sp14": sp14_spectrum,
     },
+    Callable[[str, str], TargetSpectrum],
 )
 """Spectra of what follows a name and its colon, and of the whole source."""
 

@@ -58,11 +58,13 @@ def _with_added(
     figures: Mapping[str, Draw], result: object, title: str, look: Look
 ) -> dict[str, Draw]:
     """Our figures, and those of other packages that are asked for."""
-    added = {
-        name: partial(style.single, FIGURES[name], result, (title, name), 3.4)
-        for name in look.added
-    }
-    return {**added, **figures}
+
+    def drawn(name: str) -> bytes:
+        draw = FIGURES[name]
+        with FIGURES.blaming(name):  # what is wrong with its texts shows where the file is made
+            return style.single(draw, result, (title, name), 3.4)
+
+    return {**{name: partial(drawn, name) for name in look.added}, **figures}
 
 
 def bearing_files(structure: PodiumStructure, title: str, look: Look = USUAL) -> Files:

@@ -173,7 +173,7 @@ def test_what_is_broken_is_named_and_breaks_nothing_else(
     named = r"XYZ of broken-plugins 1\.0 \(no_such_module:X\): ModuleNotFoundError"
     with pytest.raises(PluginError, match=named):
         motion.scaled_to("XYZ", 1.0)
-    with pytest.raises(PluginError, match=r"flat of broken-plugins .* is a float, and must be a f"):
+    with pytest.raises(PluginError, match=r"flat of broken-plugins .* is 9.80665, and must be a f"):
         load_target("flat:?a=1")
     with pytest.raises(PluginError, match=r"steep of broken-plugins .*: TypeError"):
         load_target("steep:?a=1")
@@ -189,6 +189,96 @@ def test_what_is_broken_is_named_and_breaks_nothing_else(
     listed = rps("explain", "plugins").stdout
     assert "rps has one of this name" in listed.replace("\n", " ")
     assert listed.count("broken-plugins") >= 6
+
+
+LIARS = """\
+import sys
+import numpy as np
+from rpscli.plugins import *
+from rpscli.plugins import RecordFormat as Form
+
+def measure(value):
+    return IntensityMeasure("m/s", lambda *_: value)
+
+nothing, text, numbers, turned = measure(None), measure("5"), measure([1.0]), measure(1j)
+array, huge, nan = measure(np.ones(2)), measure(10**400), measure(np.nan)
+ends = IntensityMeasure("m/s", lambda *_: sys.exit(0))
+
+form = Form("form", (".form",), lambda text: text.lines[0][0] == "f", lambda text: None)
+blind = Form("blind", (".blind",), lambda text: text.lines[0][0] == "b", lambda text: text)
+
+def target(rest, source): return None
+def short(rest, source):
+    return TargetSpectrum("short", source, lambda periods: np.ones(1), pgv=None, rules="none")
+def holed(rest, source):
+    return TargetSpectrum("holed", source, lambda periods: periods * np.nan, pgv=None)
+def quits(rest, source): raise SystemExit("bye")
+
+def writes(axes, result): result.trace.rotation[:] = 0.0
+def garbles(axes, result): axes.set_title("$\\\\frac{1$")
+
+class Options(ReportOptions):
+    pass
+
+def report(found): return Report(Options, lambda study, options: found())
+away = report(lambda: Found({"/../../x": [Column("a", "-", [1])]}, None))
+uneven = report(lambda: Found({"": [Column("a", "-", [1]), Column("b", "-", [])]}, None))
+plain = report(lambda: 5)
+undrawn = report(lambda: Found({"": [Column("a", "-", [1])]}, lambda title: "no bytes"))
+asks = Report(Options, lambda study, options: None, results=lambda _: 5)
+"""
+LYING = {
+    "formats": ["form", "blind"],
+    "measures": ["nothing", "text", "numbers", "turned", "array", "huge", "nan", "ends"],
+    "targets": ["target", "short", "holed", "quits"],
+    "figures": ["writes", "garbles"],
+    "reports": ["away", "uneven", "plain", "undrawn", "asks"],
+}
+
+
+@pytest.fixture
+def liars(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, forgotten: None) -> None:
+    """A package that gives what it should not, under names that it should not have either."""
+    groups = {kind: {name: f"liars:{name}" for name in names} for kind, names in LYING.items()}
+    groups["figures"] |= {"../x": "liars:writes", "png": "liars:writes"}
+    lines = (f"[rpscli.{kind}]\n" + "".join(f"{k} = {v}\n" for k, v in of.items())
+             for kind, of in groups.items())  # fmt: skip
+    as_installed(tmp_path / "site", "liars", "".join(lines))
+    (tmp_path / "site" / "liars.py").write_text(LIARS, encoding="utf-8")
+    monkeypatch.syspath_prepend(tmp_path / "site")
+    monkeypatch.delitem(sys.modules, "liars", raising=False)
+
+
+def test_what_lies_is_named(liars: None, figures: None, rps: Invoke, workplace: Path) -> None:
+    """Wrong values, names and ends of the process are faults of the package, and told as such."""
+    motion = rpscli.load_record("pulse:sine?amplitude=0.3g&period=0.5")
+    for name in LYING["measures"]:
+        with pytest.raises(PluginError, match=f"{name} of liars 1.0 .*(finite number|SystemExit)"):
+            motion.scaled_to(name, 1.0)
+    for name in ("target", "quits"):
+        with pytest.raises(PluginError, match=f"{name} of liars 1.0 .*(TargetSpectrum|bye)"):
+            load_target(f"{name}:?")
+    for name in ("short", "holed"):
+        with pytest.raises(PluginError, match=f"{name} of liars 1.0 .*must be finite, a number"):
+            load_target(f"{name}:?").acceleration(np.array([0.1, 0.2]))
+    for name in ("f.form", "b.txt"):
+        (workplace / name).write_text(f"{name[0]} 0.1 0.2\n", encoding="utf-8")
+        with pytest.raises(PluginError, match=r"of liars 1\.0 .* must be GroundMotion"):
+            rpscli.load_record(f"{workplace / name}?units=g&dt=0.1")
+    for name, reason in (("writes", "read-only"), ("garbles", "ValueError"), ("../x", "letters")):
+        result = rps("timehistory", "small.yaml", "-o", "r", "--force", "--figures", f"png,{name}")
+        assert f"{name} of liars 1.0" in result.stderr
+        assert reason in result.stderr
+        assert "internal" not in result.stderr
+    for name in LYING["reports"]:
+        text = STUDY.replace("worst: {count: 3}", name).replace("ASI", "PGA")
+        (workplace / "study.yaml").write_text(text, encoding="utf-8")
+        result = rps("sweep", "study.yaml", "-o", "s")
+        assert f"{name} of liars 1.0" in result.stderr
+        assert "internal" not in result.stderr
+    assert not [*workplace.parent.glob("x.*"), *workplace.rglob("x.*")]
+    listed = rps("explain", "plugins").stdout
+    assert listed.replace("\n", " ").count("taken") == 1
 
 
 def test_nobody_is_asked_for_names_of_ours(

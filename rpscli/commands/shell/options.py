@@ -214,6 +214,7 @@ def _formats(text: str) -> tuple[tuple[str, ...] | None, tuple[str, ...]]:
             known = [*FORMATS, "none", *known]
             meant = hint(word.lower(), known, "write png, svg, pdf, svg,pdf or none", 0.6)
             raise UsageError(f"--figures {text}: {word or 'nothing'} is not a format; {meant}")
+        FIGURES[word]  # refused before the work
     return tuple(dict.fromkeys(formats)) or None, added
 
 

@@ -17,10 +17,11 @@ from rpscli.errors import UsageError
 from rpscli.registry import Registry
 from rpscli.user_cache import is_writable, user_cache, users_folder
 
-FIGURES: Registry[Callable[..., None]] = Registry("figures", {})
-"""Panels of other packages, drawn into axes from a result; ours are in `rpscli.figures`."""
-
 FORMATS = ("png", "svg", "pdf")
+FIGURES: Registry[Callable[..., Any]] = Registry(
+    "figures", {}, Callable[..., Any], taken=(*FORMATS, "none")
+)
+"""Panels of other packages, drawn into axes from a result; ours are in `rpscli.figures`."""
 COLUMN_WIDTHS = {1: 3.5, 2: 7.0}
 """Widths of figures [in] that fill one or two columns of a journal: 89 and 178 mm."""
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
@@ -55,6 +56,16 @@ class Found:
     notes: Sequence[str] = ()
     shown: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
     remark: str = ""
+
+    def __post_init__(self) -> None:
+        """Refuse what would be no files, or files elsewhere."""
+        for suffix, columns in self.tables.items():
+            if not re.fullmatch(r"\w*", suffix):
+                raise ValueError(f"tables: {suffix!r} is no part of a file's name")
+            if len({len([*column.values]) for column in columns}) != 1:
+                raise ValueError(f"tables: columns of {suffix!r} must be equally long")
+        if not {*self.shown} <= {*self.tables}:
+            raise ValueError(f"shown: {[*self.shown]} must be among the tables {[*self.tables]}")
 
     def parts(self) -> Iterator[Part]:
         """Tables and remark for a terminal or a page."""
