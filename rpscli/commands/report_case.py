@@ -17,9 +17,9 @@ from rpscli.commands.shell.terminal import Terminal, concluded
 from rpscli.commands.shell.waiting import announce_compilation
 from rpscli.errors import UsageError
 from rpscli.records.source import Source
-from rpscli.report.documents import as_text, heading, results_of
+from rpscli.report.documents import as_text, heading, read_json, results_of
 from rpscli.report.figures.look import Look
-from rpscli.report.files import RUN_FILE
+from rpscli.report.files import RUN_FILE, RUN_KINDS
 from rpscli.report.html.page import Block, Notice, Section, page_look
 from rpscli.report.table import Table
 
@@ -32,6 +32,12 @@ if TYPE_CHECKING:
 
 SUMMARY, STORE = "summary.json", "study.sqlite"
 HISTORY, SWEEP, DESIGN = "timehistory", "sweep", "design"
+_COMPONENT = {"source": str, "sha256": str}
+_MOTION = {"scale": float, "horizontal": _COMPONENT, "vertical": (_COMPONENT,), "y": (_COMPONENT,)}
+HISTORY_INPUTS = {
+    "overrides": [str], "case": dict, "record": (_MOTION,), "records": ([_MOTION],)
+}  # fmt: skip
+"""Of one history, or of several."""
 
 
 Asked: TypeAlias = tuple[Sequence[str], MotionRequest]
@@ -44,6 +50,13 @@ class Earlier:
 
     folder: Path
     run: Mapping[str, Any]
+
+    def __post_init__(self) -> None:
+        """Refuse what would be written elsewhere, or cannot be computed again."""
+        if (name := self.run["name"]) != Path(name).name:
+            raise ValueError("name must be that of a file, without folders")
+        if self.run["command"] == HISTORY and None in self.records:
+            raise ValueError("inputs must have a record, or records")
 
     @property
     def file(self) -> Path | None:
@@ -62,33 +75,28 @@ class Earlier:
     def records(self) -> list[dict[str, Any]]:
         """The motions of one history, or of several."""
         inputs = self.run["inputs"]
-        return list(inputs["records"]) if "records" in inputs else [inputs["record"]]
+        return inputs["records"] or [inputs["record"]]
 
 
 def earlier_results(folder: Path) -> Earlier:
     """Results that a folder holds."""
-    command = None
+    place, what = folder / RUN_FILE, f"has no {RUN_FILE} of rps"
     try:
-        run = json.loads((folder / RUN_FILE).read_text(encoding="utf-8"))
-        command, inputs = run["command"], run["inputs"]
-        needed = [*(run[key] for key in ("file", "name", "sha256")), inputs["overrides"]]
-        if command == HISTORY:
-            needed.append(inputs["case"])
-            for record in Earlier(folder, run).records:
-                needed += [record["scale"], record["vertical"]]
-                needed += [record["horizontal"][key] for key in ("source", "sha256")]
+        command = read_json(place, RUN_KINDS)["command"]
         if command in {HISTORY, SWEEP, DESIGN}:
-            return Earlier(folder, run)
-    except (OSError, ValueError, TypeError, KeyError):
-        pass  # told below, together with folders of other commands
+            inputs = HISTORY_INPUTS if command == HISTORY else {"overrides": [str]}
+            return Earlier(folder, read_json(place, RUN_KINDS | {"inputs": inputs}))
+        what = f"holds results of `rps {command}`"
+    except FileNotFoundError:
+        if (folder / STORE).exists():
+            raise UsageError(
+                f"{folder}: {STORE} has points of a study that has not ended; `rps sweep STUDY -o"
+                f" {folder}` goes on with it"
+            ) from None
+    except ValueError as error:
+        what = f"holds a {RUN_FILE} of which {error}"
     inside = sorted(path.parent for path in folder.glob(f"*/{RUN_FILE}"))
     hint = f"; name one of the folders in it, such as {inside[0]}" if inside else ""
-    what = f"holds results of `rps {command}`" if command else f"has no {RUN_FILE} of rps"
-    if command is None and (folder / STORE).exists():
-        raise UsageError(
-            f"{folder}: {STORE} has points of a study that has not ended; `rps sweep STUDY -o"
-            f" {folder}` goes on with it"
-        )
     raise UsageError(
         f"{folder}: {what}, and a report is made of time histories of one case, of one study or of"
         f" one design{hint}"
@@ -141,7 +149,7 @@ def _earlier_motion(case: Case, given: Mapping[str, Any]) -> MotionRequest:
         None if given[name] is None else str(given[name]["source"])
         for name in ("horizontal", "vertical")
     )
-    if own is not None and own.source == horizontal and (own.y is None or "y" in given):
+    if own is not None and own.source == horizontal and (own.y is None or given["y"]):
         horizontal, vertical = None, None if vertical == own.vertical else vertical
     return MotionRequest(horizontal, vertical, given["scale"])
 
@@ -319,9 +327,7 @@ def _stored(
     file = earlier.file
     for request, record in zip(requests, earlier.records, strict=True):
         named = request.ground.named
-        if any(
-            record[n]["sha256"] != named[n].digest for n in ("horizontal", "y") if record.get(n)
-        ):
+        if any(record[n]["sha256"] != named[n].digest for n in ("horizontal", "y") if record[n]):
             text = f"The record {request.label} is no longer that of the stored results."
             found.append(Notice(text))
     if file is not None:
@@ -340,9 +346,8 @@ def _stored(
 def compared(folder: Path, document: Mapping[str, Any]) -> list[Block]:
     """Stored results beside new ones: how many are the same, and those that are not."""
     try:
-        stored = json.loads((folder / SUMMARY).read_text(encoding="utf-8"))
-        before = results_of(stored)
-    except (OSError, ValueError, AttributeError) as error:
+        before = results_of(read_json(folder / SUMMARY, {}))
+    except (OSError, ValueError) as error:
         return [Notice(f"{folder / SUMMARY} cannot be read, so nothing was compared: {error}")]
     now = results_of(plain(document))
     # By what the record was scaled is a result; the aim that asked for it is computed once.

@@ -9,9 +9,12 @@ from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from rpscli.analyses.result_quantities import SAMPLED, STOREYS, plain, values_of
+from rpscli.errors import is_number, visible
 from rpscli.version import VERSION
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from rpscli.analyses.results import TimeHistoryResult
 
 
@@ -109,6 +112,43 @@ def timehistory_document(result: TimeHistoryResult) -> Document:
         "devices": [asdict(demand) for demand in result.devices],
         "warnings": result.warnings,
     }
+
+
+def read_json(path: Path, kinds: Any) -> Document:
+    """A document of an earlier run, checked whole; keys that may be missing are None.
+
+    `kinds` are types, lists of one kind, tuples of one that may be missing, mappings of kinds.
+
+    Raises
+    ------
+    FileNotFoundError
+        If there is none.
+    ValueError
+        If it is no JSON, or not of these kinds: the text says where.
+    """
+    try:
+        document = json.loads(path.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        raise
+    except (OSError, RecursionError) as error:
+        raise ValueError(f"cannot be read: {error}") from None
+    return dict(_checked(document, kinds, "the file"))
+
+
+def _checked(value: Any, kinds: Any, place: str) -> Any:
+    if isinstance(kinds, tuple):
+        return None if value is None else _checked(value, kinds[0], place)
+    kind = type(kinds) if isinstance(kinds, dict | list) else kinds
+    if not (is_number(value) if kind is float else isinstance(value, kind)):
+        known = {dict: "a mapping", list: "a list", float: "a number", str: "a text"}
+        raise ValueError(f"{place} must be {known[kind]}")
+    if isinstance(value, str) and visible(value) != value:
+        raise ValueError(f"{place} must be a text that shows")
+    if isinstance(kinds, list):
+        return [_checked(each, kinds[0], f"{place}[{n}]") for n, each in enumerate(value)]
+    if isinstance(kinds, dict):
+        return value | {key: _checked(value.get(key), of, key) for key, of in kinds.items()}
+    return value
 
 
 MADE_ANEW = frozenset(

@@ -15,7 +15,7 @@ from typing import Any, TypeAlias
 
 from rpscli.errors import OutputError, Refused, refused_by_system
 from rpscli.machine import mode_of
-from rpscli.report.documents import SCHEMA_VERSION, json_text, versions
+from rpscli.report.documents import SCHEMA_VERSION, json_text, read_json, versions
 
 _writing = partial(
     refused_by_system, fault=OutputError, verb="written", remedy="name another place with -o"
@@ -91,6 +91,11 @@ def require_writable_file(file: Path) -> None:
 
 
 RUN_FILE = "run.json"
+RUN_KINDS = {
+    "command": str, "name": str, "file": (str,), "sha256": str, "record": (str,), "files": [str],
+    "inputs": {},
+}  # fmt: skip
+"""What it holds."""
 
 
 @dataclass(frozen=True)
@@ -205,22 +210,21 @@ class OutputFolder:
         require_writable(self.folder)
         place = self.folder / RUN_FILE
         try:
-            earlier = json.loads(place.read_text(encoding="utf-8"))
-            file = f" ({earlier['file']})" if earlier["file"] else ""
-            owner = f"`rps {earlier['command']}` on {earlier['name']}{file}"
-            earlier["files"] = [name for name in earlier["files"] if isinstance(name, str)]
+            earlier = read_json(place, RUN_KINDS)
         except FileNotFoundError:
             return {}
-        except (OSError, ValueError, TypeError, KeyError):
-            return self._refuse(f"{place} is not a description of a run of rps")
-        if record := earlier.get("record"):
+        except ValueError as error:
+            return self._refuse(f"{place} is not a description of a run of rps: {error}")
+        file = f" ({earlier['file']})" if earlier["file"] else ""
+        owner = f"`rps {earlier['command']}` on {earlier['name']}{file}"
+        if record := earlier["record"]:
             owner = f"{owner} under {record}"
         same = earlier["command"] == self.run.command and earlier["file"] == self._subject
-        same = same and earlier.get("record") == self._record
+        same = same and record == self._record
         if same and self.run.file is None:  # what has no file is known by what it says
-            same = earlier.get("sha256") == self.run.digest
+            same = earlier["sha256"] == self.run.digest
         if same:
-            return dict(earlier)
+            return earlier
         return self._refuse(f"{self.folder} holds the results of {owner}")
 
     def _refuse(self, reason: str) -> dict[str, Any]:

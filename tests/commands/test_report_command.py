@@ -120,6 +120,52 @@ def test_a_folder_whose_numbers_or_case_have_changed_says_so(rps: Invoke) -> Non
     assert "podium.bearing.slenderness 0.15" in text
 
 
+def changed(document: dict[str, Any], path: str, value: object) -> str:
+    """The document as JSON with another value at a dotted place."""
+    *above, last = path.split(".")
+    place: Any = document
+    for key in above:
+        place = place[key]
+    place[last] = value
+    return json.dumps(document)
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "said"),
+    [
+        ("inputs.overrides", 5, "overrides must be a list"),
+        ("inputs.overrides", [5], "overrides[0] must be a text"),
+        ("inputs.record.scale", "x", "scale must be a number"),
+        ("inputs.record.scale", 10**400, "scale must be a number"),
+        ("inputs.record.horizontal", ["x"], "horizontal must be a mapping"),
+        ("inputs.record", None, "inputs must have a record"),
+        ("inputs.case", [], "case must be a mapping"),
+        ("inputs", None, "inputs must be a mapping"),
+        ("file", "a\0b", "file must be a text that shows"),
+        ("name", "../../x", "name must be that of a file"),
+    ],
+)
+def test_what_a_folder_says_is_checked_whole(
+    rps: Invoke, path: str, value: object, said: str
+) -> None:
+    assert rps("timehistory", "small.yaml", "-o", "old", "--figures", "none").exit_code == 0
+    run = Path("old/run.json")
+    run.write_text(changed(json.loads(run.read_text("utf-8")), path, value), encoding="utf-8")
+    result = rps("report", "old", "-o", "out.html")
+    assert result.exit_code == 2
+    assert f"old: holds a run.json of which {said}" in result.stderr
+    assert not Path("out.html").exists()
+
+
+@pytest.mark.parametrize("text", ["[1]", "{", "[" * 100_000, '{"max_rotation": ' + "9" * 400 + "}"])
+def test_results_that_cannot_be_compared_are_said(rps: Invoke, text: str) -> None:
+    assert rps("timehistory", "small.yaml", "-o", "old", "--figures", "none").exit_code == 0
+    Path("old/summary.json").write_text(text, encoding="utf-8")
+    assert rps("report", "old", "-o", "out.html").exit_code == 0
+    shown = text_of("out.html")
+    assert "so nothing was compared" in shown or "Different: 1;" in shown
+
+
 def test_the_record_of_the_command_line_is_found_again(rps: Invoke) -> None:
     pulse = "pulse:sine?amplitude=0.2g&period=0.8"
     rps("timehistory", "small.yaml", "-o", "old", "--record", pulse)
