@@ -114,9 +114,9 @@ def vibration(
     freedoms = 2 * len(f) - (6 if X is None else 9)
     variance = 2.0 * float(best.cost) / freedoms
     J = np.asarray(best.jac)
-    errors = np.sqrt(np.diag(variance * np.linalg.pinv(J.T @ J)))
+    covariance = variance * np.linalg.pinv(J.T @ J)
     share = 2.0 * float(best.cost) / float(np.sum(np.abs(Y) ** 2))
-    return _of_logarithms(best.x, errors, freedoms, math.sqrt(share), expected, LEFT)
+    return _of_logarithms(best.x, covariance, freedoms, math.sqrt(share), expected, LEFT)
 
 
 def _ambient(f: NDArray[Any], power: NDArray[Any], peak: float, expected: float) -> Vibration:
@@ -139,17 +139,23 @@ def _ambient(f: NDArray[Any], power: NDArray[Any], peak: float, expected: float)
     p = np.asarray(minimize(unlikely, start, method="Nelder-Mead", options=options).x)
     S, h = spectrum(p), 1e-5
     J = np.array([(spectrum(p + h * d) - spectrum(p - h * d)) / (2.0 * h * S) for d in np.eye(5)])
-    errors = np.sqrt(np.diag(np.linalg.pinv(J @ J.T)))
+    covariance, misfit = np.linalg.pinv(J @ J.T), float((power / S).std())
     q = np.array([p[0] + math.log(2.0 * math.pi), p[1]])
-    return _of_logarithms(q, errors[:2], len(f) - 5, float((power / S).std()), expected, SCATTER)
+    return _of_logarithms(q, covariance, len(f) - 5, misfit, expected, SCATTER)
 
 
+@np.errstate(invalid="ignore")  # variances below 0, of what is not determined
 def _of_logarithms(
-    q: Array, errors: Array, freedoms: int, misfit: float, expected: float, usual: tuple[float, ...]
+    q: Array,
+    covariance: Array,
+    freedoms: int,
+    misfit: float,
+    expected: float,
+    usual: tuple[float, float],
 ) -> Vibration:
     """Period and damping from logarithms of circular frequency and damping; refuse a bad fit."""
     T, zeta = 2.0 * math.pi * np.exp(-q[0]), np.exp(q[1])
-    why = ""
+    errors, why = np.sqrt(np.diag(covariance)[:2]), ""
     if not (LOOKED_FOR[0] * expected < T < LOOKED_FOR[1] * expected):
         reach = f"from {LOOKED_FOR[0]:g} to {LOOKED_FOR[1]:g} times that of the case"
         why = f"its period of {T:.4g} s is not {reach}, {expected:.4g} s"

@@ -1,0 +1,231 @@
+"""Damaged traces, scores and folders of results, and plug-ins that lie: used, or refused plainly.
+
+pytest tests/hunt/test_hostile_edges.py                                  # a few of each kind
+RPS_HUNT_SEED=7 pytest -m long tests/hunt/test_hostile_edges.py          # hundreds of each
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import shutil
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from random import Random
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from commands.test_identify import FRAME
+from paper_structures import needs_compiled_kernels
+from sweep.small_studies import BASE
+
+from hunt.mutation import mutated
+from hunt.trials import PROMISED, hunt, judged, shares
+from rpscli import registry
+from rpscli.analyses.verification import ANSWERS, problem_files
+from rpscli.plugins import (
+    Column,
+    Found,
+    IntensityMeasure,
+    RecordFormat,
+    Report,
+    ReportOptions,
+    TargetSpectrum,
+)
+
+pytestmark = [pytest.mark.posix, needs_compiled_kernels]  # trials are timed by its signals
+
+DECAY = [0.05 * math.exp(-0.1 * t) * math.cos(4.0 * t) for t in np.arange(0.0, 12.0, 0.02)]
+TRACES = {
+    "rocking": "rotation [rad]",
+    "ambient": "floor_acceleration [m/s2]",
+    "release": "floor_acceleration [g]",
+}
+SCALES = ["1", "1e-9", "1e9", "-1", "0", "1e300", "nan"]
+
+
+@shares
+def test_traces(long: bool) -> None:
+    """What is refused writes nothing, and what is written has intervals that say something."""
+    for name, text in (("frame.yaml", FRAME), ("building.yaml", BASE)):
+        Path(name).write_text(text, encoding="utf-8")
+
+    def trial(random: Random) -> str:
+        test = random.choice([*TRACES])
+        factor, first = float(random.choice(SCALES)), random.randrange(300)
+        noise = random.choice([0.0, 1e-6, 1e-3, 0.1])
+        rows = [
+            f"{0.02 * i:.2f},{factor * value + noise * random.gauss(0.0, 1.0):.6g}"
+            for i, value in enumerate(DECAY[first:])
+        ]
+        text = "\n".join([f"time [s],{TRACES[test]}", *rows])
+        text = mutated(text, random) if random.random() < 0.7 else text
+        Path("data.csv").write_text(text, encoding="utf-8", errors="replace")
+        Path("new.yaml").unlink(missing_ok=True)
+        case = random.choice(["frame.yaml", "building.yaml", "building.yaml"])
+        words = ("identify", case, "data.csv", test, "-o", "new.yaml", "--json")
+        codes = PROMISED | {2}  # a frame has no period, and a period of rigid contact no key
+        done = judged(*words, places=("data.csv", "new.yaml", "ambient", "release"), codes=codes)
+        assert (done == "done") == Path("new.yaml").exists()
+        return f"{test}: {done}"
+
+    hunt("traces", trial, 12, 200 if long else None)
+
+
+@shares
+def test_scores(long: bool) -> None:
+    lines = problem_files()[ANSWERS].decode().splitlines()[:40]
+    text = "\n".join([lines[0], *(f"{line}0.5" for line in lines[1:])])
+
+    def trial(random: Random) -> str:
+        Path("answers.csv").write_text(mutated(text, random), encoding="utf-8", errors="replace")
+        return judged("verify", "--score", "answers.csv", "--json", codes=PROMISED | {2, 6})
+
+    hunt("scores", trial, 12, 200 if long else None)
+
+
+VALUES = [
+    None, True, 0, -1, 0.5, 1e308, 10**400, math.nan, "", "x", "../x", "\0", "\ud800", [], [5],
+    ["x"], ["a=b"], {}, {"a": 1}, "podium.bearing.slenderness=x",
+    "pulse:sine?amplitude=0.1g&period=1",
+]  # fmt: skip
+
+
+def places_of(value: Any, path: tuple[Any, ...] = ()) -> list[tuple[Any, ...]]:
+    """Of all that a document holds."""
+    items = value.items() if isinstance(value, dict) else enumerate(value)
+    found = [(*path, key) for key, _ in items]
+    items = value.items() if isinstance(value, dict) else enumerate(value)
+    return found + [
+        deeper
+        for key, each in items
+        if isinstance(each, dict | list) and each
+        for deeper in places_of(each, (*path, key))
+    ]
+
+
+def otherwise(text: str, random: Random) -> str:
+    """A JSON document with another value, or without one, at some place."""
+    document = json.loads(text)
+    for _ in range(random.choice([1, 1, 2])):
+        *above, last = random.choice(places_of(document))
+        inside = document
+        for key in above:
+            inside = inside[key]
+        if random.random() < 0.2:
+            del inside[last]
+        else:
+            inside[last] = random.choice(VALUES)
+    return json.dumps(document)
+
+
+@shares
+def test_folders_of_results(long: bool) -> None:
+    """Of histories, studies and designs: `report` makes a page, or says what is wrong where."""
+    Path("base.yaml").write_text(BASE, encoding="utf-8")
+    record = "pulse:sine?amplitude=0.2g&period=0.6&dt=0.01"
+    study = f"rps: 1\nbase: base.yaml\nrecords: ['{record}']\nreports: [table]\n"
+    Path("study.yaml").write_text(study, encoding="utf-8")
+    one = ("timehistory", "base.yaml", "--record", record)
+    two = (*one, "--record", f"{record}&factor=2")
+    again = {"one": one, "two": two, "study": ("sweep", "study.yaml")}
+    for name, words in again.items():
+        assert judged(*words, "-o", name, "--figures", "none") == "done"
+
+    def trial(random: Random) -> str:
+        shutil.rmtree("copy", ignore_errors=True)
+        kind = random.choice(["one", "two", "study"])
+        shutil.copytree(kind, "copy")
+        names = [path.name for path in Path("copy").glob("*.json")]
+        file = Path("copy", random.choice(["run.json", *names]))
+        text = file.read_text(encoding="utf-8")
+        damage = random.choice([otherwise, otherwise, otherwise, mutated])
+        file.write_text(damage(text, random), encoding="utf-8", errors="surrogatepass")
+        command, *words = random.choice(
+            [("report", "copy", "-o", "p.html", "--force"), again[kind]]
+        )
+        into = () if command == "report" else ("-o", "copy", "--figures", "none")
+        done = judged(command, *words, *into, codes=PROMISED | {2})
+        return f"{kind}, {command}: {done}"
+
+    hunt("folders of results", trial, 10, 120 if long else None)
+
+
+GIVEN: list[Any] = [  # by functions of other packages; errors are raised
+    None, True, 0.5, -1.0, 0.0, 1j, "5", b"5", [1.0], (), {}, np.ones(2), np.array(1.0),
+    np.float64(2.0), np.nan, math.inf, 10**400, object(), Found({}, None), iter([1]),
+    IntensityMeasure("m", lambda *_: 1.0), SystemExit(3), RecursionError("deep"), KeyError("x"),
+    StopIteration(),
+]  # fmt: skip
+
+
+class Options(ReportOptions):
+    """None of its own."""
+
+
+def lying(kind: str, random: Random) -> Any:
+    """An item of a kind of which something is not what it should be."""
+    given = random.choice(GIVEN)
+
+    def gives(*_: Any) -> Any:
+        if isinstance(given, BaseException):
+            raise given
+        return given
+
+    column = Column("a", "-", [given, given])
+    table = {random.choice(["", "_b", "/../x", "\0"]): [column]}
+    found = random.choice([
+        lambda *_: Found(table, None), lambda *_: Found(table, gives, [given], {"": {}}),
+        lambda *_: Found({"": [column, Column("b", "-", [1.0])]}, None),
+        lambda *_: Found(given, None), lambda *_: Found({}, gives),
+        lambda *_: Found({"": [given]}, None, shown={"": {}}), gives,
+    ])  # fmt: skip
+    spectrum = {"pgv": given} if random.random() < 0.3 else {"pgv": None}
+    items: dict[str, Callable[[], Any]] = {
+        "measures": lambda: IntensityMeasure(random.choice(["m/s", given]), gives),
+        "formats": lambda: RecordFormat("liar", (".txt",), random.choice([bool, gives]), gives),
+        "targets": lambda: random.choice(
+            [gives, lambda *told: TargetSpectrum("t", told[1], gives, **spectrum)]
+        ),
+        "figures": lambda: gives,
+        "reports": lambda: Report(
+            Options, found, results=random.choice([lambda _: (), lambda _: (), gives])
+        ),
+    }
+    return given if random.random() < 0.1 else items[kind]()
+
+
+LIAR = "pulse:sine?amplitude=0.2g&period=0.6&dt=0.01"
+COMMANDS = {
+    "measures": ("timehistory", "base.yaml", "--record", LIAR, "--scale-to", "liar=0.1 m/s"),
+    "formats": ("record", "info", "made.txt?units=g&dt=0.01"),
+    "targets": ("record", "select", LIAR, "--target", "liar:?", "-n", "1", "--rules", "none"),
+    "figures": ("modal", "base.yaml", "--figures", "png,liar"),
+    "reports": ("sweep", "study.yaml"),
+}
+
+
+@shares
+def test_plugins(long: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whatever they give, raise or end is told as theirs, or has come to a result."""
+    Path("base.yaml").write_text(BASE, encoding="utf-8")
+    study = f"rps: 1\nbase: base.yaml\nrecords: ['{LIAR}']\nreports: [liar]\n"
+    Path("study.yaml").write_text(study, encoding="utf-8")
+    Path("made.txt").write_text("0.1\n-0.2\n0.1\n", encoding="utf-8")
+
+    def trial(random: Random) -> str:
+        kind = random.choice([*COMMANDS])
+
+        output = ("-o", "out", "--force")
+        point = SimpleNamespace(group=f"rpscli.{kind}", name="liar", value="x:y", dist=None)
+        monkeypatch.setattr(registry, "_points", lambda of: {"liar": point} if of == kind else {})
+        monkeypatch.setattr(registry, "_loaded", cache(lambda _: lying(kind, random)))
+        written = {"formats": 0, "reports": 2}.get(kind, 3)
+        done = judged(*COMMANDS[kind], *output[:written], codes=PROMISED | {1})
+        shutil.rmtree("out", ignore_errors=True)
+        return f"{kind}: {done}"
+
+    hunt("plug-ins", trial, 40, 400 if long else None)
