@@ -20,7 +20,7 @@ from rpscli.report.table import Heading, Part, Table, shown
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from rpscli.analyses.identification.identify import Identified
+    from rpscli.analyses.identification.estimate import Identified
 
     Columns = dict[str, NDArray[Any]]
 

@@ -1,4 +1,4 @@
-"""A value with its interval, from the scatter about what was fitted."""
+"""Values with their intervals, from the scatter about what was fitted, and the keys they are."""
 
 from __future__ import annotations
 
@@ -19,6 +19,22 @@ class Estimate(NamedTuple):
     def determined(self) -> bool:
         """Whether its interval has a width, and one below the value."""
         return 0.0 < self.high - self.low < abs(self.value)
+
+
+class Identified(NamedTuple):
+    """Estimates by name and unit; values of keys of the case, as they are written.
+
+    `misfit` is the distance of the model over the errors, `ensembles` whether means of many motions
+    were fitted. `residuals` are, of each swing, time and amplitude, their errors, and those of the
+    model.
+    """
+
+    estimates: dict[tuple[str, str], Estimate]
+    keys: dict[str, str]
+    misfit: float
+    remarks: str
+    ensembles: bool = False
+    residuals: tuple[dict[str, float], ...] = ()
 
 
 def estimate(value: float, error: float, freedoms: int) -> Estimate:

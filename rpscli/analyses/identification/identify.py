@@ -4,16 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import NamedTuple
 
 import numpy as np
 
-from rpscli.analyses.identification.estimate import Estimate
+from rpscli.analyses.identification.estimate import Estimate, Identified
 from rpscli.analyses.identification.rocking import rocking
 from rpscli.analyses.identification.vibration import vibration
 from rpscli.errors import AnalysisError, UsageError
 from rpscli.model.contact import Contact
-from rpscli.model.devices import RollingResistance
 from rpscli.model.podium import Array, PodiumStructure
 
 _ROTATION = (("rotation", "rad"), ("cap_beam_displacement", "m"))
@@ -25,20 +23,6 @@ TESTS = {
     "earthquake": (_FLOOR, _GROUND),
 }
 """Columns that each test needs besides the time, one of each group, and their SI units."""
-
-
-class Identified(NamedTuple):
-    """Estimates by name and unit; values of keys of the case, as they are written.
-
-    `residuals` are, of each swing, time and amplitude, their errors, and those of the model.
-    """
-
-    estimates: dict[tuple[str, str], Estimate]
-    keys: dict[str, str]
-    misfit: float
-    remarks: str
-    ensembles: bool = False
-    residuals: tuple[dict[str, float], ...] = ()
 
 
 def identified(structure: PodiumStructure, test: str, columns: Mapping[str, Array]) -> Identified:
@@ -63,26 +47,7 @@ def _rocking(structure: PodiumStructure, _: str, columns: Mapping[str, Array]) -
         beam = columns["cap_beam_displacement"]
         x = np.linspace(0.0, structure.critical_rotation, 2001)
         rotation = np.sign(beam) * np.interp(np.abs(beam), structure.path(x)[1], x)
-    found = rocking(structure, columns["time"], rotation)
-    estimates = {("restitution", "-"): found.restitution}
-    written = [("podium.impact.restitution", found.restitution, 5)]
-    if found.loss is not None:
-        estimates["loss", "-"] = found.loss
-        written = [("podium.impact.loss", found.loss, 4)]
-    if found.lever is not None:
-        estimates["lever", "m"] = found.lever
-        kinds = [isinstance(device, RollingResistance) for device in structure.devices]
-        written.append((f"podium.devices.{kinds.index(True)}.lever", found.lever, 4))
-    keys = {key: f"{of.value:.{digits}g}" for key, of, digits in written if of.determined}
-    names = ("time", "amplitude", "time_error", "amplitude_error", "model_time", "model_amplitude")
-    swings = zip(found.swings, found.model.tolist(), strict=True)
-    residuals = tuple(dict(zip(names, (*swing, *at), strict=True)) for swing, at in swings)
-    remarks = f"residuals are {found.misfit:.3g} times what noise alone would leave"
-    if found.misfit > 2.0:
-        remarks += ": the model lacks something, such as rolling resistance; intervals include that"
-    if found.ensembles:
-        remarks += "; neighbouring releases diverge, so means of ensembles were fitted"
-    return Identified(estimates, keys, found.misfit, remarks, found.ensembles, residuals)
+    return rocking(structure, columns["time"], rotation)
 
 
 def _vibration(structure: PodiumStructure, test: str, columns: Mapping[str, Array]) -> Identified:

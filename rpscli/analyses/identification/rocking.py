@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rpscli.analyses.identification.estimate import Estimate, estimate
+from rpscli.analyses.identification.estimate import Estimate, Identified, estimate
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.errors import AnalysisError
@@ -48,24 +48,6 @@ class Swing(NamedTuple):
     amplitude: float
     time_error: float
     amplitude_error: float
-
-
-class Rocking(NamedTuple):
-    """What free rocking says.
-
-    `loss` is kappa of the impact law (None of the law `value`), `lever` f of rolling resistance in
-    metres (None where the structure has none). `model` are times and amplitudes of the fitted
-    motion at `swings`, `misfit` their distance over the errors, `ensembles` whether means of many
-    motions were fitted.
-    """
-
-    restitution: Estimate
-    loss: Estimate | None
-    lever: Estimate | None
-    swings: list[Swing]
-    model: Array
-    misfit: float
-    ensembles: bool
 
 
 @dataclass(frozen=True)
@@ -116,7 +98,7 @@ class _Release:
         return values
 
 
-def rocking(structure: PodiumStructure, time: Array, rotation: Array) -> Rocking:
+def rocking(structure: PodiumStructure, time: Array, rotation: Array) -> Identified:
     """Restitution and lever from free rocking after a release from rest, the building unstrained.
 
     Parameters
@@ -189,12 +171,34 @@ def rocking(structure: PodiumStructure, time: Array, rotation: Array) -> Rocking
     # The scatter of an ensemble is known from so few motions.
     freedoms = ENSEMBLE - 2 if ensembles else 2 * len(swings) - len(q)
     found = [estimate(*each, freedoms) for each in zip(q, spread, strict=True)]
-    kappa = None if structure.impact_law.kind == "value" else found[2]
     ratios = sorted(of.changed(np.array([*q[:2], k, *q[3:]])).restitution for k in
                     np.clip(found[2], *bounds[:, 2]))  # fmt: skip
     e = Estimate(of.changed(q).restitution, ratios[0], ratios[-1])
-    lever = None if of.place is None else found[3]
-    return Rocking(e, kappa, lever, swings, model, misfit, ensembles)
+    return _told(of, [e, *found[2:]], model, misfit, ensembles=ensembles)
+
+
+def _told(
+    of: _Release, found: list[Estimate], model: Array, misfit: float, *, ensembles: bool
+) -> Identified:
+    """In words and numbers: e, the loss or e again, and a lever."""
+    estimates = {("restitution", "-"): found[0]}
+    written = [("podium.impact.restitution", found[0], 5)]
+    if of.structure.impact_law.kind != "value":
+        estimates["loss", "-"] = found[1]
+        written = [("podium.impact.loss", found[1], 4)]
+    if of.place is not None:
+        estimates["lever", "m"] = found[2]
+        written.append((f"podium.devices.{of.place}.lever", found[2], 4))
+    keys = {key: f"{value.value:.{digits}g}" for key, value, digits in written if value.determined}
+    names = (*Swing._fields, "model_time", "model_amplitude")
+    rows = zip(of.swings, model.tolist(), strict=True)
+    residuals = tuple(dict(zip(names, (*swing, *at), strict=True)) for swing, at in rows)
+    remarks = f"residuals are {misfit:.3g} times what noise alone would leave"
+    if misfit > 2.0:
+        remarks += ": the model lacks something, such as rolling resistance; intervals include that"
+    if ensembles:
+        remarks += "; neighbouring releases diverge, so means of ensembles were fitted"
+    return Identified(estimates, keys, misfit, remarks, ensembles, residuals)
 
 
 def _refuse_bad_fit(q: Array, bounds: Array, model: Array, misfit: float) -> None:
