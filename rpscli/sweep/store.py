@@ -28,8 +28,8 @@ from rpscli.sweep.evaluation import FAILED, MISSING, PointResults, at_path
 
 FILE = "study.sqlite"
 FORMAT = 4
-APPLICATION = 0x72707331
-"""Marks the file as ours in its header: "rps1"."""
+APPLICATION = b"rps1"
+"""Marks the file as ours in its header."""
 
 SCHEMA = """
 CREATE TABLE IF NOT EXISTS entries (
@@ -79,11 +79,13 @@ class Store:
         self.path.parent.mkdir(parents=True, exist_ok=True)
         if self.path.exists() and self.path.stat().st_size:
             with self.path.open("rb") as file:
-                if file.read(16) != b"SQLite format 3\0":
-                    raise Refused(
-                        f"{self.path} is not the store of a study; move it away, or name another"
-                        " folder with -o"
-                    )
+                head = file.read(72)
+            # Of a damaged file the header alone tells whether it may be deleted.
+            if not head.startswith(b"SQLite format 3\0") or head[68:] != APPLICATION:
+                raise Refused(
+                    f"{self.path} is not the store of a study; move it away, or name another"
+                    " folder with -o"
+                )
         if self._fresh:
             try:
                 self._connect()
@@ -112,23 +114,17 @@ class Store:
         # The lock is held from the first access on, until the connection ends.
         self._db.execute("PRAGMA locking_mode = EXCLUSIVE")
         self._db.execute("BEGIN EXCLUSIVE")
-        tables, program, version = (
+        tables, version = (
             self._db.execute(query).fetchone()[0]
-            for query in (
-                "SELECT count(*) FROM sqlite_master",
-                "PRAGMA application_id",
-                "PRAGMA user_version",
-            )
+            for query in ("SELECT count(*) FROM sqlite_master", "PRAGMA user_version")
         )
-        if tables and program != APPLICATION:
-            raise Refused(f"{self.path} belongs to another program; name another folder with -o")
         if tables and version != FORMAT and not self._fresh:
             raise Refused(
                 f"{self.path} was written by another version of rps (format"
                 f" {version or 'before 4'}); use --fresh to start again, or another folder with -o"
             )
         self._db.execute(SCHEMA)
-        self._db.execute(f"PRAGMA application_id = {APPLICATION}")
+        self._db.execute(f"PRAGMA application_id = {int.from_bytes(APPLICATION)}")
         self._db.execute(f"PRAGMA user_version = {FORMAT}")
         self._db.execute("COMMIT")
 

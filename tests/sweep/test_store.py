@@ -181,9 +181,13 @@ def test_files_of_others_are_left_alone(tmp_path: Path) -> None:
     with sqlite3.connect(tmp_path / FILE) as db:
         db.execute("CREATE TABLE mine (x)")
     db.close()
-    for fresh in (False, True):
-        with pytest.raises(Refused, match="another program"):
-            Store(tmp_path, fresh=fresh).__enter__()
+    whole = (tmp_path / FILE).read_bytes()
+    for content in (whole, whole[:1024] + b"\xff" * (len(whole) - 1024)):  # damaged as well
+        (tmp_path / FILE).write_bytes(content)
+        for fresh in (False, True):
+            with pytest.raises(Refused, match="not the store"):
+                Store(tmp_path, fresh=fresh).__enter__()
+        assert (tmp_path / FILE).read_bytes() == content
 
 
 @pytest.mark.parametrize(("version", "told"), [(0, "before 4"), (5, "5")])
