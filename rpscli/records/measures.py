@@ -186,7 +186,7 @@ class IntensityMeasure:
     def __post_init__(self) -> None:
         """Refuse a unit that no value can have."""
         if self.unit not in (known := [*KINDS, "-"]):
-            raise ValueError(f"unit = {self.unit!r} must be {listed(known)}")
+            raise ValueError(f"unit = {str(self.unit)[:20]!r} must be {listed(known)}")
         if not (is_number(self.power) and self.power > 0.0):
             raise ValueError(f"power = {self.power!r} must be > 0")
 
