@@ -16,6 +16,7 @@
 from __future__ import annotations
 
 import json
+import warnings
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
@@ -528,6 +529,8 @@ class StudyResult(Shown):
         found = self.collected(look, made.folder)
         made.add_all(found.files.items())
         made.write()
+        for fault in made.undrawn:
+            warnings.warn(fault, stacklevel=2)
         if found.broken:
             raise found.broken[0]
         return made.files

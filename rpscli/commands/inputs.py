@@ -11,6 +11,7 @@ import click
 
 from rpscli.commands.shell import options
 from rpscli.commands.shell.terminal import Terminal
+from rpscli.commands.shell.waiting import passing_time
 from rpscli.errors import CaseError, UsageError
 from rpscli.report.documents import heading
 from rpscli.report.files import OutputFolder, Run
@@ -70,9 +71,11 @@ def case_folder(
 
 
 def write(folder: OutputFolder, terminal: Terminal) -> None:
-    """Write all that was collected, and say where."""
+    """Write all that was collected, draw figures, and say where."""
     replaced = folder.replaces_other_inputs
-    folder.write()
+    with passing_time("writing and drawing", terminal):
+        folder.write()
+    terminal.warn(folder.undrawn)
     note = "; replaces results of the same case with other inputs" if replaced else ""
     terminal.note(f"written to {folder.folder}{note}")
     if folder.removed:
@@ -90,7 +93,7 @@ def conclude(
 ) -> None:
     """Write the files of a command about one case, and give its result."""
     write(folder, terminal)
-    warnings = list(given.case.warnings)
+    warnings = [*given.case.warnings, *folder.undrawn]
     if plane and given.case.structure.superstructure_y is not None:
         warnings.append(
             "superstructure.y is left out: this is the direction x; put --set"

@@ -11,10 +11,11 @@ import click
 from rpscli.commands.inputs import case_folder, conclude, read_case
 from rpscli.commands.shell import options
 from rpscli.commands.shell.terminal import Terminal
-from rpscli.commands.shell.waiting import counted
+from rpscli.commands.shell.waiting import filmed
 from rpscli.errors import listed
 from rpscli.report.figures.film import FilmRequest
 from rpscli.report.figures.look import Look, drawn_with
+from rpscli.report.files import Drawing
 from rpscli.report.table import Heading, Part, Table, shown
 
 if TYPE_CHECKING:
@@ -49,9 +50,9 @@ def command(
     if film is not None:
         from rpscli.report.figures.animation import modes_film
 
-        with counted("drawing the animation", terminal) as progress:
-            draw = partial(modes_film, result, given.case.title, film, progress)
-            folder.add_at(film.file, drawn_with(look, film.ending, draw))
+        moving = partial(filmed, partial(modes_film, result, given.case.title, film), terminal)
+        draw = partial(drawn_with, look, film.ending, moving)
+        folder.add_at(film.file, Drawing(film.file.name, draw))
     tables = _tables(result, given.case.title, () if paper else (FIRST_ORDER,))
     conclude(given, folder, result.results(), tables, terminal)
 

@@ -161,12 +161,14 @@ def _write(
     signed: dict[str, str | None],
     terminal: Terminal,
 ) -> None:
-    from rpscli.report.html.page import MOST_BYTES, page
+    from rpscli.report.html.page import MOST_BYTES, Picture, page
 
     made = datetime.now().astimezone().strftime("%d %B %Y, %H:%M %Z")
     subtitle = f"{done.subtitle}. Made by rps {VERSION} on {made}."
     content = page(done.title, subtitle, done.sections, name, signed)
     write_whole({file: content})
+    blocks = (block for section in done.sections for block in section.blocks)
+    terminal.warn(fault for each in blocks if isinstance(each, Picture) for fault in each.faults)
     if len(content) > MOST_BYTES:
         terminal.warn([f"{file} has {1e-6 * len(content):.1f} MB: too many figures for a page"])
     terminal.note(f"written to {file}, {1e-3 * len(content):.0f} kB")

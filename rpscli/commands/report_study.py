@@ -58,7 +58,8 @@ def study_page(study: Study, place: Path | None, look: Look, terminal: Terminal)
     varied = any(key.startswith("podium.contact") for key in layout.plan.keys)
     first = resolved(layout.plan, layout[0].values)
     contact = ", contact varied" if varied else ends(first)
-    drawn = [Picture(each, _caption(study, stem)) for stem, each in pictures(found.files.items())]
+    figures = pictures(found.files.items())
+    drawn = [Picture(each, _caption(study, stem)) for stem, each in figures.items()]
     results = [Section("Figures", drawn)]
     if run.summary:
         statistics = [*summary_tables(run.summary), of_first_system(run.layout), *found.parts]
@@ -158,7 +159,7 @@ def design_page(
     named = {path.name: content for path, content in done.folder.contents.items()}
     drawn = [
         Picture(each, f"{stem.replace('_', ' ').capitalize()}.")
-        for stem, each in pictures(named.items())
+        for stem, each in pictures(named.items()).items()
     ]
     short = [
         part for part in tables_of(done) if not (isinstance(part, Heading) and part == study.title)

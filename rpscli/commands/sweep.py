@@ -93,7 +93,7 @@ def command(
         folder.add_all(found.files.items())
         store.require()
         write(folder, terminal)
-    notes = [*given.warnings, *found.notes]
+    notes = [*given.warnings, *found.notes, *folder.undrawn]
     # Of each report: what one has to say takes no room from the next.
     for _, of_one in groupby(notes, lambda note: note.partition(": ")[0]):
         terminal.warn_first(list(of_one), "with --json", OF_A_REPORT)

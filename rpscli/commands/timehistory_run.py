@@ -21,7 +21,7 @@ from rpscli.case.rules.plausibility import doubts_of_directions
 from rpscli.commands import inputs
 from rpscli.commands.shell.options import OutputRequest
 from rpscli.commands.shell.terminal import Terminal, concluded, leave
-from rpscli.commands.shell.waiting import counted, patience
+from rpscli.commands.shell.waiting import filmed, patience
 from rpscli.errors import AnalysisError, LimitExceeded, RecordError, RpsError, UsageError, all_made
 from rpscli.records.ground_motion import MotionComponents
 from rpscli.report.bundles import floor_spectra_files, timehistory_files
@@ -29,7 +29,7 @@ from rpscli.report.documents import direction_note, heading, json_text, timehist
 from rpscli.report.figures.animation import history_film
 from rpscli.report.figures.film import FilmRequest
 from rpscli.report.figures.look import Look, drawn_with
-from rpscli.report.files import OutputFolder
+from rpscli.report.files import Drawing, OutputFolder
 from rpscli.report.limits import VERDICT, excess_text, verdict_texts, worst_text
 from rpscli.report.study import statistics
 from rpscli.report.table import Heading, Part, Table, csv_text, headed, large, shown, standing
@@ -207,11 +207,11 @@ def run_one(
     done, result = compute(request, conditions, look, terminal)
     beside = look_beside(done, result)
     if film is not None:
-        with counted("drawing the animation", terminal) as progress:
-            draw = partial(history_film, result, title, film, progress)
-            moving = drawn_with(look, film.ending, draw)
-        request.folder.add_at(film.file, moving)
+        moving = partial(filmed, partial(history_film, result, title, film), terminal)
+        draw = partial(drawn_with, look, film.ending, moving)
+        request.folder.add_at(film.file, Drawing(film.file.name, draw))
     inputs.write(_add_summary(done), terminal)
+    done.document["warnings"] += request.folder.undrawn
     terminal.warn(done.document["warnings"])
     tables = timehistory_tables(result, done.verdicts, title, request.ground.scaled_to)
     texts = [*neighbours_texts(result, beside), passes_text(result), done.document["note"]]
@@ -283,6 +283,7 @@ def computed_set(
         done, _ = compute(request, conditions, look, terminal)
         if written:
             _add_summary(done).write()
+            terminal.warn(request.folder.undrawn)
         histories.append(done)
     outcomes = [history.document["outcome"] for history in histories]
     sources = [request.ground.horizontal.source for request in group]

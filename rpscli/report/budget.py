@@ -205,7 +205,7 @@ class Budget:
         """Of a page: pictures above the tables, sentences and options."""
         blocks: list[Block] = [
             Picture(files, f"What moves {name} under {record}; {CAPTION}.")
-            for name, files in pictures(self.files(page_look(look)))
+            for name, files in pictures(self.files(page_look(look))).items()
         ]
         return Section("Sensitivity of the results", [*blocks, *self.tables()])
 

@@ -110,7 +110,11 @@ def timehistory_files(result: TimeHistoryResult, title: str, look: Look = USUAL)
         "energy": energy_figure,
     }
     few = thinned(result)
-    draws = {stem: partial(draw, few, title) for stem, draw in figures.items()}
+    draws = {
+        # Maxima over the height are those of all samples.
+        stem: partial(draw, result if draw is profile_figure else few, title)
+        for stem, draw in figures.items()
+    }
     yield from figure_files(_with_added(draws, result, title, look), look).items()
 
 

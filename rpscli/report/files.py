@@ -6,14 +6,14 @@ import json
 import os
 import secrets
 import stat
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 from typing import Any, TypeAlias
 
-from rpscli.errors import OutputError, Refused, refused_by_system
+from rpscli.errors import OutputError, Refused, RpsError, UsageError, refused_by_system
 from rpscli.machine import mode_of
 from rpscli.report.documents import SCHEMA_VERSION, json_text, read_json, versions
 
@@ -21,8 +21,38 @@ _writing = partial(
     refused_by_system, fault=OutputError, verb="written", remedy="name another place with -o"
 )
 
-Content: TypeAlias = bytes | Iterator[str]
+
+@dataclass
+class Drawing:
+    """A file that is drawn when this is called, after results are written; empty if that fails.
+
+    `fault` then says why. What was asked for in vain is an error all the same.
+    """
+
+    name: str
+    draw: Callable[[], bytes]
+    fault: str = ""
+
+    @property
+    def ending(self) -> str:
+        """The format."""
+        return self.name.rpartition(".")[2]
+
+    def __call__(self) -> bytes:
+        """The content of the file."""
+        try:
+            return self.draw()
+        except UsageError:
+            raise
+        except Exception as error:  # noqa: BLE001 -- no picture is worth the results
+            kind = "" if isinstance(error, RpsError) else f"{type(error).__name__}: "
+            self.fault = f"{self.name} is not drawn: {kind}{error}; the results are not concerned"
+            return b""
+
+
+Written: TypeAlias = bytes | Iterator[str]
 """Of a file, or its lines, which are made as they are written."""
+Content: TypeAlias = Written | Drawing
 
 
 def encoded(text: str) -> bytes:
@@ -30,7 +60,7 @@ def encoded(text: str) -> bytes:
     return text.encode("utf-8", "backslashreplace")
 
 
-def write_whole(contents: Mapping[Path, Content]) -> None:
+def write_whole(contents: Mapping[Path, Written]) -> None:
     """Write files so that each appears whole or not at all, in folders that are made if needed."""
     ready: dict[Path, Path] = {}
     try:
@@ -123,6 +153,8 @@ class OutputFolder:
         self.force = force
         self.contents: dict[Path, Content] = {}
         self.removed: list[str] = []
+        self.undrawn: list[str] = []
+        """Why figures could not be drawn."""
         self._earlier = self._claimed()
 
     @property
@@ -143,33 +175,35 @@ class OutputFolder:
         self.add_at(self.folder / name, content)
 
     def add_all(self, files: Iterable[tuple[str, str | Content]]) -> None:
-        """Collect files of the folder by their names; tables are written though a figure fails."""
-        try:
-            for name, content in files:
-                self.add(name, content)
-        except Exception:
-            if self.contents:
-                self.write()
-            raise
+        """Collect files of the folder by their names."""
+        for name, content in files:
+            self.add(name, content)
 
     def add_at(self, path: Path, content: str | Content) -> None:
         """Collect a file that stands elsewhere; it is guarded like those of the folder."""
         self.contents[path] = encoded(content) if isinstance(content, str) else content
 
     def write(self) -> None:
-        """Write all files, `run.json` with them."""
+        """Write all files, `run.json` with them, and then draw what is to be drawn."""
         with locked(self.folder):
             # Another process may have written here since this one began.
             self._earlier = self._claimed()
             for path in self.contents:
                 if path.exists() and self._known_as(path) not in self._own:
                     self._refuse(f"{path} exists and is not an earlier output of this command")
-            contents = {**self.contents, self.folder / RUN_FILE: self._run_text().encode()}
-            write_whole(contents)
-            for stale in self._own - {self._known_as(path) for path in contents}:
+            run = self.folder / RUN_FILE
+            results = {p: c for p, c in self.contents.items() if not isinstance(c, Drawing)}
+            write_whole({**results, run: self._run_text().encode()})
+            for stale in self._own - {self._known_as(path) for path in (*self.contents, run)}:
                 if Path(stale).name == stale and (self.folder / stale).is_file():
                     (self.folder / stale).unlink()  # never outside the folder
                     self.removed.append(stale)
+            for path, drawing in self.contents.items():
+                if isinstance(drawing, Drawing):
+                    path.unlink(missing_ok=True)  # that of an earlier run shows other results
+                    if drawn := drawing():
+                        write_whole({path: drawn})
+                    self.undrawn += [drawing.fault] * bool(drawing.fault)
 
     def _run_text(self) -> str:
         document = {

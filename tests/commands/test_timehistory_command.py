@@ -62,6 +62,25 @@ def test_files_and_numbers(rps_json: InvokeJson) -> None:
         assert 450 <= height <= 1000
 
 
+def test_a_picture_that_fails_is_a_warning(
+    rps: Invoke, rps_json: InvokeJson, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fails(*_: object) -> bytes:
+        raise ValueError("y must contain only finite values")
+
+    with monkeypatch.context() as patch:
+        patch.setattr("rpscli.report.bundles.energy_figure", fails)
+        result = rps("timehistory", "small.yaml")
+        warned = rps_json("timehistory", "small.yaml")["warnings"]
+    reason = "energy.png is not drawn: ValueError: y must contain only finite values"
+    assert result.exit_code == 0
+    assert f"warning: {reason}" in result.stderr
+    assert any(text.startswith(reason) for text in warned)
+    assert {file.name for file in FOLDER.iterdir()} == {*FIGURES, *TABLES} - {"energy.png"}
+    assert rps("timehistory", "small.yaml", "-q").exit_code == 0
+    assert (FOLDER / "energy.png").exists()
+
+
 def check_history(table: dict[str, list[str]], result: TimeHistoryResult) -> None:
     assert list(table) == [
         "time [s]", "ground_acceleration [m/s2]", "rotation [rad]", "rotation_rate [rad/s]",

@@ -35,7 +35,9 @@ def test_formats_become_files() -> None:
     def draw() -> bytes:
         return style.picture(lambda _: None, 1.0, layout=None)
 
-    assert list(figure_files({"a": draw}, Look(("svg", "pdf")))) == ["a.svg", "a.pdf"]
+    files = figure_files({"a": draw}, Look(("svg", "pdf")))
+    assert list(files) == ["a.svg", "a.pdf"]
+    assert files["a.pdf"]().startswith(b"%PDF")
     assert list(figure_files({"a": draw}, Look())) == ["a.png"]
     assert figure_files({"a": draw}, Look(())) == {}
 

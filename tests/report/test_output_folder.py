@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import errno
 import json
-from collections.abc import Iterator
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 from rpscli.errors import OutputError, Refused
+from rpscli.report.figures.look import USUAL, figure_files
 from rpscli.report.files import OutputFolder, Run, write_whole
 
 
@@ -43,14 +44,31 @@ def test_files_of_an_earlier_run_that_are_no_longer_made_go_away(tmp_path: Path)
     assert second.removed == ["b.csv"]
 
 
-def test_tables_are_written_though_a_figure_fails(tmp_path: Path) -> None:
-    def files() -> Iterator[tuple[str, str]]:
-        yield "a.csv", "1"
+def test_results_are_written_before_anything_is_drawn(tmp_path: Path) -> None:
+    """A figure that fails is told, the others are drawn, and the next run draws it."""
+    seen: list[str] = []
+
+    def draws() -> bytes:
+        seen.extend(sorted(file.name for file in tmp_path.iterdir()))
+        return b"PNG"
+
+    def fails() -> bytes:
         raise RuntimeError("no figure")
 
-    with pytest.raises(RuntimeError):
-        folder_of(tmp_path).add_all(files())
-    assert sorted(file.name for file in tmp_path.iterdir()) == ["a.csv", "run.json"]
+    def written(first: Callable[[], bytes]) -> OutputFolder:
+        folder = folder_of(tmp_path)
+        folder.add_all(figure_files({"first": first, "second": draws}, USUAL).items())
+        folder.add("a.csv", "1")
+        folder.write()
+        return folder
+
+    assert written(draws).undrawn == []
+    assert seen[:2] == ["a.csv", "run.json"]
+    reason = "first.png is not drawn: RuntimeError: no figure; the results are not concerned"
+    assert written(fails).undrawn == [reason]
+    assert not (tmp_path / "first.png").exists()  # nor that of the run before
+    assert written(draws).undrawn == []
+    assert (tmp_path / "first.png").read_bytes() == (tmp_path / "second.png").read_bytes() == b"PNG"
 
 
 def test_a_file_that_someone_put_there_is_not_ours(tmp_path: Path) -> None:

@@ -15,6 +15,7 @@ from PIL import Image
 from report.small_results import KINDS, history, structure
 from rpscli.report.bundles import timehistory_files
 from rpscli.report.figures.look import USUAL
+from rpscli.report.files import Drawing
 from rpscli.report.html.case_page import (
     derived_blocks,
     hidden_table,
@@ -62,7 +63,24 @@ class Parsed(HTMLParser):
 @pytest.fixture(scope="module")
 def figures_of_history() -> list[Block]:
     files = timehistory_files(KINDS["rolls"](), HOSTILE, page_look(USUAL))
-    return [Picture(found, f"{stem} {HOSTILE}") for stem, found in pictures(files)]
+    return [Picture(found, f"{stem} {HOSTILE}") for stem, found in pictures(files).items()]
+
+
+def picture(svg: bytes, caption: str, png: bytes = b"") -> Picture:
+    """A figure of a page whose files are known."""
+    files = {"svg": lambda: svg, "png": lambda: png}
+    return Picture({end: Drawing(f"x.{end}", draw) for end, draw in files.items()}, caption)
+
+
+def test_a_figure_that_fails_is_told_in_its_place() -> None:
+    def fails() -> bytes:
+        raise RuntimeError("no <figure>")
+
+    broken = Picture({"svg": Drawing("x.svg", fails)}, "a caption")
+    content = page("a", "b", [Section("c", [broken, "the results"])], "d").decode()
+    assert "x.svg is not drawn: RuntimeError: no &lt;figure&gt;" in content
+    assert "the results" in content
+    assert len(broken.faults) == 1
 
 
 def test_text_is_never_taken_for_tags() -> None:
@@ -122,8 +140,8 @@ def test_a_figure_of_many_points_is_an_image_and_the_page_stays_small() -> None:
     with io.BytesIO() as file:
         Image.new("RGB", (1050, 700), "white").save(file, "png")
         png = file.getvalue()
-    heavy = Picture({"svg": start + marks + b"</svg>", "png": png}, "many points")
-    light = Picture({"svg": start + b"</svg>", "png": png}, "few points")
+    heavy = picture(start + marks + b"</svg>", "many points", png)
+    light = picture(start + b"</svg>", "few points", png)
     content = page("a", "b", [Section("c", [heavy] * 20 + [light])], "d")
     tags = Counter(tag for tag, _ in Parsed(content).tags)
     assert (tags["img"], tags["svg"]) == (20, 1)  # one heavy drawing is too much
@@ -135,7 +153,7 @@ def test_coordinates_are_rounded_and_factors_are_not() -> None:
         b'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 9">'
         b'<path d="M 1.23456 -0.00049" transform="scale(0.015625)"/></svg>'
     )
-    content = page("a", "b", [Section("c", [Picture({"svg": drawing, "png": b""}, "x")])], "d")
+    content = page("a", "b", [Section("c", [picture(drawing, "x")])], "d")
     assert b'd="M 1.23 -0.00"' in content
     assert b"scale(0.015625)" in content
 
@@ -181,7 +199,7 @@ def test_a_long_record_leaves_the_page_small_enough_to_be_sent() -> None:
     record = "synthetic:?pga=0.5g&duration=300&dt=0.005&seed=3"
     result = history(structure(storeys=6), record)
     files = timehistory_files(result, "a long record", page_look(USUAL))
-    blocks: list[Block] = [Picture(found, stem) for stem, found in pictures(files)]
+    blocks: list[Block] = [Picture(found, stem) for stem, found in pictures(files).items()]
     blocks.append(motion_pictures(result.record, USUAL))
     assert len(page("a", "b", [Section("c", blocks)], "d")) < 0.9 * MOST_BYTES  # tables: a tenth
 

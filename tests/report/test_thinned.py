@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from report.made_up_pairs import turned
 from report.small_results import KINDS
+from rpscli.analyses.results import TimeHistoryResult
+from rpscli.report.bundles import timehistory_files
 from rpscli.report.figures import history
+from rpscli.report.files import Drawing
 from rpscli.report.table import Column, csv_lines, csv_text
 
 
@@ -37,6 +42,16 @@ def test_thinned_histories_keep_their_peaks(monkeypatch: pytest.MonkeyPatch) -> 
         all_of_it, kept = getattr(result.trace, name), getattr(few.trace, name)
         assert (kept.min(), kept.max()) == (all_of_it.min(), all_of_it.max())
     assert replace(few, trace=result.trace).max_rotation == result.max_rotation
+
+
+@pytest.mark.parametrize("make", [KINDS["rolls"], turned])
+def test_every_figure_of_a_long_history_is_drawn(
+    make: Callable[[], TimeHistoryResult], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(history, "MOST", 50)
+    drawn = [each for _, each in timehistory_files(make(), "") if isinstance(each, Drawing)]
+    assert len(drawn) >= 5
+    assert all(each() for each in drawn), [each.fault for each in drawn]
 
 
 def test_lines_of_a_table_are_its_text() -> None:

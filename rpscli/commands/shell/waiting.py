@@ -79,6 +79,12 @@ def counted(what: str, terminal: Terminal) -> Iterator[Callable[[int, int], None
         yield lambda done, total: bar.update(task, completed=done, total=total)
 
 
+def filmed(film: Callable[[Callable[[int, int], None]], bytes], terminal: Terminal) -> bytes:
+    """A film, which tells how many of its frames are drawn."""
+    with counted("drawing the animation", terminal) as progress:
+        return film(progress)
+
+
 def watched(what: str, terminal: Terminal, numbers: range, *, many: int = MANY) -> Iterator[int]:
     """The numbers; how many are done is shown where they are many."""
     if len(numbers) < many:

@@ -10,11 +10,13 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import Any, TypeAlias, cast
 
 from rpscli.errors import UsageError
 from rpscli.registry import Registry
+from rpscli.report.files import Drawing
 from rpscli.user_cache import is_writable, user_cache, users_folder
 
 FORMATS = ("png", "svg", "pdf")
@@ -107,12 +109,13 @@ def drawn_with(look: Look, ending: str, draw: Draw) -> bytes:
         return draw()
 
 
-def figure_files(figures: Mapping[str, Draw], look: Look) -> dict[str, bytes]:
+def figure_files(figures: Mapping[str, Draw], look: Look) -> dict[str, Drawing]:
     """The files of figures, given by their names without ending, in each format that is wanted."""
     return {
-        f"{stem}.{ending}": drawn_with(look, ending, draw)
+        name: Drawing(name, partial(drawn_with, look, ending, draw))
         for stem, draw in figures.items()
         for ending in look.endings
+        for name in [f"{stem}.{ending}"]
     }
 
 

@@ -59,7 +59,7 @@ def motion_pictures(
 
 
 def _picture(draw: Draw, look: Look, caption: str) -> Picture:
-    ((_, files),) = pictures(figure_files({"figure": draw}, page_look(look)).items())
+    (files,) = pictures(figure_files({"figure": draw}, page_look(look)).items()).values()
     return Picture(files, caption)
 
 
@@ -169,7 +169,7 @@ def structure_blocks(structure: PodiumStructure, title: str, look: Look) -> list
     """The drawings, and the storeys."""
     made = figure_files({"s": lambda: structure_figure(structure, title)}, page_look(look))
     files = [*made.items(), *bearing_files(structure, title, page_look(look))]
-    blocks: list[Block] = [Picture(each, CAPTIONS[stem]) for stem, each in pictures(files)]
+    blocks: list[Block] = [Picture(each, CAPTIONS[stem]) for stem, each in pictures(files).items()]
     if structure.superstructure is not None:
         blocks += ["Storeys, the roof on top:", _storeys(structure)]
     return blocks
@@ -295,7 +295,7 @@ def response_section(
     """The tables of a history, and all of its figures or some."""
     drawn, wanted = pictures(files), {*figures} or CAPTIONS.keys()
     storeys = [storeys_table(result)] if result.structure.storeys else []
-    shown = [Picture(each, CAPTIONS[stem]) for stem, each in drawn if stem in wanted]
+    shown = [Picture(each, CAPTIONS[stem]) for stem, each in drawn.items() if stem in wanted]
     passes = passes_blocks(result.events, result.structure.bearing.alpha)
     return Section(title, [outcome_table(result), *storeys, *shown, *passes])
 

@@ -12,6 +12,7 @@ from importlib import resources
 from unicodedata import category
 
 from rpscli.report.figures.look import Look
+from rpscli.report.files import Drawing
 from rpscli.report.table import Table
 
 
@@ -58,10 +59,15 @@ COLOURS = 256
 
 @dataclass(frozen=True)
 class Picture:
-    """A figure of a page: the files that there are of it by their ending, and what it shows."""
+    """A figure of a page: its files by their ending, which are drawn with it, and what it shows."""
 
-    files: dict[str, bytes]
+    files: dict[str, Drawing]
     caption: str
+
+    @property
+    def faults(self) -> list[str]:
+        """Why it could not be drawn."""
+        return [drawing.fault for drawing in self.files.values() if drawing.fault]
 
 
 def page_look(look: Look) -> Look:
@@ -69,23 +75,22 @@ def page_look(look: Look) -> Look:
     return Look(FORMATS, look.columns, look.style)
 
 
-def pictures(files: Iterable[tuple[str, object]]) -> Iterator[tuple[str, dict[str, bytes]]]:
-    """Figures among the files of an analysis: name without ending, and file by ending."""
-    found: dict[str, dict[str, bytes]] = {}
+def pictures(files: Iterable[tuple[str, object]]) -> dict[str, dict[str, Drawing]]:
+    """Figures among the files of an analysis: by name without ending, and by ending."""
+    found: dict[str, dict[str, Drawing]] = {}
     for name, content in files:
-        stem, _, ending = name.rpartition(".")
-        if ending in FORMATS and isinstance(content, bytes):
-            found.setdefault(stem, {})[ending] = content
-    yield from found.items()
+        if isinstance(content, Drawing):
+            found.setdefault(name.rpartition(".")[0], {})[content.ending] = content
+    return found
 
 
 def figures(shown: Sequence[Picture], room: int) -> list[Markup]:
     """Pictures above captions; the largest drawings become images until there is room [letters]."""
     drawn = [_drawing(each, f"f{number}-") for number, each in enumerate(shown, 1)]
     for place in sorted(range(len(shown)), key=lambda place: -len(drawn[place])):
-        if sum(map(len, drawn)) <= room:
+        if sum(map(len, drawn)) <= room or not (png := shown[place].files["png"]()):
             break
-        image = base64.b64encode(_few_colours(shown[place].files["png"])).decode()
+        image = base64.b64encode(_few_colours(png)).decode()
         if len(image) < len(drawn[place]):
             source = f"data:image/png;base64,{image}"
             drawn[place] = element("img", src=source, alt=shown[place].caption)
@@ -113,7 +118,9 @@ def _few_colours(image: bytes) -> bytes:
 
 def _drawing(of: Picture, prefix: str) -> Markup:
     """One of our own drawings, so that it can stand in HTML beside others."""
-    text = printable(of.files["svg"].decode())
+    text = printable(of.files["svg"]().decode())
+    if not text:
+        return element("p", *of.faults, class_="notice")
     text = _UNWANTED.sub("", text[text.index("<svg") :])
     root, rest = text.split(">", 1)
     root = re.sub(r' (width|height|xmlns(:\w+)?)="[^"]*"', "", root)

@@ -14,6 +14,7 @@ from rpscli.case.schema.fields import Quantity
 from rpscli.case.study.reports import Options, ReportKind
 from rpscli.report.figures.look import USUAL, Look, figure_files
 from rpscli.report.figures.style import Target, kept_figure
+from rpscli.report.files import Drawing
 from rpscli.report.study.labels import key_cells, symbol
 from rpscli.report.table import Column, Part, Table, csv_text, percent, records, shown
 from rpscli.sweep.points import StudyPoints
@@ -84,7 +85,9 @@ class Found:
         assert self.figure is not None, "asked before"
         return kept_figure(partial(self.figure, title), target)
 
-    def files(self, stem: str, title: str, look: Look = USUAL) -> Iterator[tuple[str, str | bytes]]:
+    def files(
+        self, stem: str, title: str, look: Look = USUAL
+    ) -> Iterator[tuple[str, str | Drawing]]:
         """Names and contents of its files."""
         for suffix, columns in self.tables.items():
             yield f"{stem}{suffix}.csv", csv_text(columns)
