@@ -1,8 +1,8 @@
 """Figures of results, drawn into axes of your own.
 
 Each function draws one panel into the matplotlib Axes that it gets first, with labels and units;
-titles, limits, colours and files are yours. `style` gives a figure the look of those that the
-program writes.
+titles, limits, colours and files are yours. ``legend=False`` leaves out the legend. `style` gives a
+figure the look of those that the program writes.
 
 >>> from rpscli import figures, load_case, pushover
 >>> from matplotlib.figure import Figure
@@ -14,7 +14,7 @@ program writes.
 After the axes come
 
 - a `TimeHistoryResult` for `ground_acceleration`, `rotation`, `events`, `displacements`,
-  `elastic_displacements`, `energy`, `moment`, `storey_shears`, `storey_drifts`,
+  `elastic_displacements`, `energy`, `moment_rotation`, `storey_shears`, `storey_drifts`,
   `floor_accelerations`, and `device`, which takes the number of the device too, from 0; under both
   horizontal components also `orbit` and `azimuth`, and displacements take ``"x"`` or ``"y"``;
 - a `PushoverResult` for `storey_curve`, `lift` and `capacity`;
@@ -31,7 +31,7 @@ from collections.abc import Callable
 from functools import wraps
 from typing import Any, TypeVar, cast
 
-from rpscli.errors import UsageError
+from rpscli.errors import UsageError, hint
 from rpscli.report.figures import bearing as _bearing
 from rpscli.report.figures import devices, floors, history, motions, pushover
 from rpscli.report.figures import orbit as _orbit
@@ -42,12 +42,16 @@ from rpscli.report.figures.look import FIGURES
 Panel = TypeVar("Panel", bound=Callable[..., None])
 
 
+BEFORE = {"moment": "moment_rotation"}
+"""Earlier names of panels."""
+
+
 def _examined(draw: Panel) -> Panel:
     """A panel that refuses other axes and another result than it is annotated with."""
     axes_name, drawn_name, *_ = (*draw.__annotations__.values(), "")
 
     @wraps(draw)
-    def panel(axes: Any, drawn: Any, *arguments: Any, **named: Any) -> None:
+    def panel(axes: Any, drawn: Any, *arguments: Any, legend: bool = True, **named: Any) -> None:
         for value, name in ((axes, axes_name), (drawn, drawn_name)):
             kind = name.rpartition(".")[2]
             known = {parent.__name__ for parent in type(value).__mro__}
@@ -58,6 +62,9 @@ def _examined(draw: Panel) -> Panel:
                     f" where a {type(value).__name__} was given; see help(rpscli.figures)"
                 )
         draw(axes, drawn, *arguments, **named)
+        _style.fit([axes])
+        if not legend and (made := axes.get_legend()) is not None:
+            made.remove()
 
     return cast("Panel", panel)
 
@@ -76,7 +83,7 @@ floor_spectrum = _examined(floors.draw_floor_spectrum)
 ground_acceleration = _examined(history.draw_ground)
 lift = _examined(pushover.draw_lift)
 mode = _examined(_structure.draw_mode)
-moment = _examined(history.draw_moment)
+moment_rotation = _examined(history.draw_moment)
 motion = _examined(motions.draw_motion)
 orbit = _examined(_orbit.draw_orbit)
 rotation = _examined(history.draw_rotation)
@@ -92,7 +99,10 @@ __all__ = [name for name, value in [*globals().items()] if hasattr(value, "__wra
 
 
 def __getattr__(name: str) -> Any:
-    """A panel that another package adds."""
+    """A panel that another package adds, or by the name that it had before."""
+    if name in BEFORE:
+        return globals()[BEFORE[name]]
     if not name.startswith("_") and name in FIGURES.names():
         return FIGURES[name]
-    raise AttributeError(f"module 'rpscli.figures' has no attribute {name!r}")
+    meant = hint(name, [*__all__, *FIGURES.names()], "help(rpscli.figures) lists all", 0.6)
+    raise AttributeError(f"rpscli.figures has no panel {name}; {meant}")

@@ -266,9 +266,7 @@ def requirements_figure(answer: Answer, title: str) -> bytes:
             axes.set_ylabel(others.get(name, known))
             axes.set_title(style.typeset(requirement_label(requirement).replace(name, words, 1)))
         grid[-1].set_xlabel(axis_label(answer.task.keys[0]))
-        named = style.entries(grid)
-        columns = 2 if style.narrow() else 4
-        figure.legend(named.values(), named.keys(), loc="outside lower center", ncols=columns)
+        style.legend_below(figure, grid)
 
     return style.picture(draw, 1.9 + 2.3 * len(requirements))
 
@@ -281,8 +279,7 @@ def region_figure(answer: Answer, title: str) -> bytes:
     """
     pairs = list(itertools.combinations(range(len(answer.task.unknowns)), 2))
     shown = pairs[:MOST_PAIRS]
-    narrow = style.narrow()
-    columns = 1 if narrow else min(3, len(shown))
+    columns = 1 if style.narrow() else min(3, len(shown))
     rows = math.ceil(len(shown) / columns)
     of = {"passes": answer.passes[0], "fails": answer.valid & ~answer.passes[0]}
     of["no valid case"] = ~answer.valid
@@ -315,8 +312,7 @@ def region_figure(answer: Answer, title: str) -> bytes:
         if answer.resamples:
             words = "share of resamples of the records that pass"
             figure.colorbar(ScalarMappable(norm, colours), ax=grid, label=words)
-        handles = grid[0][0].get_legend_handles_labels()
-        figure.legend(*handles, loc="outside lower center", ncols=2 if narrow else 5)
+        style.legend_below(figure, [grid[0, 0]])
 
     return style.picture(draw, 1.1 + (4.2 if len(pairs) == 1 else 2.6) * rows)
 

@@ -250,9 +250,10 @@ def test_moment(drawn: Drawn, result: TimeHistoryResult) -> None:
     factor = prefix(axes.get_ylabel(), "N m")
     assert axes.get_ylabel().startswith("moment about the contact points [")
     assert axes.get_xlabel() == "rotation $\\theta$ [rad]"
-    driving, *swing, restoring = legend(axes)
-    assert driving == "driving moment (ground and building)"
-    assert restoring == "restoring moment of the weight"
+    names = legend(axes)
+    driving, restoring = "driving moment (ground and building)", "restoring moment of the weight"
+    swing = [name for name in names if name not in {driving, restoring}]
+    assert {*names} - {*swing} == {driving, restoring}
     is_drawn(curve(axes, driving), trace.rotation, factor * trace.driving_moment)
     assert len(swing) == (result.max_rotation > 0.0)
     for name in swing:
@@ -336,11 +337,11 @@ def test_modes(drawn: Drawn, bearing: Bearing, storeys: int) -> None:
                 assert result.fixed_base is not None
                 fixed = [0.0, 0.0, *result.fixed_base.shapes[:, mode - 1]]
                 is_drawn(curve(axes, "full contact"), fixed, levels)
-            assert axes.get_title() == title
+            assert axes.get_title().replace("\n", " ") == title
     assert all(axes.get_xlabel() == "shape [-]" for axes in panels[-1])
     contact = ["full contact"] if storeys else []
     relative = [ELASTIC] if storeys else []
-    assert legend(figure) == [*contact, "uplifted", *relative]
+    assert {*legend(figure)} == {*contact, "uplifted", *relative}
     low, high = panels[0, 0].get_xlim()
     assert -low == high
     assert high > max(np.abs(modes.shapes[:, :columns]).max() for modes in rows)

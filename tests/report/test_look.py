@@ -33,7 +33,7 @@ def test_each_format_is_what_its_ending_says_and_the_same_for_the_same_data() ->
 
 def test_formats_become_files() -> None:
     def draw() -> bytes:
-        return style.picture(lambda _: None, 1.0, layout=None)
+        return style.picture(lambda figure: setattr(figure.subplots(), "axison", False), 1.0)
 
     files = figure_files({"a": draw}, Look(("svg", "pdf")))
     assert list(files) == ["a.svg", "a.pdf"]

@@ -56,7 +56,7 @@ PANELS: dict[str, tuple[Callable[[], tuple[Any, ...]], str, str]] = {
     "displacements": (lambda: (result(),), TIME, "displacement relative\nto the ground [m]"),
     "elastic_displacements": (lambda: (result(),), TIME, "relative\nto the cap beam [m]"),
     "energy": (lambda: (result(),), TIME, "energy [kJ]"),
-    "moment": (lambda: (result(),), "rotation $\\theta$ [rad]", "contact points [MN m]"),
+    "moment_rotation": (lambda: (result(),), "rotation $\\theta$ [rad]", "contact points [MN m]"),
     "storey_shears": (lambda: (result(),), "storey shear [MN]", "level (0 = cap beam)"),
     "storey_drifts": (lambda: (result(),), "storey drift ratio [%]", "level (0 = cap beam)"),
     "floor_accelerations": (lambda: (result(),), "floor acceleration [m/s²]", "level"),
@@ -129,6 +129,18 @@ def test_the_module_does_not_load_matplotlib() -> None:
     code = "import sys, rpscli; rpscli.figures.rotation; print('matplotlib' in sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout == "False\n"
+
+
+def test_legends_may_be_left_out_and_names_are_hinted_at() -> None:
+    axes, energy = Figure().subplots(), PANELS["energy"][0]()
+    draw: Callable[..., None] = figures.energy
+    draw(axes, *energy, legend=False)
+    assert axes.get_legend() is None
+    assert axes.get_legend_handles_labels()[1]  # for one's own
+    assert figures.moment is figures.moment_rotation
+    for name in ("moment_rotatoin", "storeycurve"):
+        with pytest.raises(AttributeError, match=r"has no panel .*; did you mean \w+\?"):
+            getattr(figures, name)
 
 
 def test_its_description_names_every_panel() -> None:

@@ -241,7 +241,7 @@ def test_lines_join_the_means_of_what_stood(study_of: Make) -> None:
         falls = at["record"] == 2
         return fallen(falls, max_rotation=1e3 if falls else at["scale"])
 
-    options = LinesOptions(x="scale", y=("max_rotation",), panels=(ALPHA,))
+    options = LinesOptions(x="scale", result=("max_rotation",), panels=(ALPHA,))
     found = cells(lines(made(study_of, answer), options))
     assert len(found["value"]) == 2 * 3 * 2
     assert (found[RHO][:2], found["scale"][:2], found["value"][:2]) == (
@@ -251,7 +251,7 @@ def test_lines_join_the_means_of_what_stood(study_of: Make) -> None:
 
 def test_lines_go_over_si_values_of_what_was_written_with_units(study_of: Make) -> None:
     sizes = (f"{RHO}: [critical, 0.5, 0]", "podium.bearing.semi_diagonal: [1500 mm, 2.0, 2.5 m]")
-    options = LinesOptions(x="podium.bearing.semi_diagonal", y=("max_rotation",), series=())
+    options = LinesOptions(x="podium.bearing.semi_diagonal", result=("max_rotation",), series=())
     found = cells(lines(made(study_of, lambda _: stored(), sizes), options))
     assert found["podium.bearing.semi_diagonal"] == [1.5, 2.0, 2.5]
 
@@ -262,7 +262,7 @@ def test_lines_draw_one_curve_for_each_point_where_results_are_lists(study_of: M
         return Stored("done", None, curve)
 
     results = made(study_of, answer, text=WITHOUT_RECORDS + "analysis: pushover\n")
-    options = LinesOptions(x="curve.displacement", y=("curve.force",), panels=(ALPHA,))
+    options = LinesOptions(x="curve.displacement", result=("curve.force",), panels=(ALPHA,))
     found = cells(lines(results, options))
     assert found["value"][:6] == [2.0, 0.0, 2.0, 1.0, 2.0, 2.0]
     assert found["curve.displacement"][:2] == [0.0, 1.0]
@@ -290,7 +290,9 @@ def test_lines_say_what_stands_for_the_records(
         falls = at["record"] == 3 or (at[ALPHA] == 0.15 and at[RHO] == 0)
         return fallen(falls, max_rotation=at["record"])
 
-    options = LinesOptions(x=ALPHA, y=("max_rotation",), statistic=statistic, series=("scale",))
+    options = LinesOptions(
+        x=ALPHA, result=("max_rotation",), statistic=statistic, series=("scale",)
+    )
     found = lines(made(study_of, answer), options)
     assert f"pools 3 values of {RHO}" in found.notes[0]
     assert any("survivors: 16 of 36" in note for note in found.notes) == (statistic == "mean")
@@ -302,7 +304,7 @@ def test_lines_say_what_stands_for_the_records(
 
 
 def test_lines_keep_intensities_apart(study_of: Make) -> None:
-    options = LinesOptions(x=ALPHA, y=("max_rotation",))
+    options = LinesOptions(x=ALPHA, result=("max_rotation",))
     found = lines(made(study_of, lambda _: stored()), options)
     assert {RHO, "scale"} <= set(cells(found))
     assert not list(found.notes)

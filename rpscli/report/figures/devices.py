@@ -42,7 +42,7 @@ DRAWN: dict[type[Device], Drawn] = {
 def devices_figure(result: TimeHistoryResult, title: str) -> bytes:
     """The loops of all devices."""
     count = len(result.structure.devices)
-    columns = min(count, 3)
+    columns = min(count, 2 if style.narrow() else 3)
     rows = -(-count // columns)
 
     def draw(figure: style.Figure) -> None:
@@ -69,7 +69,7 @@ def draw_device(axes: style.Axes, result: TimeHistoryResult, index: int) -> None
     axes.set_title(f"device {index}: {device.kind.replace('_', ' ')}", fontsize=style.small())
     stroke = drawn.stroke if result.motion.y is None else drawn.stroke.replace("u_b", "|u_b|")
     axes.set(xlabel=stroke, ylabel=f"{drawn.force} [{prefix}N]")
-    axes.locator_params(axis="x", nbins=5)
+    axes.locator_params(axis="x", nbins=3 if style.narrow() else 5)
 
 
 class SceneDevices:

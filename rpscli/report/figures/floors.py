@@ -38,11 +38,8 @@ def profile_figure(result: TimeHistoryResult, title: str) -> bytes:
             panels, (draw_shears, draw_storey_drifts, draw_accelerations), strict=True
         ):
             draw_one(axes, result)
-            axes.set_xlabel(style.folded(figure, axes.get_xlabel()))
             axes.label_outer()
-        shown = style.entries((panels[-1], panels[0]))
-        columns = 2 if style.narrow() else 4
-        figure.legend(shown.values(), shown.keys(), loc="outside lower center", ncols=columns)
+        style.legend_below(figure, (panels[-1], panels[0]))
 
     return style.picture(draw, 4.2)
 
@@ -138,9 +135,7 @@ def floor_spectra_figure(
         for axes in grid[:, 0]:  # once all are drawn, since a row shares its limits
             axes.set_ylim(bottom=0.0)
             axes.set_ylabel(axes.get_ylabel().partition(", ")[2])
-        grid[0, 0].set_ylabel(style.folded(figure, grid[0, 0].get_ylabel()))
-        handles, names = grid[0, 0].get_legend_handles_labels()
-        figure.legend(handles, names, loc="outside lower center", ncols=2)
+        style.legend_below(figure, grid.flat)
 
     return style.picture(draw, 4.8)
 

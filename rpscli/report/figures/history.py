@@ -138,7 +138,7 @@ def draw_displacements(axes: style.Axes, result: TimeHistoryResult, way: Way = "
     axes.plot(trace.time, trace.cap_beam_displacement, **{"color": style.BLACK} | wide, label=base)
     _draw_floors(axes, result, trace.floor_displacements, 1, lw=0.8)
     axes.set_ylabel(f"{_in(result, way)}displacement relative\nto the ground [m]")
-    style.legend_above(axes, 4)
+    style.legend_above(axes)
 
 
 def _in(result: TimeHistoryResult, way: Way) -> str:
@@ -152,7 +152,7 @@ def draw_drifts(axes: style.Axes, result: TimeHistoryResult, way: Way = "x") -> 
     drifts = trace.floor_displacements - trace.cap_beam_displacement[:, None]
     _draw_floors(axes, result, drifts, lw=0.8)
     axes.set_ylabel(f"{_in(result, way)}displacement relative\nto the cap beam [m]")
-    style.legend_above(axes, 4)
+    style.legend_above(axes)
 
 
 def _draw_floors(
@@ -234,7 +234,7 @@ def draw_ground(axes: style.Axes, result: TimeHistoryResult) -> None:
             axes.axhline(sign * limit, color=style.GREEN, lw=0.9, ls="--")
         axes.plot([], [], color=style.GREEN, ls="--", lw=0.9, label="$g\\,\\tan\\alpha$ (uplift)")
     if limit > 0.0 or name:
-        style.legend_above(axes, 4)
+        style.legend_above(axes)
 
 
 def draw_azimuth(axes: style.Axes, result: TimeHistoryResult) -> None:
@@ -291,7 +291,7 @@ def draw_rotation(axes: style.Axes, result: TimeHistoryResult) -> None:
     axes.set(ylabel="rotation $\\theta$ [rad]", xlabel="time [s]")
     ratio = axes.secondary_yaxis("right", functions=style.over(critical))
     ratio.set_ylabel("$\\theta/\\theta_{cr}$ [-]")
-    style.legend_above(axes, 4)
+    style.legend_above(axes)
 
 
 def draw_events(axes: style.Axes, result: TimeHistoryResult) -> None:
@@ -337,9 +337,10 @@ def draw_moment(axes: style.Axes, result: TimeHistoryResult) -> None:
     axes.axhline(0.0, color=style.BLACK, lw=0.5)
     axes.axvline(0.0, color=style.BLACK, lw=0.5)
     axes.set_xlim(0.0 if one_sided else -reach, reach)
+    axes.locator_params(axis="x", nbins=5)
     axes.set_xlabel("rotation $\\theta$ [rad]")
     axes.set_ylabel(f"moment about the contact points [{prefix}N m]")
-    style.legend_above(axes, 2)
+    style.legend_above(axes)
 
 
 def _draw_longest(axes: style.Axes, result: TimeHistoryResult, factor: float) -> None:
@@ -395,4 +396,4 @@ def draw_energy(axes: style.Axes, result: TimeHistoryResult) -> None:
         below = above
     axes.plot(trace.time, factor * trace.energy_input, color=style.BLACK, label="input")
     axes.set(xlim=(0.0, trace.time[-1]), xlabel="time [s]", ylabel=f"energy [{prefix}J]")
-    style.legend_above(axes, 4 if len(parts) < 4 else 3)
+    style.legend_above(axes)

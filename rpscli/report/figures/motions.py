@@ -25,9 +25,6 @@ LOOKS = [
 ]
 """Of the spectra of motions; those of mean and target are their own."""
 
-NAMES_A_ROW = 6
-"""Of motions below their spectra, in a wide figure."""
-
 Quantity = Literal["acceleration", "velocity", "displacement"]
 
 QUANTITIES: dict[Quantity, tuple[str, str]] = {
@@ -57,7 +54,7 @@ def record_figure(
         draw_spectrum(axes, spectrum)
         if period is not None:
             axes.axvline(period, color=style.BLUE, ls="--", label=f"$T_1$ = {period:.3g} s")
-            axes.legend()
+            style.legend_above(axes)
 
     return style.picture(draw, 6.4 if style.narrow() else 4.2, 8.0)
 
@@ -91,9 +88,8 @@ def draw_spectrum(axes: style.Axes, spectrum: ResponseSpectrum) -> None:
 
 def _frame(axes: style.Axes, spectrum: ResponseSpectrum) -> None:
     axes.set_xlabel("period [s]")
-    room = "\n" if style.narrow() else " "
     damping = style.percent(spectrum.damping)
-    axes.set_ylabel(f"pseudo-acceleration,{room}{damping} damping [m/s²]")
+    axes.set_ylabel(f"pseudo-acceleration, {damping} damping [m/s²]")
     axes.set_xlim(0.0, spectrum.periods[-1])
     axes.set_ylim(bottom=0.0)
 
@@ -114,7 +110,7 @@ def draw_spectra(axes: style.Axes, spectra: Sequence[ResponseSpectrum]) -> None:
         axes.plot(periods, each, color=style.GREY, lw=0.6, alpha=0.7, label=label)
     axes.plot(periods, np.median(values, axis=0), color=style.RED, lw=1.6, label="median")
     _frame(axes, spectra[0])
-    style.legend_above(axes, 2)
+    style.legend_above(axes)
 
 
 def selection_figure(selection: Selection, title: str) -> bytes:
@@ -133,14 +129,9 @@ def selection_figure(selection: Selection, title: str) -> bytes:
             left, right = figure.subplots(1, 2, width_ratios=[1.6, 1.0])
         _draw_spectra(left, selection)
         _draw_peaks(right, selection)
-        motions = left.lines[: len(selection.chosen)]
-        figure.legend(
-            handles=motions, loc="outside lower center", ncols=in_row, fontsize=style.small()
-        )
+        style.legend_below(figure, [left])
 
-    in_row = 2 if style.narrow() else NAMES_A_ROW
-    rows = -(-len(selection.chosen) // in_row)
-    return style.picture(draw, (6.0 if style.narrow() else 3.6) + 0.17 * rows, 8.0)
+    return style.picture(draw, 6.0 if style.narrow() else 3.8, 8.0)
 
 
 def _draw_spectra(axes: style.Axes, selection: Selection) -> None:
@@ -150,9 +141,10 @@ def _draw_spectra(axes: style.Axes, selection: Selection) -> None:
     for one, (line, colour) in zip(selection.chosen, cycle(LOOKS), strict=False):
         spectrum = one.factor * one.acceleration
         axes.plot(periods, spectrum, color=colour, ls=line, lw=0.8, label=one.name)
+    name = selection.target.name
     drawn = [
         *axes.plot(periods, selection.mean, color=style.BLUE, lw=2.4, label="mean"),
-        *axes.plot(periods, wanted, color=style.RED, lw=1.8, ls="--", label=selection.target.name),
+        *axes.plot(periods, wanted, color=style.RED, lw=1.8, ls="--", label=name),
     ]
     if selection.target.deviation is not None and selection.deviation is not None:
         drawn[0].set_label("median, deviations")
@@ -167,9 +159,7 @@ def _draw_spectra(axes: style.Axes, selection: Selection) -> None:
                 axes.plot(periods, values * np.exp(sign * scatter), **look)
     if (asked := selection.requirements) is not None and asked.least < 1.0:
         label = f"{style.percent(asked.least)} of it"
-        drawn += axes.plot(
-            periods, asked.least * wanted, color=style.RED, lw=1.2, ls=":", label=label
-        )
+        axes.plot(periods, asked.least * wanted, color=style.RED, lw=1.2, ls=":", label=label)
     axes.set(xscale="log", yscale="log", xlim=(periods[0], periods[-1]))
     axes.set_xlabel("period [s]")
     axes.set_ylabel(
@@ -178,7 +168,6 @@ def _draw_spectra(axes: style.Axes, selection: Selection) -> None:
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_formatter("{x:g}")
         axis.set_minor_formatter(FuncFormatter(lambda value, _: _second_tick(value)))
-    axes.legend(handles=drawn, loc="lower left")
 
 
 def _second_tick(value: float) -> str:
@@ -200,4 +189,4 @@ def _draw_peaks(axes: style.Axes, selection: Selection) -> None:
     axes.set_ylim(0.0, 1.15 * max(*displacements, selection.target.pgd or 0.0))
     axes.set_xlabel("PGV [m/s]")
     axes.set_ylabel("PGD [m]")
-    axes.legend()
+    style.legend_above(axes)

@@ -117,5 +117,6 @@ def _in_colours(
     axes.axvline(0.0, color=style.GREY, lw=0.4)
     axes.set(xlim=(-reach, reach), ylim=(-reach, reach))
     axes.set_aspect("equal", adjustable="box")
-    style.legend_above(axes, 1)
+    axes.locator_params(nbins=4)
+    style.legend_above(axes)
     return lines

@@ -63,7 +63,7 @@ def draw_force(axes: style.Axes, result: PushoverResult) -> None:
             "right", functions=style.over(factor * result.structure.uplift_force)
         )
         ratio.set_ylabel("$F/(W \\tan\\alpha)$ [-]")
-    style.legend_above(axes, 3 + returns)
+    style.legend_above(axes)
 
 
 def draw_lift(axes: style.Axes, result: PushoverResult) -> None:
@@ -110,11 +110,7 @@ def capacity_figure(result: PushoverResult, title: str) -> bytes:
         close.set_xlim(0.0, 3.0 * uplift or 0.1 * whole.get_xlim()[1])
         close.locator_params(axis="x", nbins=5)
         close.set(ylabel="", title="near uplift" if uplift else "where rolling begins")
-        for axes in (whole, close):
-            axes.set_xlabel(style.folded(figure, "roof displacement [m]"))
-        columns = 5 if style.inches(figure)[0] >= style.WIDTH else 2
-        legend = close.get_legend_handles_labels()
-        figure.legend(*legend, loc="outside lower center", ncols=columns)
+        style.legend_below(figure, [close])
 
     return style.picture(draw, 3.6)
 

@@ -119,13 +119,7 @@ def draw_modes(figure: style.Figure, result: ModalResult, title: str) -> None:
         row[0].set_ylabel(f"{state}\nheight [m]")
     reach = 1.05 * max(abs(limit) for limit in panels[0, 0].get_xlim())
     panels[0, 0].set_xlim(-reach, reach)
-    handles, names = panels[0, -1].get_legend_handles_labels()
-    narrow = style.inches(figure)[0] < modes_size(result)[0]
-    figure.legend(handles, names, loc="outside lower center", ncols=1 if narrow else 3)
-    for axes in panels.flat if narrow else ():
-        axes.set_title(
-            axes.get_title().replace(": ", "\n").replace(" rad/s", "\nrad/s").replace(" (", "\n(")
-        )
+    style.legend_below(figure, [panels[0, -1]])
 
 
 def draw_mode(axes: style.Axes, result: ModalResult, state: str, mode: int) -> None:

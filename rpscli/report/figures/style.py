@@ -6,12 +6,11 @@ import io
 import re
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from contextvars import ContextVar
 from dataclasses import dataclass
 from pathlib import Path
-from textwrap import wrap
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias, TypeVar, cast
+from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar, cast
 
 from rpscli.errors import UsageError
 from rpscli.report.figures.look import (
@@ -44,11 +43,13 @@ ROCKING_SHADE = "#FBE3D0"
 DPI = 150
 COMPRESSION = 3
 """Of PNG files: a tenth larger than at the usual 6, in two thirds of the time."""
-LETTERS_PER_INCH = 15.0
-"""Of letters of 8 points."""
+LINE = 0.15
+"""Height of a line of small letters [in]."""
 
 WIDTH = 7.0
 """Width of a figure [in]: a page with its margins."""
+TIGHT = 4.0
+"""Height [in]."""
 
 STYLE: dict[str, Any] = {
     "font.family": "sans-serif",
@@ -86,31 +87,40 @@ def picture(
     draw: Callable[[Figure], None],
     height: float,
     width: float = WIDTH,
-    layout: Literal["constrained"] | None = "constrained",
 ) -> bytes:
     """The file of a figure (width, height) [in], with the look and in the format in force."""
     if (kept := _kept.get()) is not None and kept.target is not None:
         draw(cast("Figure", kept.target))
+        fit(_every(kept.target))
         return b""
     now = in_force()
     with in_style(), _no_noise():
         from matplotlib.figure import Figure
 
-        figure = Figure(figsize=(now.look.width(width), height), layout=layout)
+        figure = Figure(figsize=(now.look.width(width), height), layout="constrained")
         draw(figure)
+        fit(figure.axes)
         if kept is not None:
             kept.target = figure
             return b""
-        if (engine := figure.get_layout_engine()) is not None:
-            # Once, and no more: matplotlib would do it in a trial drawing, and again in the real
-            # one, which takes twice as long.
-            engine.execute(figure)
-            figure.set_layout_engine(None)
+        engine = figure.get_layout_engine()
+        assert engine is not None, "it was asked for"
+        # Once, and no more: matplotlib would do it in a trial drawing, and again in the real one,
+        # which takes twice as long.
+        engine.execute(figure)
+        figure.set_layout_engine(None)
         buffer = io.BytesIO()
         figure.savefig(buffer, format=now.ending, **SAVED[now.ending])
     if now.ending == "svg":  # formulas name one font, and none to fall back on
         return re.sub(rb"(font-family: '[^',]+')(?=[;\"])", rb"\1, sans-serif", buffer.getvalue())
     return buffer.getvalue()
+
+
+def _every(target: Target) -> Iterator[Axes]:
+    """Axes of a figure and of its parts."""
+    yield from target.axes
+    for part in target.subfigs:
+        yield from _every(part)
 
 
 def drawable_style(path: Path) -> dict[str, Any]:
@@ -169,6 +179,9 @@ def kept_figure(draw: Callable[[], bytes], target: Target | Axes | None = None) 
     from matplotlib.axes import Axes
 
     kept = Kept(_in_place_of(target) if isinstance(target, Axes) else target)
+    whole = None if kept.target is None else kept.target.get_figure(root=True)
+    if whole is not None and whole.get_layout_engine() is None:
+        whole.set_layout_engine("constrained")
     token = _kept.set(kept)
     try:
         draw()
@@ -197,6 +210,12 @@ def room(usual: float) -> float:
     """Width that a figure will have [in]; its own one, where nothing else is said."""
     target = given()
     return in_force().look.width(usual) if target is None else inches(target)[0]
+
+
+def tight() -> bool:
+    """True of a figure of somebody in which there is no room for numbers inside panels."""
+    target = given()
+    return target is not None and inches(target)[1] < TIGHT
 
 
 def narrow() -> bool:
@@ -237,18 +256,85 @@ def small() -> float:
 
 
 def heading(figure: Figure, *parts: str) -> None:
-    """Title and remarks above a figure: a line, and a few below it."""
+    """Title and remarks above a figure, in one line or the title above the others."""
     title, *others = [part for part in parts if part] or [""]
-    width = inches(figure)[0]
-    narrow, most = width < WIDTH, int(LETTERS_PER_INCH * width * 8.0 / small())
+    room, height = inches(figure)
     lines = ["   |   ".join((title, *others))]
-    if others and len(lines[0]) > most:
-        remarks = "   |   ".join(others)
-        lines = wrap(title, most, max_lines=2, placeholder="...") if narrow else [title]
-        lines += wrap(remarks, most, max_lines=6 if narrow else 2, placeholder="...")
-    cut = [line if len(line) <= most else f"{line[: most - 3]}..." for line in lines]
+    if width_of(lines[0], small()) > room - 0.2:
+        lines = folded(title, room - 0.2, small()).split("\n")[:2]
+        lines += folded("   |   ".join(others), room - 0.2, small()).split("\n")
+    most = len(lines) if given() is None else max(2, int(0.15 * height / LINE))
+    if len(lines) > most:
+        lines = [*lines[: most - 1], f"{lines[most - 1][:-3]}..."]
+    grow(figure, len(lines) - 2)
     # A dollar sign in a title begins no formula.
-    figure.suptitle("\n".join(cut), fontsize=small(), color=GREY, parse_math=False)
+    figure.suptitle("\n".join(lines), fontsize=small(), color=GREY, parse_math=False)
+
+
+def grow(figure: Figure, lines: int) -> None:
+    """Make room for further lines of text, unless the figure is somebody's."""
+    if given() is None and lines > 0:
+        width, height = inches(figure)
+        figure.set_size_inches(width, height + LINE * lines)
+
+
+def width_of(text: str, size: float) -> float:
+    """Of a text in letters of a size [pt], with formulas [in]."""
+    from matplotlib.font_manager import FontProperties
+    from matplotlib.textpath import text_to_path
+
+    def points(line: str) -> float:
+        with suppress(ValueError):  # it is no formula
+            return float(measure(line, font, line.count("$") % 2 == 0 < line.count("$"))[0])
+        return float(measure(line, font, ismath=False)[0])
+
+    font, measure = FontProperties(size=size), text_to_path.get_text_width_height_descent
+    return max(map(points, text.split("\n"))) / 72.0
+
+
+def folded(text: str, room: float, size: float) -> str:
+    """A text in lines that fit into a room [in], broken at commas or words, never in formulas.
+
+    Only words that are too long themselves are broken anywhere.
+    """
+    lines = []
+    for line in text.split("\n"):
+        pieces = _PARTS.findall(line)
+        if any(width_of(piece.rstrip(), size) > room for piece in pieces):
+            pieces = _WORDS.findall(line)
+        begun = ""
+        for piece in pieces:
+            if begun and width_of((begun + piece).rstrip(), size) > room:
+                lines.append(begun.rstrip())
+                begun = ""
+            begun += piece
+            while "$" not in begun and len(begun) > 1 and width_of(begun.rstrip(), size) > room:
+                fits = max(1, int(len(begun) * room / width_of(begun, size)))
+                lines.append(begun[:fits])
+                begun = begun[fits:]
+        lines.append(begun.rstrip())
+    return "\n".join(lines)
+
+
+_WORDS = re.compile(r"(?:\$[^$]*\$|[^\s$])+\s*|\$|\s+")
+_PARTS = re.compile(r"(?:\$[^$]*\$|[^$,]|,(?!\s))+(?:,\s+|$)|\$|,\s+")
+
+
+def fit(panels: Iterable[Axes]) -> None:
+    """Fold titles and labels that are longer than their axes."""
+    from matplotlib.text import Text
+
+    for axes in panels:
+        across = _room(axes) - 0.25
+        upwards = 1.3 * axes.get_window_extent().height / axes.figure.dpi
+        # Beside its texts the children of axes are three titles.
+        inside = (each for each in axes.get_children() if each not in axes.texts)
+        for text in (*(each for each in inside if isinstance(each, Text)), axes.xaxis.label):
+            text.set_text(folded(text.get_text(), across, float(text.get_fontsize())))
+        for each in (axes, *axes.child_axes):
+            if "\n" in (label := each.yaxis.label).get_text():
+                continue  # by hand
+            label.set_text(folded(label.get_text(), upwards, float(label.get_fontsize())))
 
 
 def percent(share: float) -> str:
@@ -275,34 +361,59 @@ def entries(panels: Iterable[Axes]) -> dict[str, Any]:
     return found
 
 
-def legend_above(axes: Axes, columns: int) -> None:
-    """A legend on top of the axes, where it covers nothing; folded where the figure is narrow."""
-    width, _ = inches(axes.figure)
-    if width < WIDTH:
-        widest = max(_letters(str(text)) for text in axes.get_legend_handles_labels()[1])
-        room = (width - 0.5) / (0.4 + widest / LETTERS_PER_INCH)
-        columns = max(1, min(columns, int(room)))
-    handles, names = axes.get_legend_handles_labels()
+def legend_above(axes: Axes) -> None:
+    """A legend on top of the axes, where it covers nothing; folded where they are narrow."""
+    room = _room(axes)
     axes.legend(
-        in_rows(handles, columns),
-        in_rows(names, columns),
-        loc="lower right" if width < WIDTH else "lower left",
+        **_arranged(entries([axes]), room - 0.5, None),
+        loc="lower right" if room < WIDTH else "lower left",
         bbox_to_anchor=(0.0, 1.0, 1.0, 0.1),
-        ncols=columns,
         borderaxespad=0.1,
-        columnspacing=1.4,
-        handlelength=1.8,
     )
 
 
-def _letters(text: str) -> int:
-    """Number of letters that a text with formulas shows, about."""
-    return len(re.sub(r"[${}_^]", "", re.sub(r"\\[A-Za-z]+", "x", text)))
+def _room(axes: Axes) -> float:
+    """Width of the place of axes, with what is beside them [in]."""
+    if (place := axes.get_subplotspec()) is None:
+        return float(axes.get_window_extent().width / axes.figure.dpi)
+    ratios: Any = place.get_gridspec().get_width_ratios()
+    share = sum(ratios[place.colspan.start : place.colspan.stop]) / sum(ratios)
+    return float(share * inches(axes.figure)[0])
 
 
-def folded(figure: Figure, text: str) -> str:
-    """A label of one of several axes side by side: in a narrow figure, one word a line."""
-    return text if inches(figure)[0] >= WIDTH else text.replace(" ", "\n")
+def legend_below(figure: Figure, panels: Iterable[Axes]) -> None:
+    """One legend for several axes, below them; in somebody's figure the first entries only."""
+    if found := entries(panels):
+        width, height = inches(figure)
+        most = None if given() is None else max(1, int(0.15 * height / LINE))
+        arranged = _arranged(found, width - 0.2, most)
+        rows = -(-len(arranged["labels"]) // arranged["ncols"])
+        grow(figure, rows * max(1 + name.count("\n") for name in arranged["labels"]) - 1)
+        figure.legend(**arranged, loc="outside lower center")
+
+
+def _arranged(found: dict[str, Any], room: float, most: int | None) -> dict[str, Any]:
+    """Handles, names and columns of a legend in a room [in], whose last entry says what is cut."""
+    from matplotlib.lines import Line2D
+
+    size = small()
+    beside = 4.0 * size / 72.0  # handle and gaps
+    found = {folded(typeset(name), room - beside, size): of for name, of in found.items()}
+    widths = [beside + width_of(name, size) for name in found]
+    columns = next(
+        (n for n in range(len(found), 1, -1) if sum(max(widths[c::n]) for c in range(n)) <= room), 1
+    )
+    rows = -(-len(found) // columns)
+    columns = -(-len(found) // rows)  # so that rows are even
+    if most is not None and rows * max(1 + name.count("\n") for name in found) > most:
+        most = max(1, most // max(1 + name.count("\n") for name in found))
+        kept = most * columns - 1
+        names = dict.fromkeys([f"and {len(found) - kept} more"], Line2D([], [], ls=""))
+        found = dict(list(found.items())[:kept]) | names
+    return {
+        "handles": in_rows([*found.values()], columns), "labels": in_rows([*found], columns),
+        "ncols": columns, "columnspacing": 1.4, "handlelength": 1.8, "fontsize": size,
+    }  # fmt: skip
 
 
 def over(unit: float) -> tuple[Callable[[Any], Any], Callable[[Any], Any]]:

@@ -14,7 +14,7 @@ from rpscli.case.text.document import Document, Fault, Path, dotted, shown
 from rpscli.errors import listed
 from rpscli.report.figures import style
 from rpscli.report.study.labels import keyed, label
-from rpscli.report.study.panels import colour, in_panels, marker, noted
+from rpscli.report.study.panels import colour, in_panels, marker, noted, shaded
 from rpscli.report.study.report import Found, Report, without_uplift
 from rpscli.sweep.statistics.grouping import INTENSITY, Histories, grouping, own_keys
 from rpscli.sweep.table import Group, Indices, StudyResults, groups, leading_keys
@@ -61,7 +61,7 @@ def rotation(study: StudyResults, options: RotationOptions) -> Found:
         group: [paired(system, group) for system in systems if system is not reference]
         for group in found.groups
     }
-    pairs = [each for group in panels.values() for each in group]
+    pairs, count = [each for group in panels.values() for each in group], len(systems) - 1
     alpha = np.array([properties.alpha for properties in layout.properties])
     ratio = table.columns["max_rotation"] / alpha[np.arange(len(table)) // layout.points_of_system]
     ratio = np.where(table.overturned, np.inf, ratio)
@@ -76,13 +76,14 @@ def rotation(study: StudyResults, options: RotationOptions) -> Found:
             x, y = ratio[each.references], ratio[each.points]
             stood = np.isfinite(x) & np.isfinite(y)
             look: dict[str, Any] = {
-                "color": colour(place), "marker": marker(place), "ls": "", "ms": 3.2
+                "color": colour(place, count), "marker": marker(place), "ls": "", "ms": 3.2
             }  # fmt: skip
             axes.plot(x[stood], y[stood], **look, alpha=0.75, label=label(key, each.value))
-            axes.plot(
+            (fell,) = axes.plot(
                 np.minimum(x[~stood], x_top), np.minimum(y[~stood], y_top), **look,
                 mfc="none", mew=0.9, clip_on=False, zorder=3,
             )  # fmt: skip
+            fell.set_in_layout(False)  # on the frame
         axes.plot([0.0, min(x_top, y_top)], [0.0, min(x_top, y_top)], "k--", lw=0.8)
 
     # One row a pair; a rotation is empty where the structure overturned.
@@ -109,7 +110,7 @@ def rotation(study: StudyResults, options: RotationOptions) -> Found:
             x_label=rf"$|\theta_{{max}}|/\alpha$ [-], {against}",
             y_label=r"$|\theta_{max}|/\alpha$ [-], the others",
             limits=lambda axes: axes.set(xlim=(0.0, x_top), ylim=(0.0, y_top)),
-            note=noted(found, "open markers: overturned", failed=failed),
+            note=noted(found, "open markers: overturned", shaded(count), failed=failed),
         ),
     )
 

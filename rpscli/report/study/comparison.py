@@ -19,7 +19,7 @@ from rpscli.report.study.fragility import (
     measure_without_period,
 )
 from rpscli.report.study.labels import keyed, labels
-from rpscli.report.study.panels import log_ticks
+from rpscli.report.study.panels import first, log_ticks
 from rpscli.report.study.report import Found, Report
 from rpscli.report.study.statistics import reached
 from rpscli.report.table import Column
@@ -36,8 +36,8 @@ from rpscli.sweep.statistics.observations import (
 )
 from rpscli.sweep.table import Array, Indices, Intensity, StudyResults
 
-MOST_PANELS = 16
-"""In the figure; the CSV files have all."""
+MOST_ROWS = 8
+"""Of panels in the figure; the CSV files have all."""
 SHOWN = {
     "": ("counted", "agreed_share", "overturned_observed", "overturned_computed", "failed"),
     "_maxima": ("quantity", "counted", "overturned_computed", "median_ratio", "dispersion"),
@@ -191,10 +191,9 @@ def comparison_figure(
     keys: Sequence[str], compared: Sequence[Compared], intensity: Intensity, title: str
 ) -> bytes:
     """One panel a system and quantity."""
-    shown = compared[:MOST_PANELS]
-    across = 1 if len(shown) == 1 else 2
+    across = 1 if len(compared) == 1 or style.narrow() else 2
+    shown, cut = first(compared, across, MOST_ROWS * across, 5)
     down = -(-len(shown) // across)
-    cut = f"the first {len(shown)} of {len(compared)} panels" * (len(compared) > len(shown))
 
     def draw(figure: style.Figure) -> None:
         style.heading(figure, title, cut)
@@ -208,6 +207,7 @@ def comparison_figure(
                 line = _draw_maxima(axes, each, each.found)
             system = labels(keys, each.values)
             axes.set_title(f"{system}\n{line}" if system else line, fontsize=style.small())
+        style.legend_below(figure, grid.flat)
 
     return style.picture(draw, 0.6 + 3.1 * down, style.WIDTH if across > 1 else 0.7 * style.WIDTH)
 
@@ -229,16 +229,13 @@ def _draw_outcomes(axes: style.Axes, each: Compared, found: Outcomes, intensity:
         chosen = at[each.computed - each.observed == sign]
         axes.plot(
             chosen, np.full(len(chosen), height), ls="", marker="|", ms=6, color=style.RED,
-            label=f"{name} ({len(chosen)})",
+            label=name,
         )  # fmt: skip
     axes.set_xscale("log")
     log_ticks(axes.xaxis)
     axes.set_ylim(-0.1, 1.1)
     axes.set_xlabel(style.typeset(f"{measure_name(intensity)} [{intensity.unit}]"))
     axes.set_ylabel("share that overturned")
-    axes.legend(
-        loc="upper left", bbox_to_anchor=(0.0, 0.94), fontsize=0.9 * style.small(), handlelength=1.4
-    )
     percent = 100.0 * (counts.agreed.fraction or 0.0)
     line = f"{percent:.1f} % of {counts.counted} agree"
     return f"{line}; overturned {counts.computed}, observed {counts.observed}"

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from operator import attrgetter
-from typing import Annotated, Any, NamedTuple
+from typing import Annotated, Any, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,7 +24,15 @@ from rpscli.case.study.schema import Option, PositiveNumber, PositiveNumbers, Se
 from rpscli.records.measures import MEASURES, measure_label, needs_period
 from rpscli.report.figures import style
 from rpscli.report.study.labels import keyed, labels
-from rpscli.report.study.panels import colour, left_out, marker, over, panel_figure, remarks
+from rpscli.report.study.panels import (
+    COLOURS,
+    colour,
+    left_out,
+    marker,
+    over,
+    panel_figure,
+    remarks,
+)
 from rpscli.report.study.report import Found, Report
 from rpscli.report.study.statistics import counted_columns, share_columns
 from rpscli.report.table import Column
@@ -34,6 +42,8 @@ from rpscli.sweep.statistics.fractiles import CONFIDENCE, Share, share_of
 from rpscli.sweep.statistics.grouping import INTENSITY, Grouping, Histories, grouping
 from rpscli.sweep.statistics.verdicts import exceeds
 from rpscli.sweep.table import Array, Indices, Intensity, StudyResults, Table
+
+Item = TypeVar("Item")
 
 CURVE_POINTS = 101
 MOST_BINS = 10
@@ -206,10 +216,6 @@ class Fragilities:
     limits: tuple[LimitState, ...]
     curves: tuple[Fragility, ...]
 
-    def fitted(self, limit: LimitState) -> list[Fragility]:
-        """The curves of a limit state that could be fitted."""
-        return [curve for curve in self.curves if curve.limit == limit and curve.fit.fitted]
-
     @property
     def axis(self) -> str:
         """Label of the axis of intensities."""
@@ -225,6 +231,25 @@ class Fragilities:
             counts = f"{fallen} of {exceeded} histories beyond a limit"
             yield f"an overturned history exceeds every limit: {counts} overturned"
         yield from self.told((curve, curve.fit.note) for curve in self.curves)
+
+    def placed(self, curve: Fragility) -> tuple[str, str, int, int]:
+        """Panel, name and place among how many: systems in panels of limit states, or the reverse.
+
+        These where there are more systems than colours.
+        """
+        system, limit = labels(self.systems.keys, curve.values), curve.limit.title
+        if len(self.systems.groups) > len(COLOURS):
+            return system, limit, self.limits.index(curve.limit), len(self.limits)
+        return limit, system, curve.place, len(self.systems.groups)
+
+    def in_panels(
+        self, items: Iterable[Item], of: Callable[[Item], Fragility]
+    ) -> dict[str, list[Item]]:
+        """Items whose curves share a panel, by its title."""
+        panels: dict[str, list[Item]] = {}
+        for item in items:
+            panels.setdefault(self.placed(of(item))[0], []).append(item)
+        return panels
 
     def told(self, notes: Iterable[tuple[Fragility, str | None]]) -> Iterator[str]:
         """Notes on curves, each once with all that it is about."""
@@ -412,21 +437,19 @@ def fragility_figure(report: Fragilities) -> Callable[[str], bytes]:
     """One panel a limit state with a fit; markers are observed shares, shades the bands."""
     from scipy.special import ndtr
 
-    limits = [limit for limit in report.limits if report.fitted(limit)]
-    panels = [report.fitted(limit) for limit in limits]
-    drawn = [curve for panel in panels for curve in panel]
+    drawn = [curve for curve in report.curves if curve.fit.fitted]
+    panels = report.in_panels(drawn, lambda curve: curve)
 
     def draw(axes: style.Axes, curves: list[Fragility]) -> None:
         for curve in curves:
             fit, grid, seen = curve.fit, curve.grid, curve.observed
+            _, name, place, count = report.placed(curve)
             look: dict[str, Any] = {
-                "color": colour(curve.place, len(report.systems.groups)),
-                "marker": marker(curve.place),
-                "ms": 3.2,
-            }
+                "color": colour(place, count), "marker": marker(place), "ms": 3.2,
+            }  # fmt: skip
             axes.plot(
                 grid, fit.curve, "--" if fit.method == "penalised" else "-", lw=1.4, markevery=[],
-                label=labels(report.systems.keys, curve.values) or None, **look,
+                label=name or None, **look,
             )  # fmt: skip
             if len(curves) <= MOST_BANDS:
                 axes.fill_between(grid, *fit.band, color=look["color"], alpha=0.15, lw=0)
@@ -438,28 +461,32 @@ def fragility_figure(report: Fragilities) -> Callable[[str], bytes]:
         axes.set_xlim(0.0, max(curve.grid[-1] for curve in curves))
         beyond_computed(axes, max(curve.largest for curve in curves), axes.get_xlim()[1])
 
-    bands = any(np.isfinite(curve.fit.band[0]).any() for curve in drawn)
+    banded = [curve for panel in panels.values() if len(panel) <= MOST_BANDS for curve in panel]
+    bands = any(np.isfinite(curve.fit.band[0]).any() for curve in banded)
     missing = sum(not curve.fit.fitted for curve in report.curves)
     return panel_figure(
-        [limit.title for limit in limits],
-        panels,
+        [*panels],
+        [*panels.values()],
         draw,
-        in_row=limits_in_row(limits),
+        in_row=in_row(len(panels)),
         x_label=report.axis,
         y_label="probability of exceedance",
         note=remarks(
             "markers: observed",
             f"bands: {style.percent(report.confidence)}, the choice of records"
             if bands
+            else f"no bands of more than {MOST_BANDS} curves, see CSV"
+            if drawn and not banded
             else "no bands are determined",
             "dotted: with further dispersion" * any(c.total != c.fit.beta for c in drawn),
             BEYOND_COMPUTED,
             "dashed: separated data, penalised fit"
             * any(c.fit.method == "penalised" for c in report.curves),
-            "overturning exceeds every limit" * any(of.threshold is not None for of in limits),
+            "overturning exceeds every limit"
+            * any(curve.limit.threshold is not None for curve in drawn),
             f"{missing} of {len(report.curves)} curves without a fit, see CSV" * bool(missing),
             over(report.systems.pooled),
-            left_out(sum(curve.failed for curve in panels[0]) if panels else 0),
+            left_out(sum({curve.place: curve.failed for curve in drawn}.values())),
         ),
     )
 
@@ -473,9 +500,9 @@ def beyond_computed(axes: style.Axes, largest: float, end: float) -> None:
         axes.axvspan(largest, end, color=style.GREY, alpha=0.15, lw=0, zorder=0)
 
 
-def limits_in_row(limits: Sequence[LimitState]) -> int:
-    """Panels of limit states side by side."""
-    return 2 if len(limits) == 4 else 3
+def in_row(panels: int) -> int:
+    """Panels side by side."""
+    return 2 if panels == 4 else 3
 
 
 def measure_name(intensity: Intensity) -> str:

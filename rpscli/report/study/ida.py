@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from pydantic import Field
+from pydantic import AliasChoices, Field
 
 from rpscli.case.study.axes import Axis
 from rpscli.case.study.reports import ReportOptions, ReportRequest, VariedKeys
@@ -14,7 +14,7 @@ from rpscli.case.text.document import Document, Fault
 from rpscli.errors import listed
 from rpscli.report.figures import style
 from rpscli.report.study.labels import keyed
-from rpscli.report.study.panels import in_panels, noted
+from rpscli.report.study.panels import in_panels, large_axis, large_label, noted
 from rpscli.report.study.report import DemandName, Found, Report
 from rpscli.sweep.evaluation import SCALARS
 from rpscli.sweep.statistics.fractiles import THREE, demand, fractiles
@@ -28,7 +28,11 @@ LINES = ((style.BLUE, ":"), (style.BLUE, "-"), (style.BLUE, "--"))
 class IdaOptions(ReportOptions):
     """Incremental dynamic analysis: demand against intensity, with fractiles."""
 
-    demand: DemandName = Field("rotation_ratio", description="horizontal axis")
+    result: DemandName = Field(
+        "rotation_ratio",
+        description="horizontal axis",
+        validation_alias=AliasChoices("result", "demand"),
+    )
     panels: VariedKeys | None = Field(None, description="varied keys, one panel for each value")
 
 
@@ -50,12 +54,12 @@ def ida(study: StudyResults, options: IdaOptions) -> Found:
     """Curves and fractiles of each system."""
     table = study.table
     found = grouping(table, options.panels, (INTENSITY,))
-    demands = demand(table, table.columns[options.demand])
+    demands = demand(table, table.columns[options.result])
     panels = [_panel(group, demands) for group in found.groups]
     (name,) = shown_keys(table.layout, (INTENSITY,))
-    quantity, level_unit = SCALARS["timehistory"][options.demand], unit_of(name)
+    quantity, level_unit = SCALARS["timehistory"][options.result], unit_of(name)
     heads = {name: level_unit}
-    heads |= {f"{options.demand}_{round(100 * share)}": quantity.unit for share in THREE}
+    heads |= {f"{options.result}_{round(100 * share)}": quantity.unit for share in THREE}
     heads |= dict.fromkeys(("counted", "overturned", "failed"), "-")
     rows = [
         (panel.values, height, *spread, len(level), level.overturned.number, level.failed)
@@ -72,6 +76,7 @@ def ida(study: StudyResults, options: IdaOptions) -> Found:
 
     def draw(axes: style.Axes, panel: Panel) -> None:
         levels = np.concatenate([[0.0], panel.heights])
+        large_axis(axes.xaxis, quantity.unit)
         # Evenly through all of them: more would only blacken the panel.
         for curve in panel.curves[:: max(1, len(panel.curves) // MOST_CURVES)]:
             axes.plot(
@@ -90,7 +95,7 @@ def ida(study: StudyResults, options: IdaOptions) -> Found:
             found.keys,
             panels,
             draw,
-            x_label=quantity.axis_label,
+            x_label=large_label(quantity),
             y_label=f"{name} [{level_unit}]",
             limits=lambda axes: axes.set(xlim=(0.0, 0.97 * edge), ylim=(0.0, top)),
             note=noted(
@@ -141,4 +146,4 @@ def single_intensity(
         yield Fault(request.path, f"the report {request.kind} needs {wanted}")
 
 
-REPORT = Report(IdaOptions, ida, check=single_intensity, results=lambda options: [options.demand])
+REPORT = Report(IdaOptions, ida, check=single_intensity, results=lambda options: [options.result])

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
-from pydantic import Field, StrictBool
+from pydantic import AliasChoices, Field, StrictBool
 
 from rpscli.analyses.result_quantities import ResultQuantity
 from rpscli.case.schema.fields import Text
@@ -19,9 +19,19 @@ from rpscli.case.text.document import Document, Fault, Path, dotted
 from rpscli.errors import hint
 from rpscli.report.figures import style
 from rpscli.report.study.labels import keyed, labels, plain, symbol
-from rpscli.report.study.panels import colour, in_panels, left_out, over, remarks
+from rpscli.report.study.panels import (
+    colour,
+    in_panels,
+    large_axis,
+    large_label,
+    left_out,
+    over,
+    remarks,
+    shaded,
+)
 from rpscli.report.study.report import Found, Report, Statistic
 from rpscli.report.study.statistics import reached
+from rpscli.report.table import LARGE_UNITS
 from rpscli.sweep.evaluation import KNOWN, quantity
 from rpscli.sweep.statistics.grouping import (
     Histories,
@@ -38,6 +48,8 @@ LEGEND = {"frequency_parameter": "model", "frequency_parameter_rigid": "rigid es
 """Names of results that are compared in one figure, where the last word says too much."""
 
 MEAN = statistic_words("mean")
+MOST_NAMED = 2
+"""Results whose names stand on the axis; the legend has those of more."""
 
 Values = dict[str, list[Any]]
 """Some results of all points, by name; None where a point has none."""
@@ -47,7 +59,10 @@ class LinesOptions(ReportOptions):
     """Any result against a varied key, or one list of results against another."""
 
     x: Text = Field(description="a varied key, or a result that is a list")
-    y: Keys = Field(description="results, such as rolling.frequency_ratio.0")
+    result: Keys = Field(
+        description="one result or several, such as rolling.frequency_ratio.0",
+        validation_alias=AliasChoices("result", "y"),
+    )
     dashed: AnyKeys = Field((), description="results drawn dashed, as a comparison")
     series: VariedKeys | None = Field(None, description="varied keys, one line for each value")
     panels: VariedKeys | None = Field(None, description="varied keys, one panel for each value")
@@ -58,7 +73,7 @@ class LinesOptions(ReportOptions):
     )
     upright: StrictBool = Field(default=False, description="draw x upwards, as floors are")
     x_label: Text | None = Field(None, description="in place of the name of x")
-    y_label: Text | None = Field(None, description="in place of the name of y")
+    y_label: Text | None = Field(None, description="in place of the names of the results")
 
 
 class Line(NamedTuple):
@@ -89,7 +104,7 @@ def lines(study: StudyResults, options: LinesOptions) -> Found:
     panel_keys, series = options.panels or (), options.series
     if series is None:
         series = own_keys(layout, (*panel_keys, *together))
-    names = (*options.y, *options.dashed)
+    names = (*options.result, *options.dashed)
     found = grouping(study.table, panel_keys, (*series, options.x))
     values = _collected(study, names if together else (*names, options.x))
     panels = []
@@ -121,7 +136,7 @@ def lines(study: StudyResults, options: LinesOptions) -> Found:
     if statistic == MEAN and (fallen := _left_out_of_means(panels)):
         notes.append(fallen)
 
-    y_label = ", ".join(filter(None, (options.y_label or _axis(names[0]), statistic)))
+    y_label = ", ".join(filter(None, (options.y_label or _together(names), statistic)))
     both = (options.x_label or _axis(x_name), y_label)
     unbounded = any(math.inf in line.y for line in every)
     return Found(
@@ -134,6 +149,9 @@ def lines(study: StudyResults, options: LinesOptions) -> Found:
             y_label=both[not options.upright],
             note=remarks(
                 over(found.pooled) if together else "",
+                "hollow: means without those that overturned, counts in the CSV"
+                * (statistic == MEAN and any(any(line.overturned) for line in every)),
+                shaded(max(len({line.values for line in every}), len(names))),
                 f"not drawn where the {statistic} overturned" if unbounded else "",
                 left_out(found.failed),
             ),
@@ -209,13 +227,16 @@ def _draw(
     statistic: str,
 ) -> None:
     """One line a series and result; dashed ones are comparisons."""
-    results = (*options.y, *options.dashed)
+    results = (*options.result, *options.dashed)
     series = list(dict.fromkeys(line.values for line in every))
     words = (LEGEND.get(name, name) for name in _distinct(results))
     names = dict(zip(results, words, strict=True))
     dashed = [line for line in panel.lines if line.result in options.dashed]
     paths = {tuple(plain(y) for y in line.y) for line in dashed}
-    among = len(dashed) if len(paths) == 1 else 1
+    among, count = len(dashed) if len(paths) == 1 else 1, max(len(series), len(results))
+    of_x, of_y = (axes.yaxis, axes.xaxis) if options.upright else (axes.xaxis, axes.yaxis)
+    large_axis(of_x, _unit(options.x))
+    large_axis(of_y, _unit(results[0]))
     for line in panel.lines:
         place = series.index(line.values)
         if len(series) == 1:
@@ -228,26 +249,17 @@ def _draw(
             *pair, lw=1.4,
             ls=_staggered(place, among)
             if is_dashed
-            else ("-", "-.", ":")[options.y.index(line.result) % 3],
-            color=colour(place, max(len(series), len(results))),
+            else ("-", "-.", ":")[options.result.index(line.result) % 3],
+            color=colour(place, count),
             marker="o" if len(x) < 25 and not is_dashed else "", ms=3.0,
             label=", ".join(filter(None, parts)) or None,
         )  # fmt: skip
-        if statistic == MEAN and not options.upright:
-            _say_what_is_left_out(axes, line, x)
+        if statistic == MEAN:
+            fallen = [n for n, overturned in enumerate(line.overturned) if overturned]
+            at = [[values[n] for n in fallen] for values in pair]
+            axes.plot(*at, "o", color="white", mec=colour(place, count), ms=4.5, zorder=3.0)
         if words_at:
             (axes.set_yticks if options.upright else axes.set_xticks)(x, words_at)
-
-
-def _say_what_is_left_out(axes: style.Axes, line: Line, x: list[float]) -> None:
-    """Both counts beside every mean that leaves overturned histories out."""
-    axes.margins(y=0.12)
-    for at, y, counted, overturned in zip(x, line.y, line.counted, line.overturned, strict=True):
-        if overturned:
-            axes.annotate(
-                f"{counted} of {counted + overturned}", (at, y), (0.0, 4.0), ha="center",
-                fontsize=0.8 * style.small(), textcoords="offset points", color=style.GREY,
-            )  # fmt: skip
 
 
 def _distinct(results: tuple[str, ...]) -> list[str]:
@@ -271,10 +283,19 @@ def _staggered(place: int, among: int) -> str | tuple[int, tuple[int, int]]:
     return (2 * place, (2, 2 * min(among, 3) - 2)) if among > 1 else "--"
 
 
+def _together(names: Sequence[str]) -> str:
+    """Label of the axis of one or two kinds of result, or of values that a legend tells apart."""
+    labels, units = [{*map(of, names)} for of in (_axis, _unit)]
+    if len(labels) <= MOST_NAMED:
+        return ", ".join(dict.fromkeys(map(_axis, names)))
+    (unit,) = units if len(units) == 1 else ("SI units",)
+    return f"value [{LARGE_UNITS.get(unit, unit)}]"
+
+
 def _axis(name: str) -> str:
     """Label of an axis: that of the result, or the varied key with its unit."""
     found = _quantity(name)
-    return found.axis_label if found else f"{symbol(name)} [{unit_of(name)}]"
+    return large_label(found) if found else f"{symbol(name)} [{unit_of(name)}]"
 
 
 def _quantity(name: str) -> ResultQuantity | None:
@@ -294,7 +315,8 @@ def unknown_results(
     assert isinstance(options, LinesOptions), "requests have the options of their kind"
     varied = {key for axis in axes for key in axis.keys} | {"record", "scale"}
     named = [("x", options.x)] if options.x not in varied else []
-    named += [("y", name) for name in options.y] + [("dashed", name) for name in options.dashed]
+    named += [("result", name) for name in options.result]
+    named += [("dashed", name) for name in options.dashed]
     for option, name in named:
         if quantity(analysis, name) is None:
             path: Path = (*request.path, request.kind, option)
@@ -307,6 +329,6 @@ REPORT = Report(
     LinesOptions,
     lines,
     check=unknown_results,
-    results=lambda options: (*options.y, *options.dashed),
+    results=lambda options: (*options.result, *options.dashed),
     analyses=("timehistory", "modal", "pushover"),
 )

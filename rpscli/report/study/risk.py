@@ -21,15 +21,14 @@ from rpscli.report.study.fragility import (
     Fragilities,
     Fragility,
     FragilityOptions,
-    LimitState,
     beyond_computed,
     fragilities,
-    limits_in_row,
+    in_row,
     margins,
     what_bands_hold,
     wrong_intensities,
 )
-from rpscli.report.study.labels import keyed, labels
+from rpscli.report.study.labels import keyed
 from rpscli.report.study.panels import (
     break_if_narrow,
     colour,
@@ -290,28 +289,27 @@ def _report_notes(found: Fragilities, risks: Sequence[Risk], of: Of | None) -> I
 
 def risk_figure(found: Fragilities, risks: Sequence[Risk], years: float) -> Callable[[str], bytes]:
     """One panel a limit state: what share of its rate comes from which intensities."""
-    limits = [limit for limit in found.limits if found.fitted(limit)]
-    groups, (low, high) = len(found.systems.groups), _shown(risks)
+    panels = found.in_panels(risks, lambda each: each.fragility)
+    most, (low, high) = max(map(len, panels.values())), _shown(risks)
     last = float(risks[0].edges[-2])
 
     def line() -> float:
         """Height of the numbers above the steps: two lines where panels are narrow."""
-        return 0.075 if len(limits) == 3 else 0.075 * (1 + break_if_narrow().count("\n"))
+        return 0.075 * (1 + break_if_narrow().count("\n"))
 
     def room() -> float:
-        return 0.03 + line() * min(groups, MOST_BANDS)
+        return 0.03 + line() * min(most, MOST_BANDS)
 
-    def draw(axes: style.Axes, limit: LimitState) -> None:
-        of_limit = [each for each in risks if each.fragility.limit == limit]
-        for row, each in enumerate(of_limit):
-            shade = colour(each.fragility.place, groups)
-            name = labels(found.systems.keys, each.fragility.values)
+    def draw(axes: style.Axes, panel: list[Risk]) -> None:
+        for row, each in enumerate(panel):
+            _, name, place, count = found.placed(each.fragility)
+            shade = colour(place, count)
             shares = 100.0 * each.rates / each.rate
             axes.stairs(shares[:-1], each.edges[:-1], color=shade, lw=1.4, label=name or None)
             if high > last:
                 axes.stairs(shares[-1:], [last, high], color=shade, lw=1.4, ls=":")
             axes.axvline(each.half, ymax=1.0 - room(), color=shade, lw=0.8, ls="--")
-            if len(of_limit) <= MOST_BANDS:
+            if len(panel) <= MOST_BANDS and not style.tight():
                 words = f"P = {with_band(*each.probabilities(years))}"
                 if line() > 0.1:
                     words = words.replace(" (", "\n(")
@@ -319,7 +317,7 @@ def risk_figure(found: Fragilities, risks: Sequence[Risk], years: float) -> Call
                     0.02, 0.98 - line() * row, words, color=shade, transform=axes.transAxes,
                     va="top", fontsize=0.85 * style.small(),
                 )  # fmt: skip
-        beyond_computed(axes, max(each.fragility.largest for each in of_limit), high)
+        beyond_computed(axes, max(each.fragility.largest for each in panel), high)
 
     def limit_axes(axes: style.Axes) -> None:
         axes.set_xscale("log")  # of all panels at the end: ticks of logarithms are of another kind
@@ -328,10 +326,10 @@ def risk_figure(found: Fragilities, risks: Sequence[Risk], years: float) -> Call
         axes.set_ylim(0.0, axes.get_ylim()[1] / (1.0 - room()))
 
     return panel_figure(
-        [limit.title for limit in limits],
-        limits,
+        [*panels],
+        [*panels.values()],
         draw,
-        in_row=limits_in_row(limits),
+        in_row=in_row(len(panels)),
         x_label=found.axis,
         y_label="share of the annual rate [%]",
         limits=limit_axes,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import PurePath
 from typing import Annotated, Literal, NamedTuple
 
@@ -13,21 +13,35 @@ from pydantic import Field
 
 from rpscli.analyses.outcome import STOOD
 from rpscli.case.schema.case_file import Time
-from rpscli.case.schema.fields import Quantity, Section
-from rpscli.case.study.reports import ReportOptions, VariedKeys
-from rpscli.errors import CaseError, RecordError
+from rpscli.case.schema.fields import Quantity, Section, Text
+from rpscli.case.study.axes import Axis
+from rpscli.case.study.reports import ReportOptions, ReportRequest, VariedKeys
+from rpscli.case.text.document import Document, Fault, Path, dotted
+from rpscli.errors import CaseError, RecordError, hint, is_number
+from rpscli.records.measures import MEASURES
 from rpscli.records.source import Source
 from rpscli.report.figures import style
-from rpscli.report.study.labels import keyed, labels
-from rpscli.report.study.panels import break_if_narrow, colour, in_panels, marker, noted
-from rpscli.report.study.report import DemandName, Found, Report, without_uplift
-from rpscli.report.table import Column
+from rpscli.report.study.fragility import MeasureOptions, measure_name, measure_without_period
+from rpscli.report.study.labels import axis_label, keyed, labels
+from rpscli.report.study.panels import (
+    break_if_narrow,
+    colour,
+    in_panels,
+    large_axis,
+    large_label,
+    marker,
+    noted,
+    shaded,
+)
+from rpscli.report.study.report import Found, Report, without_uplift
+from rpscli.report.table import Column, measured
 from rpscli.sweep.context import RecordRequest
 from rpscli.sweep.evaluation import SCALARS
 from rpscli.sweep.fits.bilinear import FEWEST, Bilinear, bilinear_fit
 from rpscli.sweep.points import StudyPoints
 from rpscli.sweep.statistics.grouping import INTENSITY, Histories, grouping, shown_keys
-from rpscli.sweep.table import Array, StudyResults, leading_keys
+from rpscli.sweep.table import Array, StudyResults, Table, groups, leading_keys, unit_of
+from rpscli.units import in_si
 
 
 class DemandOptions(ReportOptions):
@@ -38,10 +52,10 @@ class DemandOptions(ReportOptions):
 
 
 class ScatterOptions(DemandOptions):
-    """One demand against another, a marker for each history that stood."""
+    """Demands, measures of the motion or varied keys, a marker for each history that stood."""
 
-    x: DemandName = Field(description="demand to the right")
-    y: DemandName = Field(description="demand upwards")
+    x: Text = Field(description="to the right: a demand, a measure as PGV, or a varied key")
+    y: Text = Field(description="upwards: likewise")
     curve: Literal["bilinear"] | None = Field(None, description="through the points of a panel")
 
 
@@ -54,6 +68,28 @@ COEFFICIENTS = (
     ("residual", "residual", "y"),
 )
 """Names of what a bilinear curve is made of in tables, its attributes, and their units."""
+
+
+class Ordinate(NamedTuple):
+    """What an axis shows of all points (points,) [SI]."""
+
+    values: Array
+    unit: str
+    label: str
+
+
+def ordinate(table: Table, name: str) -> Ordinate:
+    """A demand, a measure of the scaled motion (at T1), or a varied key, NaN where no number."""
+    if (quantity := SCALARS["timehistory"].get(name)) is not None:
+        return Ordinate(table.columns[name], quantity.unit, large_label(quantity))
+    if name in MEASURES.names():
+        found = table.intensity(name)
+        return Ordinate(found.values, found.unit, f"{measure_name(found)} [{found.unit}]")
+    values = np.full(len(table), np.nan)
+    for group in groups(table.layout, [name]):
+        value = in_si(group.values[0], unit_of(name))
+        values[group.points] = value if is_number(value) else np.nan
+    return Ordinate(values, unit_of(name), axis_label(*shown_keys(table.layout, [name])))
 
 
 class Cloud(NamedTuple):
@@ -88,7 +124,8 @@ def _scatter(
     kept: NDArray[np.bool_],
 ) -> Found:
     table = study.table
-    x, y = table.columns[x_name], table.columns[y_name]
+    both = ordinate(table, x_name), ordinate(table, y_name)
+    x, y = (each.values for each in both)
     kept = kept & ~table.failed & np.isfinite(x) & np.isfinite(y)
     found = grouping(table, options.panels, series)
     series_keys = shown_keys(table.layout, series)
@@ -99,35 +136,37 @@ def _scatter(
         shown = Histories(table, group.values, group.points[kept[group.points]])
         fit = bilinear_fit(x[shown.points], y[shown.points]) if curved else None
         clouds.append(Cloud(group.values, group, shown, fit))
+    units = (both[0].unit, both[1].unit) if plain else None
     every = np.concatenate([cloud.shown.points for cloud in clouds])
+    most = max(len(cloud.shown.parts(series)) for cloud in clouds)
     highest, top = (float(values[every].max(initial=0.0)) for values in (x, y))
 
     def draw(axes: style.Axes, cloud: Cloud) -> None:
+        for axis, each in zip((axes.xaxis, axes.yaxis), both, strict=True):
+            large_axis(axis, each.unit)
         for place, part in enumerate(cloud.shown.parts(series)):
             axes.plot(
                 x[part.points], y[part.points], ls="", marker=marker(place), ms=3.0, alpha=0.7,
-                mew=0.0, color=colour(place), label=labels(series_keys, part.values) or None,
+                mew=0.0, color=colour(place, most), label=labels(series_keys, part.values) or None,
             )  # fmt: skip
         if curved:
-            _draw_curve(axes, cloud.fit, x[cloud.shown.points], (highest, top), plain=plain)
+            _draw_curve(axes, cloud.fit, x[cloud.shown.points], (highest, top), units)
 
     def limits(axes: style.Axes) -> None:
         axes.set(xlim=(0.0, 1.04 * highest or 1.0), ylim=(0.0, None))
 
-    quantities = SCALARS["timehistory"]
     fallen = f"{found.overturned} overturned points left out" if found.overturned else ""
     tables = {}
     if curved:
-        tables["_curve" * plain] = _fits(found.keys, clouds, x_name, y_name, x)
+        tables["_curve" * plain] = _fits(found.keys, clouds, (x_name, y_name), both)
     if plain:
-        units = {name: quantities[name].unit for name in (x_name, y_name)}
         rows = [
             ((*cloud.values, *part.values), n + 1, table.outcomes[n], float(x[n]), float(y[n]))
             for cloud in clouds
             for part in cloud.shown.parts(series)
             for n in part.points.tolist()
         ]
-        heads = {"point": "-", "outcome": "-", **units}
+        heads = {"point": "-", "outcome": "-", x_name: both[0].unit, y_name: both[1].unit}
         tables = {"": keyed((*found.keys, *series_keys), heads, rows), **tables}
     without = [_too_few(x, cloud) for cloud in clouds if curved and cloud.fit is None]
     notes = list(found.notes)
@@ -139,17 +178,26 @@ def _scatter(
             found.keys,
             clouds,
             draw,
-            x_label=quantities[x_name].axis_label,
-            y_label=quantities[y_name].axis_label,
+            x_label=both[0].label,
+            y_label=both[1].label,
             limits=limits,
-            note=noted(found, "fits without bands" * any(cloud.fit for cloud in clouds), fallen),
+            note=noted(
+                found,
+                "fits without bands" * any(cloud.fit for cloud in clouds),
+                shaded(most),
+                fallen,
+            ),
         ),
         notes,
     )
 
 
 def _draw_curve(
-    axes: style.Axes, fit: Bilinear | None, x: Array, room: tuple[float, float], *, plain: bool
+    axes: style.Axes,
+    fit: Bilinear | None,
+    x: Array,
+    room: tuple[float, float],
+    units: tuple[str, str] | None,
 ) -> None:
     """The curve as far as its points (m,) go, with its numbers where it leaves room for them."""
     highest, top = room
@@ -162,13 +210,13 @@ def _draw_curve(
             f"saturation at{apart}{fit.break_x:.3f}, {fit.break_y:.2f}"
             f"\nslope kₛ{apart}{fit.slope_after:.2f} {beyond}"
         )
-        if plain:
-            text = (
-                f"break at{apart}{fit.break_x:.3g}, {fit.break_y:.3g}"
-                f"\nslope{apart}{fit.slope_after:.3g} {beyond}"
-            )
+        if units is not None:
+            at = measured(fit.break_x, units[0]), measured(fit.break_y, units[1])
+            text = f"break at{apart}{', '.join(at)}\nslope{apart}{fit.slope_after:.3g} {beyond}"
         # Where the curve runs through the lower right, the upper left is free.
         rising = bool(np.min(fit(np.linspace(0.3, 1.0, 8) * highest)) < 0.35 * top)
+    if style.tight():
+        return
     axes.text(
         0.04 if rising else 0.96, 0.95 if rising else 0.05, text, transform=axes.transAxes,
         ha="left" if rising else "right", va="top" if rising else "bottom",
@@ -183,7 +231,10 @@ def _too_few(x: Array, cloud: Cloud) -> str:
 
 
 def _fits(
-    keys: tuple[str, ...], clouds: list[Cloud], x_name: str, y_name: str, x: Array
+    keys: tuple[str, ...],
+    clouds: list[Cloud],
+    names: tuple[str, str],
+    both: tuple[Ordinate, Ordinate],
 ) -> list[Column]:
     """One row a panel: the curve, and the points that it went through or left out."""
     rows = []
@@ -191,11 +242,11 @@ def _fits(
         resting = cloud.histories.table.outcomes[cloud.histories.points] == "at_rest"
         counts = len(cloud.shown), int(resting.sum()), cloud.histories.overturned.number
         fitted = (getattr(cloud.fit, attribute, None) for _, attribute, _ in COEFFICIENTS)
-        note = None if cloud.fit else _too_few(x, cloud)
+        note = None if cloud.fit else _too_few(both[0].values, cloud)
         rows.append((cloud.values, *fitted, *counts, cloud.histories.failed, note))
-    x_unit, y_unit = (SCALARS["timehistory"][name].unit for name in (x_name, y_name))
+    x_unit, y_unit = (each.unit for each in both)
     units = {"x": x_unit, "y": y_unit, "y/x": "-" if x_unit == y_unit else "SI"}
-    heads = {name.format(x=x_name, y=y_name): units[unit] for name, _, unit in COEFFICIENTS}
+    heads = {name.format(x=names[0], y=names[1]): units[unit] for name, _, unit in COEFFICIENTS}
     heads |= dict.fromkeys(("counted", "at_rest", "overturned", "failed", "note"), "-")
     return keyed(keys, heads, rows)
 
@@ -238,7 +289,7 @@ def overturning_spectrum(study: StudyResults, options: SpectrumOptions) -> Found
     found = grouping(table, options.panels, (*series, INTENSITY, "record"))
     series_keys = shown_keys(layout, series)
     clouds = {group: group.parts(series) for group in found.groups}
-    several = max(map(len, clouds.values())) > 1
+    several = (most := max(map(len, clouds.values()))) > 1
     rotation = table.columns["rotation_ratio"]
     shown = np.where(
         (table.outcomes == "survived") & (rotation < NEGLIGIBLE), "at_rest", table.outcomes
@@ -250,7 +301,7 @@ def overturning_spectrum(study: StudyResults, options: SpectrumOptions) -> Found
             boundary = _boundary(part, frequency, amplitude)
             if several:
                 # What overturned and the least that did; survivors would hide the other series.
-                fell, shade = part.points[part.fallen], colour(place, len(parts))
+                fell, shade = part.points[part.fallen], colour(place, most)
                 axes.plot(
                     frequency[fell], amplitude[fell], ls="", color=shade, marker=marker(place),
                     ms=2.6, mew=0.0, alpha=0.35,
@@ -291,7 +342,7 @@ def overturning_spectrum(study: StudyResults, options: SpectrumOptions) -> Found
             x_label=r"$\omega/p$ [-]",
             y_label=r"$a_p/(g\,\tan\alpha)$ [-]",
             limits=limits,
-            note=noted(found, "only what overturned" * several),
+            note=noted(found, "only what overturned" * several, shaded(most)),
         ),
     )
 
@@ -361,7 +412,39 @@ def records_without_period(layout: StudyPoints, options: SpectrumOptions) -> Ite
             return
 
 
-SCATTER = Report(ScatterOptions, scatter, results=lambda options: (options.x, options.y))
+def unknown_axes(
+    _document: Document, axes: Sequence[Axis], request: ReportRequest
+) -> Iterator[Fault]:
+    """Axes of what is no demand, no measure, and does not vary as a number."""
+    assert isinstance(request.options, ScatterOptions), "requests have the options of their kind"
+    varied = {
+        key
+        for axis in axes
+        for place, key in enumerate(axis.keys)
+        if all(is_number(in_si(row[place], unit_of(key))) for row in axis.rows)
+    }
+    known = [*SCALARS["timehistory"], *MEASURES.names(), *varied, INTENSITY]
+    for option in ("x", "y"):
+        if (name := getattr(request.options, option)) not in known:
+            path: Path = (*request.path, request.kind, option)
+            meant = hint(name, known, "`rps explain results` and `rps explain measures` list them")
+            text = f"{dotted(path)} = {name} is no demand, no measure and no varied number; {meant}"
+            yield Fault(path, text)
+
+
+def measures_without_period(layout: StudyPoints, options: ScatterOptions) -> Iterator[str]:
+    """Measures at T1 where systems have none."""
+    for name in {options.x, options.y} & {*MEASURES.names()}:
+        yield from measure_without_period(layout, MeasureOptions.model_construct(measure=name))
+
+
+SCATTER = Report(
+    ScatterOptions,
+    scatter,
+    check=unknown_axes,
+    requires=measures_without_period,
+    results=lambda options: [n for n in (options.x, options.y) if n in SCALARS["timehistory"]],
+)
 DEMAND = Report(DemandOptions, demand)
 OVERTURNING_SPECTRUM = Report(
     SpectrumOptions, overturning_spectrum, requires=records_without_period

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
-from textwrap import fill
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,8 +11,8 @@ from pydantic import Field
 
 from rpscli.case.study.reports import ReportOptions, VariedKeys
 from rpscli.report.figures import style
-from rpscli.report.figures.look import SMALL
-from rpscli.report.study.labels import key_columns, label, labels, plain
+from rpscli.report.figures.look import FONT_SIZE, SMALL
+from rpscli.report.study.labels import key_columns, label, plain
 from rpscli.report.study.panels import left_out, over
 from rpscli.report.study.report import DemandName, Found, Report, StatisticOrShare, preset
 from rpscli.report.study.statistics import reached
@@ -26,6 +25,8 @@ MOST_ROWS = 60
 MOST_COLUMNS = 12
 SMALLER = 0.75
 """Second texts of cells, as a part of small letters."""
+LEAST_WIDTH, LINE = 0.55, 0.13
+"""Of a column, and height of a line of its labels [in]."""
 
 
 class OverturningOptions(ReportOptions):
@@ -122,11 +123,22 @@ def table_report(study: StudyResults, options: TableOptions) -> Found:
     written.append(Column("failed", "-", [row.failed for row in rows.groups]))
 
     heads = ["\n".join(map(label, column_keys, values)) or "all" for values in columns]
-    names = [labels(rows.keys, row.values) for row in rows.groups]
-    counts = ("rows", MOST_ROWS, len(names)), ("columns", MOST_COLUMNS, len(heads))
-    notes = [f"the first {most} of {of} {what}" for what, most, of in counts if most < of]
-    above = [over(rows.pooled), words, left_out(rows.failed), *notes]
+    names = _names(rows.keys, [row.values for row in rows.groups])
+    above = [over(rows.pooled), words, left_out(rows.failed)]
     return Found({"": written}, partial(_picture, names, heads, cells, above), rows.notes)
+
+
+def _names(keys: Sequence[str], rows: Sequence[tuple[object, ...]]) -> list[str]:
+    """Labels of rows; those that begin like the row before tell how they go on."""
+    names, before = [], [""] * len(keys)
+    for values in rows:
+        parts = list(map(label, keys, values))
+        same = next(
+            (n for n, pair in enumerate(zip(parts, before, strict=True)) if len({*pair}) > 1), 0
+        )
+        names.append(", ".join(parts[same:]))
+        before = parts
+    return names
 
 
 def _picture(
@@ -137,46 +149,60 @@ def _picture(
     title: str,
 ) -> bytes:
     """The first rows and columns, on cells that are the darker the larger their numbers."""
-    names = [style.typeset(name) for name in names[:MOST_ROWS]]
-    heads = [style.typeset(head) for head in heads[:MOST_COLUMNS]]
-    drawn = [[cell or Cell({}, ("-", ""), np.nan) for cell in row] for row in cells]
-    drawn = [row[:MOST_COLUMNS] for row in drawn[:MOST_ROWS]]
-    width = min(style.WIDTH, 3.4 + 1.25 * len(heads))
-    names = [_folded(name, 12) for name in names] if style.narrow() else names
-    beside = 0.3 + max(map(len, "\n".join(names).split("\n"))) / style.LETTERS_PER_INCH
-    # Names may be as wide as the figure.
-    letters = max(int(style.LETTERS_PER_INCH * (style.room(width) - beside) / len(heads)), 1)
-    # What would run into the next column, or off the figure, goes on in further lines.
-    heads = ["\n".join(fill(line, letters) for line in head.split("\n")) for head in heads]
-    below = [[_folded(cell.texts[1], int(letters / SMALLER)) for cell in row] for row in drawn]
-    further = max((text.count("\n") for row in below for text in row), default=0)
-    height = 0.34 + 0.11 * further  # of a row
+    width, target = style.room(min(style.WIDTH, 3.4 + 1.25 * len(heads))), style.given()
+    size = SMALL * FONT_SIZE
+
+    def wide(texts: Iterable[str]) -> float:
+        return max((style.width_of(text, size) for text in texts if text), default=0.0)
+
+    # Names may be as wide as the figure; what would run into the next column goes on below.
+    names = [style.folded(style.typeset(name), 0.4 * width, size) for name in names[:MOST_ROWS]]
+    beside = 0.4 + wide(names)
+    columns = max(1, min(MOST_COLUMNS, len(heads), int((width - beside) / LEAST_WIDTH)))
+    room = max((width - beside) / columns, 0.2)
+    drawn = [[cell or Cell({}, ("-", ""), np.nan) for cell in row[:columns]] for row in cells]
+    few = [style.folded(style.typeset(head), 0.95 * room, size) for head in heads[:columns]]
+    below = [
+        [style.folded(cell.texts[1], 0.95 * room / SMALLER, size) for cell in row] for row in drawn
+    ]
+    heights = [
+        max(
+            0.3 + 0.11 * max(text.count("\n") for text in texts),
+            0.1 + LINE * (1 + name.count("\n")),
+        )
+        for name, texts in zip(names, below, strict=False)
+    ]
+    other = 0.6 + LINE * (1 + max(head.count("\n") for head in few))
+    edges = np.cumsum([0.0, *heights])
+    most = len(names)
+    if target is not None:
+        most = max(1, int(np.searchsorted(edges, style.inches(target)[1] - other)) - 1)
+    edges = edges[: most + 1]
+    counts = ("rows", most, len(cells)), ("columns", columns, len(heads))
+    cut = [f"the first {some} of {of} {what}" for what, some, of in counts if some < of]
 
     def draw(figure: style.Figure) -> None:
-        style.heading(figure, title, *above)
-        axes, small = figure.subplots(), style.small()
-        shades = [[cell.shade for cell in row] for row in drawn]
-        axes.imshow(shades, cmap="Blues", vmin=0.0, vmax=1.0, aspect="auto", alpha=0.75)
+        style.heading(figure, title, *above, *cut)
+        axes = figure.subplots()
+        shades = [[cell.shade for cell in row] for row in drawn[:most]]
+        # Rows are as high as their texts [in].
+        axes.pcolormesh(
+            range(columns + 1), edges, shades, cmap="Blues", vmin=0.0, vmax=1.0, alpha=0.75
+        )
         inside: dict[str, Any] = {"ha": "center", "in_layout": False}
-        for y, x in np.ndindex(len(drawn), len(heads)):
-            first, middle = drawn[y][x].texts[0], y - 0.055 * further / height
-            size = small * min(1.0 / SMALL, letters / len(first))
-            axes.text(x, middle, first, va="bottom", fontsize=size, **inside)
-            size = SMALLER * small
-            axes.text(x, middle + 0.08, below[y][x], va="top", fontsize=size, **inside)
-        axes.set_xticks(range(len(heads)), heads)
-        axes.set_yticks(range(len(names)), names)
-        axes.tick_params(length=0, labeltop=True, labelbottom=False)
+        for y, x in np.ndindex(most, columns):
+            first, at, further = drawn[y][x].texts[0], 0.5 * (edges[y] + edges[y + 1]), below[y][x]
+            up = 0.055 * (1 + further.count("\n")) * bool(further)
+            fits = size * min(1.0 / SMALL, 0.95 * room / wide([first]))
+            axes.text(x + 0.5, at - up + 0.07, first, va="bottom", fontsize=fits, **inside)
+            axes.text(x + 0.5, at - up + 0.08, further, va="top", fontsize=SMALLER * size, **inside)
+        axes.set_xticks(np.arange(columns) + 0.5, few)
+        axes.set_yticks(0.5 * (edges[:-1] + edges[1:]), names[:most])
+        axes.tick_params(length=0, labeltop=True, labelbottom=False, labelsize=size)
+        axes.invert_yaxis()
         axes.grid(visible=False)
 
-    return style.picture(draw, 1.1 + height * len(drawn), width)
-
-
-def _folded(text: str, letters: int) -> str:
-    """In lines of so many letters, of which a comma ends the first ones."""
-    if len(text) <= letters:
-        return text
-    return "\n".join(fill(part, letters) for part in text.split(", "))
+    return style.picture(draw, other + edges[-1], width)
 
 
 TABLE = Report(TableOptions, table_report, results=lambda options: [options.result])

@@ -1,0 +1,216 @@
+"""Pictures that one prints: no text over another or off the canvas, legends beside the data."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterator
+from dataclasses import replace
+from functools import cache
+from itertools import combinations
+from pathlib import Path
+from typing import Any
+
+import pytest
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.legend import Legend
+from matplotlib.text import Text
+from paper_structures import needs_compiled_kernels
+
+import rpscli
+from report.made_up_pairs import turned
+from report.small_results import CURVED, history, structure
+from report.test_public_figures import PANELS, panel
+from rpscli.analyses.modal import modal
+from rpscli.analyses.pushover import pushover
+from rpscli.model.devices import FrictionDamper, Stop, Tendon, ViscousDamper
+from rpscli.records.spectrum import drawn_spectrum
+from rpscli.report import bundles
+from rpscli.report.figures import style
+from rpscli.report.figures.look import Look, figure_files, put_in_force
+from rpscli.report.figures.structure import structure_figure
+from rpscli.report.files import Drawing
+
+TITLE = "Eighteen hospitals at the river, of which each is compared with all of the others"
+NAME = "The hospital at the river, block {} of the second phase"
+ALPHA, SIX = "podium.bearing.slenderness", Path(__file__).parents[2] / "cases/six_storey.yaml"
+RECORDS = [f"pulse:sine?amplitude=0.4g&period={period}" for period in (0.5, 1.0, 2.0)]
+HAZARD = "PGV [cm/s],rate [1/year]\n2,0.2\n10,0.03\n50,0.001\n200,0.00001\n"
+LIMITS = {"rotation_ratio": [0.25, 0.5]}
+REPORTS: list[Any] = [
+    "overturning",
+    "rotation",
+    {"demand": {"panels": ["scale"], "series": ["title"]}},
+    {"storey_shear": {"panels": ["title"]}},
+    {"ida": {"result": "max_base_shear"}},
+    {"fragility": {"limits": LIMITS}},
+    {"risk": {"limits": LIMITS, "hazard": {"file": "hazard.csv", "measure": "PGV"}}},
+    "comparison",
+    {"lines": {"x": "scale", "result": ["rotation_ratio", "fixed_base_ratio"]}},
+    {"table": {"result": "max_base_shear"}},
+    {"scatter": {"x": "max_base_shear", "y": "PGV", "panels": [], "series": ["title"]}},
+    {"overturning_spectrum": {"panels": [], "series": ["title"]}},
+]
+
+
+def texts_of(figure: Figure) -> list[Text]:
+    """Those that are drawn."""
+    seen: list[Text] = []
+    draw = Text.draw
+
+    def watch(text: Text, renderer: Any) -> None:
+        if text.get_visible() and text.get_text().strip():
+            seen.append(text)
+        draw(text, renderer)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Text, "draw", watch)
+        figure.canvas.draw()
+    return list(dict.fromkeys(seen))
+
+
+def faults(figure: Figure) -> Iterator[str]:
+    """What a reader would complain about."""
+    canvas: Any = FigureCanvasAgg(figure)
+    texts, point = texts_of(figure), figure.dpi / 72.0
+    renderer, frame = canvas.get_renderer(), figure.bbox.padded(point)
+    boxes = [(text.get_text(), text.get_window_extent(renderer)) for text in texts]
+    lines = [(text, line) for text in texts for line in text.get_text().split("\n")]
+    for text, line in lines:
+        if (signs := line.count("$")) and (signs % 2 or not text.get_parse_math()):
+            yield f"formula cut: {text.get_text()!r}"
+    for words, box in boxes:
+        if not frame.containsx(box.x0) or not frame.containsx(box.x1):
+            yield f"off the canvas: {words!r}"
+        if not frame.containsy(box.y0) or not frame.containsy(box.y1):
+            yield f"above or below the canvas: {words!r}"
+    for (words, box), (others, other) in combinations(boxes, 2):
+        if shared(box, other, point):
+            yield f"over each other: {words!r} and {others!r}"
+    yield from of_panels(figure, renderer)
+
+
+def of_panels(figure: Figure, renderer: Any) -> Iterator[str]:
+    """Legends over panels, and panels without room."""
+    point = figure.dpi / 72.0
+    found: list[Any] = [*figure.findobj(Axes), *figure.findobj(Legend)]
+    boxes = [(each, each.get_window_extent(renderer)) for each in found]
+    panels = [(each, box) for each, box in boxes if isinstance(each, Axes) and each.axison]
+    for legend, box in boxes[len(figure.findobj(Axes)) :]:
+        for axes, of_axes in panels:
+            if shared(box, of_axes, 2.0 * point):
+                yield f"the legend of {legend.get_texts()[0]} over {axes.get_title()!r}"
+    for axes, box in panels:
+        if axes.get_label() != "<colorbar>" and min(box.width, box.height) < 24.0 * point:
+            yield f"no room is left for {axes.get_title() or axes.get_xlabel()!r}"
+
+
+def shared(one: Any, other: Any, least: float) -> bool:
+    """True if boxes have an area in common."""
+    across, upwards = (
+        min(getattr(one, f"{end}1"), getattr(other, f"{end}1"))
+        - max(getattr(one, f"{end}0"), getattr(other, f"{end}0"))
+        for end in "xy"
+    )
+    return bool(across > least and upwards > 1.5 * least)
+
+
+def printed(drawing: Drawing, columns: int) -> list[str]:
+    with put_in_force(Look(columns=columns), "png"), style.in_style():
+        figure = style.kept_figure(drawing.draw)
+        assert isinstance(figure, Figure)
+        return [f"{drawing.name}: {fault}" for fault in faults(figure)]
+
+
+@pytest.mark.parametrize("columns", [1, 2])
+def test_figures_of_analyses_can_be_read(columns: int) -> None:
+    devices = ViscousDamper(2e5), Stop(0.02, 4e6), Tendon(2e4, 1e6), FrictionDamper(1e5)
+    made, look = replace(structure(CURVED, 6), devices=devices), Look(columns=columns)
+    result = history(made, "pulse:half_sine?amplitude=0.3g&period=0.6")
+    draw = {"structure.png": lambda: structure_figure(made, TITLE)}
+    files = [
+        *figure_files(draw, look).items(),
+        *bundles.timehistory_files(result, TITLE, look),
+        *bundles.timehistory_files(turned(), TITLE, look),
+        *bundles.floor_spectra_files(result, TITLE, look),
+        *bundles.pushover_files(pushover(made), TITLE, look),
+        *bundles.modal_files(modal(made), TITLE, look),
+        *bundles.record_files(result.record, drawn_spectrum(result.record), look),
+    ]
+    drawings = [each for _, each in files if isinstance(each, Drawing)]
+    assert len(drawings) > 15
+    assert not [fault for each in drawings for fault in printed(each, columns)]
+
+
+@pytest.mark.parametrize("of_rps", [False, True])
+def test_panels_fit_into_a_grid(*, of_rps: bool) -> None:
+    names = ["rotation", "energy", "moment_rotation", "storey_curve", *PANELS]
+    found = []
+    for first in range(0, len(names), 4):
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")  # of a layout that collapses
+            if of_rps:
+                with style.in_style():
+                    found += in_grid(names[first : first + 4])
+            else:
+                found += in_grid(names[first : first + 4])
+    assert not found
+
+
+def in_grid(names: list[str]) -> list[str]:
+    figure = Figure(figsize=(7.0, 5.0), layout="constrained")
+    for axes, name in zip(figure.subplots(2, 2).flat, names, strict=False):
+        panel(name, axes)
+    return [f"{names}: {fault}" for fault in faults(figure)]
+
+
+@cache
+def eighteen(folder: Path) -> rpscli.StudyResult:
+    (folder / "hazard.csv").write_text(HAZARD, encoding="utf-8")
+    places = enumerate((source, scale) for source in RECORDS for scale in (0.3, 1.0))
+    rows = [f"{source},{scale},1,{0.01 * 2.0**n}\n" for n, (source, scale) in places]
+    (folder / "seen.csv").write_text("".join(["record,scale,overturned,max_rotation\n", *rows]))
+    slopes = [round(0.08 + 0.005 * n, 4) for n in range(18)]
+    study = {
+        "rps": 1, "title": TITLE, "base": str(SIX), "limits": {}, "whole_histories": True,
+        "vary": [{"title": [NAME.format(n) for n in range(18)], ALPHA: slopes}],
+        "records": RECORDS, "scale": {"measure": "PGV", "values": [0.3, 1.0]},
+        "observed": "seen.csv", "reports": REPORTS,
+    }  # fmt: skip
+    return rpscli.load_study(study).run()
+
+
+@pytest.fixture
+def result(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch) -> Any:
+    place = tmp_path_factory.getbasetemp() / "eighteen"
+    place.mkdir(exist_ok=True)
+    monkeypatch.chdir(place)
+    return eighteen(place)
+
+
+@needs_compiled_kernels
+@pytest.mark.parametrize("columns", [1, 2])
+def test_reports_can_be_read(result: rpscli.StudyResult, columns: int) -> None:
+    assert {*result.study.reports} == {*REPORT_NAMES}
+    found = []
+    for name in result.study.reports:
+        with put_in_force(Look(columns=columns), "png"), style.in_style():
+            figure = result.draw(name)
+            assert isinstance(figure, Figure)
+            found += [f"{name}: {fault}" for fault in faults(figure)]
+    assert not found
+
+
+REPORT_NAMES = [next(iter(each)) if isinstance(each, dict) else each for each in REPORTS]
+
+
+@needs_compiled_kernels
+@pytest.mark.parametrize("first", range(0, len(REPORTS), 4))
+def test_reports_fit_into_a_grid(result: rpscli.StudyResult, first: int) -> None:
+    figure = Figure(figsize=(7.0, 5.0), layout="constrained")
+    for axes, name in zip(figure.subplots(2, 2).flat, REPORT_NAMES[first:], strict=False):
+        result.draw(name, axes)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")  # of a layout that collapses
+        assert not [*faults(figure)]
