@@ -52,9 +52,8 @@ class Row(NamedTuple):
 
     @property
     def label(self) -> str:
-        """Cause and change, short enough for a table."""
-        change = self.change if len(self.change) <= 40 else f"{self.change[:37]}..."
-        return f"{self.cause}: {change}" if change else self.cause
+        """Cause and change."""
+        return f"{self.cause}: {self.change}" if self.change else self.cause
 
 
 class Effect(NamedTuple):
@@ -214,7 +213,9 @@ class Budget:
         assert effect.quantity is not None, "events have no picture"
         label, unit = effect.quantity.label, effect.quantity.unit
         others = np.array([row.cause == RECORDS for row in self.rows])
-        values, names = effect.values[~others], [r.label for r in self.rows if r.cause != RECORDS]
+        values, labels = effect.values[~others], [r.label for r in self.rows if r.cause != RECORDS]
+        names = [style.folded(text, 0.42 * style.room(style.WIDTH), 7.0) for text in labels]
+        most = max(1 + name.count("\n") for name in names)
         lines = [(values[0], style.BLACK, "-")]
         if effect.limit:
             lines.append((effect.limit.limit, style.RED, "--"))
@@ -235,4 +236,4 @@ class Budget:
             axes.invert_yaxis()
             axes.set_xlabel(headed(label, unit))
 
-        return style.picture(draw, 1.2 + 0.19 * len(names))
+        return style.picture(draw, 1.2 + (0.07 + 0.12 * most) * len(names))

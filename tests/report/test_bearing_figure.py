@@ -160,6 +160,9 @@ def test_devices_are_in_the_drawing() -> None:
         np.array([[0.0, 0.0], [u, view.height + v]])
     )
     assert view.devices.brace is not None
+    (brace,) = [view.devices.brace]
+    assert brace.get_color() not in {tendon.get_color(), "#D55E00"}  # nor that of contacts
+    assert {*axes.get_legend_handles_labels()[1]} == {"stop", "tendon", "friction damper"}
     axes = Figure().subplots()
     draw_bearing(axes, made, 0.1)
     assert axes.get_xlim()[1] > view.half + 0.2  # the stops are in view

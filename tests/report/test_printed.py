@@ -5,7 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Iterator
 from dataclasses import replace
-from functools import cache
+from functools import cache, partial
 from itertools import combinations
 from pathlib import Path
 from typing import Any
@@ -24,9 +24,11 @@ from report.small_results import CURVED, history, structure
 from report.test_public_figures import PANELS, panel
 from rpscli.analyses.modal import modal
 from rpscli.analyses.pushover import pushover
+from rpscli.analyses.result_quantities import LIMITED
 from rpscli.model.devices import FrictionDamper, Stop, Tendon, ViscousDamper
 from rpscli.records.spectrum import drawn_spectrum
 from rpscli.report import bundles
+from rpscli.report.budget import Budget, Row
 from rpscli.report.figures import style
 from rpscli.report.figures.look import Look, figure_files, put_in_force
 from rpscli.report.figures.structure import structure_figure
@@ -214,3 +216,22 @@ def test_reports_fit_into_a_grid(result: rpscli.StudyResult, first: int) -> None
     with warnings.catch_warnings():
         warnings.simplefilter("error")  # of a layout that collapses
         assert not [*faults(figure)]
+
+
+@pytest.mark.parametrize("columns", [1, 2])
+def test_a_budget_can_be_read(columns: int) -> None:
+    """Labels are whole, whatever changes."""
+    case, values = rpscli.load_case(SIX), {quantity.name: 1.0 for quantity in LIMITED}
+    change = "superstructure.damping.ratio 0.03 in place of 0.05, and of all that follows from it"
+    rows = [
+        Row("damping", change, "", "survived", {n: k * v for n, v in values.items()}, "a", "")
+        for k in (1.0, 1.4, 2.6)
+    ]
+    made = Budget(case, rows)
+    effect = next(effect for effect in made.effects if effect.quantity)
+    drawing = Drawing("budget.png", partial(made.figure, effect))
+    assert not printed(drawing, columns)
+    with put_in_force(Look(columns=columns), "png"):
+        (axes,) = style.kept_figure(drawing.draw).axes
+    label = axes.get_yticklabels()[0].get_text().replace("\n", " ")
+    assert label == f"damping: {change}"

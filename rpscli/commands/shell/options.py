@@ -213,7 +213,8 @@ def _formats(text: str) -> tuple[tuple[str, ...] | None, tuple[str, ...]]:
         if word not in (known := FIGURES.names()):
             known = [*FORMATS, "none", *known]
             meant = hint(word.lower(), known, "write png, svg, pdf, svg,pdf or none", 0.6)
-            raise UsageError(f"--figures {text}: {word or 'nothing'} is not a format; {meant}")
+            what = f"{text}: {word} is not a format" if word else f"{text!r}: a format is missing"
+            raise UsageError(f"--figures {what}; {meant}")
         FIGURES[word]  # refused before the work
     return tuple(dict.fromkeys(formats)) or None, added
 

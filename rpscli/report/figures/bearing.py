@@ -151,6 +151,7 @@ def bearing_figure(result: PushoverResult, title: str) -> bytes:
         grid.set_height_ratios(heights)
         if style.given() is None:
             figure.set_size_inches(width, 0.3 + sum(heights))
+        style.legend_below(figure, cells[: len(states)])
 
     return style.picture(draw, 6.2)
 

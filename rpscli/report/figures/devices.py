@@ -73,7 +73,7 @@ def draw_device(axes: style.Axes, result: TimeHistoryResult, index: int) -> None
 
 
 class SceneDevices:
-    """Devices in pictures of the structure, moved with the cap beam.
+    """Devices in pictures of the structure, moved with the cap beam; a legend has their names.
 
     Posts stand at the gap of each stop, red and pushed aside beyond it; dampers share a brace;
     cables stand where the feet of the columns do. `half` is half the width of the beam, `base` the
@@ -93,14 +93,17 @@ class SceneDevices:
         for device in devices:
             by_scene[DRAWN[type(device)].scene].append(device)
         self.stops: list[tuple[float, float, Line2D]] = [
-            (side, stop.gap, axes.plot([], [], lw=2.5)[0])
+            (side, stop.gap, axes.plot([], [], color=style.BLACK, lw=2.5, label="stop")[0])
             for stop in by_scene[POSTS]
             for side in (-1.0, 1.0)
         ]
+        cable: dict[str, Any] = {"color": style.PINK, "lw": 1.5, "label": "tendon"}
         count = len(feet) if by_scene[CABLES] else 0
-        self.tendons = [axes.plot([], [], color=style.RED, lw=1.0)[0] for _ in range(count)]
-        look: dict[str, Any] = {"color": style.RED, "lw": 1.5, "marker": "s", "markevery": [1]}
-        self.brace = axes.plot([], [], **look, ms=5.0)[0] if by_scene[BRACE] else None
+        self.tendons = [axes.plot([], [], **cable)[0] for _ in range(count)]
+        kinds = dict.fromkeys(device.kind.replace("_", " ") for device in by_scene[BRACE])
+        look: dict[str, Any] = {"color": style.GREEN, "lw": 1.5, "marker": "s", "markevery": [1]}
+        look["label"] = f"{' and '.join(kinds)} damper"
+        self.brace = axes.plot([], [], **look, ms=5.0)[0] if kinds else None
 
     @property
     def moving(self) -> list[Line2D]:

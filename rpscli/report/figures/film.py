@@ -138,13 +138,16 @@ def _gif(frames: Iterator[Image], rate: int) -> bytes:
     return buffer.getvalue()
 
 
+INKS = (style.BLACK, style.BLUE, style.RED, style.GREEN, style.PINK)
+
+
 def _palette() -> Image:
     """The inks of the pictures, each in steps towards white: what smooth edges need."""
     import numpy as np
     from matplotlib.colors import to_rgb
     from PIL import Image as Pillow
 
-    inks = np.array([to_rgb(ink) for ink in (style.BLACK, style.BLUE, style.RED)])
+    inks = np.array([to_rgb(each) for each in INKS])
     steps = np.linspace(0.0, 1.0, 32)[:, None, None]
     colours = np.rint(255.0 * (inks + steps * (1.0 - inks))).astype(int)
     image = Pillow.new("P", (1, 1))

@@ -108,10 +108,13 @@ def panel_figure(
                 elif place + columns >= len(shown):
                     axes.set_xlabel(style.typeset(x_label))
                     axes.tick_params(labelbottom=True)
-            letters = rcParams["font.size"]
-            room = 0.7 * style.inches(figure)[1]
-            folded = style.folded(style.typeset(y_label), room, letters)
-            figure.supylabel(folded, fontsize=letters, multialignment="center")
+            if rows == 1:
+                grid[0, 0].set_ylabel(style.typeset(y_label))
+            else:
+                letters = rcParams["font.size"]
+                room = 0.7 * style.inches(figure)[1]
+                folded = style.folded(style.typeset(y_label), room, letters)
+                figure.supylabel(folded, fontsize=letters, multialignment="center")
             if limits is not None:
                 limits(grid.flat[0])
             style.legend_below(figure, grid.flat)
