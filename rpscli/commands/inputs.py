@@ -115,20 +115,7 @@ def case_heading(given: CaseInput) -> dict[str, str]:
     return {"name": given.case.name, "title": given.case.title, "source": given.case.source}
 
 
-class _Factor(options.FiniteRange):
-    """A number; whoever gives an intensity is told where it goes."""
-
-    name = "factor"
-
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        try:
-            return super().convert(value, param, ctx)
-        except click.BadParameter:
-            text = f"{value!r} is not a finite number; scale to an intensity by --scale-to PGA=0.4g"
-            self.fail(text, param, ctx)
-
-
-FACTOR = _Factor()
+FACTOR = options.FiniteRange("; scale to an intensity by --scale-to PGA=0.4g")
 
 
 @dataclass(frozen=True)

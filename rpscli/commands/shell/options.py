@@ -28,12 +28,19 @@ FILE = click.Path(allow_dash=True, readable=False)
 class FiniteRange(click.FloatRange):
     """A number in a range; NaN and infinity, which compare with bounds as they like, are none."""
 
+    def __init__(self, remedy: str = "", **bounds: Any) -> None:
+        super().__init__(**bounds)
+        self.remedy = remedy
+
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """The number, or a refusal."""
-        number = super().convert(value, param, ctx)
+        try:
+            number = float(value)
+        except ValueError:
+            number = math.nan
         if not math.isfinite(number):
-            self.fail(f"{value!r} is not a finite number", param, ctx)
-        return number
+            self.fail(f"{value!r} is not a finite number{self.remedy}", param, ctx)
+        return super().convert(number, param, ctx)
 
 
 Words = Mapping[str, str | None] | Iterable[str]
