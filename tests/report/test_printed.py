@@ -104,7 +104,7 @@ def of_panels(figure: Figure, renderer: Any) -> Iterator[str]:
             if shared(box, of_axes, 2.0 * point):
                 yield f"the legend of {legend.get_texts()[0]} over {axes.get_title()!r}"
     for axes, box in panels:
-        if axes.get_label() != "<colorbar>" and min(box.width, box.height) < 24.0 * point:
+        if axes.get_label() != "<colorbar>" and min(box.width, box.height) < 16.0 * point:
             yield f"no room is left for {axes.get_title() or axes.get_xlabel()!r}"
 
 

@@ -210,7 +210,7 @@ def rotation_figure(result: TimeHistoryResult, title: str) -> bytes:
             axes.label_outer()
         figure.align_ylabels(panels[:-1])
 
-    return style.picture(draw, 4.6 + 0.15 * len(rows) + 1.3 * both)
+    return style.picture(draw, 4.6 + 0.15 * len(rows) + 1.3 * both + 0.6 * style.narrow())
 
 
 def _rows(result: TimeHistoryResult) -> list[EventRow]:

@@ -117,6 +117,9 @@ def _in_colours(
     axes.axvline(0.0, color=style.GREY, lw=0.4)
     axes.set(xlim=(-reach, reach), ylim=(-reach, reach))
     axes.set_aspect("equal", adjustable="box")
-    axes.locator_params(nbins=4)
+    axes.locator_params(nbins=5)
+    if axes.get_window_extent().width < 2.6 * axes.figure.dpi:
+        end = float(f"{0.7 * reach:.0e}")
+        axes.set(xticks=(-end, end), yticks=(-end, 0.0, end))
     style.legend_above(axes)
     return lines
