@@ -82,11 +82,27 @@ def test_a_mapping_and_a_file_say_the_same(tmp_path: Path) -> None:
         ({"vary": [{"podium.bearing.slendernes": [1, 2]}]}, "slendernes"),
         ({"limits": {"max_stop_force": 1.0}}, "max_stop_force needs a stop"),
         ({"reports": ["overturned"]}, "overturned"),
+        (
+            {"reports": [{"scatter": {"x": "PGW", "y": "superstructure.storey_mass"}}]},
+            "x = PGW is no demand, no measure and no varied number; did you mean PGV?",
+        ),
     ],
 )
 def test_what_is_wrong_is_told(change: dict[str, Any], says: str) -> None:
     with pytest.raises(rpscli.RpsError, match=says.replace("?", r"\?")):
         rpscli.load_study(SMALL | change)
+
+
+def test_what_a_report_draws_is_its_result() -> None:
+    """The words of before are understood: `demand` of `ida`, and `y` of `lines`."""
+    words = {"ida": ("demand", {}), "lines": ("y", {"x": "scale"})}
+    for kind, (before, others) in words.items():
+        for word in ("result", before):
+            reports = [{kind: {**others, word: "max_base_shear"}}]
+            change = {"scale": {"measure": "PGV", "values": [0.1, 0.2]}, "reports": reports}
+            (request,) = rpscli.load_study(SMALL | change).reports.values()
+            options: Any = request.options
+            assert "max_base_shear" in options.result
 
 
 def test_columns_are_those_of_the_points(result: rpscli.StudyResult) -> None:

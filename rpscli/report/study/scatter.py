@@ -427,7 +427,8 @@ def unknown_axes(
     for option in ("x", "y"):
         if (name := getattr(request.options, option)) not in known:
             path: Path = (*request.path, request.kind, option)
-            meant = hint(name, known, "`rps explain results` and `rps explain measures` list them")
+            otherwise = "`rps explain results` and `rps explain measures` list them"
+            meant = hint(name, known, otherwise, 0.6)
             text = f"{dotted(path)} = {name} is no demand, no measure and no varied number; {meant}"
             yield Fault(path, text)
 
