@@ -157,7 +157,7 @@ def sampled(distribution: str) -> tuple[str, str]:
             ("reports.0.comparison.fit is gone: ", "choose one by them", "remove the key"),
         ),
         (*added(f"reports: [{'x' * 5000}]"), ("= 'xxx", "... is not a report; known are")),
-        (*added("reports: [lines]"), ("reports.0.lines.x is missing", "lines.y is missing")),
+        (*added("reports: [lines]"), ("reports.0.lines.x is missing", "lines.result is missing")),
         (*added("reports: [demand: 3]"), ("demand = 3", "mapping of options")),
         (
             *added("reports: [demand: {panels: }, ida: {panles: scale}, 3]"),
