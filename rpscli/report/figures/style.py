@@ -326,7 +326,7 @@ def fit(panels: Iterable[Axes]) -> None:
 
     for axes in panels:
         across = _room(axes) - 0.25
-        upwards = 1.3 * axes.get_window_extent().height / axes.figure.dpi
+        upwards = (0.6 if tight() else 1.3) * axes.get_window_extent().height / axes.figure.dpi
         # Beside its texts the children of axes are three titles.
         inside = (each for each in axes.get_children() if each not in axes.texts)
         for text in (*(each for each in inside if isinstance(each, Text)), axes.xaxis.label):
