@@ -422,7 +422,7 @@ def test_curves_of_lists(tmp_path: Path) -> None:
     figure, table = study("lines")
     turned, forces = study("upright")
     labelled(figure, "$u_b$ [m]", "$F/W$ [-]")
-    labelled(turned, "force at the cap beam [N]", "way [m]")
+    labelled(turned, "force at the cap beam [kN]", "way [m]")
     for drawn, of, names in (
         (figure, table, ("curve.displacement", "value")),
         (turned, forces, ("value", "curve.displacement")),
