@@ -11,14 +11,17 @@ import hashlib
 import math
 import re
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from fractions import Fraction
 from functools import cache
+from io import BytesIO
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numba
 from numba.core import cgutils, types
+from numba.core.caching import IndexDataCacheFile
 from numba.extending import intrinsic, overload, register_jitable
 
 from rpscli.user_cache import VARIABLE, alone_in, is_private, user_cache
@@ -64,22 +67,45 @@ def sources_digest(folder: Path, *others: Path) -> str:
 
 @cache
 def cache_folder() -> Path | None:
-    """Folder of the compiled kernels; None if no place is writable, or others may write there.
-
-    What a power loss leaves, files without content, numba would stumble over: then all go.
-    """
+    """Folder of the compiled kernels; None if no place is writable, or others may write there."""
     if (place := user_cache()) is None:
         return None
     folder = place / f"kernels-{sources_digest(SOURCES, CONSTANTS)}"
     try:
         folder.mkdir(mode=0o700, exist_ok=True)
-        files = [file for file in folder.rglob("*.nb[ci]") if file.is_file()]
-        if not all(file.stat().st_size for file in files):
-            for file in [*files, *folder.glob("*.compiled")]:
-                file.unlink(missing_ok=True)
     except OSError:
         return None
     return folder if is_private(folder) else None
+
+
+class _WithDigests(IndexDataCacheFile):
+    """Files that end with the digest of the rest; code of others is not run, but made anew."""
+
+    @contextmanager
+    def _open_for_write(self, filepath: str) -> Iterator[BytesIO]:
+        content = BytesIO()
+        with super()._open_for_write(filepath) as file:
+            yield content
+            file.write(content.getvalue() + hashlib.sha256(content.getvalue()).digest())
+
+    def _load_index(self) -> dict[Any, str]:
+        whole = self._is_whole(self._index_name)
+        return dict(super()._load_index()) if whole else {}  # type: ignore[no-untyped-call]
+
+    def _load_data(self, name: str) -> Any:
+        if not self._is_whole(name):
+            raise OSError(f"{name} is damaged")  # as if it were not there
+        return super()._load_data(name)  # type: ignore[no-untyped-call]
+
+    def _is_whole(self, name: str) -> bool:
+        with suppress(OSError):
+            content = Path(self._cache_path, name).read_bytes()
+            return hashlib.sha256(content[:-DIGEST]).digest() == content[-DIGEST:]
+        return False
+
+
+DIGEST = 32
+"""Bytes at the end of a file."""
 
 
 def kernel(function: Function) -> Function:
@@ -100,8 +126,12 @@ def kernel(function: Function) -> Function:
 
 
 def _kept_if_there_is_room(made: Any, folder: Path) -> None:
-    """A full disk is no reason to stop: the machine code is in memory when it is to be kept."""
+    """A full disk is no reason to stop: the machine code is in memory when it is to be kept.
+
+    What is loaded again is what was written: flipped bits would end the process, or compute.
+    """
     cached = made._cache  # noqa: SLF001 -- numba has no other place for this
+    cached._cache_file.__class__ = _WithDigests  # noqa: SLF001
     save = cached.save_overload
 
     def saved(*compiled_code: Any) -> None:

@@ -1,4 +1,4 @@
-"""Damaged traces, scores and folders of results, and plug-ins that lie: used, or refused plainly.
+"""Damaged traces, scores, folders of results and caches, and plug-ins that lie: used, or refused.
 
 pytest tests/hunt/test_hostile_edges.py                                  # a few of each kind
 RPS_HUNT_SEED=7 pytest -m long tests/hunt/test_hostile_edges.py          # hundreds of each
@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import math
+import runpy
 import shutil
 from collections.abc import Callable
 from functools import cache
@@ -20,12 +21,15 @@ import numpy as np
 import pytest
 from commands.test_identify import FRAME
 from paper_structures import needs_compiled_kernels
+from physics.test_kernel_cache import PROGRAM
 from sweep.small_studies import BASE
 
 from hunt.mutation import mutated
+from hunt.test_damaged_stores import DAMAGES
 from hunt.trials import PROMISED, hunt, judged, shares
 from rpscli import registry
 from rpscli.analyses.verification import ANSWERS, problem_files
+from rpscli.physics.compile import cache_folder
 from rpscli.plugins import (
     Column,
     Found,
@@ -230,3 +234,31 @@ def test_plugins(long: bool, monkeypatch: pytest.MonkeyPatch) -> None:
         return f"{kind}: {done}"
 
     hunt("plug-ins", trial, 40, 400 if long else None)
+
+
+@shares
+def test_caches(long: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Machine code that is not what was written is compiled anew, and is then whole."""
+    Path("kernel.py").write_text(PROGRAM, encoding="utf-8")
+    monkeypatch.setenv("RPS_CACHE_DIR", str(Path("cache").absolute()))
+
+    def hits() -> int:
+        cache_folder.cache_clear()
+        return int(runpy.run_path("kernel.py")["found"][0])
+
+    def trial(random: Random) -> str:
+        hits()
+        file = random.choice(sorted(Path("cache").rglob("*.nb[ci]")))
+        data = bytearray(file.read_bytes())
+        whole = bytes(data)
+        random.choice(DAMAGES[:-1])(data, random)
+        file.write_bytes(data)
+        same = bytes(data) == whole
+        assert (hits(), hits()) == (int(same), 1)
+        return file.suffix
+
+    try:
+        hunt("caches", trial, 6, 200 if long else None)
+    finally:
+        monkeypatch.undo()
+        cache_folder.cache_clear()

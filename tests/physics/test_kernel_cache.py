@@ -181,9 +181,10 @@ compilation.remember_compiled("four")
 
 
 @needs_compiled_kernels
-def test_files_without_content_are_thrown_away_and_made_again(
+def test_damaged_files_are_not_run_and_made_again(
     fresh_folder: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
+    """Whatever a power loss or a bad disk leaves of index and code."""
     program = tmp_path / "program.py"
     program.write_text(PROGRAM)
     fresh_folder.setenv("RPS_CACHE_DIR", str(tmp_path / "cache"))
@@ -199,9 +200,13 @@ def test_files_without_content_are_thrown_away_and_made_again(
     assert run() == (1, True)
     for suffix in ("nbi", "nbc"):
         (file,) = (tmp_path / "cache").rglob(f"*.{suffix}")
-        file.write_bytes(b"")  # what a power loss leaves
-        assert run() == (0, False)
-    assert run() == (1, True)
+        whole = file.read_bytes()
+        middle = len(whole) // 2
+        flipped = whole[:middle] + bytes([whole[middle] ^ 1]) + whole[middle + 1 :]
+        for damaged in (b"", whole[:-1], flipped, bytes(len(whole)), whole + b"\0"):
+            file.write_bytes(damaged)
+            assert run() == (0, True)
+            assert run() == (1, True)
 
 
 TWO_RECORDS = """
