@@ -61,6 +61,14 @@ def test_states_an_end_and_the_force(
     assert len(marks) == len(states)  # uplift, beta, theta_cr
 
 
+@pytest.mark.parametrize("columns", [1, 2])
+@pytest.mark.parametrize("gap", [1e2, 1e9])
+def test_stops_far_away_leave_room_for_all_panels(gap: float, columns: int) -> None:
+    made = replace(structure(CURVED, 2), devices=(Stop(gap, 4e6),))
+    with put_in_force(Look(columns=columns), "png"):
+        assert bearing_figure(pushover(made), "a title")  # no warning that the layout collapses
+
+
 @pytest.mark.parametrize("bearing", [CURVED, FLAT, ROLLER, WIDE])
 @pytest.mark.parametrize("part", [-1.0, 0.4, 1.0])
 def test_a_column_leans_between_ground_and_cap_beam(bearing: Bearing, part: float) -> None:

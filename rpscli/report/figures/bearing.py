@@ -61,6 +61,8 @@ COLUMN, BEAM = "#DDDDDD", "#CCE3F0"
 
 ASPECT = 1.15
 """Largest height of the picture of a column over its width."""
+LEAST_ASPECT = 0.2
+"""Smallest one: stops may stand far from the column, and layouts need some height."""
 END_ASPECT = 1.0
 """Largest height of the picture of an end over its width."""
 LOWER_HEIGHT = 2.7
@@ -284,7 +286,7 @@ def _frame(
     width = (right - left) / across
     if upwards > 0.0:
         width = max(width, (top - bottom) / upwards / aspect)
-        aspect = min(aspect, (top - bottom) / upwards / width)
+        aspect = min(aspect, max(LEAST_ASPECT, (top - bottom) / upwards / width))
     floor = bottom - room[2] * aspect * width
     start = 0.5 * (left + right) - width * (room[0] + 0.5 * across)
     axes.set(xlim=(start, start + width), ylim=(floor, floor + aspect * width))
