@@ -48,6 +48,8 @@ LINE = 0.15
 
 WIDTH = 7.0
 """Width of a figure [in]: a page with its margins."""
+BESIDE = 0.7
+"""Width of the label and the numbers beside a row of panels, and of the margins [in]."""
 TIGHT = 4.0
 """Height [in]."""
 
@@ -325,7 +327,8 @@ def fit(panels: Iterable[Axes]) -> None:
     from matplotlib.text import Text
 
     for axes in panels:
-        across = _room(axes) - 0.25
+        # Labels are centred on panels, and each of a row gives some width to what is beside it.
+        across = _room(axes) * (1.0 - BESIDE / inches(axes.figure)[0])
         upwards = (0.6 if tight() else 1.3) * axes.get_window_extent().height / axes.figure.dpi
         # Beside its texts the children of axes are three titles.
         inside = (each for each in axes.get_children() if each not in axes.texts)

@@ -85,7 +85,8 @@ def panel_figure(
             columns = min(1 if len(panels) == 3 else 2, widest)  # three leave a hole
         letters = SMALL * FONT_SIZE
         titles = [
-            style.folded(style.typeset(name), (width - 0.7) / columns, letters) for name in names
+            style.folded(style.typeset(name), (width - style.BESIDE) / columns, letters)
+            for name in names
         ]
         shown, cut = first(panels, columns, MOST_PANELS, max(map(_lines, titles), default=1))
         rows = max(1, math.ceil(len(shown) / columns))
