@@ -37,7 +37,7 @@ from rpscli.report.files import Drawing
 TITLE = "Eighteen hospitals at the river, of which each is compared with all of the others"
 NAME = "The hospital at the river, block {} of the second phase"
 ALPHA, SIX = "podium.bearing.slenderness", Path(__file__).parents[2] / "cases/six_storey.yaml"
-RECORDS = [f"pulse:sine?amplitude=0.4g&period={period}" for period in (0.5, 1.0, 2.0)]
+RECORDS = [f"pulse:sine?amplitude=0.4g&period={period}" for period in (0.5, 2.0)]
 HAZARD = "PGV [cm/s],rate [1/year]\n2,0.2\n10,0.03\n50,0.001\n200,0.00001\n"
 LIMITS = {"rotation_ratio": [0.25, 0.5]}
 REPORTS: list[Any] = [
@@ -68,7 +68,7 @@ def texts_of(figure: Figure) -> list[Text]:
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(Text, "draw", watch)
-        figure.canvas.draw()
+        figure.draw_without_rendering()
     return list(dict.fromkeys(seen))
 
 
