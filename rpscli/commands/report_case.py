@@ -276,6 +276,7 @@ def case_page(
             given, asked, None if earlier is None else earlier.folder, with_budget=with_budget
         ),
         stored=stored,
+        both=any(ground.y is not None for ground in grounds),
     )
     return PageDone(case.title, title, sections, document, error, case.file.document)
 

@@ -89,6 +89,7 @@ def study_page(study: Study, place: Path | None, look: Look, terminal: Terminal)
         results=results,
         commands=[["rps", "sweep", *words], ["rps", "report", *words]],
         stored=[stored],
+        both=all(layout.pairs),
         which=which,
     )
     subtitle = f"Study of {len(run.table)} points{contact}"
@@ -181,6 +182,7 @@ def design_page(
         results=results,
         commands=[["rps", "design", *words], ["rps", "report", *words]],
         stored=[stored],
+        both=all(study.layout.pairs),
         which=[f"Of {title}."],
     )
     subtitle = f"Design: {len(done.answer.places)} examined{ends(case)}"

@@ -159,10 +159,29 @@ def answer_notes(answer: Answer, faults: Iterable[str]) -> Iterator[str]:
     if ends := list(answer.at_bounds):
         words = " and ".join(f"the {end} {key}" for key, end in ends)
         yield f"the best design has {words} of the range; a wider one may have a better design"
+    if answer.best is not None:
+        yield from neighbours_note(answer, answer.best)
     if answer.best is not None and answer.passing_share[answer.best] < ROBUST:
         yield (
             f"no design passes in {100.0 * ROBUST:g} % of the resamples of the records; the best"
             f" one passes in {100.0 * answer.passing_share[answer.best]:.0f} % of them"
+        )
+
+
+NEAREST = 6
+"""Designs beside the best one that are looked at, where at least so many others were tried."""
+
+
+def neighbours_note(answer: Answer, best: int) -> Iterator[str]:
+    """A warning where the best design stands alone: of those nearest to it half fail or more."""
+    apart = np.linalg.norm(answer.places - answer.places[best], axis=1)
+    beside = np.argsort(apart, kind="stable")[1 : NEAREST + 1]
+    fail = int((~answer.passes[0, beside]).sum())
+    if len(beside) == NEAREST and 2 * fail >= NEAREST:
+        yield (
+            f"of the {NEAREST} designs tried next to the best one {fail} fail: it stands alone, and"
+            " a little more of a key or of the motion may undo it; demand a margin (a stricter"
+            " `limits`), more records, or `perturb` them"
         )
 
 

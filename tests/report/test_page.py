@@ -172,8 +172,11 @@ def test_empty_sections_are_left_out_and_the_others_numbered() -> None:
 
 
 def test_what_the_model_leaves_out_is_read_from_the_theory() -> None:
-    table = hidden_table()
+    table, both = hidden_table(both=False), hidden_table(both=True)
     assert isinstance(table, Table)
+    assert any(row[0] == "plane motion" for row in table.rows)
+    assert not any(row[0] == "plane motion" for row in both.rows)
+    assert any("bodies of revolution" in row[0] for row in both.rows)
     assert list(table.heads) == ["assumed", "what it hides", "size"]
     assert len(table.rows) >= 8
     assert all(len(row) == 3 and all(row) for row in table.rows)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import jsonschema
@@ -16,6 +17,7 @@ from rpscli.case.design import parse_design
 from rpscli.case.text.files import read_text
 from rpscli.case.text.yaml_text import read_yaml
 from rpscli.cli import program
+from rpscli.report.design import neighbours_note
 from rpscli.sweep.design import Search, weights_of
 from rpscli.sweep.evaluation import run_batch
 from rpscli.sweep.points import lay_out
@@ -427,3 +429,13 @@ def test_the_shipped_design_against_a_grid(no_figures: None) -> None:
     (best,) = found["best"]["aims"].values()
     assert best < 1.02 * least
     assert found["designs"]["looked_at"] < 0.6 * len(values)
+
+
+@pytest.mark.parametrize(("beside", "fails"), [((4, 5, 7), 3), ((), 0)])
+def test_a_best_design_that_stands_alone_is_told(beside: tuple[int, ...], fails: int) -> None:
+    holds = np.array([[True] * 9])
+    holds[0, list(beside)] = False
+    answer: Any = SimpleNamespace(places=np.linspace(0.0, 1.0, 9)[:, None], passes=holds)
+    told = list(neighbours_note(answer, 6))
+    assert len(told) == (fails > 0)
+    assert not told or f"{fails} fail: it stands alone" in told[0]

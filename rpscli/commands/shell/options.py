@@ -32,6 +32,10 @@ class FiniteRange(click.FloatRange):
         super().__init__(**bounds)
         self.remedy = remedy
 
+    def _describe_range(self) -> str:
+        bounded = self.min is not None or self.max is not None
+        return super()._describe_range() if bounded else ""
+
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """The number, or a refusal."""
         try:

@@ -135,9 +135,12 @@ def page_sections(
     results: Iterable[Section],
     commands: Iterable[Sequence[str]],
     stored: Iterable[Block],
+    both: bool,
     which: Sequence[Block] = (),
 ) -> list[Section]:
     """All of a page in its order; `which` says of which system structure and formulas are.
+
+    Where both components act, what the model leaves out is more, and less.
 
     `commands` make the same again; `stored` says what there was before, and where it is.
     """
@@ -154,7 +157,7 @@ def page_sections(
         Section("Input", [*inputs]),
         Section("Derived quantities", [*which, *derived_blocks(structure, podium)]),
         *results,
-        Section("Limits of the model", [hidden_table()]),
+        Section("Limits of the model", [hidden_table(both=both)]),
         Section("How to repeat it", repeat),
     ]
 
@@ -232,13 +235,17 @@ def derived_blocks(structure: PodiumStructure, podium: Mapping[str, Any]) -> lis
     return [text, Table.of_texts(heads, rows, words=4)]
 
 
-def hidden_table() -> Table:
-    """Limits of the model, in the words of the theory."""
+def hidden_table(*, both: bool) -> Table:
+    """Limits of the model, in the words of the theory, of one component or of both."""
     text = resources.files("rpscli").joinpath(THEORY).read_text(encoding="utf-8")
-    lines = text[text.index(HIDDEN) :].split("\n\n", 1)[0].splitlines()
-    head, _, *rows = ([cell.strip() for cell in line.strip("|").split("|")] for line in lines)
+    _, plane, space = text.split(f"\n{HIDDEN}")
+    heads, rows = [], []
+    for table in (plane, space) if both else (plane,):
+        lines = (HIDDEN + table).split("\n\n", 1)[0].splitlines()
+        heads, _, *found = ([cell.strip() for cell in line.strip("|").split("|")] for line in lines)
+        rows += [row for row in found if not (both and row[0] == "plane motion")]
     bare = [[cell.replace("`", "") for cell in row[:3]] for row in rows]
-    return Table.of_texts(head[:3], bare, words=3)
+    return Table.of_texts(heads[:3], bare, words=3)
 
 
 def _plain(value: object) -> str:

@@ -123,7 +123,9 @@ CONTACT = (
     Derived("contact_period", "first period in full contact", "T", "s", "bed.period"),
     Derived("contact_stiffness", "stiffness in full contact", "K_s", "N/m", "bed.stiffness"),
     Derived("settlement", "settlement of a joint", "D_0", "m", "bed.settlement"),
-    Derived("joint_stiffness", "mean stiffness of a joint", "W/D_0", "N/m", "bed.joint_stiffness"),
+    Derived(
+        "joint_stiffness", "mean stiffness of all joints", "W/D_0", "N/m", "bed.joint_stiffness"
+    ),
     Derived("lifts_from", "ends begin to lift at", "phi_u", "rad", "bed.uplift_rotation"),
     Derived("lifts_from_ratio", "over the slenderness angle", "phi_u/alpha", "-", "bed.ratio"),
     Derived("contact_mass", "columns and cap beam at u_b", "m_0", "kg", "bed.mass"),

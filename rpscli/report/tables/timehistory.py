@@ -253,23 +253,28 @@ def _passes(result: TimeHistoryResult) -> list[Row]:
     return [*rows, _row(result, "torsion_lever")]
 
 
+ROUND = "columns are taken as round: square ones, which would wobble over corners, are not followed"
+
+
 def passes_text(result: TimeHistoryResult) -> str | None:
-    """What both components assume at upright; None where one acts."""
-    if result.both_components and result.structure.bed is not None:
+    """What both components assume at upright, and of columns; None where one acts."""
+    if not result.both_components:
+        return None
+    if result.structure.bed is not None:
         return (
             "under both components compliant ends follow the law of a strip in every direction: a"
             " round joint of the same stiffness tilts some 6 % more, with 8 % less base shear; the"
             " impact's loss acts where columns come back within the tilt at uplift, wider passes"
-            " lose in the joints alone"
+            f" lose in the joints alone; {ROUND}"
         )
     if not result.passes:
-        return None
+        return ROUND
     lost = 0 if result.passes_as_impacts is None else int(result.passes_as_impacts)
     return (
         f"{result.passes:.0f} passes near upright, however wide; {lost} of them lose like an impact"
         " (l > 0.5);"
         f" contact time {1e3 * result.structure.impact_law.contact_time:g} ms assumed: it decides"
-        " how the end of the motion dies, and hardly how large it becomes"
+        f" how the end of the motion dies, and hardly how large it becomes; {ROUND}"
     )
 
 
