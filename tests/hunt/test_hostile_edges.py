@@ -155,7 +155,7 @@ def test_folders_of_results(long: bool) -> None:
         done = judged(command, *words, *into, codes=PROMISED | {2})
         return f"{kind}, {command}: {done}"
 
-    hunt("folders of results", trial, 10, 120 if long else None)
+    hunt("folders of results", trial, 4, 120 if long else None)
 
 
 GIVEN: list[Any] = [  # by functions of other packages; errors are raised
@@ -233,7 +233,7 @@ def test_plugins(long: bool, monkeypatch: pytest.MonkeyPatch) -> None:
         shutil.rmtree("out", ignore_errors=True)
         return f"{kind}: {done}"
 
-    hunt("plug-ins", trial, 40, 400 if long else None)
+    hunt("plug-ins", trial, 12, 400 if long else None)
 
 
 @shares

@@ -242,7 +242,7 @@ def test_one_earthquake_has_one_name_in_all_sets() -> None:
         select(motions, load_target(TARGET), SelectionRequest(3, (0.3, 1.0), per_event=1))
 
 
-@pytest.mark.parametrize("pinned", [True, False])
+@pytest.mark.parametrize("pinned", [True, pytest.param(False, marks=pytest.mark.long)])
 def test_a_target_with_scatter(tmp_path: Path, pinned: bool) -> None:
     """Mean and deviation of ln Sa, made from the motions themselves, are found again."""
     motions = synthetic(14)

@@ -125,7 +125,7 @@ def printed(drawing: Drawing, columns: int) -> list[str]:
         return [f"{drawing.name}: {fault}" for fault in faults(figure)]
 
 
-@pytest.mark.parametrize("columns", [1, 2])
+@pytest.mark.parametrize("columns", [1, pytest.param(2, marks=pytest.mark.long)])
 def test_figures_of_analyses_can_be_read(columns: int) -> None:
     devices = ViscousDamper(2e5), Stop(0.02, 4e6), Tendon(2e4, 1e6), FrictionDamper(1e5)
     made, look = replace(structure(CURVED, 6), devices=devices), Look(columns=columns)
@@ -192,7 +192,7 @@ def result(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyP
 
 
 @needs_compiled_kernels
-@pytest.mark.parametrize("columns", [1, 2])
+@pytest.mark.parametrize("columns", [1, pytest.param(2, marks=pytest.mark.long)])
 def test_reports_can_be_read(result: rpscli.StudyResult, columns: int) -> None:
     assert {*result.study.reports} == {*REPORT_NAMES}
     found = []

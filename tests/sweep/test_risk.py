@@ -209,6 +209,7 @@ def test_a_study_reports_its_risk(workplace: Path, sweep_json: SweepJson) -> Non
     assert (workplace / "out" / "risk.png").exists()
 
 
+@pytest.mark.long
 @pytest.mark.evidence("risk", "published")
 def test_margins_and_dispersions_are_those_of_fema_p695(
     workplace: Path, sweep_json: SweepJson, sweep: Sweep, monkeypatch: pytest.MonkeyPatch
