@@ -364,10 +364,10 @@ def test_against_the_second_integrator(kind: str, arcs: bool) -> None:
     beside_the_second_integrator(kind, arcs, *two_pulses(2.0))
 
 
-def test_a_fifth_of_a_second_interpreted() -> None:
+def test_a_third_of_a_second_interpreted() -> None:
     script = (
         "from physics.test_both_components import beside_the_second_integrator, two_pulses\n"
-        "x, y = two_pulses()[:, 80:100]; x[0] = y[0] = 0.0\n"
+        "x, y = two_pulses()[:, 80:115]; x[0] = y[0] = 0.0\n"
         "beside_the_second_integrator('root', True, x, y, 1, 1.0)"
     )
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path), "NUMBA_DISABLE_JIT": "1"}
