@@ -174,14 +174,16 @@ def grip_of(
     Q_n, Q_t = at.C * (z[0] * n + z[1] * t) - held, at.h * (z[1] * n - z[0] * t)
     rate_n = at.C * (z_rate[0] * n + z_rate[1] * t) - arm * g_up[1]
     rate_t = at.h * (z_rate[1] * n - z_rate[0] * t)
-    size = math.sqrt(Q_n * Q_n + Q_t * Q_t)
-    d_n, d_t = (Q_n / size, Q_t / size) if size > 0.0 else (1.0, 0.0)
+    pushed = Q_n != 0.0 or Q_t != 0.0  # else it will be where that grows to
+    aim_n, aim_t = (Q_n, Q_t) if pushed else (rate_n, rate_t)
+    size = math.sqrt(aim_n * aim_n + aim_t * aim_t)
+    d_n, d_t = (aim_n / size, aim_t / size) if size > 0.0 else (1.0, 0.0)
     long = math.sqrt((at.C * d_n) ** 2 + (at.h * d_t) ** 2)
     turns = 1 if M == 0.0 or P == 0.0 else TURNS  # of one alone d follows at once
     for _ in range(turns if P + M > 0.0 else 0):
         # Where Q is just held it is the gradient of P |W d| + M |d|.
-        d_n = Q_n / (P * at.C * at.C / long + M)
-        d_t = Q_t / (P * at.h * at.h / long + M)
+        d_n = aim_n / (P * at.C * at.C / long + M)
+        d_t = aim_t / (P * at.h * at.h / long + M)
         far = math.sqrt(d_n * d_n + d_t * d_t)
         d_n, d_t = (d_n / far, d_t / far) if far > 0.0 else (1.0, 0.0)
         long = math.sqrt((at.C * d_n) ** 2 + (at.h * d_t) ** 2)
