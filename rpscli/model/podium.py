@@ -191,19 +191,16 @@ class PodiumStructure(Shown):
             Of axial forces; else of shears.
         """
         building, parts = self.superstructure, []
-        if not (axial or both):
+        passes = both and not self.passes_smoothly
+        if not (axial or passes):
             return ()
         if axial and building is not None and (both or not self.rows):
             key = "known under one component" if both else "podium.plan"
             parts.append(f"the overturning moment of the building ({key})")
-        shocks = f"passes shorter than {1e3 * self.shock_time:g} ms"
-        if not both or self.bed is not None:
-            shocks = "impacts"
-        if self.bearing.is_spherical:
-            return tuple(parts)
-        if both and building is None:
-            parts.append(f"the shock of {shocks}")
-        elif building is not None and building.vertical_period is None:
+        shocks = f"passes shorter than {1e3 * self.shock_time:g} ms" if passes else "impacts"
+        if building is None:
+            parts += [f"the shock of {shocks}"] * passes
+        elif building.vertical_period is None and not self.bearing.is_spherical:
             parts.append(f"the shock of {shocks} (superstructure.vertical_period)")
         return tuple(parts)
 

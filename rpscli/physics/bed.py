@@ -13,7 +13,7 @@ from __future__ import annotations
 import math
 
 from rpscli.physics.compile import compiled
-from rpscli.physics.laws import lanes_of, patch, polar, ways_of
+from rpscli.physics.laws import lanes_of, new_tilt_of, patch, polar, ways_of
 from rpscli.physics.state import BEDDED, ROCKING, ROLLING, Record
 
 
@@ -21,8 +21,7 @@ from rpscli.physics.state import BEDDED, ROCKING, ROLLING, Record
 def set_patches(s: Record) -> None:
     """Write w and its slope of all lanes at a stage."""
     for l in range(lanes_of(s)):
-        tilt = s.new_tilt[0, l], (s.new_tilt[1, l] if ways_of(s) == 2 else 0.0)
-        x, _, _, _, _ = polar(s, l, tilt, (0.0, 0.0))
+        x, _, _, _, _ = polar(s, l, new_tilt_of(s, l), (0.0, 0.0))
         s.w[l], s.dw[l] = patch(s, l, x)
 
 

@@ -34,6 +34,8 @@ from rpscli.physics.laws import (
     contact_forces,
     lanes_of,
     motion_at,
+    new_rate_of,
+    new_tilt_of,
     patch,
     path_at,
     place_with,
@@ -303,12 +305,11 @@ def observe_contacts(s: Record) -> None:
     for l in range(lanes_of(s)):
         time = s.time[l] + s.h[l]
         ground = s.a_g[0, l] + time * s.a_g_slope[0, l]
-        tilt_y, rate_y, ground_y, beam_y, V_y = 0.0, 0.0, 0.0, 0.0, 0.0
+        ground_y, beam_y, V_y = 0.0, 0.0, 0.0
         if ways_of(s) == 2:
-            tilt_y, rate_y = s.new_tilt[1, l], s.new_tilt_rate[1, l]
             ground_y = s.a_g[1, l] + time * s.a_g_slope[1, l]
             beam_y, V_y = s.new_shaking[1, l] - ground_y, s.new_V[1, l] + s.drive[1, l]
-        tilt, rate = (s.new_tilt[0, l], tilt_y), (s.new_tilt_rate[0, l], rate_y)
+        tilt, rate = new_tilt_of(s, l), new_rate_of(s, l)
         x, n, t, _, _ = polar(s, l, tilt, rate)
         beam, g_up = s.new_shaking[0, l] - ground, s.g_up[l] + time * s.g_up_slope[l]
         V = s.new_V[0, l] + s.drive[0, l] + s.tied[l] * n
@@ -337,10 +338,7 @@ def observe_contacts(s: Record) -> None:
 @inlined
 def torsion(s: Record, l: int) -> float:
     """Torsion that prevents roll-out at the end of the step, over the weight: a length [m]."""
-    tilt, rate = (
-        (s.new_tilt[0, l], s.new_tilt[1, l]),
-        (s.new_tilt_rate[0, l], s.new_tilt_rate[1, l]),
-    )
+    tilt, rate = new_tilt_of(s, l), new_rate_of(s, l)
     x, n, t, p, q = polar(s, l, tilt, rate)
     at = place_with(s, l, x, s.w[l], s.dw[l])
     per_x = 1.0 / (x if x > 0.0 else 1.0)

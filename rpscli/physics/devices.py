@@ -18,8 +18,10 @@ from rpscli.physics import geometry
 from rpscli.physics.compile import compiled
 from rpscli.physics.ground import log_event
 from rpscli.physics.laws import (
-    beam_at,
+    beam_rates,
     lanes_of,
+    new_rate_of,
+    new_tilt_of,
     path_at,
     place_of,
     place_with,
@@ -212,9 +214,7 @@ def act_at_stage(s: Record, weight: float) -> None:
     for l in range(lanes_of(s)):
         if s.devices[l] == 0:
             continue
-        tilt = s.new_tilt[0, l], (s.new_tilt[1, l] if ways_of(s) == 2 else 0.0)
-        rate = s.new_tilt_rate[0, l], (s.new_tilt_rate[1, l] if ways_of(s) == 2 else 0.0)
-        at = worked(s, l, tilt, rate)
+        at = worked(s, l, new_tilt_of(s, l), new_rate_of(s, l))
         act(s, l, at)
         for i in range(s.devices[l]):
             s.device_work[i, l] += weight * power_of(s, l, i, at)
@@ -329,18 +329,9 @@ def speed_of_stop(s: Record, l: int, end: int) -> tuple[bool, float, float]:
     """|u_b'|^2 over that of a stop, and its slope, where friction brakes it."""
     if ways_of(s) == 1 or not has_friction(s, l):
         return False, 0.0, 0.0
-    tilt, rate, time = tilt_of(s, l), rate_of(s, l), s.time[l] + end * s.h[l]
-    if end > 0:
-        tilt = s.new_tilt[0, l], s.new_tilt[1, l]
-        rate = s.new_tilt_rate[0, l], s.new_tilt_rate[1, l]
-    beam = beam_at(s, l, tilt, rate)
-    value, slope = -s.stop_speed[l] * s.stop_speed[l], 0.0
-    for axis in range(2):
-        shaking = s.new_shaking[axis, l] if end > 0 else s.shaking[axis, l]
-        faster = shaking - (s.a_g[axis, l] + time * s.a_g_slope[axis, l])
-        value += beam[2 + axis] * beam[2 + axis]
-        slope += 2.0 * beam[2 + axis] * faster
-    return True, value, slope
+    x, y, faster_x, faster_y = beam_rates(s, l, end)
+    least = s.stop_speed[l]
+    return True, x * x + y * y - least * least, 2.0 * (x * faster_x + y * faster_y)
 
 
 @compiled

@@ -29,7 +29,7 @@ from rpscli.physics.events import check_steps, resolve_step
 from rpscli.physics.friction import grip_at, set_limits, sticks
 from rpscli.physics.ground import azimuth_of, log_event, set_ground, time_of
 from rpscli.physics.laws import (
-    beam_now,
+    beam_rates,
     lanes_of,
     place_of,
     polar,
@@ -78,8 +78,8 @@ from rpscli.physics.state import (
 )
 from rpscli.physics.step import renew, take_steps
 from rpscli.physics.upright import (
+    change_rate,
     enter_phase,
-    move_floors,
     pass_on_bed,
     pass_upright,
     set_polar,
@@ -303,12 +303,9 @@ def plan(s: Record, l: int) -> float:
 @compiled
 def kink_limit(s: Record, l: int) -> float:
     """Longest step over which |u_b'| changes by a part of itself only."""
-    at = worked(s, l, tilt_of(s, l), rate_of(s, l))
-    speed = math.sqrt(at.along * at.along + at.across * at.across)
-    change, least = 0.0, s.linear_speed[l]
-    for axis in range(ways_of(s)):
-        faster = s.shaking[axis, l] - (s.a_g[axis, l] + s.time[l] * s.a_g_slope[axis, l])
-        change += faster * faster
+    x, y, faster_x, faster_y = beam_rates(s, l, 0)
+    speed, change = math.sqrt(x * x + y * y), faster_x * faster_x + faster_y * faster_y
+    least = s.linear_speed[l]
     most = 2.0 * least if speed <= least else KINK * speed
     return most / max(math.sqrt(change), 1e-300)
 
@@ -497,17 +494,15 @@ def stop_or_turn(s: Record, l: int, system: Record, log: Record) -> None:
 def set_sliding(s: Record, l: int, system: Record, d_n: float, d_t: float, speed: float) -> None:
     """Set the rate of a tilt that hardly slides along a unit vector [speed m/s of the beam].
 
-    Floors keep their velocities; the first device with friction books the difference.
+    The first device with friction books the difference.
     """
-    energy, before = total_energy(s, l, system), beam_now(s, l)
-    x, n, t, _, _ = polar(s, l, tilt_of(s, l), (0.0, 0.0))
+    x, _, _, _, _ = polar(s, l, tilt_of(s, l), (0.0, 0.0))
     at = place_of(s, l, x)
     rate = speed / (s.diameter[l] * math.hypot(at.C * d_n, at.h * d_t) + 1e-300)
-    set_polar(s, l, x, n, t, rate * d_n, rate * d_t)
-    move_floors(s, l, before)
+    lost = change_rate(s, l, system, rate * d_n, rate * d_t)
     for i in range(s.devices[l]):
         if s.device_kind[i, l] in (FRICTION, ROLLING_RESISTANCE):
-            s.device_energy[i, l] += energy - total_energy(s, l, system)
+            s.device_energy[i, l] += lost
             break
 
 

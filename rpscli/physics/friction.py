@@ -17,6 +17,16 @@ from rpscli.physics.state import STICKING, STOP, STUCK, Record
 
 
 @compiled
+def push_of_stops(s: Record, l: int) -> float:
+    """Force of all stops against a tilt at rest [N]."""
+    path, push = s.diameter[l] * path_at(s, l, s.x[l]), 0.0
+    for i in range(s.devices[l]):
+        if s.device_kind[i, l] == STOP:
+            push += resistance(s, l, i, path, 0.0)
+    return push
+
+
+@compiled
 def force_at_rest(s: Record, l: int) -> tuple[float, float]:
     """Horizontal force at the cap beam against a tilt at rest [N].
 
@@ -25,12 +35,9 @@ def force_at_rest(s: Record, l: int) -> tuple[float, float]:
     if s.devices[l] == 0:
         return 0.0, 0.0
     e, lever, _, _ = tendon_elongation(s, l, s.x[l])
-    C, path = place_of(s, l, s.x[l]).C, s.diameter[l] * path_at(s, l, s.x[l])
-    arm, elastic = s.diameter[l] * C, 0.0
+    arm, elastic = s.diameter[l] * place_of(s, l, s.x[l]).C, push_of_stops(s, l)
     for i in range(s.devices[l]):
         elastic += s.columns[l] * tension(s, l, i, e) * lever / arm
-        if s.device_kind[i, l] == STOP:
-            elastic += resistance(s, l, i, path, 0.0)
     return elastic, s.friction_force[l] + s.friction_moment[l] / arm
 
 
@@ -91,12 +98,7 @@ def push_at_rest(
     if s.phase[l] == STUCK:
         resists += 0.5 * side * (s.held_right[l] - s.held_left[l])
         share = -(resists + action) / friction
-        steady = 0.0
-        path = s.diameter[l] * path_at(s, l, s.x[l])
-        for i in range(s.devices[l]):
-            if s.device_kind[i, l] == STOP:
-                steady += resistance(s, l, i, path, 0.0)
-        s.drive[0, l] = -side * (steady + share * s.friction_force[l])
+        s.drive[0, l] = -side * (push_of_stops(s, l) + share * s.friction_force[l])
         return float(share)
     dampers = per_N * s.friction_force[l]
     if dampers == 0.0:
@@ -233,10 +235,7 @@ def push_stuck(
     z_y = s.share[l] * V[1] - s.load[l] * a_g[1]
     grip = grip_of(s, l, (z_x, z_y), (0.0, 0.0), (g_up, 0.0), 0.0)
     _, n, t, _, _ = polar(s, l, tilt_of(s, l), (0.0, 0.0))
-    path, push = s.diameter[l] * path_at(s, l, s.x[l]), grip.used * s.friction_force[l]
-    out, aside = -push * grip.drag_n, -push * grip.drag_t
-    for i in range(s.devices[l]):
-        if s.device_kind[i, l] == STOP:
-            out -= resistance(s, l, i, path, 0.0)
+    push = grip.used * s.friction_force[l]
+    out, aside = -push * grip.drag_n - push_of_stops(s, l), -push * grip.drag_t
     s.drive[0, l], s.drive[1, l] = out * n - aside * t, out * t + aside * n
     return grip.used

@@ -236,6 +236,18 @@ def rate_of(s: Record, l: int) -> tuple[float, float]:
 
 
 @inlined
+def new_tilt_of(s: Record, l: int) -> tuple[float, float]:
+    """The tilt vector at a stage of the step, and at its end."""
+    return s.new_tilt[0, l], (s.new_tilt[1, l] if ways_of(s) == 2 else 0.0)
+
+
+@inlined
+def new_rate_of(s: Record, l: int) -> tuple[float, float]:
+    """Its rate."""
+    return s.new_tilt_rate[0, l], (s.new_tilt_rate[1, l] if ways_of(s) == 2 else 0.0)
+
+
+@inlined
 def path_at(s: Record, l: int, x: float) -> float:
     """|u_b| over 2 R (1.4)."""
     sine, less, _ = sines(x)
@@ -263,6 +275,21 @@ def beam_at(
 def beam_now(s: Record, l: int) -> tuple[float, float, float, float]:
     """The same at the start of the step."""
     return beam_at(s, l, tilt_of(s, l), rate_of(s, l))
+
+
+@compiled
+def beam_rates(s: Record, l: int, end: int) -> tuple[float, float, float, float]:
+    """u_b' and u_b'' in x and in y, at the start of the step (0) or at its end (1)."""
+    tilt, rate, time = tilt_of(s, l), rate_of(s, l), s.time[l] + end * s.h[l]
+    if end > 0:
+        tilt, rate = new_tilt_of(s, l), new_rate_of(s, l)
+    _, _, u_x, u_y = beam_at(s, l, tilt, rate)
+    faster_x, faster_y = 0.0, 0.0
+    for axis in range(ways_of(s)):
+        shaking = s.new_shaking[axis, l] if end > 0 else s.shaking[axis, l]
+        faster = shaking - (s.a_g[axis, l] + time * s.a_g_slope[axis, l])
+        faster_x, faster_y = (faster, faster_y) if axis == 0 else (faster_x, faster)
+    return u_x, u_y, faster_x, faster_y
 
 
 @compiled

@@ -19,6 +19,8 @@ from rpscli.physics.laws import (
     lanes_of,
     lifted_mass,
     motion_at,
+    new_rate_of,
+    new_tilt_of,
     patch,
     place_with,
     polar,
@@ -40,12 +42,11 @@ def accelerate(s: Record, at: float) -> None:
         time = s.time[l] + at * s.h[l]
         ground = s.a_g[0, l] + time * s.a_g_slope[0, l]
         z_x = s.share[l] * (s.new_V[0, l] + s.drive[0, l]) - s.load[l] * ground
-        tilt_y, rate_y, z_y, ground_y = 0.0, 0.0, 0.0, 0.0
+        z_y, ground_y = 0.0, 0.0
         if ways_of(s) == 2:
-            tilt_y, rate_y = s.new_tilt[1, l], s.new_tilt_rate[1, l]
             ground_y = s.a_g[1, l] + time * s.a_g_slope[1, l]
             z_y = s.share[l] * (s.new_V[1, l] + s.drive[1, l]) - s.load[l] * ground_y
-        tilt, rate = (s.new_tilt[0, l], tilt_y), (s.new_tilt_rate[0, l], rate_y)
+        tilt, rate = new_tilt_of(s, l), new_rate_of(s, l)
         x, _, _, p, _ = polar(s, l, tilt, rate)
         place = place_with(s, l, x, s.w[l], s.dw[l])
         g_up = s.g_up[l] + time * s.g_up_slope[l]
@@ -287,6 +288,4 @@ def begin_powers(s: Record) -> None:
 @compiled
 def book_powers(s: Record, at: float, weight: float) -> None:
     """Add those of a stage."""
-    tilt = s.new_tilt[0, 0], (s.new_tilt[1, 0] if ways_of(s) == 2 else 0.0)
-    rate = s.new_tilt_rate[0, 0], (s.new_tilt_rate[1, 0] if ways_of(s) == 2 else 0.0)
-    book_power(s, s.time[0] + at * s.h[0], weight, tilt, rate)
+    book_power(s, s.time[0] + at * s.h[0], weight, new_tilt_of(s, 0), new_rate_of(s, 0))

@@ -114,6 +114,16 @@ def set_polar(s: Record, l: int, x: float, n: float, t: float, p: float, q: floa
 
 
 @compiled
+def change_rate(s: Record, l: int, system: Record, p: float, q: float) -> float:
+    """Set x' and the rate across it; floors keep their velocities. Returns what is lost [J]."""
+    energy, before = total_energy(s, l, system), beam_now(s, l)
+    x, n, t, _, _ = polar(s, l, tilt_of(s, l), rate_of(s, l))
+    set_polar(s, l, x, n, t, p, q)
+    move_floors(s, l, before)
+    return float(energy - total_energy(s, l, system))
+
+
+@compiled
 def loss_share(nearness: float) -> float:
     """l(s): of what an impact loses, what a pass of s = theta_min/(|q| t_c) does (13.14).
 
@@ -386,13 +396,10 @@ def keep_apart(s: Record, l: int, system: Record) -> None:
     """
     outwards = 1.0 if s.phase[l] != BEDDED else -1.0
     least = 2.0 * abs(s.a[l]) * NEAREST_RETURN * system.bed_uplift
-    x, n, t, p, q = polar(s, l, tilt_of(s, l), rate_of(s, l))
+    _, _, _, p, q = polar(s, l, tilt_of(s, l), rate_of(s, l))
     if outwards * s.a[l] >= 0.0 or p * p >= least:
         return
-    energy, before = total_energy(s, l, system), beam_now(s, l)
-    set_polar(s, l, x, n, t, outwards * math.sqrt(least), q)
-    move_floors(s, l, before)
-    s.energy_lost[l] += energy - total_energy(s, l, system)
+    s.energy_lost[l] += change_rate(s, l, system, outwards * math.sqrt(least), q)
     renew(s, l)
 
 

@@ -105,6 +105,19 @@ def test_what_is_followed_in_one_plane_only() -> None:
     assert not PodiumStructure(bearing, 2e4, 2e5, above, contact=soft).planar_only
 
 
+def test_forces_of_columns_leave_out_shocks_where_there_are_any() -> None:
+    bearing, above = Bearing(1.5, 0.15, 0.3, 0.5), building(2)
+    rigid = PodiumStructure(bearing, 2e4, 2e5, above)
+    soft = replace(rigid, contact=Contact("plane", stiffness=1e9))
+    ball = PodiumStructure(Bearing(1.5, 0.0, 0.3, 0.8), 2e4, 2e5, above)
+    shear = {s: s.left_out_of_columns(both=True, axial=False) for s in (rigid, soft, ball)}
+    assert ["shorter than 25 ms" in "".join(left) for left in shear.values()] == [1, 0, 0]
+    assert shear[soft] == shear[ball] == ()  # as under one component
+    assert "the shock of impacts" in soft.left_out_of_columns(both=True)[1]
+    assert len(ball.left_out_of_columns(both=True)) == 1
+    assert len(ball.left_out_of_columns(both=False)) == 1
+
+
 def test_joints_are_the_same_in_both_directions() -> None:
     """The ratio of periods is that of x."""
     x, y = building(2), building(2, 0.3)

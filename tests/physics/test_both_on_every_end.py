@@ -83,13 +83,9 @@ def test_histories_of_another_program(name: str, fema_record: RecordLoader) -> N
     held = left.events[SLIDING] > 0
     assert np.max(np.abs(history.tilt[rows] - tilt)) < (1e-7 if held else 3e-9)
     assert left.max_theta == pytest.approx(reference["max_tilt"], rel=1e-6 if held else 1e-7)
-    last = rows[-1] + 1
-    shear = np.hypot(*history.samples.base_shear[:last].T).max()
-    damping = structure.superstructure is not None  # springs and dampers; the reference has springs
-    if damping:
-        elastic = elastic_shear(structure, history)[:last].max()
+    if structure.superstructure is not None:
+        elastic = elastic_shear(structure, history)[: rows[-1] + 1].max()
         assert elastic == pytest.approx(reference["base_shear"], rel=1e-6)
-        assert shear == pytest.approx(elastic, rel=0.2)
     spent = reference["energy"]
     for mine, theirs in (
         (left.energy_input, "input"),
@@ -305,14 +301,14 @@ def test_in_proportion_to_the_stiffness(end: str) -> None:
     x, y = two_pulses(2.0)
     options = {k: v for k, v in ENDS[end].items() if k != "contact"} | {"loss": 0.0}
     rigid = followed(frame(3, 3.0, **options, contact_time=0.0), pair(x, y, STEP))
-    kind, gaps = end.split(maxsplit=1)[0], []
+    gaps = []
     for stiffness in (1e10, 1e11, 1e12):
-        contact = Contact(kind, stiffness=stiffness, damping=0.0)  # type: ignore[arg-type]
+        contact = replace(EDGES if end.startswith("edges") else PLANE, stiffness=stiffness)
         soft = followed(frame(3, 3.0, **options, contact=contact), pair(x, y, STEP))
         gaps.append(np.max(np.abs(soft.tilt - rigid.tilt)))
     assert rigid.left.max_theta > 0.02
     assert gaps[0] > 1.5 * gaps[1] > 2.2 * gaps[2]
-    if kind == "edges":
+    if end.startswith("edges"):
         assert gaps[2] < 1e-5
 
 
@@ -348,6 +344,11 @@ def test_passes_at_any_distance(contact: Contact, aim: float) -> None:
 
 GUIDE = Path(rpscli.__file__).with_name("GUIDE.md").read_text(encoding="utf-8")
 HEAD = "| ends | components |"
+REFUSED = {
+    "tendon": "tendons",
+    "rolling_resistance": "rolling resistance",
+    "impact": "floors.*jump",
+}
 WORDS: dict[str, tuple[Device, ...]] = {
     "viscous": (ViscousDamper(0.2 * W),),
     "friction": (FrictionDamper(0.02 * W),),
@@ -386,7 +387,7 @@ def test_every_cell_of_the_guide(end: str, both: bool, name: str, goes: bool) ->
     if goes:
         assert run().samples.theta[-1] != 0.0
     else:
-        with pytest.raises(ValueError, match=r"\w"):
+        with pytest.raises(ValueError, match=REFUSED[name]):
             run()
 
 

@@ -146,11 +146,11 @@ def groups_of(study: str, tmp_path: Path) -> dict[tuple[str, ...], list[Row]]:
     run_all([f"rps sweep {ROOT / study} --figures none -o {tmp_path / 'run'}"])
     groups: dict[tuple[str, ...], list[Row]] = {}
     for row in rows_of(tmp_path / "run" / "points.csv"):
-        key = f"{float(row['scale']):g}", json.loads(row["podium.contact"])["kind"]
+        key = [f"{float(row['scale']):g}", json.loads(row["podium.contact"])["kind"]]
         if "podium.devices" in row:
             devices = json.loads(row["podium.devices"])
-            key = (*key, devices[0]["force"] if devices else "none")  # type: ignore[assignment]
-        groups.setdefault(key, []).append(row)
+            key.append(devices[0]["force"] if devices else "none")
+        groups.setdefault(tuple(key), []).append(row)
     return groups
 
 
