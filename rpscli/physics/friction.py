@@ -235,7 +235,8 @@ def push_stuck(
     z_y = s.share[l] * V[1] - s.load[l] * a_g[1]
     grip = grip_of(s, l, (z_x, z_y), (0.0, 0.0), (g_up, 0.0), 0.0)
     _, n, t, _, _ = polar(s, l, tilt_of(s, l), (0.0, 0.0))
-    push = grip.used * s.friction_force[l]
+    used = min(grip.used, 1.0)  # a little more would be asked for just before it lets go (13.26)
+    push = used * s.friction_force[l]
     out, aside = -push * grip.drag_n - push_of_stops(s, l), -push * grip.drag_t
     s.drive[0, l], s.drive[1, l] = out * n - aside * t, out * t + aside * n
-    return grip.used
+    return used

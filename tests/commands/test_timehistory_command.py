@@ -337,3 +337,35 @@ def test_both_components_are_advised_where_they_can_act(rps: Invoke, more: tuple
     refused = rps(*words, "--set", "podium.impact.law=rigid").stdout
     assert "write ?both" not in refused
     assert "lets floors jump" in refused
+
+
+@pytest.mark.parametrize(
+    "ends",
+    [
+        (
+            "podium.bearing={semi_diagonal: 1, slenderness: 0, wedge_slenderness: 0.3,"
+            " curvature_ratio: 1}"
+        ),
+        "podium.contact={kind: plane, period_ratio: 1.2}",
+    ],
+    ids=["spherical", "plane"],
+)
+def test_pictures_of_both_components_where_nothing_happens_upright(
+    rps_json: InvokeJson, ends: str
+) -> None:
+    """All are drawn, of losses at impacts, and friction resists with its force at most."""
+    x, y = (
+        f"pulse:sine?amplitude={peak}g&period={T}&dt=0.005" for peak, T in ((0.3, 0.9), (0.2, 0.7))
+    )
+    motion = ["--set", f"record={{x: '{x}', y: '{y}'}}"]
+    friction = "podium.devices=[{kind: friction, force: 10 kN}]"
+    words = ("timehistory", "small.yaml", *motion, "--set", ends, "--set", friction)
+    document = rps_json(
+        *words, "--set", "podium.impact.law=flexible", "--figures", "svg", "-o", "o"
+    )
+    assert not [text for text in document["warnings"] if "not drawn" in text]
+    assert Path("o/orbit.svg").exists()
+    assert "lost at passes" not in Path("o/energy.svg").read_text("utf-8")
+    found = columns(Path("o/timehistory.csv"))
+    (forces,) = (values for name, values in found.items() if "friction_force" in name)
+    assert max(abs(float(force)) for force in forces) == pytest.approx(1e4, rel=1e-12)

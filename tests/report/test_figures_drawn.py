@@ -95,7 +95,7 @@ def test_rotation(drawn: Drawn, result: TimeHistoryResult) -> None:
     words = " ".join(figure.get_suptitle().replace("|", " ").split())
     every = f"samples every {result.record.dt:g} s, between which maxima may lie"
     assert words == f"a title {result.record.name} {every}"
-    ground, rotation, events = figure.axes
+    ground, rotation, *events = figure.axes
 
     is_drawn(curve(ground, "_child0"), trace.time, trace.ground_acceleration)
     assert ground.get_ylabel() == "ground\nacceleration [m/s²]"
@@ -124,11 +124,13 @@ def test_rotation(drawn: Drawn, result: TimeHistoryResult) -> None:
             if value <= high:
                 assert curve(rotation, label)[1].tolist() == [value, value]
 
-    assert events.get_xlabel() == "time [s]"
-    assert events.get_xlim() == (0.0, trace.time[-1])
+    assert figure.axes[-1].get_xlabel() == "time [s]"
+    assert figure.axes[-1].get_xlim() == (0.0, trace.time[-1])
+    assert len(events) == bool(result.events)  # none at rest
     marks = {
         text.get_text(): np.asarray(line.get_xdata()).tolist()
-        for text, line in zip(events.get_yticklabels(), events.lines, strict=True)
+        for axes in events
+        for text, line in zip(axes.get_yticklabels(), axes.lines, strict=True)
     }
     for name, kinds in (
         ("uplift", {"uplift"}),

@@ -197,15 +197,15 @@ NEAR = 8.0
 def rotation_figure(result: TimeHistoryResult, title: str) -> bytes:
     """Ground acceleration, rotation with its phases, and events; of pairs the azimuth as well."""
     rows, both = _rows(result), result.trace.azimuth is not None
-    draws = [draw_ground, draw_rotation, *([draw_azimuth] if both else []), draw_events]
-    heights = [1.3 if both else 1.0, 2.4, *([0.9] if both else []), 0.18 * max(len(rows), 1)]
+    draws = [draw_ground, draw_rotation, *[draw_azimuth] * both, *[draw_events] * bool(rows)]
+    heights = [1.3 if both else 1.0, 2.4, *[0.9] * both, *[0.18 * len(rows)] * bool(rows)]
 
     def draw(figure: style.Figure) -> None:
         style.heading(figure, title, record_name(result), result.sampling)
         panels = figure.subplots(len(draws), 1, sharex=True, height_ratios=heights)
         for axes, draw_one in zip(panels, draws, strict=True):
             draw_one(axes, result)
-        panels[-1].set_xlim(0.0, result.trace.time[-1])
+        panels[-1].set(xlim=(0.0, result.trace.time[-1]), xlabel="time [s]")
         for axes in panels[:-1]:
             axes.label_outer()
         figure.align_ylabels(panels[:-1])
@@ -347,9 +347,10 @@ def _draw_longest(axes: style.Axes, result: TimeHistoryResult, factor: float) ->
     """The swing to one side that turns the columns most, with its times and its direction."""
     time, rotation = result.trace.time, result.trace.rotation
     peak = int(np.nanargmax(np.abs(rotation)))
-    passes = [event.time for event in result.events if event.kind == "pass"]
     ends = np.flatnonzero(rotation * rotation[peak] <= 0.0)
-    ends = np.union1d(ends, np.searchsorted(time[:-1], passes))
+    if result.both_components:  # where it comes nearest to upright
+        nearest = (rotation[1:-1] < rotation[:-2]) & (rotation[1:-1] <= rotation[2:])
+        ends = np.union1d(ends, np.flatnonzero(nearest) + 1)
     if rotation[peak] == 0.0 or not ends[ends < peak].size:
         return
     first, last = ends[ends < peak][-1] + 1, min([*ends[ends > peak], len(time)])
@@ -376,9 +377,9 @@ def draw_energy(axes: style.Axes, result: TimeHistoryResult) -> None:
     factor, prefix = style.engineering(
         float(np.nanmax(np.abs([trace.energy_input, trace.energy_stored])))
     )
-    impacts = "impacts" if trace.y is None else "passes"
+    passes = result.both_components and not result.structure.passes_smoothly
     parts = [
-        (trace.energy_impact, f"lost at {impacts} (net)", style.ORANGE),
+        (trace.energy_impact, f"lost at {'passes' if passes else 'impacts'} (net)", style.ORANGE),
         (trace.energy_stored, "kinetic, elastic and gravitational", style.GREEN),
     ]
     for index, device in enumerate(result.structure.devices):

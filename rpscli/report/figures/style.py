@@ -367,8 +367,10 @@ def entries(panels: Iterable[Axes]) -> dict[str, Any]:
 def legend_above(axes: Axes) -> None:
     """A legend on top of the axes, where it covers nothing; folded where they are narrow."""
     room = _room(axes)
+    if not (found := entries([axes])):
+        return
     axes.legend(
-        **_arranged(entries([axes]), room - 0.5, None),
+        **_arranged(found, room - 0.5, None),
         loc="lower right" if room < WIDTH else "lower left",
         bbox_to_anchor=(0.0, 1.0, 1.0, 0.1),
         borderaxespad=0.1,

@@ -115,13 +115,14 @@ def contact_text(structure: PodiumStructure) -> str | None:
 def neighbours_texts(result: TimeHistoryResult, found: Sequence[Neighbour]) -> Iterator[str]:
     """That this is one history, and how much it moves with its motion and the impact law."""
     motions = [each for each in found if each.factor != 1.0]
+    passes = result.both_components and not result.structure.passes_smoothly
     if motions:
         near = [each for each in motions if abs(each.factor - 1.0) < 0.0101]
         turned = [each for each in found if each.turned]
         beside = f"; turned by 1 deg {_reached(turned)}" if turned else ""
         yield (
             f"one history: with 1 % less or more motion {_reached(near)}; with up to 3 %"
-            f" {_reached(motions)}{beside}. Motions with {'passes' if turned else 'impacts'} are"
+            f" {_reached(motions)}{beside}. Motions with {'passes' if passes else 'impacts'} are"
             " chaotic: judge by several records"
         )
     elif result.outcome != "failed":
