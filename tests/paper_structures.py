@@ -125,15 +125,6 @@ def waves(seconds: float, dt: float, peak: float, seed: int) -> GroundMotion:
     return ground(peak * a / np.max(np.abs(a)), dt)
 
 
-def chain_of_springs(period: float) -> tuple[Array, Array, Array]:
-    """k, c (5 % a mode) of two equal floors on equal springs, over their mass, and the rates."""
-    k = np.array([[2.0, -1.0], [-1.0, 1.0]])
-    k *= (2.0 * math.pi / period) ** 2 / np.linalg.eigvalsh(k)[0]
-    values, shapes = np.linalg.eigh(k)
-    c = shapes @ np.diag(0.1 * np.sqrt(values)) @ shapes.T
-    return k, c, np.block([[np.zeros((2, 2)), np.eye(2)], [-k, -c]])
-
-
 def steps_an_interval(structure: PodiumStructure, dt: float, accuracy: float = 1.0) -> int:
     """Taylor steps of an uplifted structure in a sampling interval without event."""
     return max(math.ceil(dt * accuracy * uplifted_rate(structure)), 1)

@@ -8,7 +8,7 @@ import numpy as np
 from paper_structures import Array, ground
 
 from rpscli.analyses.kernels.history import Request, follow, longest_history, run_of
-from rpscli.analyses.kernels.systems import paired_systems
+from rpscli.analyses.kernels.systems import stacked_systems
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.model.bearing import Bearing
 from rpscli.model.contact import Contact
@@ -124,7 +124,7 @@ def followed(
 ) -> History:
     """A history alone, of its record unless the settings say more; perhaps turning at its start."""
     settings = settings or TimeHistorySettings(free_vibration=0.0)
-    systems = paired_systems([(structure, settings)]).copy()
+    systems = stacked_systems([(structure, settings)], pairs=True).copy()
     systems["initial_turning"] = turning
     rows = longest_history(structure, settings, motion) * finer
     run = run_of(

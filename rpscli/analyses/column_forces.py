@@ -1,23 +1,19 @@
-"""Forces of one column: weight, overturning moment, shocks (Theory (8.7), (8.8), (13.19))."""
+"""Forces of one column: weight and overturning moment (Theory (8.7), (8.8))."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.analyses.trace import Event, Trace
+from rpscli.analyses.trace import Trace
 from rpscli.errors import listed
 from rpscli.model.podium import PodiumStructure
 from rpscli.physics import state
 
 Array = NDArray[np.float64]
-
-VERTICAL_DAMPING = 0.05
-"""Of each vertical mode of the building, over critical."""
 
 
 @dataclass(frozen=True)
@@ -48,11 +44,10 @@ def no_bound(name: str, structure: PodiumStructure) -> str:
     )
 
 
-def axial_forces(structure: PodiumStructure, trace: Trace, events: Sequence[Event]) -> AxialForces:
+def axial_forces(structure: PodiumStructure, trace: Trace) -> AxialForces:
     """Axial forces of single columns from a trace that is dense beside the vertical period."""
     normal = {"top": trace.normal_top, "bottom": trace.normal_bottom}
-    shocked = shock(structure, trace, events)
-    uneven, ratio, lift_off = np.zeros_like(shocked), None, None
+    uneven, ratio, lift_off = np.zeros_like(trace.time), None, None
     if structure.rows and trace.y is None:
         rows = np.array(structure.rows) - np.mean(structure.rows)
         lever = float(np.mean(rows**2) / np.max(np.abs(rows)))
@@ -63,8 +58,8 @@ def axial_forces(structure: PodiumStructure, trace: Trace, events: Sequence[Even
         lift_off = float(trace.time[lifts[0]]) if len(lifts) else None
     N = structure.columns
     return AxialForces(
-        {end: float(np.max(force + shocked + uneven)) / N for end, force in normal.items()},
-        {end: float(np.min(force + shocked - uneven)) / N for end, force in normal.items()},
+        {end: float(np.max(force + uneven)) / N for end, force in normal.items()},
+        {end: float(np.min(force - uneven)) / N for end, force in normal.items()},
         ratio,
         lift_off,
     )
@@ -93,6 +88,9 @@ def thrust_moment(structure: PodiumStructure, trace: Trace) -> Array:
     if (building := structure.superstructure) is not None:
         drifted = t.floor_displacements - t.cap_beam_displacement[:, None]
         weighs = t.normal_top / carried * (drifted @ building.masses)
+        if t.vertical_accelerations is not None:
+            pressing = building.masses * (structure.gravity + t.vertical_accelerations)
+            weighs = np.sum(drifted * pressing, axis=1)
     return t.normal_top * beside + weighs
 
 
@@ -102,42 +100,3 @@ def in_shocks(structure: PodiumStructure, trace: Trace) -> NDArray[np.bool_]:
         return np.zeros(len(trace.time), dtype=bool)
     rate = np.hypot(trace.rotation_rate, trace.rotation * trace.azimuth_rate)
     return np.asarray(structure.shock_time * rate > trace.rotation)
-
-
-def jumps(structure: PodiumStructure, trace: Trace, events: Sequence[Event]) -> tuple[Array, Array]:
-    """Times [s] and sizes of |theta'-| + |theta'+| of impacts, and of gains of theta' in shocks."""
-    impacts = [
-        (event.time, abs(event.rotation_rate_before) + abs(event.rotation_rate_after))
-        for event in events
-        if event.kind == "impact"
-    ]
-    shocked = in_shocks(structure, trace)
-    (rows,) = np.nonzero(shocked[1:] & shocked[:-1])
-    at = np.concatenate([[time for time, _ in impacts], trace.time[rows + 1]])
-    gained = np.diff(trace.rotation_rate)[rows]
-    return at, np.concatenate([[size for _, size in impacts], gained])
-
-
-def shock(structure: PodiumStructure, trace: Trace, events: Sequence[Event]) -> Array:
-    """Force under the building that impacts and shocks add (samples,) [N]."""
-    # 2 B (|w-| + |w+|) on the beam rings in the floors, a chain of equal vertical springs.
-    time = trace.time
-    building = structure.superstructure
-    if building is None or building.vertical_period is None:
-        return np.zeros_like(time)
-    at, jump = jumps(structure, trace, events)
-    width = 2.0 * structure.bearing.semi_diagonal * math.sin(structure.bearing.alpha)
-    w, mass = building.vertical_modes
-    xi = VERTICAL_DAMPING
-    free = w * math.sqrt(1.0 - xi * xi)
-    root = -xi * w + 1j * free
-    # Of a jump by 1 the acceleration is the real part of this times exp(root t).
-    unit = 2.0 * xi * w - 1j * w * w * (1.0 - 2.0 * xi * xi) / free
-    amplitudes, amplitude = np.zeros((len(at) + 1, len(w)), complex), np.zeros(len(w), complex)
-    between = np.exp(np.outer(np.diff(at, prepend=at[:1]), root))
-    for i, each in enumerate(jump):
-        amplitude = amplitude * between[i] + width * each * unit
-        amplitudes[i] = amplitude
-    last = np.searchsorted(at, time, side="right") - 1  # -1 is the row of zeros behind
-    since = np.where(last >= 0, time - np.append(at, 0.0)[last], 0.0)
-    return np.asarray((amplitudes[last] * np.exp(np.outer(since, root))).real @ mass)

@@ -10,7 +10,7 @@ import numpy as np
 
 from rpscli.analyses.kernels.history import Request as HistoryRequest
 from rpscli.analyses.kernels.history import follow, refuse_steps, run_of
-from rpscli.analyses.kernels.systems import longest_free_vibration, paired_systems, stacked_systems
+from rpscli.analyses.kernels.systems import longest_free_vibration, stacked_systems
 from rpscli.analyses.largest_demands import Demand, Histories
 from rpscli.analyses.settings import TimeHistorySettings, require_inputs
 from rpscli.errors import UsageError
@@ -43,10 +43,11 @@ def histories(
 ) -> Iterator[tuple[list[int], Histories]]:
     """Numbers of requests alike in storeys and contact, and their results; without the GIL."""
     # From `worth_lanes` on they run side by side; no result depends on the others, or on the order.
-    groups: dict[tuple[int, bool, bool], list[int]] = {}
+    groups: dict[tuple[int, bool, bool, bool], list[int]] = {}
     for i, request in enumerate(requests):
         pair, gives_way = request.motion.y is not None, request.structure.bed is not None
-        alike = request.structure.storeys, pair, gives_way
+        springs = request.structure.upwards is not None
+        alike = request.structure.storeys, pair, gives_way, springs
         groups.setdefault(alike, []).append(i)
     for members in groups.values():
         yield members, _run([requests[i] for i in members], worth_lanes)
@@ -130,8 +131,8 @@ def _run(requests: Sequence[Request], worth_lanes: int) -> Histories:
             known[id(r.motion)] = motion
         given.append(HistoryRequest(system, motion, r.scale))
     pairs = requests[0].motion.y is not None
-    stacked = (paired_systems if pairs else stacked_systems)([s for _, s in systems.values()])
-    rates = stacked["step_rate"].tolist()[:: 2 if pairs else 1]
+    stacked = stacked_systems([s for _, s in systems.values()], pairs=pairs)
+    rates = stacked["step_rate"].tolist()[:: len(stacked) // len(systems)]
     shaken = [motion for _, motion in motions.values()]
     durations = [motion.duration for motion in shaken]
     for r, history in zip(requests, given, strict=True):

@@ -41,14 +41,15 @@ RESTING = (state.FULL_CONTACT, state.STUCK, state.BEDDED)
 
 @dataclass(frozen=True)
 class Energy:
-    """Balance of the energy [J]: input = damped + devices + bed + impact + stored + residual.
+    """Balance of the energy [J]: the input is damped, dissipated, lost, stored, or the residual.
 
     Parameters
     ----------
     input
         By the ground.
-    damped, devices, bed
-        Dissipated in the building, in devices, and in what the ends bear on in full contact.
+    damped, damped_vertical, devices, bed
+        Dissipated in the building, in its vertical dampers, in devices, and in what the ends bear
+        on in full contact.
     impact, created
         Net loss at impacts and re-contacts; and the part of it that was gained where the rigid
         impact law sets floors in motion (Theory (4.11)).
@@ -66,6 +67,7 @@ class Energy:
     created: float
     devices: float
     bed: float
+    damped_vertical: float
 
 
 @dataclass(frozen=True)
@@ -144,15 +146,17 @@ class TimeHistoryResult(Demand):
         )
         stored, bed = stored + float(history["device_stored"].sum()), float(history["bed_energy"])
         available = supplied + float(self.trace.energy_stored[0])
+        vertical = float(history["energy_upwards"])
         return Energy(
             input=supplied,
             damped=damped,
             impact=lost,
             stored=stored,
-            residual=available - damped - devices - bed - lost - stored,
+            residual=available - damped - vertical - devices - bed - lost - stored,
             created=self.energy_created,
             devices=devices,
             bed=bed,
+            damped_vertical=vertical,
         )
 
     def restoring_moment(self, rotation: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -69,7 +69,7 @@ def time_history(
     if structure.superstructure is None or len(result.left_out_of_columns) > 1:
         return result
     dense = denser_trace(result, AXIAL_STEP)
-    return replace(result, axial=axial_forces(structure, dense, result.events))
+    return replace(result, axial=axial_forces(structure, dense))
 
 
 AXIAL_STEP = 5e-4

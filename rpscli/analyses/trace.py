@@ -192,8 +192,10 @@ class Trace(Direction):
     shear_top, shear_bottom, normal_top, normal_bottom
         Forces at the ends of all columns together [N]: F to the right on what is above, N upwards
         on it (Theory (8.4), (8.5)).
-    energy_input, energy_damped, energy_impact, energy_bed, energy_stored
+    energy_input, energy_damped, energy_damped_vertical, energy_impact, energy_bed, energy_stored
         [J] (Theory, sections 8 and 12).
+    vertical_accelerations
+        Absolute ones of floors on vertical springs [m/s2]; None of floors that ride on the beam.
     devices
         What each device does.
     azimuth, azimuth_rate, y
@@ -212,6 +214,7 @@ class Trace(Direction):
     normal_bottom: Array
     energy_input: Array
     energy_damped: Array
+    energy_damped_vertical: Array
     energy_impact: Array
     energy_bed: Array
     energy_stored: Array
@@ -219,6 +222,7 @@ class Trace(Direction):
     azimuth: Array | None = None
     azimuth_rate: Array | None = None
     y: Direction | None = None
+    vertical_accelerations: Array | None = None
 
     def size(self, name: str) -> Array:
         """Of what has a direction: its absolute value, or sqrt(x^2 + y^2)."""
@@ -262,12 +266,17 @@ def sampled(structure: PodiumStructure, t: Trace) -> Iterator[Sampled]:
     yield from directed("storey_{}_drift", "m", "drifts")
     yield from directed("storey_{}_shear", "N", "storey_shears")
     yield from directed("floor_{}_acceleration", "m/s2", "floor_accelerations")
+    if (upwards := t.vertical_accelerations) is not None:
+        for i, column in enumerate(upwards.T, start=1):
+            yield f"floor_{i}_vertical_acceleration", "m/s2", column
     yield from directed("driving_moment", "N m", "driving_moment")
     yield from directed("column_shear_top", "N", "shear_top", structure.columns)
     yield from directed("column_shear_bottom", "N", "shear_bottom", structure.columns)
     yield "column_force_top", "N", t.normal_top / structure.columns
     yield "column_force_bottom", "N", t.normal_bottom / structure.columns
     yield from ((name, "J", getattr(t, name)) for name in ENERGIES)
+    if structure.upwards is not None:
+        yield "energy_damped_vertical", "J", t.energy_damped_vertical
     if structure.bed is not None:
         yield "energy_bed", "J", t.energy_bed
     for index, device in enumerate(structure.devices):
@@ -292,6 +301,7 @@ def trace_of(structure: PodiumStructure, run: SampledHistory) -> Trace:
         normal_bottom=samples.normal_bottom,
         energy_input=samples.energy_input,
         energy_damped=samples.energy_damped,
+        energy_damped_vertical=samples.energy_upwards,
         energy_impact=samples.energy_lost,
         energy_bed=samples.energy_bed,
         energy_stored=samples.energy_stored,
@@ -299,6 +309,9 @@ def trace_of(structure: PodiumStructure, run: SampledHistory) -> Trace:
         azimuth=samples.azimuth if pairs else None,
         azimuth_rate=samples.turning if pairs else None,
         y=Direction(**_in_direction(structure, run, 1)) if pairs else None,
+        vertical_accelerations=None
+        if structure.upwards is None
+        else run.floors[:, 2, -structure.storeys :],
         **_in_direction(structure, run, 0),
     )
 

@@ -21,6 +21,7 @@ from rpscli.model.devices import DEVICES
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import (
+    VERTICAL_DAMPING,
     ModalDamping,
     RayleighDamping,
     Superstructure,
@@ -143,10 +144,18 @@ def building(section: SuperstructureSection) -> Superstructure | None:
     else:
         stiffnesses = profile_stiffnesses(masses, section.period, section.profile or "sine")
     heights = None if height is None else np.array(each_storey(height, n))
+    upwards = section.vertical_damping
     damping: RayleighDamping | ModalDamping = ModalDamping(given.ratio)
     if given.modes is not None:
         damping = RayleighDamping(given.ratio, given.modes)
-    return Superstructure(masses, stiffnesses, damping, heights, section.vertical_period)
+    return Superstructure(
+        masses,
+        stiffnesses,
+        damping,
+        heights,
+        section.vertical_period,
+        VERTICAL_DAMPING if upwards is None else upwards,
+    )
 
 
 def each_storey(value: float | tuple[float, ...] | None, storeys: int) -> list[float]:

@@ -167,6 +167,10 @@ def _values(case: Case) -> Iterator[tuple[str, str]]:
         rayleigh = f"[1, {min(2, file.superstructure.storeys)}]"
         modes = rayleigh if damping.modes is None else "null"
         yield "damping model", f"superstructure.damping.modes={modes}"
+    if (period := file.superstructure.vertical_period) is not None:
+        for factor in (0.5, 2.0):
+            yield "vertical period", f"superstructure.vertical_period={factor * period:g} s"
+        yield "vertical period", "superstructure.vertical_period=null"
     place = "podium.bearing.dimensions" if bearing.dimensions else "podium.bearing"
     for name in ("semi_diagonal", "slenderness", "height", "width"):
         value = float(getattr(bearing.dimensions or bearing, name, None) or 0.0)

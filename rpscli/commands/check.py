@@ -23,6 +23,7 @@ from rpscli.report.tables.derived import (
     DYNAMICS,
     FIRST_PERIOD,
     GEOMETRY,
+    UPWARDS,
 )
 
 if TYPE_CHECKING:
@@ -118,7 +119,8 @@ def check_tables(document: Mapping[str, Any], limits: Sequence[Condition]) -> It
     yield Heading(document["case"]["title"])
     pair = document["record"] and document["record"]["y"]
     on_bed = CONTACT if "contact_stiffness" in document else ()
-    dynamics = (*DYNAMICS, FIRST_PERIOD, *on_bed)
+    upwards = UPWARDS if "vertical_period" in document else ()
+    dynamics = (*DYNAMICS, FIRST_PERIOD, *upwards, *on_bed)
     for rows in (LEADING, GEOMETRY, dynamics, BOTH)[: 4 if pair else 3]:
         texts = []
         for row in rows:

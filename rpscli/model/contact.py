@@ -231,7 +231,11 @@ def _make_bed(structure: Standing, u: float) -> Bed:
     phase, gradual = b.rocking if b.is_flat else b.rolling, contact.kind == "plane"
     sine, cosine, columns = math.sin(u), math.cos(u), structure.columns_mass
     B, C = (f(phase, cosine, sine) for f in (geometry.contact_arm, geometry.contact_height))
-    masses = b.inertia_ratio - 1.0, 1.0 + 4.0 * gamma, 1.0 + 4.0 * gamma * (1.0 + structure.eta)
+    masses = (
+        b.inertia_ratio - 1.0,
+        1.0 + 4.0 * gamma,
+        1.0 + 4.0 * gamma * (1.0 + structure.eta_riding),
+    )
     inertia, lifted = geometry.inertia(*masses, C * C, 0.0), geometry.inertia(*masses, C * C, B * B)
     sink = 2.0 / 3.0 * math.sin(b.alpha) * math.sqrt(u) if gradual else 0.0
     arm = (B - sink / math.sqrt(u)) / u

@@ -135,6 +135,12 @@ class PodiumStructure(Shown):
         x, y = self.superstructure, self.superstructure_y
         if x is not None and self.cap_beam_mass == 0.0:
             raise ValueError("cap_beam_mass must be > 0: the superstructure stands on it")
+        if x is not None and x.vertical_period is not None and self.impact_law.floors_jump:
+            raise ValueError(
+                f"the impact law {self.impact_law.kind} lets floors jump with the cap beam, which"
+                " vertical springs (vertical_period) do not; use the law flexible, with loss or"
+                " factor"
+            )
         if y is not None and (x is None or not np.array_equal(x.masses, y.masses)):
             raise ValueError("superstructure_y must have the floors of superstructure")
 
@@ -171,14 +177,20 @@ class PodiumStructure(Shown):
 
     @cached_property
     def across(self) -> PodiumStructure:
-        """The same podium under what vibrates in y; joints keep their stiffness."""
-        if self.superstructure_y is None:
-            return self
+        """The same podium under what vibrates in y."""
+        return self if self.superstructure_y is None else self._under(self.superstructure_y)
+
+    @cached_property
+    def upwards(self) -> PodiumStructure | None:
+        """The same podium under what vibrates upwards; None where floors ride on the cap beam."""
+        above = None if self.superstructure is None else self.superstructure.upwards
+        return None if above is None else self._under(above)
+
+    def _under(self, above: Superstructure) -> PodiumStructure:
+        """The same podium under another building; joints keep their stiffness."""
         joint = None if self.bed is None else self.bed.stiffness
         contact = replace(self.contact, period_ratio=None, settlement=None, stiffness=joint)
-        return replace(
-            self, superstructure=self.superstructure_y, superstructure_y=None, contact=contact
-        )
+        return replace(self, superstructure=above, superstructure_y=None, contact=contact)
 
     def left_out_of_columns(self, *, both: bool, axial: bool = True) -> tuple[str, ...]:
         """Parts that forces of single columns leave out, and the keys that would give them.
@@ -232,6 +244,12 @@ class PodiumStructure(Shown):
         return self.superstructure_mass / self.cap_beam_mass if self.superstructure else 0.0
 
     @property
+    def eta_riding(self) -> float:
+        """eta of floors that rise with the cap beam: of all, or of none on vertical springs."""
+        above = self.superstructure
+        return 0.0 if above is None or above.vertical_period is not None else self.eta
+
+    @property
     def gamma_total(self) -> float:
         """gamma (1 + eta): the mass ratio if the superstructure were rigid."""
         return self.gamma * (1.0 + self.eta)
@@ -254,7 +272,7 @@ class PodiumStructure(Shown):
     @property
     def restitution(self) -> float:
         """e of the impact law."""
-        return self.impact_law.ratio(self.bearing, self.gamma, self.eta)
+        return self.impact_law.ratio(self.bearing, self.gamma, self.eta_riding)
 
     @property
     def uplift_acceleration(self) -> float:
@@ -295,10 +313,12 @@ class PodiumStructure(Shown):
         """Delta phi = pi sqrt(A(0)/K(0)): turn in a pass near upright [rad] (Theory (13.13)).
 
         A(0) - K(0) = (1 + 4 gamma (1 + eta)) sin^2(alpha): falling moves masses up and down, going
-        round does not, so the turn exceeds pi however near the pass is.
+        round does not, so the turn exceeds pi however near the pass is. Floors on vertical springs
+        have no part in it.
         """
         sine, K = math.sin(self.bearing.alpha), self.turning_inertia
-        return math.pi * math.sqrt(1.0 + (1.0 + 4.0 * self.gamma_total) * sine**2 / K)
+        lifted = 1.0 + 4.0 * self.gamma * (1.0 + self.eta_riding)
+        return math.pi * math.sqrt(1.0 + lifted * sine**2 / K)
 
     @property
     def rolling_period(self) -> float | None:

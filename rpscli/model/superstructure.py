@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal
 
@@ -16,6 +16,9 @@ from rpscli.errors import is_size
 from rpscli.shown import Shown, frozen
 
 Array = NDArray[np.float64]
+
+VERTICAL_DAMPING = 0.05
+"""Of each vertical mode of the building, over critical, where nothing else is known."""
 
 
 @dataclass(frozen=True)
@@ -190,7 +193,10 @@ class Superstructure(Shown):
     storey_heights
         (n,) [m]; only for drift ratios, pictures and the overturning moment.
     vertical_period
-        First period of the vertical vibration on the cap beam [s]; only for the shock of impacts.
+        First period of the vertical vibration on the cap beam [s], in which floors stand on springs
+        and columns; None for floors that ride rigidly on the beam.
+    vertical_damping
+        Critical damping ratio of each vertical mode.
 
     Raises
     ------
@@ -203,6 +209,9 @@ class Superstructure(Shown):
     damping: RayleighDamping | ModalDamping
     storey_heights: NDArray[np.float64] | None = None
     vertical_period: float | None = None
+    vertical_damping: float = VERTICAL_DAMPING
+    strengths: NDArray[np.float64] | None = None
+    hardening: float = 0.0
 
     def __post_init__(self) -> None:
         """Take any sequence; refuse what is not a building."""
@@ -218,6 +227,8 @@ class Superstructure(Shown):
             raise ValueError(f"masses, stiffnesses and heights must have one length: {lengths}")
         if self.vertical_period is not None and not self.vertical_period > 0.0:
             raise ValueError("vertical_period must be > 0")
+        if not 0.0 <= self.vertical_damping < 1.0:
+            raise ValueError("vertical_damping must be >= 0 and < 1")
         if self.storeys > MOST_STOREYS:
             raise ValueError(f"{self.storeys} storeys: there is room for {MOST_STOREYS} at most")
 
@@ -275,17 +286,18 @@ class Superstructure(Shown):
         """Fixed-base periods, (n,), descending [s]."""
         return frozen(2.0 * math.pi / self.frequencies)
 
-    @property
-    def vertical_modes(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Frequencies [rad/s] and effective masses [kg], (n,), of floors on equal springs.
-
-        Empty where `vertical_period` is not known.
-        """
+    @cached_property
+    def upwards(self) -> Superstructure | None:
+        """What vibrates upwards: the floors on equal springs; None where they ride on the beam."""
         if self.vertical_period is None:
-            return frozen(np.empty(0)), frozen(np.empty(0))
-        frequencies, shapes = shear_modes(self.masses, np.ones(self.storeys))
-        scale = 2.0 * math.pi / (self.vertical_period * frequencies[0])
-        return frozen(scale * frequencies), frozen((shapes.T @ self.masses) ** 2)
+            return None
+        stiffnesses = profile_stiffnesses(self.masses, self.vertical_period, "uniform")
+        return replace(
+            self,
+            stiffnesses=stiffnesses,
+            damping=ModalDamping(self.vertical_damping),
+            strengths=None,
+        )
 
     @property
     def participation(self) -> NDArray[np.float64]:

@@ -168,7 +168,8 @@ def together(alone: Function) -> Callable[[Function], Function]:
     """Take this function in place of another that is not compiled, for more lanes than one."""
 
     def register(function: Function) -> Function:
-        def choose(s: Any) -> Callable[..., Any]:
+        def choose(s: Any, systems: Any) -> Callable[..., Any]:
+            del systems
             lanes: int = s.fields["x"].type.shape[0]
             return function if lanes > LEAST_LANES else alone
 

@@ -29,9 +29,11 @@ from rpscli.physics.compile import compiled, inlined
 from rpscli.physics.devices import act, has_friction, raise_devices, worked
 from rpscli.physics.events import path_of
 from rpscli.physics.friction import grip_at, push_at_rest
-from rpscli.physics.ground import g_up_now, ground_now, log_row
+from rpscli.physics.ground import ground_now, log_row
 from rpscli.physics.laws import (
     contact_forces,
+    felt,
+    felt_at,
     lanes_of,
     motion_at,
     new_rate_of,
@@ -49,6 +51,7 @@ from rpscli.physics.laws import (
 from rpscli.physics.peaks import middle_of, peak, turning_value
 from rpscli.physics.quintic import (
     SETTLED,
+    Quintic,
     first_descent,
     lower_hull,
     offset,
@@ -65,6 +68,7 @@ from rpscli.physics.state import (
     Floats,
     Record,
 )
+from rpscli.physics.storeys import free_rows
 
 WITHIN = 1.5
 """Room for what a motion within a step is more than a cubic."""
@@ -93,7 +97,7 @@ def reach(one: float, other: float) -> float:
 @inlined
 def floors_may_rise(s: Record, l: int) -> bool:
     """Whether the sums, and what they may be within the step, leave room for a larger demand."""
-    rises, part = False, WITHIN / 8.0 * s.h[l]
+    rises, part = s.marked[l] > 0, WITHIN / 8.0 * s.h[l]
     part *= part
     for j in range(rows_of(s)):
         shear, acceleration, bent = 0.0, 0.0, 0.0
@@ -151,6 +155,8 @@ def raise_floors(s: Record, l: int, systems: Record) -> None:
             for i in range(n):
                 shears[i] += system.storey_shear_of[of, i] * q
                 accelerations[i] += system.phi[of, i] * force
+        if s.yields[l] > 0:
+            free_rows(s, l, system, axis, shears, rows[6])
     for kind in range(2):
         for j in range(rows_of(s)):
             within |= raise_row(s, l, systems, kind, j)
@@ -192,31 +198,53 @@ def raise_row(s: Record, l: int, systems: Record, kind: int, j: int) -> bool:
     return within
 
 
+PARTS = 8
+"""Of steps that are made for vertical springs, in which the motions of floors turn: a parabola
+through both ends of a part and its middle leaves 4e-6 of a vibration."""
+
+
+@inlined
+def parts_of(s: Record) -> int:
+    """Parts of a step that are looked at, each by its ends and its middle."""
+    return PARTS if s.axes > ways_of(s) else 1
+
+
+@compiled
+def mode_path(s: Record, r: int, l: int, axis: int) -> Quintic:
+    """A mode's displacement over the step just taken."""
+    ddq = -(s.Gamma[r, l] * s.new_shaking[axis, l]) - s.force[r, l]
+    start = s.ddq[0, r, l]
+    return quintic(s.h[l], s.q[r, l], s.dq[r, l], start, s.new_q[r, l], s.new_dq[r, l], ddq)
+
+
+@compiled
+def mode_within(s: Record, r: int, l: int, axis: int, t: float) -> tuple[float, float]:
+    """Displacement and velocity of a mode a fraction t into the step."""
+    h, q0, v0, q1, v1 = s.h[l], s.q[r, l], s.dq[r, l], s.new_q[r, l], s.new_dq[r, l]
+    if t == 0.0:
+        return q0, v0
+    if t == 1.0:
+        return q1, v1
+    if s.axes == ways_of(s):
+        return middle_of(q0, q1, h * v0, h * v1), 1.5 / h * (q1 - q0) - 0.25 * (v0 + v1)
+    path = mode_path(s, r, l, axis)
+    return value(path, t), slope(path, t) / h
+
+
 @compiled
 def raise_floors_within(s: Record, l: int, systems: Record) -> None:
     """The same by those at start, middle and end, and of a parabola through them."""
-    n, h, rows = s.n, s.h[l], s.looked_at
-    rate = 1.5 / h
+    parts = parts_of(s)
+    for part in range(parts):
+        raise_floors_between(s, l, systems, part / parts, (part + 1) / parts)
+
+
+@compiled
+def raise_floors_between(s: Record, l: int, systems: Record, begin: float, end: float) -> None:
+    """The same between fractions of the step."""
+    n, rows = s.n, s.looked_at
     for axis in range(ways_of(s)):
-        system, first = systems[axis], 6 * axis
-        for k in range(first, first + 6):
-            for i in range(n):
-                rows[k, i] = 0.0
-        for of in range(n):
-            r = axis * n + of
-            q0, v0, q1, v1 = s.q[r, l], s.dq[r, l], s.new_q[r, l], s.new_dq[r, l]
-            q, v = middle_of(q0, q1, h * v0, h * v1), rate * (q1 - q0) - 0.25 * (v0 + v1)
-            omega2, damping = s.omega2[r, l], s.two_xi_omega[r, l]
-            f0, f1 = omega2 * q0 + damping * v0, omega2 * q1 + damping * v1
-            f = omega2 * q + damping * v
-            for i in range(n):
-                shear, phi = system.storey_shear_of[of, i], system.phi[of, i]
-                rows[first, i] += shear * q0
-                rows[first + 1, i] += shear * q
-                rows[first + 2, i] += shear * q1
-                rows[first + 3, i] += phi * f0
-                rows[first + 4, i] += phi * f
-                rows[first + 5, i] += phi * f1
+        write_between(s, l, systems[axis], axis, begin, end)
     for kind in range(2):
         for j in range(rows_of(s)):
             k, x = kind * rows_of(s) + j, 3 * kind + (6 if j == 2 else 0)
@@ -231,12 +259,40 @@ def raise_floors_within(s: Record, l: int, systems: Record) -> None:
 
 
 @compiled
+def write_between(s: Record, l: int, system: Record, axis: int, begin: float, end: float) -> None:
+    """Write shears and accelerations at three instants of the step, of a direction."""
+    n, rows, first = s.n, s.looked_at, 6 * axis
+    for k in range(first, first + 6):
+        for i in range(n):
+            rows[k, i] = 0.0
+    for of in range(n):
+        r = axis * n + of
+        q0, v0 = mode_within(s, r, l, axis, begin)
+        q, v = mode_within(s, r, l, axis, 0.5 * (begin + end))
+        q1, v1 = mode_within(s, r, l, axis, end)
+        omega2, damping = s.omega2[r, l], s.two_xi_omega[r, l]
+        f0, f1 = omega2 * q0 + damping * v0, omega2 * q1 + damping * v1
+        f = omega2 * q + damping * v
+        for i in range(n):
+            shear, phi = system.storey_shear_of[of, i], system.phi[of, i]
+            rows[first, i] += shear * q0
+            rows[first + 1, i] += shear * q
+            rows[first + 2, i] += shear * q1
+            rows[first + 3, i] += phi * f0
+            rows[first + 4, i] += phi * f
+            rows[first + 5, i] += phi * f1
+    for k in range(first, first + 3 if s.yields[l] > 0 else first):
+        free_rows(s, l, system, axis, rows[k], rows[k + 3])
+
+
+@compiled
 def sums_at_start(s: Record, l: int) -> None:
     """What the modes have changed by since the last look, where a step begins anew."""
     for axis in range(ways_of(s)):
         shear, acceleration = 0.0, 0.0
         for r in range(axis * s.n, (axis + 1) * s.n):
             force = s.omega2[r, l] * s.q[r, l] + s.two_xi_omega[r, l] * s.dq[r, l]
+            force -= s.freed[r, l]
             q, force = s.q[r, l] - s.seen_q[r, l], force - s.seen_force[r, l]
             shear += s.shear_weight[r, l] * (q * q)
             acceleration += s.acceleration_weight[r, l] * (force * force)
@@ -258,7 +314,7 @@ def measures_of(
     lift: float,
     V: tuple[float, float],
     ground: tuple[float, float],
-    g_up: float,
+    up: tuple[float, float],
 ) -> Measures:
     """Measures of contacts; where nothing stands on the columns their upper ends demand nothing.
 
@@ -266,12 +322,10 @@ def measures_of(
     for says nothing.
     """
     lift *= stays
-    top, bottom, N_top, N_bottom = contact_forces(
-        s, l, stays * beam[0], lift, V[0], ground[0], g_up
-    )
+    top, bottom, N_top, N_bottom = contact_forces(s, l, stays * beam[0], lift, V[0], ground[0], up)
     top, bottom = abs(top), abs(bottom)
     if ways_of(s) == 2:
-        y, low, _, _ = contact_forces(s, l, stays * beam[1], lift, V[1], ground[1], g_up)
+        y, low, _, _ = contact_forces(s, l, stays * beam[1], lift, V[1], ground[1], up)
         top, bottom = math.sqrt(top * top + y * y), math.sqrt(bottom * bottom + low * low)
     upper = s.cap_beam_mass[l] + s.floors_mass[l]
     lower, loaded = upper + s.columns_mass[l], upper > 0.0
@@ -290,10 +344,10 @@ def measures_of(
 
 
 @inlined
-def bulge(s: Record, l: int) -> float:
-    """What the base shear may be within the step above both ends [N]."""
+def bulge(s: Record, l: int, first: int, end: int) -> float:
+    """What the forces of springs in some axes may be within the step above both ends [N]."""
     square = 0.0
-    for axis in range(ways_of(s)):
+    for axis in range(first, end):
         change = s.new_dV[axis, l] - s.dV[axis, l]
         square += change * change
     return WITHIN / 8.0 * s.h[l] * math.sqrt(square)  # type: ignore[no-any-return]
@@ -315,11 +369,16 @@ def observe_contacts(s: Record) -> None:
         V = s.new_V[0, l] + s.drive[0, l] + s.tied[l] * n
         stays = without_shock(s, l, x, rate)
         V_y += s.tied[l] * t
+        up, V_up = (g_up, s.new_V[ways_of(s), l]), bulge(s, l, ways_of(s), ways_of(s) + 1)
         found = measures_of(
-            s, l, stays, (beam, beam_y), s.new_lift[l], (V, V_y), (ground, ground_y), g_up
+            s, l, stays, (beam, beam_y), s.new_lift[l], (V, V_y), (ground, ground_y), up
         )
-        more, heavier = bulge(s, l), s.diameter[l] * s.share[l] / s.one[l] * s.tan_a[l]
+        more, heavier = (
+            bulge(s, l, 0, ways_of(s)),
+            s.diameter[l] * s.share[l] / s.one[l] * s.tan_a[l],
+        )
         heavier *= more / s.gravity[l]
+        heavier += V_up / ((s.cap_beam_mass[l] + s.floors_mass[l] + 1e-300) * s.gravity[l])
         rises = found[4] + more > NEARLY * s.shear_top[l]
         rises |= found[5] + more > NEARLY * s.shear_bottom[l]
         more /= s.weigh[l] * s.diameter[l] * s.gravity[l] * s.columns_mass[l] * 0.5
@@ -328,7 +387,11 @@ def observe_contacts(s: Record) -> None:
         rises |= found[3] - heavier < 1.0 - NEARLY * (1.0 - s.normal_bottom[l])
         rises |= found[3] + heavier > 1.0 + NEARLY * (s.heavy_bottom[l] - 1.0)
         rises |= found[2] - heavier < 1.0 - NEARLY * (1.0 - s.normal_top[l])
-        s.contacts_rise[l] = 1.0 if rises else 0.0
+        # A vibration upwards may turn just behind the end of the step before.
+        near = s.contacts_near[l] > 0.0
+        s.contacts_rise[l] = 1.0 if rises | (near & (s.axes > ways_of(s))) else 0.0
+        near = rises if s.accepted[l] > 0.0 else near
+        s.contacts_near[l] = 1.0 if near else 0.0
     if ways_of(s) == 2:
         for l in range(lanes_of(s)):
             lever = torsion(s, l)
@@ -362,6 +425,26 @@ def torsion(s: Record, l: int) -> float:
 
 
 @compiled
+def force_within(s: Record, l: int, axis: int, t: float) -> float:
+    """Force of springs and dampers under the floors a fraction t into the step [N]."""
+    r, h = 1.0 - t, s.h[l]
+    if s.axes == ways_of(s):
+        V = r * r * (1.0 + 2.0 * t) * s.V[axis, l] + t * t * (3.0 - 2.0 * t) * s.new_V[axis, l]
+        return V + h * t * r * (r * s.dV[axis, l] - t * s.new_dV[axis, l])  # type: ignore[no-any-return]
+    V, slip = 0.0, 0.0
+    for i in range(axis * s.n, (axis + 1) * s.n):
+        q, dq = mode_within(s, i, l, axis, t)
+        V += s.Gamma[i, l] * (s.omega2[i, l] * q + s.two_xi_omega[i, l] * dq)
+        slip += s.slipping[i, l] * q
+    if s.yields[l] > 0 and axis < ways_of(s):
+        r, free = axis * s.n, 1.0 - s.hardening[l]
+        if s.mark[r, l] == 0:
+            slip = free * s.stiffness[r, l] * s.middle[r, l]
+        V -= slip - free * s.mark[r, l] * s.strength[r, l]
+    return V
+
+
+@compiled
 def measures_within(s: Record, l: int, t: float) -> tuple[float, Measures]:
     """Measures of contacts a fraction t into the step; first 0 if they are those of a shock.
 
@@ -371,30 +454,31 @@ def measures_within(s: Record, l: int, t: float) -> tuple[float, Measures]:
     h, ways = s.h[l], ways_of(s)
     tilt, rate = tilt_within(s, l, t)
     V_x, V_y, a_x, a_y, time = 0.0, 0.0, 0.0, 0.0, s.time[l] + t * h
-    r = 1.0 - t
     for axis in range(ways):
-        V = r * r * (1.0 + 2.0 * t) * s.V[axis, l] + t * t * (3.0 - 2.0 * t) * s.new_V[axis, l]
-        V += h * t * r * (r * s.dV[axis, l] - t * s.new_dV[axis, l])
+        V = force_within(s, l, axis, t)
         a_g = s.a_g[axis, l] + time * s.a_g_slope[axis, l]
         if axis == 0:
             V_x, a_x = V, a_g
         else:
             V_y, a_y = V, a_g
-    g_up = s.g_up[l] + time * s.g_up_slope[l]
+    g_up, V_up = s.g_up[l] + time * s.g_up_slope[l], 0.0
+    if s.axes > ways:
+        V_up = force_within(s, l, ways, t)
+    g_felt = felt(s, l, g_up, V_up)
     x, n, azimuth, _, _ = polar(s, l, tilt, rate)
     w, dw = patch(s, l, x)
     if s.devices[l] > 0:
         act(s, l, worked(s, l, tilt, rate))
         if stands(s, l):
-            push_at_rest(s, l, (V_x, V_y), (a_x, a_y), g_up)
+            push_at_rest(s, l, (V_x, V_y), (a_x, a_y), g_felt)
     drive_x, drive_y = s.drive[0, l], (s.drive[1, l] if ways == 2 else 0.0)
     z_x = s.share[l] * (V_x + drive_x) - s.load[l] * a_x
     z_y = s.share[l] * (V_y + drive_y) - s.load[l] * a_y
     place = place_with(s, l, x, w, dw)
-    motion = motion_at(s, l, place, w, tilt, rate, (z_x, z_y), g_up)
+    motion = motion_at(s, l, place, w, tilt, rate, (z_x, z_y), g_felt)
     V = V_x + drive_x + s.tied[l] * n, V_y + drive_y + s.tied[l] * azimuth
     stays, beam = without_shock(s, l, x, rate), (motion.beam_x, motion.beam_y)
-    return stays, measures_of(s, l, stays, beam, motion.lift, V, (a_x, a_y), g_up)
+    return stays, measures_of(s, l, stays, beam, motion.lift, V, (a_x, a_y), (g_up, V_up))
 
 
 @compiled
@@ -427,13 +511,17 @@ def raise_contacts(s: Record, l: int) -> None:
     """Raise the demands of contacts by those of the step just taken."""
     if s.h[l] <= 0.0:
         return
-    first, start = measures_within(s, l, 0.0)
-    second, middle = measures_within(s, l, 0.5)
-    third, end = measures_within(s, l, 1.0)
-    raise_by(s, l, start)
-    raise_by(s, l, middle)
+    parts = parts_of(s)
+    third, end = measures_within(s, l, 0.0)
     raise_by(s, l, end)
-    if first * second * third > 0.0:
+    for part in range(parts):
+        first, start = third, end
+        second, middle = measures_within(s, l, (part + 0.5) / parts)
+        third, end = measures_within(s, l, (part + 1.0) / parts)
+        raise_by(s, l, middle)
+        raise_by(s, l, end)
+        if first * second * third == 0.0:
+            continue
         turned = (
             turning_value(start[0], middle[0], end[0]),
             turning_value(start[1], middle[1], end[1]),
@@ -463,14 +551,14 @@ def is_held(s: Record, l: int) -> bool:
     """Whether a storey at rest is held: one that lifts off at once has not stood."""
     if ways_of(s) == 2 and s.phase[l] == STUCK:
         return bool(grip_at(s, l, 0).margin >= 0.0)
-    R, size, g_up = 0.5 * s.diameter[l], 0.0, g_up_now(s, l)
+    R, size, g_felt = 0.5 * s.diameter[l], 0.0, felt_at(s, l, 0)[0]
     for axis in range(ways_of(s)):
         push = R * (s.share[l] * s.V[axis, l] - s.load[l] * ground_now(s, l, axis))
         size = push if ways_of(s) == 1 else size + push * push
-    right = s.limit_right[l] * g_up + s.held_right[l]
+    right = s.limit_right[l] * g_felt + s.held_right[l]
     if ways_of(s) == 2:
         return bool(math.sqrt(size) <= right)
-    left = s.limit_left[l] * g_up + s.held_left[l]
+    left = s.limit_left[l] * g_felt + s.held_left[l]
     return bool(-left <= size <= right)
 
 
@@ -486,12 +574,13 @@ def observe_start(s: Record, l: int) -> None:
         a_y = s.a_g[1, l] + time * s.a_g_slope[1, l]
         V_y, beam_y = s.V[1, l], s.shaking[1, l] - a_y
     if stands(s, l):
-        push_at_rest(s, l, (V_x, V_y), (a_x, a_y), g_up)
+        push_at_rest(s, l, (V_x, V_y), (a_x, a_y), felt_at(s, l, 0)[0])
     V_y += s.drive[1, l] if ways_of(s) == 2 else 0.0
     V = V_x + s.drive[0, l] + s.tied[l] * n, V_y + s.tied[l] * t
     if s.moves[l] > 0.0 or is_held(s, l):
         stays, beam = without_shock(s, l, x, rate), (s.shaking[0, l] - a_x, beam_y)
-        raise_by(s, l, measures_of(s, l, stays, beam, s.lift[l], V, (a_x, a_y), g_up))
+        up = g_up, s.V[ways_of(s), l]
+        raise_by(s, l, measures_of(s, l, stays, beam, s.lift[l], V, (a_x, a_y), up))
     if s.devices[l] > 0:
         at = worked(s, l, tilt, rate)
         raise_devices(s, l, at, at, at)

@@ -13,7 +13,7 @@ import math
 from rpscli.physics.compile import compiled, inlined
 from rpscli.physics.devices import WATCHED, watched
 from rpscli.physics.friction import grip_at
-from rpscli.physics.laws import lanes_of, ways_of
+from rpscli.physics.laws import felt_at, lanes_of, ways_of
 from rpscli.physics.quintic import (
     NO_PASSAGE,
     SETTLED,
@@ -34,8 +34,10 @@ from rpscli.physics.state import (
     NO_HISTORY,
     NOTHING,
     STUCK,
+    YIELD,
     Record,
 )
+from rpscli.physics.storeys import drift_of
 
 LEAST_STEP = 1e-13
 """Of the sampling interval: a step is not made shorter."""
@@ -110,12 +112,34 @@ def push_path(s: Record, l: int, axis: int) -> Quintic:
 
 
 @inlined
+def relief_path(s: Record, l: int) -> Quintic:
+    """g + a_v less what contacts feel of it over the step [m/s2]: 0 without springs upwards."""
+    up, spared, h, mass = ways_of(s), s.spared[l], s.h[l], s.floors_mass[l]
+    start = s.g_up[l] - s.gravity[l] + s.time[l] * s.g_up_slope[l]
+    end, rate = start + h * s.g_up_slope[l], mass * s.g_up_slope[l]
+    return quintic(
+        h,
+        spared * (mass * start + s.V[up, l]),
+        spared * (rate + s.dV[up, l]),
+        spared * s.ddV[up, l],
+        spared * (mass * end + s.new_V[up, l]),
+        spared * (rate + s.new_dV[up, l]),
+        spared * s.new_ddV[up, l],
+    )
+
+
+@inlined
 def surely_held(s: Record, l: int) -> bool:
     """Whether the margin of a lane at rest surely stays positive over the step."""
     start = s.g_up[l] + s.time[l] * s.g_up_slope[l]
     end = start + s.h[l] * s.g_up_slope[l]
-    x = push_path(s, l, 0)
+    x, relief = push_path(s, l, 0), relief_path(s, l)
+    most_spared, least_spared = (
+        max(upper_hull(relief), relief[0]),
+        min(lower_hull(relief), relief[0]),
+    )
     right = min(s.limit_right[l] * start, s.limit_right[l] * end) + s.held_right[l]
+    right -= max(s.limit_right[l] * most_spared, s.limit_right[l] * least_spared)
     if ways_of(s) == 2:
         y, most = push_path(s, l, 1), 0.0
         for i in range(6):
@@ -123,6 +147,7 @@ def surely_held(s: Record, l: int) -> bool:
         within = (right >= 0.0) & (most <= right * right)
         return within & (s.phase[l] != STUCK)  # type: ignore[no-any-return]
     left = min(s.limit_left[l] * start, s.limit_left[l] * end) + s.held_left[l]
+    left -= max(s.limit_left[l] * most_spared, s.limit_left[l] * least_spared)
     held = (max(upper_hull(x), x[0]) <= right) & (-min(lower_hull(x), x[0]) <= left)
     return held  # type: ignore[no-any-return]  # noqa: RET504 -- bool() would be a branch
 
@@ -142,7 +167,7 @@ def falls(s: Record, l: int) -> bool:
 
 
 @compiled
-def check_steps(s: Record) -> None:
+def check_steps(s: Record, systems: Record) -> None:
     """Accept the steps that are short enough and surely hold no event."""
     for l in range(lanes_of(s)):
         moves = s.moves[l] > 0.0
@@ -158,6 +183,48 @@ def check_steps(s: Record) -> None:
         for l in range(lanes_of(s)):
             if s.devices[l] > 0 and s.accepted[l] > 0.0 and s.moves[l] > 0.0 and may_change(s, l):
                 s.accepted[l] = 0.0
+    if s.yielding > 0:
+        for l in range(lanes_of(s)):
+            if s.yields[l] > 0 and s.accepted[l] > 0.0 and first_yield(s, l, systems)[0] <= 1.0:
+                s.accepted[l] = 0.0
+
+
+UNLOADED = 1e-12
+"""Of its strength: so much more yields a storey anew that has just turned back, by rounding."""
+
+
+@compiled
+def storey_paths(s: Record, l: int, systems: Record, r: int) -> tuple[Quintic, Quintic]:
+    """What falls below zero where a storey yields to the left or to the right, or no longer does.
+
+    Cubics over the step: its force is so far from either strength; or both the rate of its drift.
+    """
+    axis, i, h = r // s.n, r % s.n, s.h[l]
+    system, F = systems[s.system[l] + axis], s.strength[r, l] * (1.0 + UNLOADED)
+    d0, v0, a0 = drift_of(s, l, system, axis, i, 0)
+    d1, v1, a1 = drift_of(s, l, system, axis, i, 1)
+    mark = s.mark[r, l]
+    if mark != 0:
+        path = cubic(h, max(mark * v0, 0.0), mark * a0, mark * v1, mark * a1)
+        return path, path
+    middle = s.stiffness[r, l] * s.middle[r, l]
+    left = cubic(h, max(F + (d0 - middle), 0.0), v0, F + (d1 - middle), v1)
+    return left, cubic(h, max(F - (d0 - middle), 0.0), -v0, F - (d1 - middle), -v1)
+
+
+@compiled
+def first_yield(s: Record, l: int, systems: Record) -> tuple[float, int]:
+    """Fraction of the step at which a storey first yields or ends to, and which to which side."""
+    first, which = NO_PASSAGE, 0
+    for r in range(ways_of(s) * s.n):
+        left, right = storey_paths(s, l, systems, r)
+        t = first_descent(left, SETTLED, s.piece)
+        if t < first:
+            first, which = t, 2 * r
+        t = first_descent(right, SETTLED, s.piece)
+        if t < first:
+            first, which = t, 2 * r + 1
+    return first, which
 
 
 @compiled
@@ -191,11 +258,20 @@ def may_change(s: Record, l: int) -> bool:
 
 
 @compiled
-def first_event(s: Record, l: int) -> tuple[float, int, int]:
+def first_event(s: Record, l: int, systems: Record) -> tuple[float, int, int]:
     """Fraction of the step at which its first event happens, its kind, and which of it."""
+    first, kind, which = of_storey(s, l) if s.moves[l] > 0.0 else let_go(s, l)
+    if s.yields[l] > 0:
+        t, storey = first_yield(s, l, systems)
+        if t < first:
+            first, kind, which = t, YIELD, storey
+    return first, kind, which
+
+
+@compiled
+def of_storey(s: Record, l: int) -> tuple[float, int, int]:
+    """The same of a tilt that is free, and of its devices."""
     first, kind, which, piece = NO_PASSAGE, NOTHING, 0, s.piece
-    if s.moves[l] == 0.0:
-        return let_go(s, l)
     path, low, high = path_in_range(s, l)
     t = first_descent(offset(path, 1.0, low), SETTLED, piece)
     if t < first:
@@ -237,7 +313,7 @@ def let_go(s: Record, l: int) -> tuple[float, int, int]:
     """The same of a storey at rest: to the right (1), or to the left (-1)."""
     piece, h = s.piece, s.h[l]
     start = s.g_up[l] + s.time[l] * s.g_up_slope[l]
-    rise, x = h * s.g_up_slope[l], push_path(s, l, 0)
+    rise, x, spared = h * s.g_up_slope[l], push_path(s, l, 0), relief_path(s, l)
     if ways_of(s) == 2:
         if s.phase[l] == STUCK:
             one, two = grip_at(s, l, 0), grip_at(s, l, 1)
@@ -260,12 +336,12 @@ def let_go(s: Record, l: int) -> tuple[float, int, int]:
         limit, change = factor * start, factor * rise
         limit += ROUNDING * (abs(limit) + abs(held)) + held
         path = (
-            limit - sign * x[0],
-            limit + 0.2 * change - sign * x[1],
-            limit + 0.4 * change - sign * x[2],
-            limit + 0.6 * change - sign * x[3],
-            limit + 0.8 * change - sign * x[4],
-            limit + change - sign * x[5],
+            limit - sign * x[0] - factor * spared[0],
+            limit + 0.2 * change - sign * x[1] - factor * spared[1],
+            limit + 0.4 * change - sign * x[2] - factor * spared[2],
+            limit + 0.6 * change - sign * x[3] - factor * spared[3],
+            limit + 0.8 * change - sign * x[4] - factor * spared[4],
+            limit + change - sign * x[5] - factor * spared[5],
         )
         t = first_descent(path, SETTLED, piece)
         if t < first:
@@ -276,14 +352,16 @@ def let_go(s: Record, l: int) -> tuple[float, int, int]:
 @compiled
 def squared_margin(s: Record, l: int) -> Quintic:
     """The limit's square less that of R z, through both ends of the step with two derivatives."""
-    h, R, rise = s.h[l], 0.5 * s.diameter[l], s.limit_right[l] * s.g_up_slope[l]
+    h, R = s.h[l], 0.5 * s.diameter[l]
     share, load = R * s.share[l], R * s.load[l]
     ends = s.piece
     for end in range(2):
-        time = s.time[l] + end * h
-        limit = s.limit_right[l] * (s.g_up[l] + time * s.g_up_slope[l]) + s.held_right[l]
+        time, factor = s.time[l] + end * h, s.limit_right[l]
+        g_felt, g_rate, bent = felt_at(s, l, end)
+        limit, rise = factor * g_felt + s.held_right[l], factor * g_rate
         beyond = limit * (1.0 + ROUNDING)
         value, slope, bend = beyond * abs(beyond), 2.0 * limit * rise, 2.0 * rise * rise
+        bend += 2.0 * limit * (factor * bent)
         for axis in range(2):
             V, dV, ddV = s.V[axis, l], s.dV[axis, l], s.ddV[axis, l]
             if end > 0:
@@ -298,9 +376,25 @@ def squared_margin(s: Record, l: int) -> Quintic:
 
 
 @compiled
-def missing(s: Record, l: int) -> tuple[float, float]:
+def missing_in_storey(s: Record, l: int, systems: Record, which: int) -> tuple[float, float]:
+    """The same of a storey that is to yield to a side, or no longer."""
+    r = which // 2
+    d, rate, bend = drift_of(s, l, systems[s.system[l] + r // s.n], r // s.n, r % s.n, 1)
+    if s.mark[r, l] != 0:
+        return s.mark[r, l] * rate, s.mark[r, l] * bend
+    side = 1.0 if which % 2 > 0 else -1.0
+    off = d - s.stiffness[r, l] * s.middle[r, l]
+    return s.strength[r, l] * (1.0 + UNLOADED) - side * off, -side * rate
+
+
+@compiled
+def missing(  # noqa: C901, PLR0911 -- an event each
+    s: Record, l: int, systems: Record
+) -> tuple[float, float]:
     """What the end of the step still is above the event on which it is to end, and its rate."""
     kind, which = s.wanted[l], s.which[l]
+    if kind == YIELD:
+        return missing_in_storey(s, l, systems, which)
     if kind == LOW:
         return s.new_x[l] - s.x_low[l], s.new_v[l]
     if kind == HIGH:
@@ -314,7 +408,7 @@ def missing(s: Record, l: int) -> tuple[float, float]:
         grip = grip_at(s, l, 1)
         return grip.margin + grip.late, grip.slope
     R, h = 0.5 * s.diameter[l], s.h[l]
-    g_up = s.g_up[l] + (s.time[l] + h) * s.g_up_slope[l]
+    g_felt, g_rate, _ = felt_at(s, l, 1)
     factor, held, size, growth = s.limit_right[l], s.held_right[l], 0.0, 0.0
     if which < 0:
         factor, held = s.limit_left[l], s.held_left[l]
@@ -329,11 +423,11 @@ def missing(s: Record, l: int) -> tuple[float, float]:
     if ways_of(s) == 2:
         size = math.sqrt(size)
         growth /= max(size, 1e-300)
-    return factor * g_up + held - size, factor * s.g_up_slope[l] - growth
+    return factor * g_felt + held - size, factor * g_rate - growth
 
 
 @compiled
-def resolve_step(s: Record, l: int) -> bool:
+def resolve_step(s: Record, l: int, systems: Record) -> bool:
     """A step that was not accepted: accept it, or have it taken again; False if it is no number."""
     if s.history[l] == NO_HISTORY:
         s.accepted[l] = 1.0
@@ -350,9 +444,9 @@ def resolve_step(s: Record, l: int) -> bool:
         s.h_limit[l], s.wanted[l] = s.h[l], NOTHING
         return True
     if s.wanted[l] != NOTHING:
-        land(s, l)
+        land(s, l, systems)
         return True
-    fraction, kind, which = first_event(s, l)
+    fraction, kind, which = first_event(s, l, systems)
     if kind == NOTHING:
         s.accepted[l] = 1.0
         return True
@@ -362,9 +456,9 @@ def resolve_step(s: Record, l: int) -> bool:
 
 
 @compiled
-def land(s: Record, l: int) -> None:
+def land(s: Record, l: int, systems: Record) -> None:
     """A step that was to end on an event: near enough, or once more."""
-    value, slope = missing(s, l)
+    value, slope = missing(s, l, systems)
     change = -value / slope if slope < 0.0 else 0.0
     change = min(max(change, -0.5 * s.h[l]), s.h_now[l] - s.h[l])
     s.tries[l] += 1
@@ -377,7 +471,8 @@ def land(s: Record, l: int) -> None:
     if abs(change) <= close:  # else it only grazes, and stays where it is
         go_on_by(s, l, change)
     # a cubic from zero without slope may dip where the value grows with the third power of time
-    kind = NOTHING if s.wanted[l] == CHANGE and value > 0.0 and slope >= 0.0 else s.wanted[l]
+    dips = s.wanted[l] in (CHANGE, YIELD) and value > 0.0 and slope >= 0.0
+    kind = NOTHING if dips else s.wanted[l]
     s.accepted[l], s.kind[l], s.wanted[l] = 1.0, kind, NOTHING
 
 
@@ -388,6 +483,7 @@ def go_on_by(s: Record, l: int, time: float) -> None:
         bend = s.new_bend[axis, l]
         s.new_tilt[axis, l] += time * (s.new_tilt_rate[axis, l] + 0.5 * time * bend)
         s.new_tilt_rate[axis, l] += time * bend
+    for axis in range(s.axes):
         for r in range(axis * s.n, (axis + 1) * s.n):
             ddq = -(s.Gamma[r, l] * s.new_shaking[axis, l]) - s.force[r, l]
             s.new_q[r, l] += time * (s.new_dq[r, l] + 0.5 * time * ddq)

@@ -72,11 +72,13 @@ from rpscli.physics.state import (
     STUCK,
     SURVIVED,
     UPLIFT,
+    YIELD,
     Floats,
     Record,
     scratch,
 )
 from rpscli.physics.step import renew, take_steps
+from rpscli.physics.storeys import keep_slips, load_storeys, stop_yielding, turn_storey
 from rpscli.physics.upright import (
     change_rate,
     enter_phase,
@@ -111,7 +113,8 @@ def integrate(run: Run, lanes: int = LANES, *, interruptible: bool = False) -> N
     plain = state.view(np.ndarray)
     plain["n"], plain["stop"] = systems["n"][0], 0
     plain["equipped"] = int(systems["devices"].any())
-    plain["gives_way"] = int(systems["compliant"].any())
+    plain["yielding"] = int(systems["yields"].any())
+    plain["gives_way"], plain["axes"] = int(systems["compliant"].any()), systems["axes"][0]
     given = run.systems, run.requests, run.acceleration, run.results, run.output
 
     def work() -> None:
@@ -177,7 +180,7 @@ def follow(
             if s.attention[l] == 0.0 or s.history[l] == NO_HISTORY:
                 continue
             first = s.system[l]
-            both = systems[first : first + ways_of(s)]
+            both = systems[first : first + s.axes]
             if look_after(s, l, both, output):
                 next_history(s, l, systems, requests, acceleration, results, output)
                 active -= 1 if s.history[l] == NO_HISTORY else 0
@@ -186,15 +189,18 @@ def follow(
 @kernel
 def advance(s: Record, systems: Record, output: Output) -> None:
     """A step of all lanes together."""
-    take_steps(s)
-    check_steps(s)
+    take_steps(s, systems)
+    check_steps(s, systems)
     for l in range(lanes_of(s)):
-        if s.accepted[l] == 0.0 and not resolve_step(s, l):
+        if s.accepted[l] == 0.0 and not resolve_step(s, l, systems):
             s.accepted[l] = 0.0
     observe(s, systems, output.log)
     if lanes_of(s) == 1 and s.accepted[0] > 0.0:
         book_flows(s, systems, output)
     accept_steps(s)
+    for l in range(lanes_of(s) if s.yielding > 0 else 0):
+        if s.marked[l] > 0 and s.accepted[l] > 0.0:
+            keep_slips(s, l, systems[s.system[l] : s.system[l] + s.axes])
 
 
 @compiled
@@ -203,10 +209,11 @@ def book_flows(s: Record, systems: Record, output: Output) -> None:
     if s.audited > 0:
         s.energy_input[0] += s.h[0] * s.power_input[0]
         s.energy_damped[0] += s.h[0] * s.power_damped[0]
+        s.energy_upwards[0] += s.h[0] * s.power_upwards[0]
         s.bed_energy[0] += s.h[0] * s.power_bed[0]
         if output.finer > 1:
             first = s.system[0]
-            store_within(s, 0, systems[first : first + ways_of(s)], output)
+            store_within(s, 0, systems[first : first + s.axes], output)
 
 
 @inlined
@@ -227,19 +234,20 @@ def accept_steps(s: Record) -> None:  # noqa: C901 -- few fields a loop
             s.tilt[axis, l] = chosen(yes, s.new_tilt[axis, l], s.tilt[axis, l])
             s.tilt_rate[axis, l] = chosen(yes, s.new_tilt_rate[axis, l], s.tilt_rate[axis, l])
             s.bend[axis, l] = chosen(yes, s.new_bend[axis, l], s.bend[axis, l])
-            s.shaking[axis, l] = chosen(yes, s.new_shaking[axis, l], s.shaking[axis, l])
-        for l in range(lanes):
-            yes = s.accepted[l]
-            s.V[axis, l] = chosen(yes, s.new_V[axis, l], s.V[axis, l])
-            s.dV[axis, l] = chosen(yes, s.new_dV[axis, l], s.dV[axis, l])
-            s.ddV[axis, l] = chosen(yes, s.new_ddV[axis, l], s.ddV[axis, l])
         for l in range(lanes):
             yes = s.accepted[l]
             sums, before = s.shear_sum[axis, l], s.shear_before[axis, l]
             s.shear_before[axis, l] = chosen(yes, sums, before)
             sums, before = s.acceleration_sum[axis, l], s.acceleration_before[axis, l]
             s.acceleration_before[axis, l] = chosen(yes, sums, before)
-    for r in range(ways_of(s) * s.n):
+    for axis in range(s.axes):
+        for l in range(lanes):
+            yes = s.accepted[l]
+            s.shaking[axis, l] = chosen(yes, s.new_shaking[axis, l], s.shaking[axis, l])
+            s.V[axis, l] = chosen(yes, s.new_V[axis, l], s.V[axis, l])
+            s.dV[axis, l] = chosen(yes, s.new_dV[axis, l], s.dV[axis, l])
+            s.ddV[axis, l] = chosen(yes, s.new_ddV[axis, l], s.ddV[axis, l])
+    for r in range(s.axes * s.n):
         for l in range(lanes):
             s.q[r, l] = chosen(s.accepted[l], s.new_q[r, l], s.q[r, l])
             s.dq[r, l] = chosen(s.accepted[l], s.new_dq[r, l], s.dq[r, l])
@@ -360,6 +368,8 @@ def look_after(s: Record, l: int, systems: Record, output: Output) -> bool:
         stands_still = s.time[l] - s.h[l] == s.time[l]
         s.stalled[l] = s.stalled[l] + 1 if stands_still else 0
         switch(s, l, systems, output, kind)
+        if stop_yielding(s, l, systems):
+            renew(s, l)
         if s.outcome[l] != RUNNING or too_many(s, l, system):
             return True
         observe_start(s, l)
@@ -399,6 +409,10 @@ def too_many(s: Record, l: int, system: Record) -> bool:
 def switch(s: Record, l: int, systems: Record, output: Output, kind: int) -> None:
     """What an event does; the lane is where it happens."""
     system, log, phase = systems[0], output.log, s.phase[l]
+    if kind == YIELD:
+        turn_storey(s, l, systems, s.which[l])
+        renew(s, l)
+        return
     if kind == LET_GO:
         if phase == STUCK:
             slide(s, l, system, log, s.which[l])
@@ -555,14 +569,25 @@ def next_history(
 def idle(s: Record, l: int) -> None:
     """Leave a lane without a history: it makes steps of nothing."""
     s.history[l], s.devices[l], s.kinks[l], s.outcome[l] = NO_HISTORY, 0, 0.0, RUNNING
+    s.yields[l], s.marked[l] = 0, 0
     s.kind[l], s.wanted[l], s.phase[l], s.moves[l] = NOTHING, NOTHING, FULL_CONTACT, 0.0
     s.time[l], s.dt[l], s.h[l], s.h_most[l], s.h_limit[l] = 0.0, 1.0, 0.0, 1.0, 0.0
     s.x[l], s.v[l], s.a[l], s.interval[l], s.npts[l] = 0.0, 0.0, 0.0, 0, 2
     for axis in range(ways_of(s)):
         s.tilt[axis, l], s.tilt_rate[axis, l], s.bend[axis, l] = 0.0, 0.0, 0.0
         s.a_g[axis, l], s.a_g_slope[axis, l], s.shaking[axis, l] = 0.0, 0.0, 0.0
-    for r in range(ways_of(s) * s.n):
-        s.q[r, l], s.dq[r, l] = 0.0, 0.0
+    for r in range(s.axes * s.n):
+        s.q[r, l], s.dq[r, l], s.freed[r, l] = 0.0, 0.0, 0.0
+    calm_springs(s, l)
+
+
+@compiled
+def calm_springs(s: Record, l: int) -> None:
+    """No force of springs, in any axis."""
+    for axis in range(s.V.shape[0]):
+        s.V[axis, l], s.dV[axis, l], s.ddV[axis, l] = 0.0, 0.0, 0.0
+        s.new_V[axis, l], s.new_dV[axis, l], s.new_ddV[axis, l] = 0.0, 0.0, 0.0
+        s.shaking[axis, l] = 0.0
 
 
 @compiled
@@ -577,11 +602,12 @@ def begin_history(
 ) -> None:
     """Load a history into a lane, at rest in full contact or released from a tilt."""
     request, ways = requests[history], ways_of(s)
-    s.history[l], s.system[l] = history, ways * request.system
-    both = systems[s.system[l] : s.system[l] + ways]
+    s.history[l], s.system[l] = history, s.axes * request.system
+    both = systems[s.system[l] : s.system[l] + s.axes]
     system = both[0]
     load_system(s, l, system)
-    for axis in range(ways):
+    calm_springs(s, l)
+    for axis in range(s.axes):
         load_modes(s, l, both[axis], axis)
     load_request(s, l, request, system)
     load_devices(s, l, system)
@@ -614,9 +640,12 @@ def load_system(s: Record, l: int, system: Record) -> None:
     """Constants of the structure, folded as the laws want them."""
     ground, building = 1.0 + 2.0 * system.gamma, 2.0 * system.gamma * system.eta
     s.diameter[l], s.io_1[l], s.i_3[l] = 2.0 * system.R, system.Io - 1.0, system.inertia_axial
-    s.one[l], s.four[l] = 1.0 + 4.0 * system.gamma, 2.0 * building
+    springs = s.axes > ways_of(s)
+    s.one[l], s.four[l] = 1.0 + 4.0 * system.gamma, (0.0 if springs else 2.0 * building)
     s.weigh[l], s.load[l] = (ground + building) / system.R, ground / system.R
     s.share[l] = 2.0 / (system.columns_mass * system.R)
+    s.riding[l] = 0.0 if springs else system.floors_mass
+    s.spared[l] = s.share[l] / s.weigh[l] if springs else 0.0
     s.columns_mass[l], s.cap_beam_mass[l] = system.columns_mass, system.cap_beam_mass
     s.floors_mass[l], s.gravity[l] = system.floors_mass, system.gravity
     s.sin_a[l], s.tan_a[l], s.spin[l] = (
@@ -642,7 +671,9 @@ def load_modes(s: Record, l: int, system: Record, axis: int) -> None:
         s.Gamma[r, l], s.shear_weight[r, l] = system.Gamma[of], system.shear_weight[of]
         s.acceleration_weight[r, l] = system.acceleration_weight[of]
         s.q[r, l], s.dq[r, l], s.seen_q[r, l], s.seen_force[r, l] = 0.0, 0.0, 0.0, 0.0
-    s.bend_ratio[l] = max(s.bend_ratio[l], system.bend_ratio)
+    load_storeys(s, l, system, axis)
+    if axis < ways_of(s):
+        s.bend_ratio[l] = max(s.bend_ratio[l], system.bend_ratio)
 
 
 @compiled
@@ -665,7 +696,7 @@ def clear_results(s: Record, l: int) -> None:
     s.friction_top[l], s.friction_bottom[l] = 0.0, 0.0
     s.normal_top[l], s.normal_bottom[l] = math.inf, math.inf
     s.heavy_top[l], s.heavy_bottom[l] = 0.0, 0.0
-    s.shear_top[l], s.shear_bottom[l] = 0.0, 0.0
+    s.shear_top[l], s.shear_bottom[l], s.contacts_near[l] = 0.0, 0.0, 1.0
     for k in range(s.room.shape[0]):
         s.room[k, l] = 0.0
         for i in range(s.n):
@@ -675,6 +706,7 @@ def clear_results(s: Record, l: int) -> None:
     s.torsion_lever[l], s.passes_as_impacts[l] = 0.0, 0.0
     s.closest_pass[l], s.shortest_pass[l] = math.inf, math.inf
     s.energy_input[l], s.energy_damped[l], s.energy_passes[l] = 0.0, 0.0, 0.0
+    s.energy_upwards[l] = 0.0
     s.energy_lost[l], s.energy_created[l] = 0.0, 0.0
     s.steps[l], s.creating_impacts[l] = 0.0, 0
     for i in range(EVENT_KINDS):
@@ -703,6 +735,24 @@ def release(s: Record, l: int, system: Record, log: Record) -> None:
 
 
 @compiled
+def finish_storeys(s: Record, l: int, result: Record) -> None:
+    """Write what storeys that may yield leave behind."""
+    ways = ways_of(s)
+    for axis in range(ways):
+        for i in range(s.n):
+            r, free = axis * s.n + i, 1.0 - s.hardening[l]
+            most = max(s.drift_most[r, l], s.largest[axis + ways - 1, l, i])
+            if s.yielded[r, l] > 0.0:  # else its drift is its shear over k
+                most = s.drift_most[r, l]
+            result.ductility[axis, i] = most / s.strength[r, l]
+            result.slip[axis, i] = free * s.middle[r, l]
+            result.slip_most[axis, i] = free * s.middle_most[r, l]
+            result.slip_least[axis, i] = free * s.middle_least[r, l]
+            result.yielded[axis, i] = s.yielded[r, l]
+            result.first_yield[axis, i] = s.first_yield[r, l]
+
+
+@compiled
 def finish_history(s: Record, l: int, system: Record, results: Record) -> None:
     """Write what the history leaves behind [results (P,)]."""
     result, ways = results[s.history[l]], ways_of(s)
@@ -725,6 +775,7 @@ def finish_history(s: Record, l: int, system: Record, results: Record) -> None:
     result.heavy_top, result.heavy_bottom = s.heavy_top[l], s.heavy_bottom[l]
     result.shear_top, result.shear_bottom = s.shear_top[l], s.shear_bottom[l]
     result.energy_input, result.energy_damped = s.energy_input[l], s.energy_damped[l]
+    result.energy_upwards, result.energy_yielded = s.energy_upwards[l], s.energy_yielded[l]
     result.energy_lost, result.energy_created = s.energy_lost[l], s.energy_created[l]
     result.energy_passes, result.torsion_lever = s.energy_passes[l], s.torsion_lever[l]
     result.passes_as_impacts = int(s.passes_as_impacts[l])
@@ -746,6 +797,8 @@ def finish_history(s: Record, l: int, system: Record, results: Record) -> None:
             result.floor_acceleration_y[i] = s.largest[half + ways, l, i]
     result.max_x = s.max_beam[0, l]
     result.max_y = s.max_beam[ways - 1, l]
+    if s.yields[l] > 0:
+        finish_storeys(s, l, result)
     if s.devices[l] > 0:
         at = worked(s, l, tilt_of(s, l), (0.0, 0.0))
         for i in range(s.devices[l]):

@@ -12,7 +12,7 @@ from typing import NamedTuple
 from rpscli.physics.compile import compiled
 from rpscli.physics.devices import has_friction, resistance, tendon_elongation, tension
 from rpscli.physics.ground import log_event
-from rpscli.physics.laws import patch, path_at, place_of, polar, tilt_of, ways_of
+from rpscli.physics.laws import felt_at, patch, path_at, place_of, polar, tilt_of, ways_of
 from rpscli.physics.state import STICKING, STOP, STUCK, Record
 
 
@@ -71,7 +71,7 @@ def set_limits(s: Record, l: int) -> None:
 
 @compiled
 def push_at_rest(
-    s: Record, l: int, V: tuple[float, float], a_g: tuple[float, float], g_up: float
+    s: Record, l: int, V: tuple[float, float], a_g: tuple[float, float], g_felt: float
 ) -> float:
     """What friction dampers push the cap beam with while a lane is at rest [N]; writes `drive`.
 
@@ -86,7 +86,7 @@ def push_at_rest(
         return 0.0
     per_N = R * s.share[l]
     if ways_of(s) == 2 and s.phase[l] == STUCK:
-        return push_stuck(s, l, V, a_g, g_up)
+        return push_stuck(s, l, V, a_g, g_felt)
     x, y = R * (s.load[l] * a_g[0] - s.share[l] * V[0]), 0.0
     action = side * x
     if ways_of(s) == 2:
@@ -94,7 +94,7 @@ def push_at_rest(
         action = math.sqrt(x * x + y * y)
     _, friction = force_at_rest(s, l)
     friction *= per_N
-    resists = 0.5 * (s.limit_right[l] - s.limit_left[l]) * side * g_up
+    resists = 0.5 * (s.limit_right[l] - s.limit_left[l]) * side * g_felt
     if s.phase[l] == STUCK:
         resists += 0.5 * side * (s.held_right[l] - s.held_left[l])
         share = -(resists + action) / friction
@@ -103,7 +103,7 @@ def push_at_rest(
     dampers = per_N * s.friction_force[l]
     if dampers == 0.0:
         return 0.0
-    resists = s.limit_right[l] * g_up + s.held_right[l]
+    resists = s.limit_right[l] * g_felt + s.held_right[l]
     beyond = min(max(abs(action) - (resists - dampers), 0.0), dampers)
     share = -math.copysign(beyond / dampers, action)
     s.drive[0, l] = -side * share * s.friction_force[l]
@@ -158,10 +158,10 @@ def grip_of(
     l: int,
     z: tuple[float, float],
     z_rate: tuple[float, float],
-    g_up: tuple[float, float],
+    g_felt: tuple[float, float],
     less: float,
 ) -> Grip:
-    """How a tilt at rest is held under z of what is not friction, and g + a_v, with their rates.
+    """How a tilt at rest is held under z of what is not friction, and g_f, with their rates.
 
     Of the dampers' part `less` may not be asked for [1/s2].
     """
@@ -171,10 +171,10 @@ def grip_of(
     P = max(s.share[l] * s.friction_force[l] - less, 0.0)
     M = s.share[l] * s.friction_moment[l] / s.diameter[l]
     arm = at.Bv * weigh
-    held = arm * g_up[0] + (s.root[l] - s.sink[l]) * w * gravity * weigh + s.bed_k[l] * x
+    held = arm * g_felt[0] + (s.root[l] - s.sink[l]) * w * gravity * weigh + s.bed_k[l] * x
     held = held + at.C * s.share[l] * force_at_rest(s, l)[0] if x > 0.0 else 0.0
     Q_n, Q_t = at.C * (z[0] * n + z[1] * t) - held, at.h * (z[1] * n - z[0] * t)
-    rate_n = at.C * (z_rate[0] * n + z_rate[1] * t) - arm * g_up[1]
+    rate_n = at.C * (z_rate[0] * n + z_rate[1] * t) - arm * g_felt[1]
     rate_t = at.h * (z_rate[1] * n - z_rate[0] * t)
     pushed = Q_n != 0.0 or Q_t != 0.0  # else it will be where that grows to
     aim_n, aim_t = (Q_n, Q_t) if pushed else (rate_n, rate_t)
@@ -222,18 +222,18 @@ def grip_at(s: Record, l: int, end: int) -> Grip:
             z_x, rate_x = z, rate
         else:
             z_y, rate_y = z, rate
-    g_up = s.g_up[l] + time * s.g_up_slope[l], s.g_up_slope[l]
-    return grip_of(s, l, (z_x, z_y), (rate_x, rate_y), g_up, 0.0)
+    g_felt, g_rate, _ = felt_at(s, l, end)
+    return grip_of(s, l, (z_x, z_y), (rate_x, rate_y), (g_felt, g_rate), 0.0)
 
 
 @compiled
 def push_stuck(
-    s: Record, l: int, V: tuple[float, float], a_g: tuple[float, float], g_up: float
+    s: Record, l: int, V: tuple[float, float], a_g: tuple[float, float], g_felt: float
 ) -> float:
     """`push_at_rest` of a lane that is stuck with a tilt to any side."""
     z_x = s.share[l] * V[0] - s.load[l] * a_g[0]
     z_y = s.share[l] * V[1] - s.load[l] * a_g[1]
-    grip = grip_of(s, l, (z_x, z_y), (0.0, 0.0), (g_up, 0.0), 0.0)
+    grip = grip_of(s, l, (z_x, z_y), (0.0, 0.0), (g_felt, 0.0), 0.0)
     _, n, t, _, _ = polar(s, l, tilt_of(s, l), (0.0, 0.0))
     used = min(grip.used, 1.0)  # a little more would be asked for just before it lets go (13.26)
     push = used * s.friction_force[l]

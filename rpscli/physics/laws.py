@@ -8,7 +8,9 @@ through zero, and nothing across it exists. With K = J/x^2, over N m_c R^2,
     K r''_t = h z_t - c_t q + G_t - K' p q                                             h = u/x
     u_b''   = 2 R (C r''_n + B p^2 + h' q^2) along it,  2 R (h r''_t + 2 h' p q) across it
     z       = 2 (V + P)/(N m_c R) - (1 + 2 gamma) a_g/R
-    arms    = [(B - sink w) g + B_v a_v] (1 + 2 gamma + 2 gamma eta)/R,   B_v = B - root w
+    arms    = [(B - sink w) g + B_v (g_f - g)] (1 + 2 gamma + 2 gamma eta)/R,   B_v = B - root w
+    g_f     = g + a_v, of floors on springs less than it by 2 [M_tot a_v + sum Gamma f]/(N m_c)
+              over 1 + 2 gamma + 2 gamma eta: they press with M_tot g - sum Gamma f (14.3)
 
 G is what tendons and rolling resistance do, P what dampers and stops push the cap beam with. Kept
 beyond the ends of a phase of motion all is smooth, which is what the search of events needs.
@@ -17,7 +19,7 @@ beyond the ends of a phase of motion all is smooth, which is what the search of 
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 from rpscli.physics import geometry, plane_bed
 from rpscli.physics.compile import compiled, inlined
@@ -78,6 +80,23 @@ def patch(s: Record, l: int, x: float) -> tuple[float, float]:
 def phase_of(s: Record, l: int) -> geometry.Phase:
     """Constants of a lane's phase of motion."""
     return geometry.Phase(s.p[l], s.q0[l], s.c[l], s.u0[l], s.v0[l])
+
+
+@inlined
+def felt(s: Record, l: int, g_up: float, V_up: float) -> float:
+    """g_f, what contacts feel of g + a_v [m/s2], under forces V_up of the floors' springs [N]."""
+    return g_up - s.spared[l] * (s.floors_mass[l] * (g_up - s.gravity[l]) + V_up)  # type: ignore[no-any-return]
+
+
+@compiled
+def felt_at(s: Record, l: int, end: int) -> tuple[float, float, float]:
+    """g_f with two derivatives, at the start of the step (0) or at its end (1)."""
+    up, time, spared = ways_of(s), s.time[l] + end * s.h[l], s.spared[l]
+    g_up, slope = s.g_up[l] + time * s.g_up_slope[l], s.g_up_slope[l]
+    V, dV, ddV = s.V[up, l], s.dV[up, l], s.ddV[up, l]
+    if end > 0:
+        V, dV, ddV = s.new_V[up, l], s.new_dV[up, l], s.new_ddV[up, l]
+    return felt(s, l, g_up, V), slope - spared * (s.floors_mass[l] * slope + dV), -spared * ddV
 
 
 class Place(NamedTuple):
@@ -167,11 +186,11 @@ def motion_at(
     tilt: tuple[float, float],
     rate: tuple[float, float],
     z: tuple[float, float],
-    g_up: float,
+    g_felt: float,
 ) -> Motion:
-    """Accelerations at a tilt and its rate, under z [1/s2] and g + a_v [m/s2]."""
+    """Accelerations at a tilt and its rate, under z [1/s2] and g_f [m/s2]."""
     gravity, diameter, moves = s.gravity[l], s.diameter[l], s.moves[l] > 0.0
-    arms = ((at.B - s.sink[l] * w) * gravity + at.Bv * (g_up - gravity)) * s.weigh[l]
+    arms = ((at.B - s.sink[l] * w) * gravity + at.Bv * (g_felt - gravity)) * s.weigh[l]
     if ways_of(s) == 1:
         side = s.side[l]
         x, p = side * tilt[0], side * rate[0]
@@ -255,24 +274,32 @@ def path_at(s: Record, l: int, x: float) -> float:
     return float((s.u0[l] - p) + p * less + (c * x - s.q0[l] * sine))
 
 
+Beam: TypeAlias = tuple[float, float, float, float, float, float]
+"""Way of the cap beam in each of a state's axes [m], in x, perhaps y, and upwards, and from
+`RATES` on its rates [m/s]. The way upwards is that of rigid ends, 0 on beds."""
+
+RATES = 3
+
+
 @compiled
-def beam_at(
-    s: Record, l: int, tilt: tuple[float, float], rate: tuple[float, float]
-) -> tuple[float, float, float, float]:
-    """u_b and u_b' in x and in y [m, m/s]; zero in full contact on rigid ends."""
+def beam_at(s: Record, l: int, tilt: tuple[float, float], rate: tuple[float, float]) -> Beam:
+    """Way and velocity of the cap beam; zero in full contact on rigid ends."""
     if s.phase[l] == FULL_CONTACT:
-        return 0.0, 0.0, 0.0, 0.0
+        return 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     x, n, t, p, q = polar(s, l, tilt, rate)
     diameter, u, at = s.diameter[l], path_at(s, l, x), place_with(s, l, x, 0.0, 0.0)
-    way, along = diameter * u, diameter * at.C * p
+    way, along, up, rise = diameter * u, diameter * at.C * p, 0.0, 0.0
+    if s.axes > ways_of(s):
+        up = lift_at(s, l, x) if s.bed_u[l] == 0.0 else 0.0
+        rise = diameter * (place_of(s, l, x).Bv * p)
     if ways_of(s) == 1:
-        return way * n, 0.0, along * n, 0.0
+        return way * n, up, 0.0, along * n, rise, 0.0
     across = diameter * at.h * q
-    return way * n, way * t, along * n - across * t, along * t + across * n
+    return way * n, way * t, up, along * n - across * t, along * t + across * n, rise
 
 
 @compiled
-def beam_now(s: Record, l: int) -> tuple[float, float, float, float]:
+def beam_now(s: Record, l: int) -> Beam:
     """The same at the start of the step."""
     return beam_at(s, l, tilt_of(s, l), rate_of(s, l))
 
@@ -283,7 +310,8 @@ def beam_rates(s: Record, l: int, end: int) -> tuple[float, float, float, float]
     tilt, rate, time = tilt_of(s, l), rate_of(s, l), s.time[l] + end * s.h[l]
     if end > 0:
         tilt, rate = new_tilt_of(s, l), new_rate_of(s, l)
-    _, _, u_x, u_y = beam_at(s, l, tilt, rate)
+    beam = beam_at(s, l, tilt, rate)
+    u_x, u_y = beam[RATES], (beam[RATES + 1] if ways_of(s) == 2 else 0.0)
     faster_x, faster_y = 0.0, 0.0
     for axis in range(ways_of(s)):
         shaking = s.new_shaking[axis, l] if end > 0 else s.shaking[axis, l]
@@ -306,7 +334,7 @@ def inertia_unit(s: Record, l: int) -> float:
 
 @compiled
 def tilting_energy(s: Record, l: int, at: Place, p: float, q: float) -> float:
-    """Kinetic energy of columns and cap beam, and of the floors' vertical motion [J]."""
+    """Kinetic energy of columns and cap beam, and of the floors' rise with it [J]."""
     return float(0.5 * inertia_unit(s, l) * (at.A * (p * p) + at.K * (q * q)))
 
 
@@ -349,10 +377,20 @@ def potential(s: Record, l: int, system: Record, x: float) -> float:
 
 @compiled
 def strain_energy(s: Record, l: int) -> float:
-    """Energy of the building's springs [J]."""
+    """Energy of the building's springs, k (d - delta)^2/2 + k h/(1 - h) delta^2/2 [J]."""
     energy = 0.0
-    for r in range(ways_of(s) * s.n):
+    for r in range(s.axes * s.n):
         energy += 0.5 * s.omega2[r, l] * (s.q[r, l] * s.q[r, l])
+    return energy + slip_energy(s, l)
+
+
+@compiled
+def slip_energy(s: Record, l: int) -> float:
+    """What plastic drifts change in the energy of elastic springs [J]."""
+    energy = 0.0
+    for r in range(ways_of(s) * s.n if s.yields[l] > 0 else 0):
+        back = (1.0 - s.hardening[l]) * s.stiffness[r, l] * s.middle[r, l]
+        energy += 0.5 * back * s.middle[r, l] - s.freed[r, l] * s.q[r, l]
     return energy
 
 
@@ -368,7 +406,7 @@ def relative_momentum(s: Record, l: int, axis: int) -> float:
 @compiled
 def look_at(s: Record, l: int) -> None:
     """Write the modes at the start of the step to `looked_at`, a row of q and one of q' a way."""
-    for axis in range(ways_of(s)):
+    for axis in range(s.axes):
         for i in range(s.n):
             r = axis * s.n + i
             s.looked_at[2 * axis, i], s.looked_at[2 * axis + 1, i] = s.q[r, l], s.dq[r, l]
@@ -378,10 +416,10 @@ def look_at(s: Record, l: int) -> None:
 def energy_at(
     s: Record, l: int, system: Record, tilt: tuple[float, float], rate: tuple[float, float]
 ) -> float:
-    """Kinetic, strain and potential energy without devices [J], of modes as `looked_at`."""
+    """Kinetic, potential and elastic energy without devices [J], of modes as `looked_at`."""
     beam, energy = beam_at(s, l, tilt, rate), 0.0
-    for axis in range(ways_of(s)):
-        u = beam[2 + axis]
+    for axis in range(s.axes):
+        u = beam[RATES + axis]
         energy += 0.5 * s.floors_mass[l] * (u * u)
         for i in range(s.n):
             r, q, dq = axis * s.n + i, s.looked_at[2 * axis, i], s.looked_at[2 * axis + 1, i]
@@ -396,23 +434,25 @@ def energy_at(
 
 @compiled
 def total_energy(s: Record, l: int, system: Record) -> float:
-    """The same at the start of the step."""
+    """The same at the start of the step, with what plastic drifts change."""
     look_at(s, l)
-    return energy_at(s, l, system, tilt_of(s, l), rate_of(s, l))
+    energy = energy_at(s, l, system, tilt_of(s, l), rate_of(s, l))
+    return energy + slip_energy(s, l)
 
 
 @inlined
 def contact_forces(
-    s: Record, l: int, beam: float, lift: float, V: float, a_g: float, g_up: float
+    s: Record, l: int, beam: float, lift: float, V: float, a_g: float, up: tuple[float, float]
 ) -> tuple[float, float, float, float]:
     """F and N of all columns together at their upper and lower ends, in one direction [N] (8.4).
 
     F acts to the right and N upwards on what is above; V is the base shear and what devices push
-    the beam with.
+    the beam with, `up` are g + a_v and the force of the floors' springs.
     """
+    g_up, borne = up[0], (s.floors_mass[l] - s.riding[l]) * s.gravity[l] - up[1]
     shear = s.cap_beam_mass[l] * (beam + a_g) - V
     shear_bottom = shear + s.columns_mass[l] * (0.5 * beam + a_g)
-    normal = (s.cap_beam_mass[l] + s.floors_mass[l]) * (g_up + lift) + s.pull[l]
+    normal = (s.cap_beam_mass[l] + s.riding[l]) * (g_up + lift) + s.pull[l] + borne
     return shear, shear_bottom, normal, normal + s.columns_mass[l] * (g_up + 0.5 * lift)
 
 

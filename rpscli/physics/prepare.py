@@ -68,7 +68,7 @@ def nothing_to_do(ways: int, lanes: int) -> tuple[Record, Record, Record, Record
     """A state without histories, systems of zeros, no requests, no results, no output."""
     state = records(STATE, 1, ways, lanes)
     state.history[:] = NO_HISTORY
-    none = np.empty((0, 3, 0)), np.empty((0, 4, 0))
+    none = np.empty((0, 4, 0)), np.empty((0, 4, 0))
     output = Output(records(SAMPLE, 0), none[0], records(EVENT, 0), none[1])
     return state, records(SYSTEM, ways), records(REQUEST, 0), records(RESULT, 0), output
 

@@ -7,6 +7,7 @@ import math
 from rpscli.physics.compile import compiled
 from rpscli.physics.friction import grip_of
 from rpscli.physics.laws import (
+    felt,
     inertia_unit,
     lifted_mass,
     total_energy,
@@ -33,36 +34,66 @@ def is_over(s: Record, l: int, systems: Record) -> bool:
     if system.until_rest == 0 or free <= 0 or free % REST_EVERY != 0:
         return False
     if s.phase[l] in (FULL_CONTACT, STUCK):
-        return stays_down(s, l) and demands_stand(s, l, systems)
+        return stays_down(s, l) and demands_stand(s, l, systems) and weights_stand(s, l)
     if s.phase[l] == BEDDED:
-        return rests_on_bed(s, l, systems)
+        return rests_on_bed(s, l, systems) and weights_stand(s, l)
     return ways_of(s) == 2 and free * s.dt[l] >= WOBBLES and tilts_no_more(s, l, system)
 
 
 @compiled
 def modal_speed(s: Record, l: int, r: int) -> float:
-    """sqrt(2 E_r): mode r never moves faster than this, nor farther than this over w."""
-    return math.sqrt(s.dq[r, l] * s.dq[r, l] + s.omega2[r, l] * (s.q[r, l] * s.q[r, l]))
+    """sqrt(2 E_r): mode r never moves faster than this, nor farther than this over w.
+
+    It vibrates about what plastic drifts leave.
+    """
+    q = s.q[r, l] - s.freed[r, l] / s.omega2[r, l]
+    return math.sqrt(s.dq[r, l] * s.dq[r, l] + s.omega2[r, l] * (q * q))
+
+
+@compiled
+def largest_force(s: Record, l: int, axis: int) -> float:
+    """Bound on the force of the springs and dampers under the freely vibrating floors [N]."""
+    largest = 0.0
+    for r in range(axis * s.n, (axis + 1) * s.n):
+        force = math.sqrt(s.omega2[r, l]) + s.two_xi_omega[r, l]
+        largest += abs(s.Gamma[r, l]) * force * modal_speed(s, l, r)
+    return largest
 
 
 @compiled
 def stays_down(s: Record, l: int) -> bool:
     """Whether the freely vibrating building can never again push hard enough to let go."""
-    square = 0.0
-    for axis in range(ways_of(s)):
-        largest = 0.0
-        for r in range(axis * s.n, (axis + 1) * s.n):
-            force = math.sqrt(s.omega2[r, l]) + s.two_xi_omega[r, l]
-            largest += abs(s.Gamma[r, l]) * force * modal_speed(s, l, r)
+    square, up = 0.0, ways_of(s)
+    for axis in range(up):
+        largest = largest_force(s, l, axis)
         square += largest * largest
-    most = s.share[l] * math.sqrt(square)
-    if ways_of(s) == 2 and s.phase[l] == STUCK:
-        grip = grip_of(s, l, (0.0, 0.0), (0.0, 0.0), (s.gravity[l], 0.0), most)
+    most, lightest = s.share[l] * math.sqrt(square), s.gravity[l]
+    if s.axes > up:
+        lightest = felt(s, l, lightest, largest_force(s, l, up))
+    if up == 2 and s.phase[l] == STUCK:
+        grip = grip_of(s, l, (0.0, 0.0), (0.0, 0.0), (lightest, 0.0), most)
         return s.n == 0 or bool(most < s.share[l] * s.friction_force[l] and grip.margin > 0.0)
-    limit = s.gravity[l] * s.limit_right[l] + s.held_right[l]
-    if ways_of(s) == 1:
-        limit = min(limit, s.gravity[l] * s.limit_left[l] + s.held_left[l])
+    limit = lightest * s.limit_right[l] + s.held_right[l]
+    if up == 1:
+        limit = min(limit, lightest * s.limit_left[l] + s.held_left[l])
     return s.n == 0 or bool(0.5 * s.diameter[l] * most < limit)
+
+
+@compiled
+def weights_stand(s: Record, l: int) -> bool:
+    """Whether free vibration upwards can bring no new force of a contact."""
+    if s.axes == ways_of(s):
+        return True
+    upper = s.cap_beam_mass[l] + s.floors_mass[l]
+    change = largest_force(s, l, ways_of(s)) / (upper * s.gravity[l])
+    return s.normal_top[l] <= 1.0 - change and s.heavy_top[l] >= 1.0 + change
+
+
+@compiled
+def spare_strength(s: Record, l: int, r: int) -> float:
+    """What a storey without force still bears before it yields again, to either side [N]."""
+    back = s.hardening[l] * s.stiffness[r, l] * abs(s.middle[r, l])
+    return s.strength[r, l] - back  # type: ignore[no-any-return]
 
 
 @compiled
@@ -84,6 +115,8 @@ def demands_stand(s: Record, l: int, systems: Record) -> bool:
                     return False
                 if acceleration > s.largest[rows + 1 + axis, l, i]:
                     return False
+            if s.yields[l] > 0 and shear >= spare_strength(s, l, axis * s.n + i):
+                return False
             shears, accelerations = shears + shear * shear, accelerations + acceleration**2
         if math.sqrt(shears) > s.largest[0, l, i]:
             return False
@@ -103,6 +136,16 @@ def tilts_no_more(s: Record, l: int, system: Record) -> bool:
 
 
 @compiled
+def hardened_energy(s: Record, l: int) -> float:
+    """What plastic drifts keep stored in a building without forces [J]."""
+    energy = 0.0
+    for r in range(ways_of(s) * s.n if s.yields[l] > 0 else 0):
+        back = s.hardening[l] * (1.0 - s.hardening[l]) * s.stiffness[r, l]
+        energy += 0.5 * back * (s.middle[r, l] * s.middle[r, l])
+    return energy
+
+
+@compiled
 def rests_on_bed(s: Record, l: int, systems: Record) -> bool:
     """Whether free vibration in full contact can bring nothing new: energy bounds all of it.
 
@@ -112,7 +155,7 @@ def rests_on_bed(s: Record, l: int, systems: Record) -> bool:
     Both directions share the energy: resultants are below the larger of both bounds.
     """
     system = systems[0]
-    v = math.sqrt(2.0 * total_energy(s, l, system))
+    v = math.sqrt(2.0 * (total_energy(s, l, system) - hardened_energy(s, l)))
     per_tilt = math.sqrt(inertia_unit(s, l))
     farthest = v / (per_tilt * math.sqrt(system.bed_k))
     if farthest >= min(system.bed_uplift, s.max_theta[l]):
@@ -139,4 +182,6 @@ def rests_on_bed(s: Record, l: int, systems: Record) -> bool:
             for row in (0, axis + 1 if ways_of(s) == 2 else 0):
                 if shear > s.largest[row, l, i] or acceleration > s.largest[rows + row, l, i]:
                     return False
+            if s.yields[l] > 0 and shear >= spare_strength(s, l, axis * s.n + i):
+                return False
     return True

@@ -17,7 +17,9 @@ class Output(NamedTuple):
     """
 
     samples: Record  # (rows,) `state.SAMPLE`
-    floors: NDArray[np.float64]  # (rows, 3, n) u, u' of the floors over the ground, absolute u''
+    floors: NDArray[
+        np.float64
+    ]  # (rows, 4, axes n) u, u' over the ground, absolute u'', plastic drift
     log: Record  # (rows,) `state.EVENT`
     devices: NDArray[np.float64]  # (rows, 4, devices) force [N], path [m], energy lost, stored [J]
     finer: int = 1  # rows a sample: even parts of the interval at which the motion is kept as well

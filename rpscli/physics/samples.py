@@ -5,14 +5,16 @@ from __future__ import annotations
 import math
 
 from rpscli.physics.compile import compiled
-from rpscli.physics.demands import tilt_within
+from rpscli.physics.demands import mode_path, tilt_within
 from rpscli.physics.devices import act, store_devices, stored_in, worked
 from rpscli.physics.friction import push_at_rest
 from rpscli.physics.laws import (
+    RATES,
     beam_at,
     beam_lift,
     contact_forces,
     energy_at,
+    felt,
     look_at,
     motion_at,
     patch,
@@ -23,9 +25,10 @@ from rpscli.physics.laws import (
     ways_of,
     without_shock,
 )
-from rpscli.physics.quintic import quintic, slope, value
+from rpscli.physics.quintic import slope, value
 from rpscli.physics.run import Output
 from rpscli.physics.state import FULL_CONTACT, Record
+from rpscli.physics.storeys import base_slip, free_rows, middle_with, slip_force
 
 PASSED = 1e-9
 """Of a part of the interval: what is passed by less is met."""
@@ -49,13 +52,10 @@ def store_within(s: Record, l: int, systems: Record, output: Output) -> None:
         t = (j * part - s.time[l]) / h
         if t * h >= h - PASSED * part:
             break
-        for axis in range(ways_of(s)):
+        for axis in range(s.axes):
             for i in range(s.n):
                 r = axis * s.n + i
-                ddq = -(s.Gamma[r, l] * s.new_shaking[axis, l]) - s.force[r, l]
-                q = quintic(
-                    h, s.q[r, l], s.dq[r, l], s.ddq[0, r, l], s.new_q[r, l], s.new_dq[r, l], ddq
-                )
+                q = mode_path(s, r, l, axis)
                 s.looked_at[2 * axis, i] = value(q, t)
                 s.looked_at[2 * axis + 1, i] = slope(q, t) / h
         tilt, rate = tilt_within(s, l, t)
@@ -64,14 +64,35 @@ def store_within(s: Record, l: int, systems: Record, output: Output) -> None:
 
 
 @compiled
-def shear_of_row(s: Record, l: int, axis: int) -> float:
+def shear_of_row(s: Record, l: int, systems: Record, axis: int) -> float:
     """Base shear of the modes that stand in `looked_at` [N]."""
-    V = 0.0
+    V, elastic = 0.0, 0.0
     for i in range(s.n):
         r = axis * s.n + i
         q, dq = s.looked_at[2 * axis, i], s.looked_at[2 * axis + 1, i]
         V += s.Gamma[r, l] * (s.omega2[r, l] * q + s.two_xi_omega[r, l] * dq)
-    return V
+        elastic += systems[axis].storey_shear_of[i, 0] * q
+    return V - base_slip(s, l, axis, elastic) if axis < ways_of(s) else V
+
+
+@compiled
+def elastic_of_row(s: Record, system: Record, axis: int, i: int) -> float:
+    """A storey's drift times k of the modes that stand in `looked_at` [N]."""
+    elastic = 0.0
+    for of in range(s.n):
+        elastic += system.storey_shear_of[of, i] * s.looked_at[2 * axis, of]
+    return elastic
+
+
+@compiled
+def slip_energy_of_row(s: Record, l: int, system: Record, axis: int) -> float:
+    """What plastic drifts change in their energy [J], see `laws.slip_energy`."""
+    energy = 0.0
+    for i in range(s.n):
+        r, elastic = axis * s.n + i, elastic_of_row(s, system, axis, i)
+        middle = middle_with(s, l, r, elastic)
+        energy += slip_force(s, l, r, elastic) * (0.5 * middle - elastic / s.stiffness[r, l])
+    return energy
 
 
 @compiled
@@ -92,7 +113,11 @@ def write_row(
     x, cosine, sine, p, q = polar(s, l, tilt, rate)
     w, dw = patch(s, l, x)
     g_up, share, stored = s.g_up[l] + time * s.g_up_slope[l], 0.0, 0.0
-    V_x, V_y = shear_of_row(s, l, 0), (shear_of_row(s, l, ways - 1) if ways == 2 else 0.0)
+    V_x, V_y = shear_of_row(s, l, systems, 0), 0.0
+    if ways == 2:
+        V_y = shear_of_row(s, l, systems, ways - 1)
+    V_up = shear_of_row(s, l, systems, ways) if s.axes > ways else 0.0
+    g_felt = felt(s, l, g_up, V_up)
     a_x, a_y = s.a_g[0, l] + time * s.a_g_slope[0, l], 0.0
     if ways == 2:
         a_y = s.a_g[ways - 1, l] + time * s.a_g_slope[ways - 1, l]
@@ -100,7 +125,7 @@ def write_row(
         at = worked(s, l, tilt, rate)
         act(s, l, at)
         if s.moves[l] == 0.0:
-            share = push_at_rest(s, l, (V_x, V_y), (a_x, a_y), g_up)
+            share = push_at_rest(s, l, (V_x, V_y), (a_x, a_y), g_felt)
         store_devices(s, l, at, share, output.devices[row])
         for i in range(s.devices[l]):
             stored += stored_in(s, l, i, at)
@@ -108,7 +133,7 @@ def write_row(
     z_x = s.share[l] * (V_x + drive_x) - s.load[l] * a_x
     z_y = s.share[l] * (V_y + drive_y) - s.load[l] * a_y
     place = place_with(s, l, x, w, dw)
-    motion = motion_at(s, l, place, w, tilt, rate, (z_x, z_y), g_up)
+    motion = motion_at(s, l, place, w, tilt, rate, (z_x, z_y), g_felt)
     sign, beam = s.side[l] if ways == 1 else 1.0, beam_at(s, l, tilt, rate)
     stays = without_shock(s, l, x, rate)
     sample.phase, sample.theta_ddot = s.phase[l], sign * motion.a
@@ -118,17 +143,21 @@ def write_row(
     sample.height = s.diameter[l] * place.C
     sample.lift = beam_lift(s, l, systems[0], x) if moves else 0.0
     sample.energy_input, sample.energy_damped = s.energy_input[l], s.energy_damped[l]
+    sample.energy_upwards, sample.energy_yielded = s.energy_upwards[l], s.energy_yielded[l]
     sample.energy_lost, sample.energy_bed = s.energy_lost[l], s.bed_energy[l]
     sample.energy_stored = energy_at(s, l, systems[0], tilt, rate) + stored
+    for axis in range(ways if s.yields[l] > 0 else 0):
+        sample.energy_stored += slip_energy_of_row(s, l, systems[axis], axis)
     for axis in range(ways):
         V, drive, a_g, n = (V_x, drive_x, a_x, cosine) if axis == 0 else (V_y, drive_y, a_y, sine)
         faster = stays * (motion.beam_x if axis == 0 else motion.beam_y)
         pushed, lift = V + drive + s.tied[l] * n, stays * motion.lift
-        F, F_bottom, N, N_bottom = contact_forces(s, l, faster, lift, pushed, a_g, g_up)
+        F, F_bottom, N, N_bottom = contact_forces(s, l, faster, lift, pushed, a_g, (g_up, V_up))
         sample.beam[axis], sample.base_shear[axis] = beam[axis], V
         sample.shear_top[axis], sample.shear_bottom[axis] = F, F_bottom
         sample.normal_top, sample.normal_bottom = N, N_bottom
-        write_floors(s, l, systems[axis], output, row, axis, beam[axis], beam[2 + axis])
+    for axis in range(s.axes):
+        write_floors(s, l, systems[axis], output, row, axis, beam[axis], beam[RATES + axis])
 
 
 @compiled
@@ -142,10 +171,19 @@ def write_floors(
     beam: float,
     velocity: float,
 ) -> None:
-    """Keep displacements, velocities and absolute accelerations of the floors in a direction."""
-    n = s.n
+    """Keep ways, velocities and absolute accelerations of the floors along an axis."""
+    n, yields = s.n, s.yields[l] > 0 and axis < ways_of(s)
+    shears, forces = s.looked_at[6], s.looked_at[7]
     for i in range(n):
-        u, du, ddu = beam, velocity, 0.0
+        shears[i], forces[i] = elastic_of_row(s, system, axis, i) if yields else 0.0, 0.0
+        slip = 0.0
+        if yields:
+            slip = slip_force(s, l, axis * n + i, shears[i]) / s.stiffness[axis * n + i, l]
+        output.floors[row, 3, n * axis + i] = slip
+    if yields:
+        free_rows(s, l, system, axis, shears, forces)
+    for i in range(n):
+        u, du, ddu = beam, velocity, -forces[i]
         for of in range(n):
             r, shape = axis * n + of, system.phi[of, i]
             q, dq = s.looked_at[2 * axis, of], s.looked_at[2 * axis + 1, of]

@@ -96,8 +96,8 @@ RUNNING = -1
 ) = range(8)
 
 # Where a step is to end: the tilt leaves its range, passes nearest to upright; a storey at rest is
-# no longer held; behind these a device changes its law.
-NOTHING, LOW, HIGH, NEAREST, LET_GO, CHANGE = range(6)
+# no longer held; a device changes its law; a storey begins to yield, or ends.
+NOTHING, LOW, HIGH, NEAREST, LET_GO, CHANGE, YIELD = range(7)
 
 WHOLE = "integer"
 """Unit of what is counted: such fields are integers."""
@@ -164,12 +164,18 @@ SYSTEM = (
     *_fields(
         "",
         WHOLE,
+        axes="records of a structure: horizontal directions, and upwards on vertical springs",
         floors_jump="1 if the floors jump with the cap beam at an impact",
         max_events="more of them are a failure",
         until_rest="1 if it may end earlier, with nothing new to come",
         devices="number of devices",
         compliant="1 if full contact gives way, on a bed",
+        yields="1 if storeys may yield",
     ),
+    *_fields("", "-", hardening="h, stiffness of a storey that yields over the elastic one"),
+    *_fields("modes", "N", strength="F of a storey, or infinite"),
+    *_fields("modes", "N/m", stiffness="k of a storey"),
+    *_fields("modes", "kg", mass="of a floor"),
     *_fields("modes", "rad/s", omega="frequencies of the fixed base"),
     *_fields("modes", "-", xi="damping ratios"),
     *_fields("modes", "1/s2", omega2="w^2"),
@@ -244,6 +250,8 @@ STATE = (
     *_fields("lanes", "1/m", weigh="(1 + 2 gamma + 2 gamma eta)/R", load="(1 + 2 gamma)/R"),
     *_fields("lanes", "1/(kg m)", share="2/(N m_c R)"),
     *_fields("lanes", "kg", columns_mass="N m_c", cap_beam_mass="m_b", floors_mass="M_tot"),
+    *_fields("lanes", "kg", riding="of floors that are lifted with the cap beam: all, or none"),
+    *_fields("lanes", "1/kg", spared="of g + a_v at contacts, by a force that floors lack, else 0"),
     *_fields("lanes", "m/s2", gravity="g"),
     *_fields("lanes", "rad", beta="end of the arc", theta_cr="static limit"),
     *_fields("lanes", "s", contact_time="t_c", shock_time="see `system`"),
@@ -251,6 +259,21 @@ STATE = (
     *_fields("rows lanes", "1/s", two_xi_omega="2 xi w"),
     *_fields("rows lanes", "sqrt(kg)", Gamma="participation"),
     *_fields("rows lanes", "mixed", shear_weight="see `system`", acceleration_weight="likewise"),
+    # Storeys that may yield, see `storeys`.
+    *_fields("lanes", WHOLE, yields="1 if they may", marked="storeys that yield now"),
+    *_fields("lanes", "-", hardening="h"),
+    *_fields("rows lanes", "N", strength="F"),
+    *_fields("rows lanes", "N/m", stiffness="k"),
+    Field("mark", "rows lanes", WHOLE, "side to which a storey yields, else 0"),
+    *_fields("rows lanes", "m", middle="c of the elastic range", middle_most="largest"),
+    *_fields("rows lanes", "m", middle_least="least"),
+    *_fields("rows lanes", "N", drift_most="largest k |d| of a storey that yields"),
+    *_fields("rows lanes", "J", yielded="F times the path of its plastic drift"),
+    *_fields("rows lanes", "s", first_yield="when, or -1"),
+    *_fields("rows lanes", "m sqrt(kg)/s2", freed="sum g_ri delta_i, load of plastic drifts"),
+    *_fields("rows lanes", "m sqrt(kg)/s2", new_freed="at a stage"),
+    *_fields("rows lanes", "N/(m sqrt(kg))", slipping="(1 - h) g_r1 while storey 1 yields, else 0"),
+    *_fields("lanes", "J", energy_yielded="of all storeys"),
     # The history and its records.
     *_fields(
         "lanes",
@@ -321,10 +344,10 @@ STATE = (
     *_fields("ways lanes", "rad/s", tilt_rate="its rate", new_tilt_rate="at the end"),
     *_fields("ways lanes", "rad/s2", bend="its acceleration", new_bend="at the end"),
     Field("bends", "stages ways lanes", "rad/s2", "at all stages"),
-    *_fields("ways lanes", "m/s2", shaking="a_g + u_b''", new_shaking="at the end"),
-    *_fields("ways lanes", "N", V="base shear, springs and dampers", new_V="at the end"),
-    *_fields("ways lanes", "N/s", dV="its rate", new_dV="at the end"),
-    *_fields("ways lanes", "N/s2", ddV="while it stands", new_ddV="at the end"),
+    *_fields("axes lanes", "m/s2", shaking="a_g + u_b'', upwards a_v + v_b''", new_shaking="so"),
+    *_fields("axes lanes", "N", V="base shear, springs and dampers", new_V="at the end"),
+    *_fields("axes lanes", "N/s", dV="its rate", new_dV="at the end"),
+    *_fields("axes lanes", "N/s2", ddV="while it stands", new_ddV="at the end"),
     *_fields("lanes", "rad", x="tilt, along its side in one plane", new_x="at the end"),
     *_fields("lanes", "rad/s", v="x'", new_v="at the end"),
     *_fields("lanes", "rad/s2", a="x''", new_a="at the end"),
@@ -342,6 +365,7 @@ STATE = (
         attention="1: must be looked at alone",
         demands_rise="1: a floor's may be raised",
         contacts_rise="1: forces of the columns may be, within",
+        contacts_near="1: at its start they were near the largest",
     ),
     # Devices: what they do at a stage, of the beam's force in z, of moments along the tilt.
     *_fields("lanes", WHOLE, devices="number of devices", tendons="of tendons in a column"),
@@ -407,18 +431,22 @@ STATE = (
         "J",
         energy_input="of the ground, audited",
         energy_damped="in the building, if audited",
+        energy_upwards="in its dampers upwards, so",
         energy_lost="at impacts, passes and re-contacts",
         energy_created="at impacts that create it",
         energy_passes="lost in passes",
         bed_energy="dissipated in the bed, audited",
     ),
     *_fields("lanes", "W", power_input="mean of the step", power_damped="so", power_bed="so"),
+    *_fields("lanes", "W", power_upwards="of the dampers between floors upwards, so"),
     *_fields("lanes", "s", bedded_time="in full contact on a bed"),
     *_fields("lanes", "-", impact_number="largest chi"),
     Field("piece", "8", "mixed", "scratch of the search for roots"),
     Field("n", "", WHOLE, "storeys, and modes in each direction: the same in all lanes"),
+    Field("axes", "", WHOLE, "directions with modes, see `system`: likewise"),
     Field("equipped", "", WHOLE, "1 if any lane has devices"),
     Field("gives_way", "", WHOLE, "1 if any lane stands on a bed"),
+    Field("yielding", "", WHOLE, "1 if storeys of any lane may yield"),
     Field("audited", "", WHOLE, "1 where energy flows are integrated"),
     Field("stop", "", WHOLE, "1: histories are to be left where they are"),
     Field("waiting", "", WHOLE, "number of the next request"),
@@ -452,6 +480,8 @@ RESULT = (
     Field("shear_bottom", "", "N", "lower ends"),
     Field("energy_input", "", "J", "by the ground, if audited"),
     Field("energy_damped", "", "J", "in the building, if audited"),
+    Field("energy_upwards", "", "J", "in its dampers upwards, if audited"),
+    Field("energy_yielded", "", "J", "by storeys that yield"),
     Field("energy_lost", "", "J", "at impacts and re-contacts, net"),
     Field("energy_created", "", "J", "at impacts that create it"),
     Field("energy_stored", "", "J", "at the end"),
@@ -467,6 +497,12 @@ RESULT = (
         for name, unit in (("storey_shear", "N"), ("floor_acceleration", "m/s2"))
         for way in "xy"
     ),
+    Field("ductility", "2 modes", "-", "largest |d| k/F of a storey, in x and in y"),
+    Field("slip", "2 modes", "m", "its plastic drift at the end"),
+    Field("slip_most", "2 modes", "m", "the largest"),
+    Field("slip_least", "2 modes", "m", "and the least"),
+    Field("yielded", "2 modes", "J", "by it"),
+    Field("first_yield", "2 modes", "s", "when it first yields; negative if never"),
     Field("device_force", f"{SLOTS}", "N", "largest |force|"),
     Field("device_velocity", f"{SLOTS}", "m/s", "largest |rate|"),
     Field("device_energy", f"{SLOTS}", "J", "dissipated"),
@@ -491,6 +527,8 @@ SAMPLE = (
     Field("normal_bottom", "", "N", "on the lower ends"),
     Field("energy_input", "", "J", "by the ground so far"),
     Field("energy_damped", "", "J", "in the building so far"),
+    Field("energy_upwards", "", "J", "in its dampers upwards so far"),
+    Field("energy_yielded", "", "J", "by storeys that yield so far"),
     Field("energy_lost", "", "J", "at impacts and re-contacts so far, net"),
     Field("energy_bed", "", "J", "dissipated in the bed so far"),
     Field("energy_stored", "", "J", "stored, in devices over that at the start"),
@@ -525,9 +563,10 @@ def record_type(fields: tuple[Field, ...], ways: int = 1, lanes: int = 1) -> np.
     """
     sizes = {
         "ways": ways,
+        "axes": ways + 1,
         "lanes": lanes + PADDING,
         "modes": MOST_STOREYS + PADDING,
-        "rows": ways * MOST_STOREYS + PADDING,
+        "rows": (ways + 1) * MOST_STOREYS + PADDING,
         "stages": END + 1,
         "demands": 2 * (2 * ways - 1),
     }

@@ -15,6 +15,7 @@ from rpscli.physics.devices import act, act_at_stage, begin_work, worked
 from rpscli.physics.ground import g_up_now, ground_now
 from rpscli.physics.laws import (
     UPRIGHT,
+    felt,
     inertia_unit,
     lanes_of,
     lifted_mass,
@@ -29,6 +30,7 @@ from rpscli.physics.laws import (
     ways_of,
 )
 from rpscli.physics.state import Record
+from rpscli.physics.storeys import free_storeys, slip_rates
 from rpscli.physics.tableau import A2, END, ERROR, USED, A, C
 
 
@@ -49,8 +51,10 @@ def accelerate(s: Record, at: float) -> None:
         tilt, rate = new_tilt_of(s, l), new_rate_of(s, l)
         x, _, _, p, _ = polar(s, l, tilt, rate)
         place = place_with(s, l, x, s.w[l], s.dw[l])
-        g_up = s.g_up[l] + time * s.g_up_slope[l]
-        motion = motion_at(s, l, place, s.w[l], tilt, rate, (z_x, z_y), g_up)
+        g_up, up = s.g_up[l] + time * s.g_up_slope[l], ways_of(s)
+        g_felt = felt(s, l, g_up, s.new_V[up, l])
+        motion = motion_at(s, l, place, s.w[l], tilt, rate, (z_x, z_y), g_felt)
+        s.new_shaking[up, l] = (g_up - s.gravity[l]) + motion.lift
         s.new_bend[0, l], s.new_shaking[0, l] = motion.bend_x, ground + motion.beam_x
         if ways_of(s) == 2:
             s.new_bend[1, l], s.new_shaking[1, l] = motion.bend_y, ground_y + motion.beam_y
@@ -68,7 +72,7 @@ def advance_mode(s: Record, r: int, l: int, axis: int, k: int) -> float:
     """Lead a mode of a lane to stage k; its part of the base shear there [N]."""
     h, omega2, damping, q, dq = s.h[l], s.omega2[r, l], s.two_xi_omega[r, l], s.q[r, l], s.dq[r, l]
     base = s.shaking[axis, l] if k == 1 else s.new_shaking[axis, l]
-    before = fma(omega2, q, damping * dq) if k == 1 else s.force[r, l]
+    before = fma(omega2, q, damping * dq) - s.freed[r, l] if k == 1 else s.force[r, l]
     ddq = fma(-s.Gamma[r, l], base, -before)
     s.ddq[k - 1, r, l] = ddq
     far, fast = 0.0, 0.0
@@ -99,17 +103,20 @@ def advance_tilt(s: Record, l: int, axis: int, k: int) -> None:
 
 
 @inlined
-def advance_to(s: Record, k: int) -> None:
+def advance_to(s: Record, systems: Record, k: int) -> None:
     """Lead all lanes to stage k, modes first, and find their accelerations there."""
     n, lanes = s.n, lanes_of(s)
-    for axis in range(ways_of(s)):
+    for axis in range(s.axes):
         for l in range(lanes):
             s.new_V[axis, l] = 0.0
         for r in range(axis * n, (axis + 1) * n):
             for l in range(lanes):
                 s.new_V[axis, l] += advance_mode(s, r, l, axis, k)
+    for axis in range(ways_of(s)):
         for l in range(lanes):
             advance_tilt(s, l, axis, k)
+    if s.yielding > 0:
+        free_storeys(s, systems, k)
     find_accelerations(s, k)
 
 
@@ -129,27 +136,27 @@ def find_accelerations(s: Record, k: int) -> None:
         book_powers(s, C[k], weight)
 
 
-def all_stages(s: Record) -> None:
+def all_stages(s: Record, systems: Record) -> None:
     """All stages of a lane alone."""
     for k in range(1, END + 1):
-        advance_to(s, k)
+        advance_to(s, systems, k)
 
 
 @together(all_stages)
-def all_stages_of_lanes(s: Record) -> None:
+def all_stages_of_lanes(s: Record, systems: Record) -> None:
     """The same of lanes side by side, written out: the sums become vector instructions."""
-    advance_to(s, 1)
-    advance_to(s, 2)
-    advance_to(s, 3)
-    advance_to(s, 4)
-    advance_to(s, 5)
-    advance_to(s, 6)
-    advance_to(s, 7)
-    advance_to(s, 8)
+    advance_to(s, systems, 1)
+    advance_to(s, systems, 2)
+    advance_to(s, systems, 3)
+    advance_to(s, systems, 4)
+    advance_to(s, systems, 5)
+    advance_to(s, systems, 6)
+    advance_to(s, systems, 7)
+    advance_to(s, systems, 8)
 
 
 @compiled
-def take_steps(s: Record) -> None:
+def take_steps(s: Record, systems: Record) -> None:
     """Take a step of all lanes: writes the end, and the error of the tilt over what it may be."""
     lanes = lanes_of(s)
     for axis in range(ways_of(s)):
@@ -159,7 +166,7 @@ def take_steps(s: Record) -> None:
         begin_work(s, A[END, 0])
     if lanes == 1 and s.audited > 0:
         begin_powers(s)
-    all_stages(s)
+    all_stages(s, systems)
     end_rates(s)
     for l in range(lanes):
         s.error[l] = error_of(s, l)
@@ -190,7 +197,7 @@ def error_of(s: Record, l: int) -> float:
 def end_rates(s: Record) -> None:
     """Rates of the base shear at the ends of steps (10.6); the second of buildings at rest."""
     n, lanes = s.n, lanes_of(s)
-    for axis in range(ways_of(s)):
+    for axis in range(s.axes):
         for l in range(lanes):
             s.new_dV[axis, l], s.new_ddV[axis, l] = 0.0, 0.0
         for r in range(axis * n, (axis + 1) * n):
@@ -200,6 +207,9 @@ def end_rates(s: Record) -> None:
                 faster = omega2 * s.new_dq[r, l] + damping * ddq
                 s.new_dV[axis, l] += Gamma * faster
                 s.new_ddV[axis, l] += Gamma * (omega2 * ddq - damping * faster)
+    for l in range(lanes if s.yielding > 0 else 0):
+        for axis in range(ways_of(s) if s.marked[l] > 0 else 0):
+            slip_rates(s, l, axis, 1)
 
 
 @compiled
@@ -211,32 +221,39 @@ def renew(s: Record, l: int) -> None:
     if s.devices[l] > 0:
         act(s, l, worked(s, l, tilt, rate))
     z_x, z_y, ground, ground_y = 0.0, 0.0, 0.0, 0.0
-    for axis in range(ways_of(s)):
+    for axis in range(s.axes):
         V = 0.0
         for r in range(axis * s.n, (axis + 1) * s.n):
-            V += s.Gamma[r, l] * fma(s.omega2[r, l], s.q[r, l], s.two_xi_omega[r, l] * s.dq[r, l])
+            f = fma(s.omega2[r, l], s.q[r, l], s.two_xi_omega[r, l] * s.dq[r, l])
+            V += s.Gamma[r, l] * (f - s.freed[r, l])
         s.V[axis, l] = V
+    for axis in range(ways_of(s)):
+        V = s.V[axis, l]
         z = s.share[l] * (V + s.drive[axis, l]) - s.load[l] * ground_now(s, l, axis)
         if axis == 0:
             z_x, ground = z, ground_now(s, l, 0)
         else:
             z_y, ground_y = z, ground_now(s, l, 1)
     place = place_with(s, l, x, s.w[l], s.dw[l])
-    motion = motion_at(s, l, place, s.w[l], tilt, rate, (z_x, z_y), g_up_now(s, l))
+    g_up, up = g_up_now(s, l), ways_of(s)
+    g_felt = felt(s, l, g_up, s.V[up, l])
+    motion = motion_at(s, l, place, s.w[l], tilt, rate, (z_x, z_y), g_felt)
+    s.shaking[up, l] = (g_up - s.gravity[l]) + motion.lift
     s.x[l], s.v[l], s.a[l], s.lift[l] = x, p, motion.a, motion.lift
     s.bend[0, l], s.shaking[0, l] = motion.bend_x, ground + motion.beam_x
     if ways_of(s) == 2:
         s.bend[1, l], s.shaking[1, l] = motion.bend_y, ground_y + motion.beam_y
-    for axis in range(ways_of(s)):
+    for axis in range(s.axes):
         s.dV[axis, l], s.ddV[axis, l] = 0.0, 0.0
         for r in range(axis * s.n, (axis + 1) * s.n):
             omega2, damping = s.omega2[r, l], s.two_xi_omega[r, l]
-            ddq = -(s.Gamma[r, l] * s.shaking[axis, l]) - fma(
-                omega2, s.q[r, l], damping * s.dq[r, l]
-            )
+            force = fma(omega2, s.q[r, l], damping * s.dq[r, l]) - s.freed[r, l]
+            ddq = -(s.Gamma[r, l] * s.shaking[axis, l]) - force
             faster = omega2 * s.dq[r, l] + damping * ddq
             s.dV[axis, l] += s.Gamma[r, l] * faster
             s.ddV[axis, l] += s.Gamma[r, l] * (omega2 * ddq - damping * faster)
+        if s.marked[l] > 0 and axis < ways_of(s):
+            slip_rates(s, l, axis, 0)
 
 
 # Where energy is audited its flows are integrated by the weights of the step (8.2).
@@ -251,7 +268,7 @@ def book_power(
     rate: tuple[float, float],
 ) -> None:
     """Add the power of ground, dampers and bed in the only lane, its velocities in `new_dq`."""
-    supplied, damped, moving = 0.0, 0.0, s.moves[0] > 0.0
+    supplied, damped, upwards, moving = 0.0, 0.0, 0.0, s.moves[0] > 0.0
     out, aside, x, n, t, p, q, lift = 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0
     if moving:
         x, n, t, p, q = polar(s, 0, tilt, rate)
@@ -267,12 +284,17 @@ def book_power(
             damped += s.two_xi_omega[r, 0] * (s.new_dq[r, 0] * s.new_dq[r, 0])
         supplied += (s.a_g[axis, 0] + time * s.a_g_slope[axis, 0]) * momentum
     a_v = s.g_up[0] + time * s.g_up_slope[0] - s.gravity[0]
-    supplied += a_v * lifted_mass(s, 0) * lift
+    rising, up = lifted_mass(s, 0) * lift, ways_of(s) * s.n
+    for r in range(up, s.axes * s.n):
+        rising += s.Gamma[r, 0] * s.new_dq[r, 0]
+        upwards += s.two_xi_omega[r, 0] * (s.new_dq[r, 0] * s.new_dq[r, 0])
+    supplied += a_v * rising
     bed = s.bed_c[0] * (p * p + q * q)
     if ways_of(s) == 2 and moving:
         bed += s.rim[0] / max(x, UPRIGHT) * (q * q)
     s.power_input[0] -= weight * supplied
     s.power_damped[0] += weight * damped
+    s.power_upwards[0] += weight * upwards
     s.power_bed[0] += weight * inertia_unit(s, 0) * bed
 
 
@@ -280,7 +302,8 @@ def book_power(
 def begin_powers(s: Record) -> None:
     """Begin with those at the start of the step."""
     s.power_input[0], s.power_damped[0], s.power_bed[0] = 0.0, 0.0, 0.0
-    for r in range(ways_of(s) * s.n):
+    s.power_upwards[0] = 0.0
+    for r in range(s.axes * s.n):
         s.new_dq[r, 0] = s.dq[r, 0]
     book_power(s, s.time[0], A[END, 0], tilt_of(s, 0), rate_of(s, 0))
 

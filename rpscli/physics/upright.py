@@ -15,9 +15,12 @@ from rpscli.physics.bed import enter_on_bed, first_phase, impact_number
 from rpscli.physics.compile import compiled
 from rpscli.physics.devices import begin_excursion, has_friction, take_up_stops
 from rpscli.physics.friction import force_at_rest, set_limits
-from rpscli.physics.ground import g_up_now, ground_now, log_event
+from rpscli.physics.ground import ground_now, log_event
 from rpscli.physics.laws import (
+    RATES,
+    Beam,
     beam_now,
+    felt_at,
     lift_at,
     lifted_mass,
     place_of,
@@ -94,11 +97,11 @@ def enter_full_contact(s: Record, l: int, system: Record) -> None:
 
 
 @compiled
-def move_floors(s: Record, l: int, before: tuple[float, float, float, float]) -> None:
-    """The cap beam has left u_b and u_b' of `before` without the floors."""
+def move_floors(s: Record, l: int, before: Beam) -> None:
+    """The cap beam has left way and velocity of `before` without the floors."""
     now = beam_now(s, l)
-    for axis in range(ways_of(s)):
-        moved, faster = now[axis] - before[axis], now[2 + axis] - before[2 + axis]
+    for axis in range(s.axes):
+        moved, faster = now[axis] - before[axis], now[RATES + axis] - before[RATES + axis]
         for r in range(axis * s.n, (axis + 1) * s.n):
             s.q[r, l] -= s.Gamma[r, l] * moved
             s.dq[r, l] -= s.Gamma[r, l] * faster
@@ -204,6 +207,8 @@ def impact(s: Record, l: int, system: Record, log: Record) -> None:
     else:
         for r in range(s.n):
             s.dq[r, l] -= s.Gamma[r, l] * jump
+        for r in range(s.n, s.axes * s.n):
+            s.dq[r, l] += s.Gamma[r, l] * (s.diameter[l] * at.B * (1.0 + e) * arriving)
     s.side[l] = -side
     leaving = -e * arriving
     set_polar(s, l, 0.0, -side, 0.0, leaving, 0.0)
@@ -225,7 +230,7 @@ def pushes(s: Record, l: int) -> tuple[float, float, float, float]:
     z_y = 0.0
     if ways_of(s) == 2:
         z_y = s.share[l] * s.V[1, l] - s.load[l] * ground_now(s, l, 1)
-    limit = s.tan_a[l] * g_up_now(s, l) * s.weigh[l] + s.share[l] * force_at_rest(s, l)[0]
+    limit = s.tan_a[l] * felt_at(s, l, 0)[0] * s.weigh[l] + s.share[l] * force_at_rest(s, l)[0]
     return z_x, z_y, math.sqrt(z_x * z_x + z_y * z_y), limit
 
 
@@ -291,8 +296,8 @@ def come_to_rest(s: Record, l: int, system: Record, log: Record) -> None:
     held = force_at_rest(s, l)[0] * s.diameter[l] * math.cos(system.alpha) * x
     lost = tilting_energy(s, l, place_of(s, l, x), p, q) + held
     lost += lifted_mass(s, l) * s.gravity[l] * lift_at(s, l, x)
-    for axis in range(ways_of(s)):
-        u = before[2 + axis]
+    for axis in range(s.axes):
+        u = before[RATES + axis]
         carried = relative_momentum(s, l, axis) + 0.5 * (1.0 + kept) * s.floors_mass[l] * u
         lost += (1.0 - kept) * u * carried
         for r in range(axis * s.n, (axis + 1) * s.n):

@@ -108,10 +108,16 @@ def timehistory_document(result: TimeHistoryResult) -> Document:
         "column_forces_leave_out": list(result.left_out_of_columns),
         **values_of(isolated, STOREYS),
         "fixed_base": None if fixed is None else values_of(fixed, STOREYS),
-        "energy": asdict(result.energy),
+        "energy": _energy(result),
         "devices": [asdict(demand) for demand in result.devices],
         "warnings": result.warnings,
     }
+
+
+def _energy(result: TimeHistoryResult) -> dict[str, float]:
+    """The balance, with what only some structures dissipate where it is one of them."""
+    without = set() if result.structure.upwards else {"damped_vertical"}
+    return {name: of for name, of in asdict(result.energy).items() if name not in without}
 
 
 def read_json(path: Path, kinds: Any) -> Document:

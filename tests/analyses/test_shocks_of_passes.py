@@ -6,12 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from paper_structures import building, chain_of_springs, needs_compiled_kernels, podium, waves
-from scipy.linalg import expm
+from paper_structures import building, needs_compiled_kernels, podium, waves
 
-from rpscli.analyses.column_forces import no_bound, shock
+from rpscli.analyses.column_forces import no_bound
 from rpscli.analyses.settings import TimeHistorySettings
-from rpscli.analyses.timehistory import denser_trace, time_history
+from rpscli.analyses.timehistory import time_history
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import PodiumStructure
 from rpscli.records.ground_motion import MotionComponents
@@ -23,37 +22,6 @@ def structure(period: float | None, contact_time: float = 2e-3) -> PodiumStructu
     above = replace(building(2, 0.4), vertical_period=period)
     law = ImpactLaw("flexible", contact_time=contact_time)
     return podium(2, 0.15, 0.5, superstructure=above, law=law)
-
-
-@needs_compiled_kernels
-def test_the_shock_is_that_of_floors_on_springs() -> None:
-    """What theta' gains in shocks, step by step on a chain of springs of its own."""
-    of = structure(0.1)
-    peak = 1.8 * of.uplift_acceleration
-    motion = MotionComponents(waves(6.0, 0.01, peak, 2), y=waves(6.0, 0.01, peak, 3))
-    result = time_history(of, motion, TimeHistorySettings(free_vibration=1.0))
-    trace = denser_trace(result, 5e-4)
-    k, c, rates = chain_of_springs(0.1)
-    step = expm(5e-4 * rates)
-    above = of.superstructure
-    assert above is not None
-    turns = np.hypot(trace.rotation_rate, trace.rotation * np.asarray(trace.azimuth_rate))
-    within = trace.rotation < 0.025 * turns
-    width = 2.0 * of.bearing.semi_diagonal * np.sin(of.bearing.alpha)
-    state, forces = np.zeros(4), [0.0]
-    for i in range(1, len(trace.time)):
-        state = step @ state
-        if within[i] and within[i - 1]:
-            state[2:] -= width * (trace.rotation_rate[i] - trace.rotation_rate[i - 1])
-        forces.append(-float(above.masses @ (k @ state[:2] + c @ state[2:])))
-    found = shock(of, trace, result.events)
-    assert found == pytest.approx(np.array(forces), abs=1e-9 * np.max(np.abs(forces)))
-    weight = of.gravity * of.superstructure_mass
-    assert np.max(found) > 0.1 * weight
-    assert result.axial is not None
-    assert result.max_column_force * of.columns == pytest.approx(
-        np.max(trace.normal_bottom + found), rel=1e-9
-    )
 
 
 @needs_compiled_kernels

@@ -11,7 +11,7 @@ from rpscli.model.podium import PodiumStructure
 from rpscli.physics.bed import load_bed
 from rpscli.physics.devices import load_devices
 from rpscli.physics.follow import clear_results, load_modes, load_system
-from rpscli.physics.laws import Place, beam_now, place_of, total_energy
+from rpscli.physics.laws import RATES, Place, beam_now, place_of, total_energy
 from rpscli.physics.state import EVENT, STATE, records
 from rpscli.physics.step import book_power, renew
 from rpscli.physics.upright import come_to_rest, enter_phase, impact, set_polar
@@ -29,7 +29,7 @@ class OneLane:
         self.system = stacked_systems([(structure, TimeHistorySettings())])[0]
         self.state, self.log = records(STATE), records(EVENT, 0)
         s = self.s = self.state[0]
-        s.n, s.side[0], s.dt[0] = structure.storeys, side, 0.01
+        s.n, s.axes, s.side[0], s.dt[0] = structure.storeys, 1, side, 0.01
         load_system(s, 0, self.system)
         load_modes(s, 0, self.system, 0)
         load_devices(s, 0, self.system)
@@ -62,7 +62,7 @@ class OneLane:
     @property
     def base_velocity(self) -> float:
         """u_b' [m/s]."""
-        return float(beam_now(self.s, 0)[2])
+        return float(beam_now(self.s, 0)[RATES])
 
     @property
     def position(self) -> Array:

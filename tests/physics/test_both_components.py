@@ -30,7 +30,7 @@ from two_components import followed, frame, pair, released, two_pulses
 
 from rpscli.analyses.demand import Request, demands
 from rpscli.analyses.kernels.history import sampled_history
-from rpscli.analyses.kernels.systems import paired_systems
+from rpscli.analyses.kernels.systems import stacked_systems
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.constants import STANDARD_GRAVITY
@@ -312,7 +312,7 @@ def test_what_has_no_form_in_two_directions_is_refused() -> None:
         frame().bearing, 1e4, 1e5, frame(**THREE).superstructure, ImpactLaw("rigid")
     )
     with pytest.raises(ValueError, match="both horizontal components: the impact law rigid"):
-        paired_systems([(rigid, TimeHistorySettings())])
+        stacked_systems([(rigid, TimeHistorySettings())], pairs=True)
 
 
 W = frame(3, 3.0).weight

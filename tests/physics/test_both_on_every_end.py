@@ -22,7 +22,7 @@ from two_components import History, followed, frame, pair, released, two_pulses
 import rpscli
 from rpscli.analyses.demand import Request, demands
 from rpscli.analyses.kernels.history import SampledHistory, sampled_history
-from rpscli.analyses.kernels.systems import paired_systems
+from rpscli.analyses.kernels.systems import stacked_systems
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.case.case import load_case
 from rpscli.constants import STANDARD_GRAVITY
@@ -250,7 +250,7 @@ def test_what_is_held_is_held_against_every_direction(kind: str) -> None:
     """Q.d <= P |W d| + M for 360 vectors d, on either side of the margin's zero."""
     structure = structure_of("spherical", kind)
     left = records(STATE, 1, 2, 1)[0]
-    system = paired_systems([(structure, TimeHistorySettings())])[0]
+    system = stacked_systems([(structure, TimeHistorySettings())], pairs=True)[0]
     load_system(left, 0, system)
     load_devices(left, 0, system)
     load_bed(left, 0, system)

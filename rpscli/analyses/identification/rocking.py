@@ -227,7 +227,7 @@ def _starts(of: _Release, first: Swing) -> tuple[list[Array], Array, Array]:
     if law.kind == "value":
         rows = [(1.0 - lost, 2e-3, 0.01, 1.0)]
     else:
-        full = max(1.0 - replace(law, loss=1.0).ratio(b, s.gamma, s.eta), 1e-6)
+        full = max(1.0 - replace(law, loss=1.0).ratio(b, s.gamma, s.eta_riding), 1e-6)
         rows = [(lost / full, 5e-3, 1e-6, 0.98 / full)]
     if of.place is not None:
         rows.append((0.0, 1e-3 * b.half_width, 1e-9, 0.2 * b.half_width))

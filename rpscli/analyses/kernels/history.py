@@ -17,7 +17,6 @@ from rpscli.analyses.kernels.systems import (
     longest_free_vibration,
     most_seconds,
     most_steps,
-    paired_systems,
     stacked_systems,
     steps_a_second,
 )
@@ -70,7 +69,7 @@ def run_of(
 ) -> Run:
     """Input of the kernel, with room for results, and rows and events of the first history.
 
-    With `pairs` all motions have two horizontal components, and systems are `paired_systems`.
+    With `pairs` all motions have two horizontal components, and systems are those of pairs.
     """
     first = systems.view(np.ndarray)
     n, devices = int(first["n"][0]), int(first["devices"].max())
@@ -93,19 +92,17 @@ def run_of(
         requests=given.view(np.recarray),
         acceleration=np.concatenate(samples),
         results=np.zeros(len(requests), record_type(RESULT)).view(np.recarray),
-        output=_output(n, devices, rows, events, finer, pairs=pairs)
+        output=_output(n * int(first["axes"][0]), devices, rows, events, finer)
         if rows
-        else _no_output(n, devices, pairs),
+        else _no_output(devices),
         ways=2 if pairs else 1,
     )
 
 
-def _output(
-    storeys: int, devices: int, rows: int, events: int, finer: int = 1, *, pairs: bool = False
-) -> Output:
+def _output(floors: int, devices: int, rows: int, events: int, finer: int = 1) -> Output:
     return Output(
         samples=records(SAMPLE, rows),
-        floors=np.empty((rows, 3, 2 * storeys if pairs else storeys)),
+        floors=np.empty((rows, 4, floors)),
         log=records(EVENT, events),
         devices=np.empty((rows, 4, devices)),
         finer=finer,
@@ -113,8 +110,8 @@ def _output(
 
 
 @lru_cache
-def _no_output(storeys: int, devices: int, pairs: bool) -> Output:  # noqa: FBT001
-    return _output(storeys, devices, 0, 0, pairs=pairs)
+def _no_output(devices: int) -> Output:
+    return _output(0, devices, 0, 0)
 
 
 def follow(run: Run, lanes: int, *, interruptible: bool = False) -> None:
@@ -137,7 +134,7 @@ class SampledHistory:
     """(intervals + 1,)."""
     floors: NDArray[np.float64]
     """(intervals + 1, 3, n) displacements [m] and velocities [m/s] relative to the ground, absolute
-    accelerations [m/s2]; of pairs (intervals + 1, 3, 2 n), floors in x and behind them in y."""
+    accelerations [m/s2]; behind those in x come those in y of pairs, and upwards on springs."""
     log: Record
     """(events,)."""
     devices: NDArray[np.float64]
@@ -210,7 +207,7 @@ def sampled_history(
 ) -> SampledHistory:
     """Run one history and keep everything, at so many even parts of each sampling interval."""
     pairs = motion.y is not None
-    systems = (paired_systems if pairs else stacked_systems)([(structure, settings)])
+    systems = stacked_systems([(structure, settings)], pairs=pairs)
     refuse_endless(structure, settings, motion, finer)
     rows = longest_history(structure, settings, motion) * finer
     seconds = most_seconds(structure, settings, motion.duration)

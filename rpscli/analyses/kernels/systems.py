@@ -32,33 +32,42 @@ _SQUARE = ("phi", "storey_shear_of")
 """Matrices of modes, most of a record, which stand together; of few storeys little is used."""
 
 
-def stacked_systems(systems: Sequence[tuple[PodiumStructure, TimeHistorySettings]]) -> Record:
-    """Structures with the same number of storeys, each with its settings: (S,) records to read."""
-    if len(systems) == 1:
-        return _system(*systems[0])
-    return _stacked(tuple(systems))
+def stacked_systems(
+    systems: Sequence[tuple[PodiumStructure, TimeHistorySettings]], *, pairs: bool = False
+) -> Record:
+    """Structures with as many storeys and axes, each with its settings: (S axes,) records to read.
 
-
-def paired_systems(systems: Sequence[tuple[PodiumStructure, TimeHistorySettings]]) -> Record:
-    """Of each structure the system in x and behind it that in y, (2 S,); refuse planar ones."""
-    both = []
+    Of each that in x comes first, then where both components act that in y, which planar ones
+    refuse, then that upwards of floors on springs.
+    """
+    every = []
     for structure, settings in systems:
-        if why := structure.planar_only:
+        if pairs and (why := structure.planar_only):
             raise ValueError(f"both horizontal components: {why}")
-        both += [(structure, settings), (structure.across, settings)]
-    pairs = _stacked(tuple(both))
-    rows = pairs.view(_PLAIN, np.ndarray)
-    # one length of step for both
-    rows["step_rate"] = np.repeat(rows["step_rate"].reshape(-1, 2).max(axis=1), 2)
-    rows["step_error"] = [
-        step_error(settings, 1.0 if structure.passes_smoothly else PASSES_ERROR)
-        for structure, settings in both
-    ]
-    return pairs
+        every += [(each, settings) for each in directions(structure, pairs=pairs)]
+    if len(every) == 1:
+        return _system(*every[0])
+    axes = len(every) // len(systems)
+    stacked = _stacked(tuple(every), axes)
+    rows = stacked.view(_PLAIN, np.ndarray)
+    # one length of step for all of them
+    rows["step_rate"] = np.repeat(rows["step_rate"].reshape(-1, axes).max(axis=1), axes)
+    if pairs:
+        rows["step_error"] = [
+            step_error(settings, 1.0 if structure.passes_smoothly else PASSES_ERROR)
+            for structure, settings in every
+        ]
+    return stacked
+
+
+def directions(structure: PodiumStructure, *, pairs: bool) -> list[PodiumStructure]:
+    """The structure in x, in y where both components act, and upwards on vertical springs."""
+    upwards = [] if structure.upwards is None else [structure.upwards]
+    return [structure, *[structure.across] * pairs, *upwards]
 
 
 @lru_cache(STACKS_KEPT)
-def _stacked(systems: tuple[tuple[PodiumStructure, TimeHistorySettings], ...]) -> Record:
+def _stacked(systems: tuple[tuple[PodiumStructure, TimeHistorySettings], ...], axes: int) -> Record:
     stacked = records(SYSTEM, count=len(systems))
     n, rows = systems[0][0].storeys, stacked.view(_PLAIN, np.ndarray)
     places = [_PLAIN.fields[name][1] for name in _SQUARE]  # type: ignore[index]
@@ -70,6 +79,7 @@ def _stacked(systems: tuple[tuple[PodiumStructure, TimeHistorySettings], ...]) -
         into[row, :before], into[row, behind:] = numbers[:before], numbers[behind:]
         for name in _SQUARE:
             rows[name][row, :n, :n] = plain[name][0, :n, :n]
+    rows["axes"] = axes
     return stacked
 
 
@@ -88,7 +98,7 @@ def _system(structure: PodiumStructure, settings: TimeHistorySettings) -> Record
 def fill_podium(record: Record, structure: PodiumStructure) -> None:
     """The rocking storey, its devices with the constants of their laws, and what it stands on."""
     b = structure.bearing
-    record["n"] = structure.storeys
+    record["n"], record["axes"] = structure.storeys, 1
     record["R"], record["alpha"], record["beta"] = b.semi_diagonal, b.alpha, b.beta
     record["theta_cr"] = b.critical_rotation
     record["rolling"], record["rocking"] = b.rolling, b.rocking
@@ -162,6 +172,11 @@ def fill_building(record: Record, building: Superstructure) -> None:
     record["phi"][:n, :n], record["storey_shear_of"][:n, :n] = shapes, shears
     of_shears, of_accelerations = omega**3 * shaken**-0.3, omega**-0.6 * shaken**-0.5
     record["shear_weight"][:n], record["acceleration_weight"][:n] = of_shears, of_accelerations
+    record["mass"][:n], record["stiffness"][:n] = building.masses, building.stiffnesses
+    record["strength"][:n] = math.inf
+    if building.strengths is not None:
+        record["yields"], record["strength"][:n] = 1, building.strengths
+        record["hardening"] = building.hardening
     record["bend_ratio"] = np.max(omega2 * omega2 * of_accelerations / of_shears)
     record["shear_bound_of"][:n] = np.sum(shears.T**2 / of_shears, axis=1) ** -0.5
     record["acceleration_bound_of"][:n] = np.sum(shapes.T**2 / of_accelerations, axis=1) ** -0.5
@@ -260,7 +275,8 @@ def steps_a_second(structure: PodiumStructure, accuracy: float = 1.0) -> float:
     speed = linear_speed(structure, accuracy)
     damping = sum(c * speed ** (exponent - 1.0) for c, exponent in powers(structure))
     about_rest = damping / least_base_mass(structure) / UPLIFTED_DECAY
-    rate = max(uplifted_rate(structure), bedded_rate(structure))
+    each = directions(structure, pairs=False)
+    rate = max(bedded_rate(structure), *map(uplifted_rate, each))
     return float(accuracy * rate + about_rest)
 
 

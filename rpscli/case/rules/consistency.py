@@ -426,6 +426,8 @@ class Consistency:
     def _restitution(self, bearing: Bearing, law: ImpactLaw, masses: Masses) -> Iterator[Fault]:
         """The impact law sends the columns to their other edge: 0 < e <= 1 (Theory, section 4)."""
         gamma, eta = masses.gamma, masses.eta
+        if self.file.superstructure.vertical_period is not None:
+            eta = 0.0  # floors on springs take no part
         e = law.ratio(bearing, gamma, eta)
         if bearing.is_spherical:
             if e != 1.0:

@@ -142,8 +142,10 @@ class SuperstructureSection(Section):
     damping: DampingSection | None = None
     """damping of the building on a fixed base"""
     vertical_period: Time | None = None
-    """first period of the vertical vibration on the cap beam; gives the shock of impacts in the
-    forces of columns"""
+    """first period of the vertical vibration on the cap beam, in which floors move up and down on
+    springs; left out: they rise rigidly with the beam"""
+    vertical_damping: DampingRatio | None = None
+    """damping ratio of each vertical mode; 0.05 if a vertical period is given without it"""
     y: AcrossSection | None = None
     """another stiffness in the second horizontal direction; left out: the same as in the first"""
 

@@ -388,6 +388,8 @@ def draw_energy(axes: style.Axes, result: TimeHistoryResult) -> None:
         parts.insert(index, (energy, name, DEVICE_COLOURS[index % len(DEVICE_COLOURS)]))
     if result.structure.bed is not None:
         parts.insert(0, (trace.energy_bed, "dissipated in the joints", style.BLUE))
+    if result.structure.upwards is not None:
+        parts.insert(0, (trace.energy_damped_vertical, "damped vertically", style.PINK))
     if result.structure.storeys:
         parts.insert(0, (trace.energy_damped, "damped in the building", style.SKY))
     below = np.zeros_like(trace.time)

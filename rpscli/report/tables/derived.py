@@ -133,6 +133,27 @@ CONTACT = (
 )
 """Of compliant ends."""
 
+
+def _steps_for_springs(structure: PodiumStructure) -> float:
+    """Steps of floors on springs over those of floors that ride on the beam."""
+    from rpscli.analyses.kernels.systems import steps_a_second  # numpy is slow
+
+    above = structure.superstructure
+    assert above is not None, "floors on springs are floors"
+    riding = replace(structure, superstructure=replace(above, vertical_period=None))
+    return steps_a_second(structure) / steps_a_second(riding)
+
+
+UPWARDS = (
+    Derived("vertical_period", "vertical period", "T_v", "s", "superstructure.vertical_period"),
+    Derived(
+        "first_sag", "sag of the first floor", "W_f/k_v", "m",
+        lambda s: s.superstructure_mass * s.gravity / s.upwards.superstructure.stiffnesses[0],
+    ),
+    Derived("steps_ratio", "steps, over those without springs", "", "-", _steps_for_springs),
+)  # fmt: skip
+"""Of floors on vertical springs."""
+
 FIRST_PERIOD = Derived(
     "T1", "first period on a fixed base", "T1", "s",
     lambda s: float(s.superstructure.periods[0]) if s.superstructure else None,
@@ -148,6 +169,7 @@ def derived_quantities(structure: PodiumStructure) -> dict[str, Any]:
         "storeys": structure.storeys,
         FIRST_PERIOD.name: FIRST_PERIOD.value(structure),
         **({row.name: row.value(structure) for row in CONTACT} if structure.bed else {}),
+        **({row.name: row.value(structure) for row in UPWARDS} if structure.upwards else {}),
         **{name: getattr(building, name) if building else [] for name in lists},
     }
 
@@ -214,9 +236,10 @@ EDGES = {
         "(I - 2 * sin(alpha)^2 + 4 * gamma * cos(2 * alpha) - 4 * gamma * eta * sin(alpha)^2)"
         " / (I + 4 * gamma + 4 * gamma * eta * sin(alpha)^2)"
     ),
+    "springs": "(I - 2 * sin(alpha)^2 + 4 * gamma * cos(2 * alpha)) / (I + 4 * gamma)",
     "rigid": "1 - 2 * sin(alpha)^2 * (1 + 4 * gamma_t) / (I + 4 * gamma_t)",
 }
-"""Restitution beside an impulse at the edges of the flat part (Theory (4.6), (4.8))."""
+"""Restitution beside an impulse at the edges of the flat part (Theory (4.6), (4.8), (14.6))."""
 
 
 def _formulas(structure: PodiumStructure, podium: Mapping[str, Any]) -> dict[str, str]:
@@ -234,7 +257,7 @@ def _formulas(structure: PodiumStructure, podium: Mapping[str, Any]) -> dict[str
         "rolling_period": "2 * pi * sqrt((m_c * I / 4 + m_b + M) / K)",
         "p_hat": "sqrt(g / R * (1 + 2 * gamma_t) / (I + 4 * gamma_t))",
         "T1": "2 * pi * sqrt(sum_m / sum_k)",
-        "e_edge": EDGES.get(structure.impact_law.kind, ""),
+        "e_edge": EDGES.get("springs" if structure.upwards else structure.impact_law.kind, ""),
         "weight": "(m_c / 2 + m_b + M) * g",
         **_of_bed(structure),
     }
@@ -346,7 +369,7 @@ def _letters(structure: PodiumStructure) -> dict[str, float]:
     else:
         # With all of the loss and no factor, the law gives the restitution at the edges.
         edges = replace(law, factor=1.0, loss=1.0)
-        letters["e_edge"] = edges.ratio(b, structure.gamma, structure.eta)
+        letters["e_edge"] = edges.ratio(b, structure.gamma, structure.eta_riding)
     if (bed := structure.bed) is not None:
         letters |= {
             "phi_u": bed.uplift_rotation, "B_u": bed.lift_arm, "C_u": bed.height, "m_0": bed.mass,

@@ -296,16 +296,17 @@ def _columns(result: TimeHistoryResult) -> list[Row]:
 
 def _energy(result: TimeHistoryResult) -> list[Row]:
     energy = result.energy
-    supplied = energy.damped + energy.devices + energy.bed + energy.impact + energy.stored
-    supplied += energy.residual
+    upwards = {"damped vertically": energy.damped_vertical} if result.structure.upwards else {}
     parts = {
         "damped": energy.damped,
+        **upwards,
         **({"in devices": energy.devices} if result.structure.devices else {}),
         **({"in the joints": energy.bed} if result.structure.bed else {}),
         "lost at impacts": energy.impact,
         "still stored": energy.stored,
         "residual": energy.residual,
     }
+    supplied = sum(parts.values())
     rows = [(f"  {k}", measured(v, "J"), percent(v, supplied), "") for k, v in parts.items()]
     return [("energy input", measured(energy.input, "J"), "", ""), *rows]
 

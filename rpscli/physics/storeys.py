@@ -1,0 +1,200 @@
+"""Storeys that yield: springs with a strength and kinematic hardening (Theory, section 14).
+
+A storey's elastic range has a middle c: k |d - c| <= F. While it yields towards its mark, 1 or -1,
+the middle follows the drift at F/k, else it rests. Its plastic drift is delta = (1 - h) c, its
+shear k (d - delta). The modes of the elastic building feel k delta as a load, `freed`.
+"""
+
+from __future__ import annotations
+
+from rpscli.physics.compile import compiled
+from rpscli.physics.ground import time_of
+from rpscli.physics.laws import lanes_of, ways_of
+from rpscli.physics.state import Floats, Record
+from rpscli.physics.tableau import A2, C
+
+
+@compiled
+def middle_with(s: Record, l: int, r: int, elastic: float) -> float:
+    """c of a storey whose drift times k is known [m]."""
+    mark = s.mark[r, l]
+    if mark == 0:
+        return s.middle[r, l]  # type: ignore[no-any-return]
+    return (elastic - mark * s.strength[r, l]) / s.stiffness[r, l]  # type: ignore[no-any-return]
+
+
+@compiled
+def slip_force(s: Record, l: int, r: int, elastic: float) -> float:
+    """k delta of a storey whose drift times k is known [N]."""
+    free = 1.0 - s.hardening[l]
+    return free * s.stiffness[r, l] * middle_with(s, l, r, elastic)  # type: ignore[no-any-return]
+
+
+@compiled
+def base_slip(s: Record, l: int, axis: int, elastic: float) -> float:
+    """What the first storey's plastic drift takes from the base shear of the modes [N]."""
+    return slip_force(s, l, axis * s.n, elastic) if s.yields[l] > 0 else 0.0
+
+
+@compiled
+def free_rows(s: Record, l: int, system: Record, axis: int, shears: Floats, forces: Floats) -> None:
+    """Take plastic drifts out of rows of k d and of floor accelerations, whose sign is -1 (n,)."""
+    below = 0.0
+    for i in range(s.n - 1, -1, -1):
+        slip = slip_force(s, l, axis * s.n + i, shears[i])
+        shears[i] -= slip
+        forces[i] -= (slip - below) / system.mass[i]
+        below = slip
+
+
+@compiled
+def drift_of(
+    s: Record, l: int, system: Record, axis: int, i: int, end: int
+) -> tuple[float, float, float]:
+    """A storey's drift times k with two derivatives, at the start (0) or the end (1) of a step."""
+    d, rate, bend = 0.0, 0.0, 0.0
+    for of in range(s.n):
+        r, each = axis * s.n + of, system.storey_shear_of[of, i]
+        if end > 0:
+            d, rate = d + each * s.new_q[r, l], rate + each * s.new_dq[r, l]
+            bend -= each * (s.Gamma[r, l] * s.new_shaking[axis, l] + s.force[r, l])
+        else:
+            force = s.omega2[r, l] * s.q[r, l] + s.two_xi_omega[r, l] * s.dq[r, l] - s.freed[r, l]
+            d, rate = d + each * s.q[r, l], rate + each * s.dq[r, l]
+            bend -= each * (s.Gamma[r, l] * s.shaking[axis, l] + force)
+    return d, rate, bend
+
+
+@compiled
+def mode_at_stage(s: Record, l: int, r: int, k: int) -> float:
+    """Displacement of a mode at stage k."""
+    far = 0.0
+    for j in range(k):
+        far += A2[k, j] * s.ddq[j, r, l]
+    return s.q[r, l] + s.h[l] * (C[k] * s.dq[r, l] + s.h[l] * far)  # type: ignore[no-any-return]
+
+
+@compiled
+def free_storeys(s: Record, systems: Record, k: int) -> None:
+    """Take the load of plastic drifts from modal forces and base shears at stage k."""
+    n = s.n
+    for l in range(lanes_of(s)):
+        if s.yields[l] == 0:
+            continue
+        for axis in range(ways_of(s)):
+            system, elastic = systems[s.system[l] + axis], s.looked_at[axis]
+            for i in range(n if s.marked[l] > 0 else 1):
+                elastic[i] = 0.0
+                for of in range(n if s.mark[axis * n + i, l] != 0 else 0):
+                    q = mode_at_stage(s, l, axis * n + of, k)
+                    elastic[i] += system.storey_shear_of[of, i] * q
+            if s.marked[l] > 0:
+                write_load(s, l, system, axis, elastic)
+            s.new_V[axis, l] -= base_slip(s, l, axis, elastic[0])
+            for r in range(axis * n, (axis + 1) * n):
+                s.force[r, l] -= s.new_freed[r, l]
+
+
+@compiled
+def write_load(s: Record, l: int, system: Record, axis: int, elastic: Floats) -> None:
+    """Write to `new_freed` the load of plastic drifts under drifts times k (n,)."""
+    n, free = s.n, 1.0 - s.hardening[l]
+    for of in range(n):
+        s.new_freed[axis * n + of, l] = 0.0
+    for i in range(n):
+        slip = free * middle_with(s, l, axis * n + i, elastic[i])
+        for of in range(n):
+            s.new_freed[axis * n + of, l] += system.storey_shear_of[of, i] * slip
+
+
+@compiled
+def slip_rates(s: Record, l: int, axis: int, end: int) -> None:
+    """Take what the first storey yields by from the rates of the base shear (`slipping`)."""
+    rate, bend = 0.0, 0.0
+    for r in range(axis * s.n, (axis + 1) * s.n):
+        if end > 0:
+            ddq = -(s.Gamma[r, l] * s.new_shaking[axis, l]) - s.force[r, l]
+            rate += s.slipping[r, l] * s.new_dq[r, l]
+        else:
+            ddq = -(s.Gamma[r, l] * s.shaking[axis, l]) + s.freed[r, l]
+            ddq -= s.omega2[r, l] * s.q[r, l] + s.two_xi_omega[r, l] * s.dq[r, l]
+            rate += s.slipping[r, l] * s.dq[r, l]
+        bend += s.slipping[r, l] * ddq
+    if end > 0:
+        s.new_dV[axis, l], s.new_ddV[axis, l] = s.new_dV[axis, l] - rate, s.new_ddV[axis, l] - bend
+    else:
+        s.dV[axis, l], s.ddV[axis, l] = s.dV[axis, l] - rate, s.ddV[axis, l] - bend
+
+
+@compiled
+def load_storeys(s: Record, l: int, system: Record, axis: int) -> None:
+    """Begin a history with storeys that have not yielded."""
+    if axis == 0:
+        s.hardening[l], s.yields[l] = system.hardening, system.yields
+        s.marked[l], s.energy_yielded[l] = 0, 0.0
+    for i in range(system.n):
+        r = axis * system.n + i
+        s.stiffness[r, l], s.strength[r, l] = system.stiffness[i], system.strength[i]
+        s.mark[r, l], s.middle[r, l], s.freed[r, l], s.new_freed[r, l] = 0, 0.0, 0.0, 0.0
+        s.slipping[r, l], s.middle_most[r, l], s.middle_least[r, l] = 0.0, 0.0, 0.0
+        s.yielded[r, l], s.first_yield[r, l], s.drift_most[r, l] = 0.0, -1.0, 0.0
+
+
+@compiled
+def keep_slips(s: Record, l: int, systems: Record) -> None:
+    """Have yielding storeys follow the step just accepted, and book what that took."""
+    n, free = s.n, 1.0 - s.hardening[l]
+    for axis in range(ways_of(s)):
+        system, elastic = systems[axis], s.looked_at[axis]
+        for i in range(n):
+            r = axis * n + i
+            elastic[i], _, _ = drift_of(s, l, system, axis, i, 0)
+            if s.mark[r, l] == 0:
+                continue
+            c = middle_with(s, l, r, elastic[i])
+            took = s.strength[r, l] * free * abs(c - s.middle[r, l])
+            s.middle[r, l], s.yielded[r, l] = c, s.yielded[r, l] + took
+            s.energy_yielded[l] += took
+            s.middle_most[r, l] = max(s.middle_most[r, l], c)
+            s.middle_least[r, l] = min(s.middle_least[r, l], c)
+            s.drift_most[r, l] = max(s.drift_most[r, l], abs(elastic[i]))
+        write_load(s, l, system, axis, elastic)
+        for r in range(axis * n, (axis + 1) * n):
+            s.freed[r, l] = s.new_freed[r, l]
+
+
+@compiled
+def turn_storey(s: Record, l: int, systems: Record, which: int) -> None:
+    """A storey begins to yield, to the side that `which` names, or no longer does."""
+    r, n = which // 2, s.n
+    if s.mark[r, l] != 0:
+        set_mark(s, l, systems[r // n], r, 0)
+        return
+    set_mark(s, l, systems[r // n], r, 1 if which % 2 > 0 else -1)
+    if s.first_yield[r, l] < 0.0:
+        s.first_yield[r, l] = time_of(s, l)
+
+
+@compiled
+def set_mark(s: Record, l: int, system: Record, r: int, mark: int) -> None:
+    """Have a storey yield to a side, or no more (0)."""
+    s.marked[l] += abs(mark) - abs(s.mark[r, l])
+    s.mark[r, l] = mark
+    if r % s.n == 0:
+        free = (1.0 - s.hardening[l]) * abs(mark)
+        for of in range(s.n):
+            s.slipping[r + of, l] = free * system.storey_shear_of[of, 0]
+
+
+@compiled
+def stop_yielding(s: Record, l: int, systems: Record) -> bool:
+    """Where velocities have jumped: storeys that now drift back no longer yield; True if any."""
+    any_stops = False
+    for r in range(ways_of(s) * s.n if s.marked[l] > 0 else 0):
+        if s.mark[r, l] != 0:
+            axis = r // s.n
+            _, rate, _ = drift_of(s, l, systems[axis], axis, r % s.n, 0)
+            if s.mark[r, l] * rate < 0.0:
+                set_mark(s, l, systems[axis], r, 0)
+                any_stops = True
+    return any_stops
