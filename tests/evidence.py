@@ -33,6 +33,7 @@ CAPABILITIES = (
     "compliant ends",
     "devices",
     "vertical motion",
+    "floors on vertical springs",
     "both components",
     "steps, events, energy",
     "modes",

@@ -42,7 +42,7 @@ PRINTED = {
         "rotation {high:+.0f} %, base shear {least:.0f} %",
     ),
     "vertical": (
-        "floors ride on the beam | vertical vibration, in the motion",
+        "floors ride on the beam",
         "rotation {low:.0f} to {high:.0f} %, base shear {least:.0f} to {most:+.0f} %",
     ),
 }

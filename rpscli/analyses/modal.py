@@ -125,10 +125,13 @@ class ModalResult(Shown):
 
     @property
     def left_out(self) -> tuple[str, ...]:
-        """Parts of the devices that are not linear, and therefore not in the modes."""
+        """Parts that are not in the modes: devices that are not linear, vertical springs."""
         state = uplifted_state(self.structure.bearing, rolling=False)
         laws = (device.linear(self.structure, state) for device in self.structure.devices)
-        return tuple(dict.fromkeys(law.left_out for law in laws if law.left_out))
+        left = [law.left_out for law in laws if law.left_out]
+        if self.structure.upwards is not None:
+            left.append("vertical springs of the floors, which ride on the beam here")
+        return tuple(dict.fromkeys(left))
 
     @property
     def uplifted(self) -> dict[str, UpliftedModes]:

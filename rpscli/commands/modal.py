@@ -81,7 +81,7 @@ def _tables(result: ModalResult, title: str, left_out: Collection[str]) -> Itera
     yield Table.of_texts(heads, storey, words=2).without(left_out)
     yield ORDER
     if result.left_out:
-        yield f"Not linear, and left out: {listed(result.left_out, 'and')}."
+        yield f"Not in the modes: {listed(result.left_out, 'and')}."
     if (full := result.full_contact) is not None:
         yield _mode_table("full contact", full)
         if result.fixed_base is not None and (bed := result.structure.bed) is not None:

@@ -188,7 +188,7 @@ def test_devices_under_a_pulse(kind: str) -> None:
     assert gap(system, record, 0.004, 1.6, KINDS[kind]) < 0.01
 
 
-@pytest.mark.evidence("floors on springs, storeys that yield", "program")
+@pytest.mark.evidence("floors on vertical springs", "program")
 @pytest.mark.parametrize(("building", "period"), [("3", 0.1), ("3", 0.25), ("6", 0.15)])
 def test_floors_on_vertical_springs(building: str, period: float) -> None:
     """Where contacts hold; the engine damps its chain of floors in proportion to stiffness."""

@@ -101,7 +101,7 @@ def run(given: dict[str, Any], fema_record: RecordLoader, accuracy: float = 1.0)
 
 
 @needs_compiled_kernels
-@pytest.mark.evidence("floors on springs, storeys that yield", "program")
+@pytest.mark.evidence("floors on vertical springs", "program")
 @pytest.mark.parametrize("name", PLANE)
 def test_histories_of_another_program(name: str, fema_record: RecordLoader) -> None:
     given, found = PLANE[name]["given"], PLANE[name]["found"]
@@ -144,7 +144,7 @@ def test_histories_of_another_program(name: str, fema_record: RecordLoader) -> N
 
 
 @needs_compiled_kernels
-@pytest.mark.evidence("floors on springs, storeys that yield", "program")
+@pytest.mark.evidence("floors on vertical springs", "program")
 @pytest.mark.parametrize("name", BOTH)
 def test_pairs_of_another_program(name: str, fema_record: RecordLoader) -> None:
     given, found = BOTH[name]["given"], BOTH[name]["found"]
@@ -183,7 +183,7 @@ def sprung(period: float, damping: float = 0.05, storeys: int = 3, rho: float = 
 
 
 @needs_compiled_kernels
-@pytest.mark.evidence("floors on springs, storeys that yield", "exact")
+@pytest.mark.evidence("floors on vertical springs", "exact")
 def test_stiff_springs_are_floors_that_ride_on_the_beam() -> None:
     """Damped within an impact, they give back its whole impulse: the limit of (14.6) is (4.8)."""
     settings = TimeHistorySettings(initial_rotation=0.06, free_vibration=2.4)
@@ -226,7 +226,7 @@ CASES = [(kind, pairs) for kind in ("springs", "yields", "both") for pairs in (F
 
 
 @needs_compiled_kernels
-@pytest.mark.evidence("floors on springs, storeys that yield", "exact")
+@pytest.mark.evidence("floors on vertical springs", "exact")
 @pytest.mark.parametrize(("kind", "pairs"), CASES)
 def test_energy_is_booked_whole(kind: str, pairs: bool) -> None:
     """To the accuracy of the rule, and by its order better with half the step."""
@@ -275,7 +275,7 @@ def test_nothing_new_comes_after_the_end(kind: str) -> None:
 
 
 @needs_compiled_kernels
-@pytest.mark.evidence("floors on springs, storeys that yield", "exact")
+@pytest.mark.evidence("floors on vertical springs", "exact")
 def test_the_path_of_plastic_drifts() -> None:
     """Karush-Kuhn-Tucker at every sample: within the range, and moved by its ends only."""
     result = time_history(usual("both"), shaken(5), TimeHistorySettings(free_vibration=1.0))
@@ -313,3 +313,42 @@ def test_a_building_that_never_yields_keeps_its_bits() -> None:
     for name in ("max_theta", "storey_shear", "heavy_top", "energy_lost"):
         assert np.array_equal(one[name], other[name]), name
     assert other["ductility"][0, :3] == pytest.approx(other["storey_shear"][:3] / 1e9, rel=1e-12)
+
+
+@needs_compiled_kernels
+@pytest.mark.long
+@pytest.mark.evidence("floors on vertical springs", "program")
+def test_forces_of_columns_under_recorded_pairs(fema_record: RecordLoader) -> None:
+    """Of 22 pairs, 40 s: another program's medians of N/W and base shear; no number of t_c."""
+    forty = [
+        [GroundMotion(r.acceleration[: round(40.0 / r.dt) + 1], r.dt, "", "", "") for r in pair]
+        for pair in ([fema_record(f"farfield/{i}/{way}") for way in "ab"] for i in range(1, 23))
+    ]
+    motions = [MotionComponents(x, y=y) for x, y in forty]
+    settings = TimeHistorySettings(free_vibration=0.0)
+
+    def of_pairs(period: float | None, contact_time: float) -> tuple[Array, Array, Array]:
+        above = replace(paper_building(3), vertical_period=period)
+        law = ImpactLaw(contact_time=contact_time)
+        usual = podium(3, 0.15, 0.5, superstructure=above, law=law)
+        bearing = replace(usual.bearing, inertia_ratio_axial=0.011)
+        structure = replace(usual, bearing=bearing)
+        found = [d.history for d in demands([Request(structure, m, settings) for m in motions])]
+        mass = structure.cap_beam_mass + structure.superstructure_mass + structure.columns_mass
+        heavy = np.array([left["heavy_bottom"] for left in found])
+        stands = np.array([left["max_theta"] < structure.critical_rotation for left in found])
+        shear = np.array([left["storey_shear"][0] for left in found])
+        return heavy * mass * structure.gravity / structure.weight, shear, stands
+
+    medians = []
+    for contact_time, expected in ((5e-4, 1.774), (2e-3, 1.688), (1e-2, 1.630)):
+        forces, shear, stands = of_pairs(0.1, contact_time)
+        assert np.median(forces) == pytest.approx(expected, rel=0.01)
+        assert np.max(forces) < 2.4
+        medians.append(np.median(forces))
+        if contact_time == 2e-3:
+            _, riding, rode = of_pairs(None, contact_time)
+            assert np.median(shear) / np.median(riding) == pytest.approx(1.28, abs=0.06)
+            both = stands & rode
+            assert np.median(shear[both] / riding[both]) == pytest.approx(1.28, abs=0.06)
+    assert max(medians) < 1.10 * min(medians)
