@@ -25,6 +25,7 @@ from rpscli.model.superstructure import (
     ModalDamping,
     RayleighDamping,
     Superstructure,
+    first_mode_strengths,
     profile_stiffnesses,
 )
 
@@ -113,11 +114,12 @@ def structure_of(
     """The whole structure: columns and cap beam with the building on them."""
     podium, floors, plan = file.podium, file.superstructure, file.podium.plan
     across = None if floors.y is None else floors.model_copy(update=floors.y.model_dump())
+    at_uplift = masses.building * file.analysis.gravity * bearing.slenderness
     return PodiumStructure(
         bearing=bearing,
         columns_mass=masses.columns,
         cap_beam_mass=masses.cap_beam,
-        superstructure=building(floors),
+        superstructure=building(floors, at_uplift),
         impact_law=law,
         gravity=file.analysis.gravity,
         devices=tuple(
@@ -127,13 +129,13 @@ def structure_of(
         columns=podium.columns or 1,
         friction=podium.friction,
         rows=() if plan is None else plan.rows or (0.0, plan.length or 0.0),
-        superstructure_y=None if across is None else building(across),
+        superstructure_y=None if across is None else building(across, at_uplift),
         contact=Contact(**podium.contact.model_dump()),
     )
 
 
-def building(section: SuperstructureSection) -> Superstructure | None:
-    """The shear building; None for no storeys."""
+def building(section: SuperstructureSection, at_uplift: float) -> Superstructure | None:
+    """The shear building; None for no storeys. V_st is what ratios of strengths refer to."""
     n, given, height = section.storeys, section.damping, section.storey_height
     if n == 0:
         return None
@@ -148,6 +150,13 @@ def building(section: SuperstructureSection) -> Superstructure | None:
     damping: RayleighDamping | ModalDamping = ModalDamping(given.ratio)
     if given.modes is not None:
         damping = RayleighDamping(given.ratio, given.modes)
+    strengths, hardening = None, 0.0
+    if (yields := section.yields) is not None:
+        hardening = yields.hardening
+        if yields.ratio is None:
+            strengths = np.array(each_storey(yields.shears, n))
+        else:
+            strengths = first_mode_strengths(masses, stiffnesses, yields.ratio * at_uplift)
     return Superstructure(
         masses,
         stiffnesses,
@@ -155,6 +164,8 @@ def building(section: SuperstructureSection) -> Superstructure | None:
         heights,
         section.vertical_period,
         VERTICAL_DAMPING if upwards is None else upwards,
+        strengths,
+        hardening,
     )
 
 

@@ -151,6 +151,22 @@ def profile_stiffnesses(
     return np.asarray(shear / np.diff(shape, prepend=0.0))
 
 
+def first_mode_strengths(
+    masses: NDArray[np.float64], stiffnesses: NDArray[np.float64], first: float
+) -> NDArray[np.float64]:
+    """Storey strengths (n,) [N] in the proportions of the shears of the first mode.
+
+    Parameters
+    ----------
+    masses, stiffnesses
+        As those of `shear_modes`.
+    first
+        That of the first storey [N].
+    """
+    shears = np.cumsum((masses * shear_modes(masses, stiffnesses)[1][:, 0])[::-1])[::-1]
+    return np.asarray(first * shears / shears[0])
+
+
 def stiffness_matrix(stiffnesses: NDArray[np.float64]) -> NDArray[np.float64]:
     """K of a shear building, (n, n), from storey stiffnesses (n,) [N/m]."""
     k = stiffnesses
@@ -197,11 +213,15 @@ class Superstructure(Shown):
         and columns; None for floors that ride rigidly on the beam.
     vertical_damping
         Critical damping ratio of each vertical mode.
+    strengths
+        (n,) shears at which storeys yield, from the bottom [N]; None of an elastic building.
+    hardening
+        Stiffness of a storey that yields over its elastic one, kinematic, 0 <= h < 1.
 
     Raises
     ------
     ValueError
-        If lengths differ or a value is not positive.
+        If lengths differ, or a value is not positive or no hardening.
     """
 
     masses: NDArray[np.float64]
@@ -215,16 +235,17 @@ class Superstructure(Shown):
 
     def __post_init__(self) -> None:
         """Take any sequence; refuse what is not a building."""
-        for name in ("masses", "stiffnesses", "storey_heights"):
+        lengths = set()
+        for name in ("masses", "stiffnesses", "storey_heights", "strengths"):
             if (value := getattr(self, name)) is not None:
                 object.__setattr__(self, name, _positive(name, value))
-        lengths = {
-            len(array)
-            for array in (self.masses, self.stiffnesses, self.storey_heights)
-            if array is not None
-        }
+                lengths.add(len(value))
         if lengths != {self.storeys} or not self.storeys:
-            raise ValueError(f"masses, stiffnesses and heights must have one length: {lengths}")
+            raise ValueError(
+                f"masses, stiffnesses, heights and strengths must have one length: {lengths}"
+            )
+        if not 0.0 <= self.hardening < 1.0:
+            raise ValueError(f"hardening = {self.hardening:g} must be >= 0 and < 1")
         if self.vertical_period is not None and not self.vertical_period > 0.0:
             raise ValueError("vertical_period must be > 0")
         if not 0.0 <= self.vertical_damping < 1.0:

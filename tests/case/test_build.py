@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -85,6 +86,36 @@ def test_two_ways_to_say_the_same(old: str, new: str) -> None:
 def test_one_storey_takes_two_modes() -> None:
     above = floors("superstructure.storeys=1", "superstructure.damping.modes=[1, 2]")
     assert above.damping_ratios.tolist() == pytest.approx([0.05], rel=1e-9)
+
+
+def test_strengths_follow_a_ratio_or_are_given() -> None:
+    """F_1 = ratio V_st, upwards as the shears of a first mode sin(pi i/6), in x and in y."""
+    structure = built("superstructure.yield={ratio: 1.3}", "superstructure.y={profile: linear}",
+                      "superstructure.y.period=0.4")  # fmt: skip
+    height = np.arange(1, 4) / 3.0
+    for above, shape in (
+        (structure.superstructure, np.sin(0.5 * np.pi * height)),
+        (structure.superstructure_y, height),
+    ):
+        assert above is not None
+        shears = shape[::-1].cumsum()[::-1]
+        wanted = 1.3 * 6e5 * STANDARD_GRAVITY * 0.15 * shears / shears[0]
+        assert above.strengths == pytest.approx(wanted, rel=1e-9)
+        assert above.hardening == 0.0
+    given = floors("superstructure.yield={shears: [3 MN, 2e6, 1 MN], hardening: 0.05}")
+    assert given.strengths is not None
+    assert given.strengths.tolist() == [3e6, 2e6, 1e6]
+    assert given.hardening == 0.05
+    assert floors().strengths is None
+    (mixed,) = case_of("superstructure.yield={shears: [3 MN, 2e6, 1 MN]}").warnings
+    assert "superstructure.yield.shears mixes numbers with and without a unit" in mixed
+
+
+def test_spherical_ends_have_no_ratio_of_strengths() -> None:
+    round_ends = "podium.bearing.slenderness=0", "podium.bearing.curvature_ratio=0.6"
+    with pytest.raises(CaseError, match=r"yield.ratio: columns without a flat part have no V_st"):
+        case_of(*round_ends, "superstructure.yield={ratio: 1.3}")
+    assert case_of(*round_ends, "superstructure.yield={shears: 1 MN}").structure.superstructure
 
 
 RATIOS = "cap_beam_mass_ratio: 10\n  superstructure_mass_ratio: 3"

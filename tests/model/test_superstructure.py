@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -147,6 +148,20 @@ def test_what_is_no_building_is_refused(
             RayleighDamping(0.05),
             None if heights is None else np.array(heights),
         )
+
+
+@pytest.mark.parametrize(
+    ("law", "said"),
+    [
+        ({"strengths": [1.0]}, "one length"),
+        ({"strengths": [1.0, 0.0]}, "strengths must be"),
+        ({"hardening": 1.0}, "hardening = 1 must be"),
+        ({"hardening": math.nan}, "hardening = nan must be"),
+    ],
+)
+def test_what_does_not_yield_is_refused(law: dict[str, Any], said: str) -> None:
+    with pytest.raises(ValueError, match=said):
+        Superstructure(np.ones(2), np.ones(2), RayleighDamping(0.05), **law)
 
 
 def test_a_building_cannot_be_changed_from_outside() -> None:

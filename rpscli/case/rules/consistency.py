@@ -18,6 +18,7 @@ from rpscli.model.podium import MOST_DEVICES
 from rpscli.records.source import Source
 
 STOREYS = "superstructure.storeys"
+YIELD = "superstructure.yield"
 BEARING, DIMENSIONS = "podium.bearing", "podium.bearing.dimensions"
 GAMMA, ETA = "podium.cap_beam_mass_ratio", "podium.superstructure_mass_ratio"
 BEAM, COLUMN = "podium.cap_beam_mass", "podium.column_mass"
@@ -90,19 +91,29 @@ class Consistency:
         for owner, section in (("superstructure", building), ("superstructure.y", building.y)):
             if section is not None:
                 yield from self._stiffness(owner, section)
+        if building.yields is not None:
+            given = _given(building.yields, "ratio", "shears")
+            if len(given) != 1:
+                text = ": give ratio, F_1 over V_st, or the shears at which storeys yield; not"
+                yield _of_value(YIELD, f"{text} {'both' if given else 'neither'}")
+            yield from self._one_each(YIELD, building.yields, "shears")
 
     def _stiffness(
         self, owner: str, section: case_file.SuperstructureSection | case_file.AcrossSection
     ) -> Iterator[Fault]:
         """Stiffnesses follow from a period or are given; lists have one value a storey."""
-        storeys = self.file.superstructure.storeys
         if section.stiffness is None and section.period is None:
             yield _at_key(owner, " has no stiffness: give period (with profile), or stiffness")
         if section.stiffness is not None:
             for key in _given(section, f"{owner}.period", f"{owner}.profile"):
                 text = f" and {key}{self._where(key)} both fix the storey stiffnesses"
                 yield _at_key(f"{owner}.stiffness", f"{text}; keep one of them")
-        for name in ("storey_mass", "storey_height", "stiffness"):
+        yield from self._one_each(owner, section, "storey_mass", "storey_height", "stiffness")
+
+    def _one_each(self, owner: str, section: object, *names: str) -> Iterator[Fault]:
+        """Lists have one value a storey."""
+        storeys = self.file.superstructure.storeys
+        for name in names:
             values = getattr(section, name, None)
             if isinstance(values, tuple) and len(values) != storeys:
                 yield _of_value(
@@ -350,6 +361,9 @@ class Consistency:
                 f" = {value} must be > {least} with {flat}: 0: without a flat part a smaller arc"
                 f" does not hold the columns upright; use a larger one, or a {flat} above 0",
             )
+        if (yields := self.file.superstructure.yields) is not None and yields.ratio is not None:
+            text = ": columns without a flat part have no V_st; give the shears in place of a ratio"
+            yield _at_key(f"{YIELD}.ratio", text)
         for index, device in enumerate(self.file.podium.devices):
             if device.kind == "tendon":
                 yield _at_key(

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from rpscli.case.build import each_storey
 from rpscli.case.schema.case_file import SuperstructureSection
-from rpscli.case.text.document import Document
+from rpscli.case.text.document import Document, path_of
 from rpscli.errors import listed
 
 if TYPE_CHECKING:
@@ -94,7 +94,7 @@ STRONGEST = 0.4
 LARGEST_DRIFT = 0.02
 """Hardly a building carries a larger drift over its storey height without damage."""
 
-PER_STOREY = ("storey_mass", "storey_height", "stiffness")
+PER_STOREY = ("storey_mass", "storey_height", "stiffness", "yield.shears")
 
 
 def doubts_of_structure(structure: PodiumStructure) -> Iterator[Doubt]:
@@ -187,12 +187,13 @@ def doubts_of_directions(structure: PodiumStructure, *, both: bool) -> Iterator[
 
 def doubts_of_text(section: SuperstructureSection, document: Document) -> Iterator[Doubt]:
     """Keys without effect, lists in which some numbers lack a unit, unequal neighbours."""
-    ignored = [name for name in type(section).model_fields if name in section.model_fields_set]
+    fields = type(section).model_fields.items()
+    ignored = [each.alias or name for name, each in fields if name in section.model_fields_set]
     if section.storeys == 0 and len(ignored) > 1:
         keys = listed((f"superstructure.{name}" for name in ignored[1:]), "and")
         yield Doubt(f"superstructure.storeys = 0: there is no building, so {keys} had no effect")
     for name in PER_STOREY:
-        written = document.at(("superstructure", name))
+        written = document.at(path_of(f"superstructure.{name}"))
         if isinstance(written, list):
             bare = [value for value in written if not isinstance(value, str)]
             if bare and len(bare) < len(written):

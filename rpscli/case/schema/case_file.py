@@ -95,6 +95,7 @@ Time = Annotated[float, Quantity("s", above=0)]
 Masses = Annotated[float | tuple[float, ...], Quantity("kg", above=0, per_storey=True)]
 Lengths = Annotated[float | tuple[float, ...], Quantity("m", above=0, per_storey=True)]
 Stiffnesses = Annotated[float | tuple[float, ...], Quantity("N/m", above=0, per_storey=True)]
+Forces = Annotated[float | tuple[float, ...], Quantity("N", above=0, per_storey=True)]
 Profile = Literal["sine", "uniform", "linear", "flexural"]
 
 
@@ -108,6 +109,18 @@ class DampingSection(Section):
         description="the two modes of Rayleigh damping, counted from 1; left out: the same ratio"
         " in every mode. One storey, or one mode named twice: stiffness-proportional",
     )
+
+
+class YieldSection(Section):
+    """Storeys that yield at a shear, elastic on the way back; strengths are given in one way."""
+
+    ratio: Annotated[float | None, Quantity(symbol="F_1/V_st", above=0)] = None
+    """F_1/V_st, strength of the first storey over the base shear at uplift; upwards strengths go as
+    the shears of the first mode on a fixed base"""
+    shears: Forces | None = None
+    """strengths F_i in place of ratio: one value, or a list from the bottom; the same in y"""
+    hardening: Annotated[float, Quantity(symbol="h", at_least=0, below=1)] = 0.0
+    """h, stiffness after yielding over the elastic one, kinematic, of all storeys"""
 
 
 class AcrossSection(Section):
@@ -146,6 +159,9 @@ class SuperstructureSection(Section):
     springs; left out: they rise rigidly with the beam"""
     vertical_damping: DampingRatio | None = None
     """damping ratio of each vertical mode; 0.05 if a vertical period is given without it"""
+    yields: YieldSection | None = Field(
+        None, alias="yield", description="strengths of the storeys; left out: they stay elastic"
+    )
     y: AcrossSection | None = None
     """another stiffness in the second horizontal direction; left out: the same as in the first"""
 
