@@ -67,11 +67,15 @@ def command(
     if not draw and (output != options.OutputRequest(None, force=False) or look != USUAL):
         raise UsageError("only --draw writes something; options of files and figures go with it")
     given = inputs.read_case(request, terminal)
-    from rpscli.model.statics import device_consequences
+    from rpscli.model.statics import device_consequences, storey_strengths
     from rpscli.report.tables.derived import derived_quantities
+    from rpscli.report.tables.yielding import strength_tables
 
     structure = given.case.structure
     derived = derived_quantities(structure) | device_consequences(structure)
+    for way, seen in structure.ways.items():
+        if strengths := storey_strengths(seen):
+            derived[f"storey_strengths{way}"] = [each._asdict() for each in strengths]
     record, error = _record(given.case)
     document = {
         **heading("check"),
@@ -90,7 +94,8 @@ def command(
         document["files"] = folder.files
     terminal.warn((record or {}).get("warnings", ()))
     limits = conditions_of(given.case.limits, "limits of the case")
-    tables = chain(check_tables(document, limits), device_tables(structure))
+    others = device_tables(structure), strength_tables(structure)
+    tables = chain(check_tables(document, limits), *others)
     terminal.result(concluded(document, error), tables)
     leave(error)
 

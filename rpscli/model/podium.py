@@ -192,6 +192,11 @@ class PodiumStructure(Shown):
         contact = replace(self.contact, period_ratio=None, settlement=None, stiffness=joint)
         return replace(self, superstructure=above, superstructure_y=None, contact=contact)
 
+    @property
+    def ways(self) -> dict[str, PodiumStructure]:
+        """What vibrates in x and, where that differs, in y, by an empty name and ``_y``."""
+        return {"": self, "_y": self.across} if self.superstructure_y is not None else {"": self}
+
     def left_out_of_columns(self, *, both: bool, axial: bool = True) -> tuple[str, ...]:
         """Parts that forces of single columns leave out, and the keys that would give them.
 

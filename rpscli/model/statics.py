@@ -31,6 +31,36 @@ class Return(NamedTuple):
     """True if it comes back to full contact."""
 
 
+class StoreyStrength(NamedTuple):
+    """Strength of a storey beside its shear where columns lift under slow ground motion."""
+
+    strength: float
+    """F_i [N]."""
+    strength_ratio: float | None
+    """F_i/V_st; None on spherical ends."""
+    shear_at_uplift: float
+    """Mass above times the ground acceleration that uplifts rigid ends, with devices [N]."""
+    uplift_first: bool
+    """True if columns lift before it yields."""
+    yield_drift: float
+    """F_i/k_i [m]."""
+
+
+def storey_strengths(structure: PodiumStructure) -> list[StoreyStrength]:
+    """Strengths of the storeys from the bottom; empty where they stay elastic."""
+    building, static = structure.superstructure, structure.static_base_shear
+    if building is None or building.strengths is None:
+        return []
+    at_uplift = building.carried * max(
+        structure.uplift_acceleration, uplift_acceleration(structure)
+    )
+    columns = building.strengths, at_uplift, building.stiffnesses
+    return [
+        StoreyStrength(F, F / static if static else None, shear, shear <= F, F / k)
+        for F, shear, k in zip(*(column.tolist() for column in columns), strict=True)
+    ]
+
+
 def restoring_force(structure: PodiumStructure, rotation: Array, farthest: float = 0.0) -> Array:
     """Horizontal force at the cap beam that holds rotations > 0 at rest without friction [N].
 

@@ -321,6 +321,19 @@ class Superstructure(Shown):
         )
 
     @property
+    def carried(self) -> NDArray[np.float64]:
+        """Mass above each storey, (n,) from the bottom [kg]."""
+        return frozen(self.masses[::-1].cumsum()[::-1])
+
+    @property
+    def yields_by_first_mode(self) -> bool:
+        """True if strengths are in the proportions of the shears of the first mode."""
+        if self.strengths is None or self.storeys == 1:
+            return False
+        shears = first_mode_strengths(self.masses, self.stiffnesses, self.strengths[0])
+        return bool(np.allclose(self.strengths, shears, rtol=1e-3))
+
+    @property
     def participation(self) -> NDArray[np.float64]:
         """Gamma_r = phi_r^T M 1 of the mass-normalised modes, (n,) [kg^1/2]."""
         return frozen(self.shapes.T @ self.masses)

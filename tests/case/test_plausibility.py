@@ -52,6 +52,9 @@ SLIPS = [
      ["e = 0.4 is unusual: 0.5 to 1 is"]),
     ("  damping", "  vertical_period: 10 s\n  damping",
      ["superstructure.vertical_period = 10 s is unusual: 0.01 to 1 s is"]),
+    # V_st = 640 t g tan(alpha); of the second storey 440 t
+    ("  damping", "  yield: {shears: [300 kN, 2 MN, 2 MN]}\n  damping",
+     ["yield before columns lift, at 0.3187 of their shear at uplift (storey 1)"]),
     ("  cap_beam_mass_ratio", "  friction: 5\n  cap_beam_mass_ratio", ["friction = 5 is"]),
 ]  # fmt: skip
 

@@ -67,6 +67,29 @@ def test_check_begins_with_what_is_asked_of_every_case(rps: Invoke) -> None:
     assert shown.count("critical rotation") == first.count("critical rotation") == 1
 
 
+def test_check_compares_strengths_with_the_shears_at_uplift(
+    rps: Invoke, rps_json: InvokeJson
+) -> None:
+    """That is the mass above times g tan(alpha); F_1 is a multiple of it."""
+    ratio = "--set", "superstructure.yield={ratio: 1.3}"
+    document = rps_json("check", "small.yaml", *ratio, "--set", "superstructure.y={period: 0.5}")
+    building = load_case("small.yaml").structure.superstructure
+    assert building is not None
+    found, in_y = document["storey_strengths"], document["storey_strengths_y"]
+    assert found[0]["strength_ratio"] == in_y[0]["strength_ratio"] == pytest.approx(1.3)
+    for i, each in enumerate(found):
+        at_uplift = building.masses[i:].sum() * document["uplift_acceleration"]
+        assert each["shear_at_uplift"] == pytest.approx(at_uplift)
+        assert each["yield_drift"] == pytest.approx(each["strength"] / document["stiffnesses"][i])
+        assert each["uplift_first"]
+    shown = rps("check", "small.yaml", *ratio).stdout
+    assert "upper storeys yield most" in shown
+    weak = rps("check", "small.yaml", "--set", "superstructure.yield={ratio: 0.9}")
+    assert "before columns lift, at 0.9 of their shear at uplift (storey 1)" in weak.stderr
+    assert "BEFORE uplift" in weak.stdout
+    assert "storey_strengths" not in rps_json("check", "small.yaml")
+
+
 def test_check_draws_the_bearing(rps_json: InvokeJson) -> None:
     document = rps_json("check", "small.yaml", "--draw", "--figures", "svg,pdf", "-o", "drawn")
     assert document["files"] == [

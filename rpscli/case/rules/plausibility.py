@@ -14,6 +14,7 @@ from rpscli.case.build import each_storey
 from rpscli.case.schema.case_file import SuperstructureSection
 from rpscli.case.text.document import Document, path_of
 from rpscli.errors import listed
+from rpscli.model.statics import storey_strengths
 
 if TYPE_CHECKING:
     from rpscli.model.contact import Bed
@@ -126,6 +127,7 @@ def doubts_of_structure(structure: PodiumStructure) -> Iterator[Doubt]:
     yield from PERIOD.doubts(float(building.periods[0]))
     if building.vertical_period is not None:
         yield from VERTICAL_PERIOD.doubts(building.vertical_period)
+    yield from doubts_of_strengths(structure)
     share = bearing.slenderness
     if share > STRONGEST:
         yield Doubt(
@@ -135,7 +137,7 @@ def doubts_of_structure(structure: PodiumStructure) -> Iterator[Doubt]:
             share,
         )
     if building.storey_heights is not None:
-        above = building.masses[::-1].cumsum()[::-1] * structure.uplift_acceleration
+        above = building.carried * structure.uplift_acceleration
         drifts = above / building.stiffnesses / building.storey_heights
         storey = int(drifts.argmax())
         if drifts[storey] > LARGEST_DRIFT:
@@ -145,6 +147,20 @@ def doubts_of_structure(structure: PodiumStructure) -> Iterator[Doubt]:
                 " height",
                 float(drifts[storey]),
                 f" (storey {storey + 1}, under a shear of {above[storey]:.4g} N)",
+            )
+
+
+def doubts_of_strengths(structure: PodiumStructure) -> Iterator[Doubt]:
+    """Storeys that the podium does not protect, as they yield before columns lift."""
+    for way, seen in structure.ways.items():
+        weak = {i: s for i, s in enumerate(storey_strengths(seen), 1) if not s.uplift_first}
+        if weak:
+            yield Doubt(
+                f"superstructure.yield: storeys yield{way.replace('_', ' in ')} before columns"
+                " lift, at {0} of their shear at uplift{1}: the podium does not protect them; give"
+                " them more strength, or the podium more slender columns",
+                min(s.strength / s.shear_at_uplift for s in weak.values()),
+                f" (storey {listed(map(str, weak), 'and')})",
             )
 
 
