@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from importlib.util import find_spec
 from typing import TypeVar
 
@@ -25,6 +26,7 @@ from rpscli.model.superstructure import (
     Profile,
     RayleighDamping,
     Superstructure,
+    first_mode_strengths,
     profile_stiffnesses,
 )
 from rpscli.records.ground_motion import GroundMotion
@@ -70,6 +72,12 @@ def building(
     masses = np.full(storeys, 2e5)
     stiffnesses = profile_stiffnesses(masses, period or storeys / 10.0, profile)
     return Superstructure(masses, stiffnesses, damping or RayleighDamping(0.05, (1, 2)))
+
+
+def yielding(above: Superstructure, first: float, hardening: float = 0.05) -> Superstructure:
+    """The building with strengths as the shears of its first mode, from that of storey 1 [N]."""
+    strengths = first_mode_strengths(above.masses, above.stiffnesses, first)
+    return replace(above, strengths=strengths, hardening=hardening)
 
 
 def podium(

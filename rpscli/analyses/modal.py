@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Any, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -99,6 +99,14 @@ class UpliftedModes(Shown):
         return {"shapes": self.shapes.T, "elastic_shapes": _from_cap_beam(self.elastic_shapes)}
 
 
+class FirstYield(NamedTuple):
+    """The storey that a vibration mode brings to yield first, counted from 1."""
+
+    storey: int
+    base_shear: float
+    """At which it yields [N]."""
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class ModalResult(Shown):
     """Modes of the structure in each state. Flat ends never roll: `rolling` is None then.
@@ -145,6 +153,25 @@ class ModalResult(Shown):
         return "fixed_base" if self.full_contact else "full_contact"
 
     @property
+    def first_yield(self) -> dict[str, FirstYield]:
+        """By state, up to where its first vibration mode is that of the elastic building."""
+        building = self.structure.superstructure
+        if building is None or building.strengths is None:
+            return {}
+        shapes = {name: modes.elastic_shapes[:, 1] for name, modes in self.uplifted.items()}
+        if (full := self.full_contact) is not None:
+            shapes = {"full_contact": full.shapes[1:, 0] - full.shapes[0, 0], **shapes}
+        if self.fixed_base is not None:
+            shapes = {self.fixed_base_state: self.fixed_base.shapes[:, 0], **shapes}
+        found = {}
+        for name, shape in shapes.items():
+            shears = building.stiffnesses * np.diff(shape, prepend=0.0)
+            used = np.abs(shears) / building.strengths
+            storey = int(np.argmax(used))
+            found[name] = FirstYield(storey + 1, float(abs(shears[0]) / used[storey]))
+        return found
+
+    @property
     def both_orders(self) -> dict[str, tuple[UpliftedModes, UpliftedModes]]:
         """The uplifted states, exact and to first order."""
         orders = {name: (modes, modes.first_order) for name, modes in self.uplifted.items()}
@@ -161,6 +188,7 @@ class ModalResult(Shown):
     def results(self) -> dict[str, Any]:
         """Lists by mode and the parameters of each state; None for one that does not exist."""
         fixed, full = self.fixed_base, self.full_contact
+        yields = {name: first._asdict() for name, first in self.first_yield.items()}
         states = {
             name: values_of(exact, UPLIFTED) | {"first_order": values_of(paper, LINEAR)}
             for name, (exact, paper) in self.both_orders.items()
@@ -171,6 +199,7 @@ class ModalResult(Shown):
             "rolling": None,
             **states,
             "left_out": list(self.left_out),
+            **({"first_yield": yields} if yields else {}),
         }
 
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from rpscli.analyses.result_quantities import PUSHOVER, STOREY_CURVE, values_of
 from rpscli.analyses.settings import require_structure
+from rpscli.errors import listed
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.statics import friction_force, restoring_force
 from rpscli.model.superstructure import Superstructure
@@ -41,7 +42,10 @@ class StoreyCurve(Shown):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class CapacityCurve(Shown):
-    """Whole structure under floor forces lambda p: elastic to the uplift, rigid storey above."""
+    """Whole structure under floor forces lambda p: elastic to the uplift, rigid storey above.
+
+    Where storeys yield without hardening it ends with the first of them, a mechanism.
+    """
 
     pattern: str
     """Name of the pattern, or ``given``."""
@@ -54,7 +58,17 @@ class CapacityCurve(Shown):
     sum_of_floor_forces: Array
     """(points,) lambda [N]."""
     roof_displacement_at_uplift: float
-    """[m]."""
+    """[m]; not a number where a mechanism comes first."""
+    yield_forces: Array | None = None
+    """(n,) lambda at which each storey yields [N], infinite if never; None of elastic buildings."""
+
+    @property
+    def yielding(self) -> dict[int, float]:
+        """Storeys that yield on the way, counted from 1, and lambda where each begins [N]."""
+        if self.yield_forces is None:
+            return {}
+        reached = (1.0 + 1e-9) * self.sum_of_floor_forces.max()  # storeys may yield together
+        return {i: F for i, F in enumerate(self.yield_forces.tolist(), 1) if reached >= F}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -92,8 +106,25 @@ class PushoverResult(Shown):
     def results(self) -> dict[str, Any]:
         """Scalars, the storey's curve and one entry a load pattern; forces in N, lengths in m."""
         curves = [asdict(curve) for curve in self.capacity]
+        for curve in curves:
+            if curve["yield_forces"] is None:  # elastic buildings have none
+                del curve["yield_forces"]
         scalars = {**values_of(self, PUSHOVER), "curve": values_of(self.curve, STOREY_CURVE)}
         return {**scalars, "capacity": curves}
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Storeys that yield before columns lift, by the patterns that do it."""
+        weak: dict[int, list[str]] = {}
+        for curve in self.capacity:
+            for storey, force in curve.yielding.items():
+                if force < self.uplift_force:
+                    weak.setdefault(storey, []).append(curve.pattern)
+        return tuple(
+            f"the podium does not protect storey {storey}: pushed by floor forces"
+            f" ({listed(patterns, 'and')}) it yields before columns lift"
+            for storey, patterns in sorted(weak.items())
+        )
 
     def curve_ratios(self) -> dict[str, Array]:
         """The storey's curve without units."""
@@ -129,7 +160,8 @@ def pushover(
     Notes
     -----
     F(theta) = W B/C, to which devices add; after uplift lambda sum(p) = F(theta) and the floors
-    stand at 1 u_b + lambda K^-1 p (Theory (5.5); paper, Figure 1c).
+    stand at 1 u_b + lambda K^-1 p (Theory (5.5); paper, Figure 1c). Storeys that yield add their
+    plastic drifts (Theory, section 14).
     """
     require_structure(structure)
     end, beta = structure.critical_rotation, structure.bearing.beta
@@ -171,17 +203,59 @@ def _capacity(
 ) -> CapacityCurve:
     forces = load_pattern(building, pattern)
     sway = np.linalg.solve(building.stiffness_matrix, forces)
-    pushed = np.concatenate([[0.0], curve.force])
-    base = np.concatenate([[0.0], curve.displacement])
+    path = np.stack((curve.rotation, curve.displacement, curve.force))
+    path = np.concatenate((np.zeros((3, 1)), path), axis=1)
+    yield_forces = None
+    if building.strengths is not None:
+        shears = np.abs(np.cumsum(forces[::-1])[::-1])
+        yield_forces = np.divide(
+            building.strengths, shears, out=np.full_like(shears, np.inf), where=shears > 0.0
+        )
+        path = _with_kinks(path, yield_forces, hardens=building.hardening > 0.0)
+    rotation, base, pushed = path
     roof = base + pushed * sway[-1]
+    if yield_forces is not None and building.hardening > 0.0:
+        roof += _plastic_drifts(building, np.outer(pushed, np.cumsum(forces[::-1])[::-1])).sum(1)
+    lifts = np.interp(uplift, rotation, roof)
+    if pushed.max() < np.interp(uplift, curve.rotation, curve.force):
+        lifts = np.nan
     return CapacityCurve(
         pattern=pattern if isinstance(pattern, str) else "given",
         forces=forces,
         roof_displacement=roof,
         cap_beam_displacement=base,
         sum_of_floor_forces=pushed,
-        roof_displacement_at_uplift=float(np.interp(uplift, curve.rotation, roof[1:])),
+        roof_displacement_at_uplift=float(lifts),
+        yield_forces=yield_forces,
     )
+
+
+def _with_kinks(path: Array, yield_forces: Array, *, hardens: bool) -> Array:
+    """Rotation, u_b and lambda (3, points) with a point where each storey begins to yield.
+
+    Without hardening the first of them ends the path.
+    """
+    for force in np.unique(yield_forces):
+        below = path[2] < force
+        for i in np.flatnonzero(below[:-1] & ~below[1:])[:1]:
+            before, after = path[:, i], path[:, i + 1]
+            point = before + (force - before[2]) / (after[2] - before[2]) * (after - before)
+            point[2] = force
+            path = np.insert(path, i + 1, point, axis=1)
+            if not hardens:
+                return path[:, : i + 2]
+    return path
+
+
+def _plastic_drifts(building: Superstructure, shears: Array) -> Array:
+    """Of storeys under shears one after the other (points, n), from rest [m] (Theory (14.1))."""
+    back, h = np.zeros_like(shears), building.hardening
+    for point in range(1, len(shears)):
+        shear = shears[point]
+        back[point] = np.clip(
+            back[point - 1], shear - building.strengths, shear + building.strengths
+        )
+    return np.asarray(back * (1.0 - h) / (h * building.stiffnesses))
 
 
 def load_pattern(building: Superstructure, pattern: PatternName | Sequence[float]) -> Array:

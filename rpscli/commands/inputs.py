@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -90,10 +90,12 @@ def conclude(
     terminal: Terminal,
     *,
     plane: bool = True,
+    doubts: Sequence[str] = (),
 ) -> None:
-    """Write the files of a command about one case, and give its result."""
+    """Write the files of a command about one case, and give its result with doubts about it."""
     write(folder, terminal)
-    warnings = [*given.case.warnings, *folder.undrawn]
+    terminal.warn(doubts)
+    warnings = [*given.case.warnings, *folder.undrawn, *doubts]
     if plane and given.case.structure.superstructure_y is not None:
         warnings.append(
             "superstructure.y is left out: this is the direction x; put --set"

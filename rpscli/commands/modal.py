@@ -16,7 +16,7 @@ from rpscli.errors import listed
 from rpscli.report.figures.film import FilmRequest
 from rpscli.report.figures.look import Look, drawn_with
 from rpscli.report.files import Drawing
-from rpscli.report.table import Heading, Part, Table, shown
+from rpscli.report.table import Heading, Part, Table, measured, shown
 
 if TYPE_CHECKING:
     from rpscli.analyses.modal import FixedBaseModes, ModalResult
@@ -97,6 +97,15 @@ def _tables(result: ModalResult, title: str, left_out: Collection[str]) -> Itera
     heads = "rad/s", FIRST_ORDER, "of fixed base", "xi %", FIRST_ORDER, "of fixed base"
     table = Table.of_texts(("uplifted", "mode", *heads), vibrations, words=1, keys=2)
     yield table.without(left_out)
+    if yields := result.first_yield:
+        at = [
+            f"{name.replace('_', ' ')} {measured(first.base_shear, 'N')} (storey {first.storey})"
+            for name, first in yields.items()
+        ]
+        yield (
+            "Modes are those of the elastic building, and end where a storey yields: in the first"
+            f" mode at a base shear of {', '.join(at)}."
+        )
 
 
 def _mode_table(state: str, modes: FixedBaseModes) -> Table:

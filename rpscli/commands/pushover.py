@@ -14,6 +14,7 @@ from rpscli.commands.shell.terminal import Terminal
 from rpscli.errors import UsageError
 from rpscli.report.figures.look import Look
 from rpscli.report.table import Heading, Part, Table, measured, shown
+from rpscli.report.tables.yielding import yielding_tables
 
 if TYPE_CHECKING:
     from rpscli.analyses.pushover import PatternName, PushoverResult
@@ -55,7 +56,8 @@ def command(
     except ValueError as error:
         raise UsageError(f"--pattern: {error}") from None
     folder.add_all(pushover_files(result, given.case.title, look))
-    conclude(given, folder, result.results(), _tables(result, given.case.title), terminal)
+    tables = _tables(result, given.case.title)
+    conclude(given, folder, result.results(), tables, terminal, doubts=result.warnings)
 
 
 def _pattern(text: str, names: Sequence[PatternName]) -> PatternName | list[float]:
@@ -92,3 +94,4 @@ def _tables(result: PushoverResult, title: str) -> Iterator[Part]:
             largest = shown(float(curve.sum_of_floor_forces.max()) * 1e-3)
             capacity.append((curve.pattern, shown(curve.roof_displacement_at_uplift), largest))
         yield Table.of_texts(heads, capacity)
+    yield from yielding_tables(result)

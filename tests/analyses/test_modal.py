@@ -6,9 +6,11 @@ import math
 
 import numpy as np
 import pytest
-from paper_structures import FLAT, building, podium
+from paper_structures import FLAT, building, podium, yielding
+from scipy.linalg import eigh
 
-from rpscli.analyses.modal import UpliftedModes, modal
+from rpscli.analyses.modal import UpliftedModes, linearised_matrices, modal
+from rpscli.model.bearing import uplifted_state
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import ModalDamping, RayleighDamping
 
@@ -161,3 +163,23 @@ def test_the_storeys_own_mode_in_words() -> None:
     neutral = modal(podium(0, 0.15, 0.5)).rolling
     assert neutral is not None
     assert neutral.own_motion == "is in neutral equilibrium"
+
+
+def test_the_storey_that_yields_first_in_a_mode() -> None:
+    """Undamped, so that a solver for symmetric M and K finds the modes as well."""
+    elastic = building(3, damping=ModalDamping(0.0))
+    above = yielding(elastic, 1e6)
+    structure = podium(3, 0.15, 0.5, superstructure=above)
+    found = modal(structure).first_yield
+    assert found["full_contact"].base_shear == pytest.approx(1e6, rel=1e-9)
+    M, _, K = linearised_matrices(structure, uplifted_state(structure.bearing, rolling=True))
+    _, vectors = eigh(K, M)
+    height = math.cos(structure.bearing.alpha)
+    shears = above.stiffnesses * np.diff(vectors[1:, 1], prepend=height * vectors[0, 1])
+    assert above.strengths is not None
+    base_shears = np.abs(shears[0] / shears) * above.strengths
+    rolling = found["rolling"]
+    assert rolling.base_shear == pytest.approx(base_shears.min(), rel=1e-9)
+    assert rolling.storey == base_shears.argmin() + 1 == 3
+    assert "first_yield" in modal(structure).results()
+    assert "first_yield" not in modal(podium(3)).results()

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from paper_structures import FLAT, building, podium
+from paper_structures import FLAT, Array, building, podium, yielding
 
-from rpscli.analyses.pushover import PATTERNS, load_pattern, pushover
-from rpscli.model.superstructure import RayleighDamping, Superstructure
+from rpscli.analyses.pushover import PATTERNS, PatternName, load_pattern, pushover
+from rpscli.model.superstructure import RayleighDamping, Superstructure, stiffness_matrix
 
 
 @pytest.mark.evidence("pushover", "exact")
@@ -74,6 +74,65 @@ def test_capacity_is_elastic_to_uplift_and_the_storey_beyond(pattern: str) -> No
     expected = capacity.cap_beam_displacement + capacity.sum_of_floor_forces * sway
     assert capacity.roof_displacement == pytest.approx(expected, rel=1e-12)
     assert capacity.roof_displacement[-1] == pytest.approx(result.critical_displacement, rel=1e-9)
+
+
+def event_to_event(above: Superstructure, forces: Array, most: float) -> float:
+    """Roof under floor forces lambda p: tangent stiffness from one storey's yield to the next."""
+    assert above.strengths is not None
+    shears = forces[::-1].cumsum()[::-1]
+    events = sorted(F for F in [*(above.strengths / shears), most] if most >= F)
+    stiffnesses, roof, pushed = above.stiffnesses.copy(), 0.0, 0.0
+    for force in events:
+        tangent = stiffness_matrix(stiffnesses)
+        roof += (force - pushed) * np.linalg.solve(tangent, forces)[-1]
+        pushed = force
+        yields = above.strengths / shears <= force
+        stiffnesses = np.where(yields, above.hardening * above.stiffnesses, above.stiffnesses)
+    return roof
+
+
+@pytest.mark.evidence("pushover", "exact")
+@pytest.mark.parametrize("pattern", PATTERNS)
+@pytest.mark.parametrize(("rho", "ratio"), [(FLAT, 1.1), (0.5, 1.1), (1.5, 1.45), (1.5, 1.1)])
+def test_storeys_that_yield_bend_the_curve(pattern: PatternName, rho: float, ratio: float) -> None:
+    """Before columns lift and after; as the force falls storeys unload elastically."""
+    static = podium(3).static_base_shear
+    above = yielding(building(3), ratio * static, hardening=0.2)
+    result = pushover(podium(3, 0.15, rho, superstructure=above), patterns=[pattern], points=2001)
+    (curve,) = result.capacity
+    assert curve.yield_forces is not None
+    pushed, own = curve.sum_of_floor_forces, curve.roof_displacement - curve.cap_beam_displacement
+    highest = int(pushed.argmax())
+    for point in range(1, highest + 1, 97):
+        wanted = event_to_event(above, curve.forces, float(pushed[point]))
+        assert own[point] == pytest.approx(wanted, rel=1e-10)
+    sway = float(np.linalg.solve(above.stiffness_matrix, curve.forces)[-1])
+    fallen, most = pushed[highest] - pushed[highest:], 2.0 * min(curve.yield_forces)
+    unloads = own[highest] - sway * fallen
+    assert own[highest:][fallen < most] == pytest.approx(unloads[fallen < most], abs=1e-12)
+    assert np.all(own[highest:][fallen > most + 1e3] < unloads[fallen > most + 1e3])  # yields back
+    weak = {storey for storey, force in curve.yielding.items() if force < result.uplift_force}
+    assert len(result.warnings) == len(weak)
+    assert (len(weak) > 0) == (ratio == 1.1 or pattern == "triangular")
+    assert len(curve.yielding) >= (1 if rho == 1.5 else len(weak))
+
+
+def test_without_hardening_the_curve_ends_as_a_mechanism() -> None:
+    structure = podium(3)
+    above = yielding(building(3), 1.1 * structure.static_base_shear, 0.0)
+    result = pushover(podium(3, superstructure=above), patterns=["uniform"])
+    (curve,) = result.capacity
+    assert curve.sum_of_floor_forces[-1] == pytest.approx(1.1 * structure.static_base_shear)
+    assert np.isnan(curve.roof_displacement_at_uplift)
+    assert curve.cap_beam_displacement.max() == 0.0
+    assert list(curve.yielding) == [1]
+    assert "does not protect storey 1" in result.warnings[0]
+    strong = yielding(building(3), 2.0 * structure.static_base_shear, 0.0)
+    (whole,) = pushover(podium(3, superstructure=strong), patterns=["uniform"]).capacity
+    (elastic,) = pushover(structure, patterns=["uniform"]).capacity
+    assert whole.yielding == {}
+    assert whole.roof_displacement.tolist() == elastic.roof_displacement.tolist()
+    assert "yield_forces" not in pushover(structure).results()["capacity"][0]
 
 
 def test_patterns() -> None:

@@ -90,6 +90,21 @@ def test_check_compares_strengths_with_the_shears_at_uplift(
     assert "storey_strengths" not in rps_json("check", "small.yaml")
 
 
+def test_modal_and_pushover_say_where_storeys_yield(rps: Invoke, rps_json: InvokeJson) -> None:
+    weak, strong = (("--set", f"superstructure.yield={{ratio: {F}}}") for F in (1.1, 9))
+    shown = rps("modal", "small.yaml", *weak).stdout
+    assert "first mode at a base shear of full contact" in " ".join(shown.split())
+    pushed = rps("pushover", "small.yaml", *weak)
+    assert "the podium does not protect storey 1: pushed by floor forces (uniform" in pushed.stderr
+    assert "it is a mechanism then" in pushed.stdout
+    document = rps_json("pushover", "small.yaml", *weak, "--force")
+    assert "does not protect storey 1" in " ".join(document["warnings"])
+    assert document["capacity"][0]["roof_displacement_at_uplift"] is None
+    above = rps("pushover", "small.yaml", *strong, "--force")
+    assert "columns lift first: pushed slowly no storey ever yields" in above.stdout
+    assert "protect" not in above.stderr
+
+
 def test_check_draws_the_bearing(rps_json: InvokeJson) -> None:
     document = rps_json("check", "small.yaml", "--draw", "--figures", "svg,pdf", "-o", "drawn")
     assert document["files"] == [

@@ -102,11 +102,19 @@ def capacity_figure(result: PushoverResult, title: str) -> bytes:
     """Sum of floor forces against roof displacement, whole and close to the uplift."""
 
     def draw(figure: style.Figure) -> None:
-        style.heading(figure, title, "floor forces pushed to the critical rotation")
+        lifts = np.array([curve.roof_displacement_at_uplift for curve in result.capacity])
+        never = bool(np.isnan(lifts).all())
+        ending = "a mechanism" if never else "the critical rotation"
+        style.heading(figure, title, f"floor forces pushed to {ending}")
+        if never:
+            whole = figure.subplots()
+            draw_capacity(whole, result)
+            style.legend_below(figure, [whole])
+            return
         whole, close = figure.subplots(1, 2, sharey=True, width_ratios=[1.6, 1.0])
         for axes in (whole, close):
             draw_capacity(axes, result)
-        uplift = max(c.roof_displacement_at_uplift for c in result.capacity)
+        uplift = float(np.nanmax(lifts))
         close.set_xlim(0.0, 3.0 * uplift or 0.1 * whole.get_xlim()[1])
         close.locator_params(axis="x", nbins=5)
         close.set(ylabel="", title="near uplift" if uplift else "where rolling begins")
@@ -133,8 +141,15 @@ def draw_capacity(axes: style.Axes, result: PushoverResult) -> None:
             curve.roof_displacement_at_uplift, factor * result.uplift_force, "o",
             color=colour, ms=4.5, clip_on=False,
         )  # fmt: skip
-    begins = "uplift" if result.uplift_force else "rolling begins"
-    axes.plot([], [], "o", color=style.GREY, ms=4.5, label=begins)
+        for force in sorted(curve.yielding.values())[:1]:
+            at = int(np.argmax(curve.sum_of_floor_forces >= force))
+            roof = curve.roof_displacement[at]
+            axes.plot(roof, factor * force, "D", color=colour, ms=4.5, clip_on=False)
+    if any(curve.roof_displacement_at_uplift >= 0.0 for curve in result.capacity):
+        begins = "uplift" if result.uplift_force else "rolling begins"
+        axes.plot([], [], "o", color=style.GREY, ms=4.5, label=begins)
+    if any(curve.yielding for curve in result.capacity):
+        axes.plot([], [], "D", color=style.GREY, ms=4.5, label="first storey yields")
     axes.set_xlim(left=0.0)
     axes.set_ylim(
         bottom=min(0.0, *(factor * np.min(c.sum_of_floor_forces) for c in result.capacity))

@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.statics import storey_strengths
 from rpscli.report.table import Part, Table, shown
+
+if TYPE_CHECKING:
+    from rpscli.analyses.pushover import PushoverResult
 
 UPPER = (
     "strengths go as the shears of the first mode, so upper storeys yield most: modes of uplifted"
@@ -34,3 +38,22 @@ def strength_tables(structure: PodiumStructure) -> Iterator[Part]:
     building = structure.superstructure
     if building is not None and building.yields_by_first_mode:
         yield f"{UPPER} (ductility 1.8 of the first, 6.7 of the last of six in one history)"
+
+
+def yielding_tables(result: PushoverResult) -> Iterator[Part]:
+    """Storeys that yield on the capacity curves, and where each begins."""
+    building = result.structure.superstructure
+    if building is None or building.strengths is None:
+        return
+    rows = [
+        (curve.pattern, str(storey), shown(1e-3 * force), shown(force / result.uplift_force))
+        for curve in result.capacity
+        for storey, force in sorted(curve.yielding.items(), key=lambda item: item[1])
+    ]
+    if not rows:
+        yield "columns lift first: pushed slowly no storey ever yields, only in motion"
+        return
+    heads = "pattern", "storey yields", "at floor forces of kN", "of uplift force"
+    yield Table.of_texts(heads, rows)
+    if building.hardening == 0.0:
+        yield "without hardening a curve ends where the first storey yields: it is a mechanism then"
