@@ -15,8 +15,9 @@ After the axes come
 
 - a `TimeHistoryResult` for `ground_acceleration`, `rotation`, `events`, `displacements`,
   `elastic_displacements`, `energy`, `moment_rotation`, `storey_shears`, `storey_drifts`,
-  `floor_accelerations`, and `device`, which takes the number of the device too, from 0; under both
-  horizontal components also `orbit` and `azimuth`, and displacements take ``"x"`` or ``"y"``;
+  `floor_accelerations`, `device`, which takes the number of the device too, from 0, and
+  `storey_loop`, which takes that of a storey that yields, from 1; under both horizontal
+  components also `orbit` and `azimuth`, and displacements take ``"x"`` or ``"y"``;
 - a `PushoverResult` for `storey_curve`, `lift` and `capacity`;
 - a `ModalResult`, ``"rolling"`` or ``"rocking"``, and the number of the mode, for `mode`;
 - a `PodiumStructure` for `structure`, and for `bearing`, which takes a rotation [rad] too; a
@@ -33,7 +34,7 @@ from typing import Any, TypeVar, cast
 
 from rpscli.errors import UsageError, hint
 from rpscli.report.figures import bearing as _bearing
-from rpscli.report.figures import devices, floors, history, motions, pushover
+from rpscli.report.figures import devices, floors, history, loops, motions, pushover
 from rpscli.report.figures import orbit as _orbit
 from rpscli.report.figures import structure as _structure
 from rpscli.report.figures import style as _style
@@ -91,6 +92,7 @@ spectra = _examined(motions.draw_spectra)
 spectrum = _examined(motions.draw_spectrum)
 storey_curve = _examined(pushover.draw_force)
 storey_drifts = _examined(floors.draw_storey_drifts)
+storey_loop = _examined(loops.draw_loop)
 storey_shears = _examined(floors.draw_shears)
 structure = _examined(_structure.draw_structure)
 style = _style.in_style

@@ -48,6 +48,7 @@ PAGES = {
         "cases/both_components.yaml",
         "cases/friction_dampers.yaml",
         "cases/measured_period.yaml",
+        "cases/yielding_storeys.yaml",
         "cases/compdyn2021/README.md",
         "cases/studies/contact/README.md",
         "cases/studies/joints_both/README.md",

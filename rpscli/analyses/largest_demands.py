@@ -15,6 +15,7 @@ from rpscli.analyses.result_quantities import (
     HISTORY,
     KERNEL_FIELDS,
     PAIR,
+    YIELDING,
     ResultQuantity,
     values_of,
 )
@@ -75,12 +76,12 @@ class Histories:
         values = np.array([constant(structure) for structure in self.structures], np.float64)
         return np.asarray(values[self.number])
 
-    def of_building(self, constant: Callable[[Superstructure], Any]) -> Array:
+    def of_building(self, constant: Callable[[Superstructure], Any], *, y: bool = False) -> Array:
         """Of each storey of the building of each history (histories, n); NaN for None."""
         unknown = np.full(self.storeys, np.nan)
 
         def known(structure: PodiumStructure) -> Array:
-            building = structure.superstructure
+            building = (structure.across if y else structure).superstructure
             values = None if building is None else constant(building)
             return unknown if values is None else values
 
@@ -126,6 +127,26 @@ class Histories:
         """(histories, n)."""
         values: Array = self.left[field][:, : self.storeys]
         return values
+
+    @property
+    def yields(self) -> bool:
+        """True if storeys of some of them yield."""
+        return any(structure.yields for structure in self.structures)
+
+    def yielding(self, field: str) -> Array:
+        """A field by direction and storey (histories, ways, n); NaN where storeys stay elastic."""
+        values = np.asarray(self.left[field], np.float64)[:, : self.ways, : self.storeys]
+        return np.where(np.isfinite(self.of_ways(lambda b: b.strengths)), values, np.nan)
+
+    @property
+    def ways(self) -> int:
+        """Horizontal components that act in all of them."""
+        return int(self.left["ways"][0])
+
+    def of_ways(self, constant: Callable[[Superstructure], Any]) -> Array:
+        """Of each storey in each direction (histories, ways, n); NaN for None."""
+        ways = (self.of_building(constant, y=bool(way)) for way in range(self.ways))
+        return np.stack([*ways], axis=1)
 
     def of_devices(self, value: Callable[[Device, dict[str, Array]], Array | None]) -> Array:
         """Largest value of the devices of each history, of what it left in their slots."""
@@ -196,14 +217,35 @@ def _first(values: Array) -> Array:
 
 
 def _drifts(h: Histories) -> Array:
+    """Of elastic storeys from their shears, of those that yield from their ductility."""
+    if not h.yields:
+        return _elastic_drifts(h)
+    # Both directions of a yielding storey as if they were largest together, an upper bound.
+    yielded = h.yielding("ductility") * h.of_ways(_yield_drifts)
+    drifts = np.sqrt(np.sum(yielded**2, axis=1))
+    return np.where(np.isfinite(drifts), drifts, _elastic_drifts(h))
+
+
+def _yield_drifts(building: Superstructure) -> Array | None:
+    """F_i/k_i."""
+    return None if building.strengths is None else building.strengths / building.stiffnesses
+
+
+def _elastic_drifts(h: Histories) -> Array:
     """Resultants over the stiffness; where that differs in y, the lesser of two upper bounds."""
     shears, k = h.column("storey_shears"), h.of_building(lambda b: b.stiffnesses)
     in_y = [structure.superstructure_y for structure in h.structures]
-    if h.left["ways"][0] == 1 or not any(in_y):
+    if h.ways == 1 or not any(in_y):
         return shears / k
-    k_y = h.each(lambda s: getattr(s.superstructure_y or s.superstructure, "stiffnesses", np.nan))
+    k_y = h.of_building(lambda b: b.stiffnesses, y=True)
     parts = h.of_storeys("storey_shear_x") / k, h.of_storeys("storey_shear_y") / k_y
     return np.minimum(shears / np.minimum(k, k_y), np.hypot(*parts))
+
+
+def _first_yields(h: Histories) -> Array:
+    times = h.yielding("first_yield")
+    first = np.min(np.where(times >= 0.0, times, np.inf), axis=1)
+    return np.where(np.isfinite(first), first, np.nan)
 
 
 def _uplift_shear(structure: PodiumStructure) -> float | None:
@@ -342,6 +384,45 @@ class Demand(Shown):
         "Largest drift over storey height; None where no heights are given.",
         lambda h: _largest(h.column("max_drifts") / h.of_building(lambda b: b.storey_heights)),
     )
+    ductilities = _Result[Array](
+        "(n,) largest |d_i| k_i/F_i from the bottom, of both directions; NaN of elastic storeys.",
+        lambda h: h.yielding("ductility").max(axis=1),
+    )
+    plastic_drifts = _Result[Array](
+        "(n,) ranges of the plastic drifts [m], the larger one of both directions.",
+        lambda h: (h.yielding("slip_most") - h.yielding("slip_least")).max(axis=1),
+    )
+    residual_drifts = _Result[Array](
+        "(n,) plastic drifts at the end [m], of both directions the resultants.",
+        lambda h: np.sqrt(np.sum(h.yielding("slip") ** 2, axis=1)),
+    )
+    energies_yielded = _Result[Array](
+        "(n,) energies dissipated by yielding [J].", lambda h: h.yielding("yielded").sum(axis=1)
+    )
+    first_yields = _Result[Array](
+        "(n,) times of first yield [s]; NaN of storeys that do not.",
+        _first_yields,
+    )
+    ductility = _Optional(
+        "Largest of `ductilities`; None of an elastic building.",
+        lambda h: _largest(h.column("ductilities")),
+    )
+    plastic_drift = _Optional(
+        "Largest of `plastic_drifts` [m]; None of an elastic building.",
+        lambda h: _largest(h.column("plastic_drifts")),
+    )
+    residual_drift = _Optional(
+        "Largest of `residual_drifts` [m]; None of an elastic building.",
+        lambda h: _largest(h.column("residual_drifts")),
+    )
+    residual_drift_ratio = _Optional(
+        "Largest residual drift over storey height; None where no heights are given.",
+        lambda h: _largest(h.column("residual_drifts") / h.of_building(lambda b: b.storey_heights)),
+    )
+    energy_yielded = _Optional(
+        "Energy dissipated by all storeys that yield [J]; None of an elastic building.",
+        lambda h: h.column("energies_yielded").sum(axis=1),
+    )
     friction_demand = _Result[float](
         "Largest |F|/N at either end of the columns: the friction required to prevent sliding.",
         lambda h: np.maximum(h.left["friction_top"], h.left["friction_bottom"]),
@@ -448,9 +529,16 @@ class Demand(Shown):
         """Demands of each device, in the order of the structure's."""
         return device_demands(self.structure, self.history)
 
+    @property
+    def quantities(self) -> tuple[ResultQuantity, ...]:
+        """Scalar results that such a history has, or could have."""
+        yielding = YIELDING if self.structure.yields else ()
+        return (*HISTORY, *yielding, *(PAIR if self.both_components else ()))
+
     def facts(self) -> dict[str, Any]:
         """Outcome and scalar results with their units, the main demands first."""
-        ordered = sorted(HISTORY, key=lambda quantity: not quantity.demand)
+        known = (q for q in self.quantities if q not in PAIR)
+        ordered = sorted(known, key=lambda quantity: not quantity.demand)
         return {
             "outcome": self.outcome,
             **{q.name: with_unit(getattr(self, q.name), q.unit) for q in ordered},
@@ -461,5 +549,4 @@ class Demand(Shown):
 
         A value that does not exist, or is infinite, is None.
         """
-        more = PAIR if self.both_components else ()
-        return {"outcome": self.outcome, **values_of(self, (*HISTORY, *more))}
+        return {"outcome": self.outcome, **values_of(self, self.quantities)}

@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from rpscli.analyses.demand import Request, demands
-from rpscli.analyses.result_quantities import HISTORY, values_of
+from rpscli.analyses.result_quantities import values_of
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.records.pair import turned
 
@@ -58,7 +58,7 @@ def neighbours(result: TimeHistoryResult) -> list[Neighbour]:
     ]
     # One by one: the kernel for many at a time would have to be compiled first.
     results = demands(requests, worth_lanes=len(requests) + 1)
-    limited = [quantity for quantity in HISTORY if quantity.limit]
+    limited = [quantity for quantity in result.quantities if quantity.limit]
     return [
         Neighbour(
             factor,

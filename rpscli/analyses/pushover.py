@@ -161,7 +161,7 @@ def pushover(
     -----
     F(theta) = W B/C, to which devices add; after uplift lambda sum(p) = F(theta) and the floors
     stand at 1 u_b + lambda K^-1 p (Theory (5.5); paper, Figure 1c). Storeys that yield add their
-    plastic drifts (Theory, section 14).
+    plastic drifts (Theory, section 15).
     """
     require_structure(structure)
     end, beta = structure.critical_rotation, structure.bearing.beta
@@ -248,7 +248,7 @@ def _with_kinks(path: Array, yield_forces: Array, *, hardens: bool) -> Array:
 
 
 def _plastic_drifts(building: Superstructure, shears: Array) -> Array:
-    """Of storeys under shears one after the other (points, n), from rest [m] (Theory (14.1))."""
+    """Of storeys under shears one after the other (points, n), from rest [m] (Theory (15.1))."""
     back, h = np.zeros_like(shears), building.hardening
     for point in range(1, len(shears)):
         shear = shears[point]

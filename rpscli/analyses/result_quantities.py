@@ -55,6 +55,9 @@ NEEDS = {
     "superstructure, flat part": "a superstructure on columns with a flat part, so that V_st > 0",
     "superstructure.storey_height": "superstructure.storey_height in the case",
     "superstructure, devices": "a superstructure and podium.devices",
+    "superstructure.yield": "superstructure.yield in the case",
+    "superstructure.yield, storey_height": "superstructure.yield and superstructure.storey_height"
+    " in the case",
     "podium.friction": "podium.friction in the case",
     "contact": "a compliant podium.contact: kind plane or edges",
     "plane contact": "podium.contact of the kind plane under flat ends",
@@ -160,6 +163,27 @@ HISTORY = (
 )  # fmt: skip
 """Scalars of a time history."""
 
+YIELDING = (
+    ResultQuantity(
+        "ductility", "-", "ductility", limit="3", demand=True, needs="superstructure.yield",
+        meaning="largest drift of a storey over its drift at yield",
+    ),
+    ResultQuantity(
+        "plastic_drift", "m", "plastic drift", limit="0.01", needs="superstructure.yield",
+        meaning="largest range of the plastic drift of a storey",
+    ),
+    ResultQuantity(
+        "residual_drift", "m", "residual drift", limit="0.005", needs="superstructure.yield",
+        meaning="largest plastic drift at the end",
+    ),
+    ResultQuantity(
+        "residual_drift_ratio", "-", "residual drift ratio", limit="0.005", demand=True,
+        needs="superstructure.yield, storey_height", meaning="residual drift over storey height",
+    ),
+    ResultQuantity("energy_yielded", "J", "energy yielded", needs="superstructure.yield"),
+)  # fmt: skip
+"""Scalars of a time history of storeys that yield; elastic buildings do not list them."""
+
 SAMPLED = (
     ResultQuantity(
         "max_roof_displacement", "m", "roof displacement", limit="0.5", needs="superstructure"
@@ -250,10 +274,19 @@ FLOOR_VELOCITIES = ResultQuantity(
     "floor_velocities", "m/s", "floor velocity", column="floor_velocity"
 )
 
+STOREYS_YIELDING = (
+    ResultQuantity("ductilities", "-", "ductility", column="ductility"),
+    ResultQuantity("plastic_drifts", "m", "range of the plastic drift", column="plastic_drift"),
+    ResultQuantity("residual_drifts", "m", "residual drift", column="residual_drift"),
+    ResultQuantity("energies_yielded", "J", "energy yielded", column="energy_yielded"),
+    ResultQuantity("first_yields", "s", "first yields at", column="first_yield"),
+)
+"""What yielding does to each storey from the bottom."""
+
 STOREYS = (STOREY_DRIFTS, STOREY_DRIFT_RATIOS, STOREY_SHEARS, FLOOR_ACCELERATIONS, FLOOR_VELOCITIES)
 """Largest values in each storey from the bottom, on bearings and on a fixed base."""
 
-LIMITED = tuple(quantity for quantity in (*HISTORY, *SAMPLED) if quantity.limit)
+LIMITED = tuple(quantity for quantity in (*HISTORY, *YIELDING, *SAMPLED) if quantity.limit)
 """Results that limits, `--fail-on` and fragilities may name."""
 
 DEMANDS = tuple(quantity for quantity in LIMITED if not quantity.from_below)

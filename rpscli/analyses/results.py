@@ -22,6 +22,7 @@ from rpscli.analyses.largest_demands import Demand
 from rpscli.analyses.outcome import STOOD
 from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
 from rpscli.analyses.trace import Event, Trace, sampled
+from rpscli.errors import listed
 from rpscli.physics import state
 from rpscli.records.ground_motion import GroundMotion, MotionComponents
 from rpscli.shown import data_frame, frozen
@@ -57,6 +58,8 @@ class Energy:
         At the end.
     residual
         Error of the integration.
+    yielded
+        Dissipated in storeys that yield.
     """
 
     input: float
@@ -68,6 +71,7 @@ class Energy:
     devices: float
     bed: float
     damped_vertical: float
+    yielded: float
 
 
 @dataclass(frozen=True)
@@ -145,6 +149,7 @@ class TimeHistoryResult(Demand):
             float(history[f"energy_{name}"]) for name in ("input", "damped", "lost", "stored")
         )
         stored, bed = stored + float(history["device_stored"].sum()), float(history["bed_energy"])
+        yielded = float(history["energy_yielded"])
         available = supplied + float(self.trace.energy_stored[0])
         vertical = float(history["energy_upwards"])
         return Energy(
@@ -152,11 +157,12 @@ class TimeHistoryResult(Demand):
             damped=damped,
             impact=lost,
             stored=stored,
-            residual=available - damped - vertical - devices - bed - lost - stored,
+            residual=available - damped - vertical - devices - bed - lost - stored - yielded,
             created=self.energy_created,
             devices=devices,
             bed=bed,
             damped_vertical=vertical,
+            yielded=yielded,
         )
 
     def restoring_moment(self, rotation: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -316,7 +322,7 @@ class TimeHistoryResult(Demand):
                 " a column, whose axial force would be negative; the model assumes that all columns"
                 " stand"
             )
-        notes += self._on_bed()
+        notes += self._beyond()
         supplied = abs(self.energy.input) + float(self.trace.energy_stored[0])
         if self.energy.created > 0.02 * supplied:
             share = self.energy.created / supplied
@@ -350,8 +356,30 @@ class TimeHistoryResult(Demand):
                 notes.append(f"not at rest {LONGEST_FREE_VIBRATION:g} s after the record's end")
         return tuple(notes)
 
-    def _on_bed(self) -> Iterator[str]:
-        """Demands for which compliant ends were not tried."""
+    @property
+    def driven_back(self) -> tuple[int, ...]:
+        """Storeys, counted from 1, whose back force at the end exceeds their strength.
+
+        The plastic drift is what remains at rest in all others.
+        """
+        found = set[int]()
+        across = self.structure, self.structure.across
+        for each, slips in zip(across, self.history["slip"], strict=False):
+            building = each.superstructure
+            if building is not None and building.strengths is not None:
+                hardens = building.stiffnesses * building.hardening / (1.0 - building.hardening)
+                back = hardens * np.abs(slips[: building.storeys])
+                found |= set((np.flatnonzero(back > building.strengths) + 1).tolist())
+        return tuple(sorted(found))
+
+    def _beyond(self) -> Iterator[str]:
+        """Demands for which compliant ends were not tried, and storeys that still yield back."""
+        if back := self.driven_back:
+            yield (
+                f"hardening drives storey {listed(map(str, back), 'and')} back as it comes to rest,"
+                " so that less than the residual drift remains; a longer"
+                " `analysis.free_vibration` shows how much"
+            )
         chi, pressure = self.max_impact_number, self.edge_pressure_ratio
         if chi is not None and chi > LARGEST_TRIED and self.structure.contact.kind == "plane":
             yield (

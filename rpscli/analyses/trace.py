@@ -155,6 +155,7 @@ class Direction(_Sampled, Shown):
     floor_velocities: Array
     floor_accelerations: Array
     drifts: Array
+    plastic_drifts: Array | None
     storey_shears: Array
     driving_moment: Array
     shear_top: Array
@@ -184,15 +185,16 @@ class Trace(Direction):
         u_b and v_b [m].
     floor_displacements, floor_velocities, floor_accelerations
         [m], [m/s], and absolute [m/s2].
-    drifts, storey_shears
-        d_i [m], k_i d_i [N].
+    drifts, plastic_drifts, storey_shears
+        d_i [m]; delta_i [m], None of elastic storeys; k_i (d_i - delta_i) [N].
     driving_moment
         What the ground and the building do about the contact points, 2 R C (V - (N m_c/2 + m_b)
         a_g) [N m]; in slow motion without devices it equals the restoring moment 2 R W s B(x).
     shear_top, shear_bottom, normal_top, normal_bottom
         Forces at the ends of all columns together [N]: F to the right on what is above, N upwards
         on it (Theory (8.4), (8.5)).
-    energy_input, energy_damped, energy_damped_vertical, energy_impact, energy_bed, energy_stored
+    energy_input, energy_damped, energy_damped_vertical, energy_impact, energy_bed, energy_yielded,
+    energy_stored
         [J] (Theory, sections 8 and 12).
     vertical_accelerations
         Absolute ones of floors on vertical springs [m/s2]; None of floors that ride on the beam.
@@ -217,6 +219,7 @@ class Trace(Direction):
     energy_damped_vertical: Array
     energy_impact: Array
     energy_bed: Array
+    energy_yielded: Array
     energy_stored: Array
     devices: DeviceTrace
     azimuth: Array | None = None
@@ -264,6 +267,8 @@ def sampled(structure: PodiumStructure, t: Trace) -> Iterator[Sampled]:
     yield "lift", "m", t.lift
     yield from directed("floor_{}_displacement", "m", "floor_displacements")
     yield from directed("storey_{}_drift", "m", "drifts")
+    if structure.yields:
+        yield from directed("storey_{}_plastic_drift", "m", "plastic_drifts")
     yield from directed("storey_{}_shear", "N", "storey_shears")
     yield from directed("floor_{}_acceleration", "m/s2", "floor_accelerations")
     if (upwards := t.vertical_accelerations) is not None:
@@ -274,11 +279,13 @@ def sampled(structure: PodiumStructure, t: Trace) -> Iterator[Sampled]:
     yield from directed("column_shear_bottom", "N", "shear_bottom", structure.columns)
     yield "column_force_top", "N", t.normal_top / structure.columns
     yield "column_force_bottom", "N", t.normal_bottom / structure.columns
-    yield from ((name, "J", getattr(t, name)) for name in ENERGIES)
-    if structure.upwards is not None:
-        yield "energy_damped_vertical", "J", t.energy_damped_vertical
-    if structure.bed is not None:
-        yield "energy_bed", "J", t.energy_bed
+    of_some = {
+        "energy_damped_vertical": structure.upwards is not None,
+        "energy_bed": structure.bed is not None,
+        "energy_yielded": structure.yields,
+    }
+    for name in (*ENERGIES, *(name for name, known in of_some.items() if known)):
+        yield name, "J", getattr(t, name)
     for index, device in enumerate(structure.devices):
         name = f"device_{index}_{device.kind}"
         yield f"{name}_force", "N", t.devices.force[:, index]
@@ -304,6 +311,7 @@ def trace_of(structure: PodiumStructure, run: SampledHistory) -> Trace:
         energy_damped_vertical=samples.energy_upwards,
         energy_impact=samples.energy_lost,
         energy_bed=samples.energy_bed,
+        energy_yielded=samples.energy_yielded,
         energy_stored=samples.energy_stored,
         devices=DeviceTrace(*np.moveaxis(run.devices, 1, 0)),
         azimuth=samples.azimuth if pairs else None,
@@ -325,6 +333,8 @@ def _in_direction(structure: PodiumStructure, run: SampledHistory, axis: int) ->
     row = run.motion.row("y" if axis else "horizontal")
     a_g, beam = prolonged(run.motion.samples[row], len(samples)), samples.beam[:, axis]
     drifts = np.diff(floors[:, 0], axis=1, prepend=beam[:, None])
+    plastic = floors[:, 3] if structure.yields else None
+    elastic = drifts if plastic is None else drifts - plastic
     base_mass = 0.5 * structure.columns_mass + structure.cap_beam_mass
     return {
         "ground_acceleration": a_g,
@@ -333,7 +343,8 @@ def _in_direction(structure: PodiumStructure, run: SampledHistory, axis: int) ->
         "floor_velocities": floors[:, 1],
         "floor_accelerations": floors[:, 2],
         "drifts": drifts,
-        "storey_shears": drifts if building is None else building.stiffnesses * drifts,
+        "plastic_drifts": plastic,
+        "storey_shears": elastic if building is None else building.stiffnesses * elastic,
         "driving_moment": samples.height * (samples.base_shear[:, axis] - base_mass * a_g),
         "shear_top": samples.shear_top[:, axis],
         "shear_bottom": samples.shear_bottom[:, axis],

@@ -54,7 +54,8 @@ def command(
     structure = given.case.structure
     vertical = ground.vertical if program == "opensees" else None
     left = {"podium.devices": structure.devices, "record.vertical": vertical,
-            "podium.contact": structure.bed}  # fmt: skip
+            "podium.contact": structure.bed,
+            "superstructure.yield": structure.yields and program == "mujoco"}  # fmt: skip
     why = [f"{key} is not exported; remove it by --set {key}=null" for key in left if left[key]]
     if ground.y is not None:
         why.append("a model has one plane; name one of both components by --record")

@@ -234,6 +234,11 @@ class PodiumStructure(Shown):
         return 0 if self.superstructure is None else self.superstructure.storeys
 
     @property
+    def yields(self) -> bool:
+        """True if storeys have strengths."""
+        return self.superstructure is not None and self.superstructure.yields
+
+    @property
     def superstructure_mass(self) -> float:
         """M_tot [kg]."""
         return 0.0 if self.superstructure is None else self.superstructure.mass

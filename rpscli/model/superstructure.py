@@ -326,6 +326,11 @@ class Superstructure(Shown):
         return frozen(self.masses[::-1].cumsum()[::-1])
 
     @property
+    def yields(self) -> bool:
+        """True if its storeys have strengths."""
+        return self.strengths is not None
+
+    @property
     def yields_by_first_mode(self) -> bool:
         """True if strengths are in the proportions of the shears of the first mode."""
         if self.strengths is None or self.storeys == 1:

@@ -16,7 +16,7 @@ from rpscli.analyses.floor_spectra import (
 )
 from rpscli.analyses.modal import ModalResult
 from rpscli.analyses.pushover import CapacityCurve, PushoverResult, StoreyCurve, pushover
-from rpscli.analyses.result_quantities import STOREY_CURVE, STOREYS
+from rpscli.analyses.result_quantities import STOREY_CURVE, STOREYS, STOREYS_YIELDING
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.trace import Event, sampled
 from rpscli.model.podium import PodiumStructure
@@ -35,6 +35,7 @@ from rpscli.report.figures.history import (
     thinned,
 )
 from rpscli.report.figures.look import FIGURES, USUAL, Draw, Look, figure_files
+from rpscli.report.figures.loops import loops_figure
 from rpscli.report.figures.motions import record_figure, selection_figure
 from rpscli.report.figures.orbit import orbit_figure
 from rpscli.report.figures.pushover import capacity_figure, storey_curve_figure
@@ -102,6 +103,7 @@ def timehistory_files(result: TimeHistoryResult, title: str, look: Look = USUAL)
     yield "storeys.csv", csv_text(storey_columns(result))
     figures: dict[str, Callable[..., bytes]] = {
         **({"storey_shears": profile_figure} if result.structure.storeys else {}),
+        **({"storey_loops": loops_figure} if result.structure.yields else {}),
         **({"devices": devices_figure} if result.structure.devices else {}),
         **({"orbit": orbit_figure} if result.trace.y is not None else {}),
         "rotation": rotation_figure,
@@ -124,7 +126,8 @@ def floor_spectra_files(result: TimeHistoryResult, title: str, look: Look = USUA
         return
     isolated, fixed = isolated_floor_spectra(result), fixed_base_floor_spectra(result)
     yield "floor_spectra.csv", csv_text(floor_spectra_columns(isolated, fixed))
-    draw = partial(floor_spectra_figure, isolated, fixed, title, result.record.name)
+    record = f"{result.record.name}{', fixed base elastic' * result.structure.yields}"
+    draw = partial(floor_spectra_figure, isolated, fixed, title, record)
     yield from figure_files({"floor_spectra": draw}, look).items()
 
 
@@ -223,7 +226,8 @@ def storey_columns(result: TimeHistoryResult) -> list[Column]:
             values = getattr(demands, quantity.name)
             known = [None] * count if values is None else values
             columns.append(Column(f"{prefix}{quantity.column}", quantity.unit, known))
-    return columns
+    yielding = STOREYS_YIELDING if result.structure.yields else ()
+    return columns + [Column(q.column, q.unit, getattr(result, q.name)) for q in yielding]
 
 
 def history_columns(result: TimeHistoryResult) -> list[Column]:

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
-from rpscli.analyses.result_quantities import SAMPLED, STOREYS, plain, values_of
+from rpscli.analyses.result_quantities import SAMPLED, STOREYS, STOREYS_YIELDING, plain, values_of
 from rpscli.errors import is_number, visible
 from rpscli.version import VERSION
 
@@ -98,6 +98,7 @@ def timehistory_document(result: TimeHistoryResult) -> Document:
     from rpscli.report.tables.timehistory import fixed_base_demands, isolated_demands
 
     isolated, fixed = isolated_demands(result), fixed_base_demands(result)
+    yielding = values_of(result, STOREYS_YIELDING if result.structure.yields else ())
     return {
         "record": {name: getattr(result.record, name) for name in OF_RECORD},
         "failure": result.failure,
@@ -107,6 +108,7 @@ def timehistory_document(result: TimeHistoryResult) -> Document:
         "column_forces": {end: asdict(forces) for end, forces in result.column_forces.items()},
         "column_forces_leave_out": list(result.left_out_of_columns),
         **values_of(isolated, STOREYS),
+        **yielding,
         "fixed_base": None if fixed is None else values_of(fixed, STOREYS),
         "energy": _energy(result),
         "devices": [asdict(demand) for demand in result.devices],
@@ -116,7 +118,8 @@ def timehistory_document(result: TimeHistoryResult) -> Document:
 
 def _energy(result: TimeHistoryResult) -> dict[str, float]:
     """The balance, with what only some structures dissipate where it is one of them."""
-    without = set() if result.structure.upwards else {"damped_vertical"}
+    without = {"damped_vertical"} if result.structure.upwards is None else set()
+    without |= set() if result.structure.yields else {"yielded"}
     return {name: of for name, of in asdict(result.energy).items() if name not in without}
 
 

@@ -57,7 +57,7 @@ def _named(
 _FIXED, _ROLLING, _ROCKING = ("fixed_base.",), ("rolling.",), ("rocking.",)
 
 SCALARS: dict[Analysis, Named] = {
-    "timehistory": _named((*rq.HISTORY, *rq.SAMPLED, *rq.IMPACTS, *rq.INTENSITIES)),
+    "timehistory": _named((*rq.HISTORY, *rq.YIELDING, *rq.SAMPLED, *rq.IMPACTS, *rq.INTENSITIES)),
     "modal": _named(rq.FIXED_BASE_MODES, _FIXED, ".0")
     | _named(rq.UPLIFTED_RATIOS, _ROLLING, ".0")
     | _named(rq.FREQUENCY_PARAMETERS, _ROLLING)
@@ -176,7 +176,8 @@ def run_batch(context: StudyContext, points: Sequence[Point]) -> PointResults:
         if isinstance(ended, str):
             results.messages.update(dict.fromkeys(at.tolist(), ended))
         else:
-            _keep(results, at, ended, ended.columns(KEPT) | sampled)
+            kept = (*KEPT, *(rq.YIELDING if ended.yields else ()))
+            _keep(results, at, ended, ended.columns(kept) | sampled)
     done = np.flatnonzero(results.outcomes != FAILED)
     scales = np.array([requests[row].scale for row in done.tolist()])
     peaks = context.intensities([points[row] for row in done.tolist()], scales)

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 
 from rpscli.analyses.column_forces import no_bound
-from rpscli.analyses.result_quantities import HISTORY, NEEDS, SAMPLED
+from rpscli.analyses.result_quantities import HISTORY, NEEDS, SAMPLED, YIELDING
 from rpscli.case.case import Case, case_from_mapping
 from rpscli.case.conditions import Condition, conditions_of, with_friction
 from rpscli.case.overrides import Override
@@ -255,7 +255,7 @@ def _limits(study: Study, case: Case, *, both: bool) -> tuple[Condition, ...]:
 def lacking(study: Study, case: Case) -> frozenset[str]:
     """Names of the results that histories of this case will not have."""
     sampled = () if study.file.whole_histories else SAMPLED
-    known = (*HISTORY, *SAMPLED)
+    known = (*HISTORY, *YIELDING, *SAMPLED)
     return frozenset(
         [q.name for q in known if q.needs and not HAS[q.needs](case.structure)]
         + [q.name for q in sampled]
@@ -264,7 +264,7 @@ def lacking(study: Study, case: Case) -> frozenset[str]:
 
 def needs_of(name: str, which: str = "not every") -> str:
     """Needs of a result in a study, in words."""
-    needs = {q.name: NEEDS.get(q.needs, "") for q in (*HISTORY, *SAMPLED)}[name]
+    needs = {q.name: NEEDS.get(q.needs, "") for q in (*HISTORY, *YIELDING, *SAMPLED)}[name]
     if name in {quantity.name for quantity in SAMPLED}:
         alike = f", and in all systems {needs}" if needs else ""
         return f"{name} needs `whole_histories: true`{alike}"
@@ -282,6 +282,10 @@ HAS: dict[str, Callable[[PodiumStructure], bool]] = {
     ),
     "superstructure, flat part": lambda structure: structure.static_base_shear > 0.0,
     "superstructure, devices": lambda structure: bool(structure.storeys and structure.devices),
+    "superstructure.yield": lambda structure: structure.yields,
+    "superstructure.yield, storey_height": lambda structure: (
+        structure.yields and HAS["superstructure.storey_height"](structure)
+    ),
     "podium.friction": lambda structure: structure.friction is not None,
     "columns": lambda structure: not structure.left_out_of_columns(both=False),
     "contact": lambda structure: structure.bed is not None,

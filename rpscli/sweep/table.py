@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.analyses.result_quantities import STOREY_SHEARS
+from rpscli.analyses.result_quantities import STOREY_SHEARS, YIELDING, ResultQuantity
 from rpscli.case.schema.keys import unit as key_unit
 from rpscli.errors import RecordError
 from rpscli.model.podium import PodiumStructure
@@ -204,11 +204,21 @@ def leading_keys(layout: StudyPoints) -> tuple[str, ...]:
     return tuple(axis.keys[0] for axis in layout.study.axes)
 
 
+def _shown_results(layout: StudyPoints) -> dict[str, ResultQuantity]:
+    """Scalar results by their paths, those of yielding only where a system yields."""
+    elastic = all("ductility" in properties.lacking for properties in layout.properties)
+    return {
+        path: quantity
+        for path, quantity in SCALARS[layout.plan.analysis].items()
+        if not (elastic and quantity in YIELDING)
+    }
+
+
 def units_of_columns(layout: StudyPoints) -> dict[str, str]:
     """Units of all columns by name."""
     names = {name: unit_of(name) for name in layout.identifying}
     scale = {"scale": "-"} if layout.plan.analysis == "timehistory" else {}
-    results = {path: quantity.unit for path, quantity in SCALARS[layout.plan.analysis].items()}
+    results = {path: quantity.unit for path, quantity in _shown_results(layout).items()}
     return {**names, **scale, "outcome": "-", **results}
 
 
@@ -222,7 +232,7 @@ def points_csv(table: Table) -> Iterator[str]:
         (layout.places[of], [_cell(value, units[name]) for value in values])
         for name, (of, values) in layout.identifying.items()
     ]
-    results = [(table.columns[name], q.whole) for name, q in SCALARS[layout.plan.analysis].items()]
+    results = [(table.columns[name], q.whole) for name, q in _shown_results(layout).items()]
     buffer = io.StringIO()
     writer = csv.writer(buffer, lineterminator="\n")
     writer.writerow(f"{name} [{unit}]" for name, unit in units.items())

@@ -143,6 +143,8 @@ OF_A_BUILDING: list[Row] = [
     ("0.5}\n", "-1}\n", "20:26: limits.rotation_ratio = -1 must be > 0"),
     ("rotation_ratio: 0.5}\n", "max_base_shear: 2 m}\n", "20:26", "a length, but must be a force"),
     ("rotation_ratio: 0.5}\n", "overturning: 2}\n", "20:23: limits.overturning = 2 must be >= 0"),
+    ("rotation_ratio: 0.5}\n", "ductility: 3}\n", "20:10: limits.ductility needs",
+     "superstructure.yield, strengths of storeys, which is missing; give it, or remove the limit"),
     ("rotation_ratio: 0.5}\n", "max_column_force: 1 kN}\n", "20:10: limits.max_column_force: the",
      "without the overturning moment and the shock of impacts", "podium.plan and superstructure.v"),
 ]  # fmt: skip

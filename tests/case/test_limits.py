@@ -12,10 +12,10 @@ from rpscli.report.limits import requirement_text
 
 from .conftest import BUILDING
 
-WITH_COLUMNS = BUILDING.replace("  profile: sine\n", "  vertical_period: 0.1 s\n").replace(
-    "  impact: {law: rigid}\n", "  plan: {length: 12 m}\n"
-)
-"""What the force of a column is made of."""
+WITH_COLUMNS = BUILDING.replace(
+    "  profile: sine\n", "  vertical_period: 0.1 s\n  yield: {ratio: 1.3}\n"
+).replace("  impact: {law: rigid}\n", "  plan: {length: 12 m}\n")
+"""With what the force of a column is made of, and strengths."""
 
 
 def limited(text: str) -> tuple[Condition, ...]:

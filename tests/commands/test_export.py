@@ -16,9 +16,10 @@ from xml.etree.ElementTree import fromstring
 
 import numpy as np
 import pytest
-from paper_structures import needs_compiled_kernels
+from paper_structures import known, needs_compiled_kernels
 from scipy.integrate import solve_ivp
 
+from rpscli.case.case import load_case
 from rpscli.records.loading import load_record
 
 from .conftest import SMALL_CASE, Invoke
@@ -162,6 +163,21 @@ def test_what_a_model_lacks_is_refused(workplace: Path, rps: Invoke) -> None:
         assert rps("export", "small.yaml", "opensees", *words).exit_code == 0
     assert rps("export", "small.yaml", "opensees", *two, "-o", "two").exit_code == 2
     assert not (workplace / "two").exists()
+
+
+def test_storeys_that_yield_are_springs_of_opensees(workplace: Path, rps: Invoke) -> None:
+    """`Steel01` has their law: strength, stiffness, kinematic hardening."""
+    yields = "--set", "superstructure.yield={shears: 900 kN, hardening: 0.02}"
+    refused = rps("export", "small.yaml", "mujoco", *yields)
+    assert refused.exit_code == 2
+    assert "--set superstructure.yield=null" in refused.stderr
+    assert rps("export", "small.yaml", "opensees", "-o", "o", *yields).exit_code == 0
+    text = (workplace / "o" / "model.py").read_text(encoding="utf-8")
+    above = known(load_case("small.yaml").structure.superstructure)
+    assert f"SPRINGS = {[(9e5, k, 0.02) for k in above.stiffnesses.tolist()]}" in text
+    assert rps("export", "small.yaml", "opensees", "-o", "e").exit_code == 0
+    elastic = (workplace / "e" / "model.py").read_text(encoding="utf-8")
+    assert f"SPRINGS = {[(k, 0.0) for k in above.stiffnesses.tolist()]}" in elastic
 
 
 def test_vertical_motion_is_beside_the_model(workplace: Path, rps: Invoke) -> None:

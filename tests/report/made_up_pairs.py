@@ -24,7 +24,8 @@ def turned(kind: str = "rolls", angle: float | Array = ANGLE) -> TimeHistoryResu
 
     def along(part: Array) -> dict[str, Array]:
         found = {name: getattr(trace, name) for name in names}
-        return {n: part.reshape(-1, *[1] * (v.ndim - 1)) * v for n, v in found.items()}
+        shapes = {n: (-1, *[1] * (v.ndim - 1)) for n, v in found.items() if v is not None}
+        return found | {n: part.reshape(shape) * found[n] for n, shape in shapes.items()}
 
     azimuth = np.arctan2(np.sign(trace.rotation) * sine, np.sign(trace.rotation) * cosine)
     pair: dict[str, Any] = along(cosine) | {

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -35,6 +36,12 @@ def building(storeys: int, *, heights: bool = True) -> Superstructure:
     )
 
 
+def yielding(storeys: int = 2, hardening: float = 0.05) -> PodiumStructure:
+    """Storeys that yield below the shear at uplift."""
+    above = replace(building(storeys), strengths=np.full(storeys, 2e5), hardening=hardening)
+    return replace(structure(storeys=storeys), superstructure=above)
+
+
 def structure(
     bearing: Bearing = CURVED, storeys: int = 2, *, heights: bool = True
 ) -> PodiumStructure:
@@ -54,6 +61,7 @@ KINDS: dict[str, Callable[[], TimeHistoryResult]] = {
     "flat, one storey, no heights": lambda: history(
         structure(FLAT, 1, heights=False), "pulse:half_sine?amplitude=0.4g&period=0.6"
     ),
+    "yields": lambda: history(yielding(), "pulse:half_sine?amplitude=0.3g&period=0.6"),
     "frame": lambda: history(structure(FLAT, 0), "pulse:half_sine?amplitude=0.4g&period=0.6"),
 }
 

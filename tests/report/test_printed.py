@@ -20,7 +20,7 @@ from paper_structures import needs_compiled_kernels
 
 import rpscli
 from report.made_up_pairs import turned
-from report.small_results import CURVED, history, structure
+from report.small_results import CURVED, history, structure, yielding
 from report.test_public_figures import PANELS, panel
 from rpscli.analyses.modal import modal
 from rpscli.analyses.pushover import pushover
@@ -37,6 +37,7 @@ from rpscli.report.files import Drawing
 TITLE = "Eighteen hospitals at the river, of which each is compared with all of the others"
 NAME = "The hospital at the river, block {} of the second phase"
 ALPHA, SIX = "podium.bearing.slenderness", Path(__file__).parents[2] / "cases/six_storey.yaml"
+PULSE = "pulse:half_sine?amplitude=0.3g&period=0.6"
 RECORDS = [f"pulse:sine?amplitude=0.4g&period={period}" for period in (0.5, 2.0)]
 HAZARD = "PGV [cm/s],rate [1/year]\n2,0.2\n10,0.03\n50,0.001\n200,0.00001\n"
 LIMITS = {"rotation_ratio": [0.25, 0.5]}
@@ -129,12 +130,16 @@ def printed(drawing: Drawing, columns: int) -> list[str]:
 def test_figures_of_analyses_can_be_read(columns: int) -> None:
     devices = ViscousDamper(2e5), Stop(0.02, 4e6), Tendon(2e4, 1e6), FrictionDamper(1e5)
     made, look = replace(structure(CURVED, 6), devices=devices), Look(columns=columns)
-    result = history(made, "pulse:half_sine?amplitude=0.3g&period=0.6")
+    result = history(made, PULSE)
     draw = {"structure.png": lambda: structure_figure(made, TITLE)}
     files = [
         *figure_files(draw, look).items(),
         *bundles.timehistory_files(result, TITLE, look),
         *bundles.timehistory_files(turned(), TITLE, look),
+        *bundles.timehistory_files(turned("yields"), TITLE, look),
+        *bundles.timehistory_files(history(yielding(8), PULSE), TITLE, look),
+        *bundles.pushover_files(pushover(yielding(6)), TITLE, look),
+        *bundles.pushover_files(pushover(yielding(6, 0.0)), TITLE, look),
         *bundles.floor_spectra_files(result, TITLE, look),
         *bundles.pushover_files(pushover(made), TITLE, look),
         *bundles.modal_files(modal(made), TITLE, look),

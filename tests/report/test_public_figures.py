@@ -19,7 +19,7 @@ from matplotlib.figure import Figure
 from paper_structures import podium
 
 from report.made_up_pairs import turned
-from report.small_results import CURVED, curve, history, is_drawn, structure
+from report.small_results import CURVED, KINDS, curve, history, is_drawn, structure
 from rpscli import figures
 from rpscli.analyses.floor_spectra import fixed_base_floor_spectra, isolated_floor_spectra
 from rpscli.analyses.modal import modal
@@ -57,6 +57,7 @@ PANELS: dict[str, tuple[Callable[[], tuple[Any, ...]], str, str]] = {
     "elastic_displacements": (lambda: (result(),), TIME, "relative\nto the cap beam [m]"),
     "energy": (lambda: (result(),), TIME, "energy [kJ]"),
     "moment_rotation": (lambda: (result(),), "rotation $\\theta$ [rad]", "contact points [MN m]"),
+    "storey_loop": (lambda: (KINDS["yields"](), 1), "storey drift $d$ [mm]", "shear $f$ [kN]"),
     "storey_shears": (lambda: (result(),), "storey shear [MN]", "level (0 = cap beam)"),
     "storey_drifts": (lambda: (result(),), "storey drift ratio [%]", "level (0 = cap beam)"),
     "floor_accelerations": (lambda: (result(),), "floor acceleration [m/s²]", "level"),

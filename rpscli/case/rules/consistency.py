@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
-from rpscli.analyses.result_quantities import LIMITED
+from rpscli.analyses.result_quantities import LIMITED, YIELDING
 from rpscli.case.build import Masses, Shape, overturning_limit
 from rpscli.case.schema import case_file
 from rpscli.case.text.document import Document, Fault, path_of, shown
@@ -313,9 +313,14 @@ class Consistency:
                 text = f" needs a building, but {STOREYS} = 0{self._where(STOREYS)}"
                 yield _at_key(f"limits.{name}", f"{text}; remove the limit")
             return
-        if building.storey_height is None and _given(limits, "drift_ratio"):
-            text = " needs superstructure.storey_height, which is missing"
-            yield _at_key("limits.drift_ratio", text)
+        if building.storey_height is None:
+            for name in _given(limits, "drift_ratio", "residual_drift_ratio"):
+                text = " needs superstructure.storey_height, which is missing"
+                yield _at_key(f"limits.{name}", text)
+        if building.yields is None:
+            for name in _given(limits, *(q.name for q in YIELDING if q.limit)):
+                text = f" needs {YIELD}, strengths of storeys, which is missing; give it"
+                yield _at_key(f"limits.{name}", f"{text}, or remove the limit")
         needed = {
             "the overturning moment": ("podium.plan", self.file.podium.plan),
             "the shock of impacts": ("superstructure.vertical_period", building.vertical_period),

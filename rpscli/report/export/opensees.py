@@ -23,7 +23,7 @@ BEAM = {beam}  # kg: cap beam, and what of the columns moves with it
 PUSHED = {pushed}  # kg: what the ground's acceleration pushes
 MASSES = {masses}  # kg, from the bottom
 DAMPERS = {dampers}  # N s/m, between floors i and j; 0 is the cap beam
-SPRINGS = {springs}  # N/m, of the storeys
+SPRINGS = {springs}  # {meaning}
 DISPLACEMENTS = {displacements}  # m, of the cap beam
 FORCES = {forces}  # N, that hold it there
 LOSS = {loss}  # N s/m, for impacts
@@ -39,10 +39,10 @@ def build(ground, dt, released=0.0):
         ops.node(node, 0.0, "-mass", mass)
     ops.uniaxialMaterial("ElasticMultiLinear", 1, "-strain", *DISPLACEMENTS, "-stress", *FORCES)
     ops.element("zeroLength", 1, 0, 1, "-mat", 1, "-dir", 1)
-    springs = [(i, i + 1, stiffness, 0.0) for i, stiffness in enumerate(SPRINGS, 1)]
+    springs = [(i, i + 1, *law) for i, law in enumerate(SPRINGS, 1)]
     dashpots = [(i + 1, j + 1, 0.0, coefficient) for i, j, coefficient in DAMPERS]
     for tag, (i, j, *law) in enumerate([(0, 1, 0.0, LOSS), *springs, *dashpots], 2):
-        ops.uniaxialMaterial("Elastic", tag, *law)
+        ops.uniaxialMaterial("Steel01" if len(law) == 3 else "Elastic", tag, *law)
         ops.element("zeroLength", tag, i, j, "-mat", tag, "-dir", 1)
     for node in range(1, STOREYS + 2):
         ops.setNodeDisp(node, 1, released, "-commit")
@@ -103,11 +103,17 @@ def model_text(result: TimeHistoryResult, title: str, note: str) -> tuple[str, s
     n = len(C)
     dampers = [(0, i + 1, float(C[i].sum())) for i in range(n)]
     dampers += [(i + 1, j + 1, -float(C[i, j])) for i in range(n) for j in range(i + 1, n)]
-    stiffnesses = [] if above is None else above.stiffnesses.tolist()
+    springs: list[tuple[float, ...]] = []
+    springs += [] if above is None else [(k, 0.0) for k in above.stiffnesses.tolist()]
+    meaning = "N/m and N s/m, of the storeys"
+    if above is not None and above.strengths is not None:
+        meaning = "N, N/m and -, of the storeys: strength, stiffness, hardening"
+        laws = zip(above.strengths.tolist(), above.stiffnesses.tolist(), strict=True)
+        springs = [(*law, above.hardening) for law in laws]
     text = _MODEL.format(
         title=repr(title), limits=limits, storeys=structure.storeys,
         beam=moving, pushed=0.5 * structure.columns_mass + structure.cap_beam_mass,
-        masses=[] if above is None else above.masses.tolist(), springs=stiffnesses,
+        masses=[] if above is None else above.masses.tolist(), springs=springs, meaning=meaning,
         dampers=[each for each in dampers if abs(each[2]) > 1e-9 * abs(C).max()],
         displacements=displacements.tolist(), forces=forces.tolist(), loss=loss,
     )  # fmt: skip

@@ -86,7 +86,8 @@ def draw_accelerations(axes: style.Axes, result: TimeHistoryResult) -> None:
 def _series(result: TimeHistoryResult) -> Iterator[tuple[StoreyDemands, dict[str, Any]]]:
     yield isolated_demands(result), ISOLATED
     if (fixed := fixed_base_demands(result)) is not None:
-        yield fixed, FIXED
+        yields = {"label": f"{FIXED['label']}, elastic"} if result.structure.yields else {}
+        yield fixed, FIXED | yields
 
 
 def _stairs(axes: style.Axes, values: Array, look: dict[str, Any]) -> None:

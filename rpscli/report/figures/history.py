@@ -53,6 +53,8 @@ def in_plane(result: TimeHistoryResult, *, one_sided: bool = False) -> TimeHisto
     plane = trace.azimuth if one_sided else lean_azimuth(trace)
     along = {}
     for name in (each.name for each in fields(trace.y)):
+        if getattr(trace, name) is None:
+            continue
         x, y = getattr(trace, name), getattr(trace.y, name)
         cosine, sine = (of(plane).reshape(-1, *[1] * (x.ndim - 1)) for of in (np.cos, np.sin))
         along[name] = cosine * x + sine * y
@@ -97,7 +99,7 @@ def thinned(result: TimeHistoryResult) -> TimeHistoryResult:
         *trace.devices.force.T, *trace.devices.displacement.T,
         *(curve for of in (trace, trace.y) if of is not None for curve in (
             of.ground_acceleration, of.cap_beam_displacement, of.driving_moment,
-            *of.floor_displacements.T[floors],
+            *of.floor_displacements.T[floors], *(of.drifts.T if result.structure.yields else ()),
         )),
     )  # fmt: skip
     few, fixed = trace.at(kept), result.fixed_base
@@ -362,6 +364,9 @@ def _draw_longest(axes: style.Axes, result: TimeHistoryResult, factor: float) ->
         axes.annotate("", (x[place + 1], y[place + 1]), (x[place], y[place]), arrowprops=line)
 
 
+YIELDED = "#882255"
+"""What storeys dissipate by yielding; no device has this colour."""
+
 DEVICE_COLOURS = (style.RED, style.PINK, style.BLUE, style.GREY)
 """Of what each device dissipates, from the first on."""
 
@@ -386,6 +391,8 @@ def draw_energy(axes: style.Axes, result: TimeHistoryResult) -> None:
         energy = trace.devices.energy[:, index]
         name = f"device {index}: {device.kind.replace('_', ' ')}"
         parts.insert(index, (energy, name, DEVICE_COLOURS[index % len(DEVICE_COLOURS)]))
+    if result.structure.yields:
+        parts.insert(0, (trace.energy_yielded, "yielding of storeys", YIELDED))
     if result.structure.bed is not None:
         parts.insert(0, (trace.energy_bed, "dissipated in the joints", style.BLUE))
     if result.structure.upwards is not None:

@@ -115,6 +115,8 @@ CAPTIONS = {
     "moment_rotation": "Driving and restoring moment about the contact points against rotation.",
     "energy": "Balance of the energy supplied by the ground.",
     "storey_shears": "Largest storey shears on the bearings and on a fixed base.",
+    "storey_loops": "Shear of the springs of storeys that yield against their drift, and the lines"
+    " on which they yield.",
     "devices": "Force against displacement of each device between ground and cap beam.",
 }
 

@@ -11,12 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.analyses.neighbours import OTHER_LOSS, Neighbour
-from rpscli.analyses.result_quantities import HISTORY, PAIR, SAMPLED
+from rpscli.analyses.result_quantities import HISTORY, PAIR, SAMPLED, YIELDING
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.model.podium import PodiumStructure
 from rpscli.report.limits import limits_table
 from rpscli.report.table import Heading, Part, Table, measured, percent, shown
+from rpscli.report.tables.yielding import yielded_tables
 from rpscli.sweep.statistics.verdicts import Verdict
 
 OUTCOMES = {
@@ -28,7 +29,7 @@ OUTCOMES = {
     "failed": "the analysis failed",
 }
 
-QUANTITIES = {quantity.name: quantity for quantity in (*HISTORY, *SAMPLED, *PAIR)}
+QUANTITIES = {quantity.name: quantity for quantity in (*HISTORY, *YIELDING, *SAMPLED, *PAIR)}
 
 Row = tuple[str, str, str, str]
 
@@ -46,6 +47,7 @@ def timehistory_tables(
     yield outcome_table(result)
     if result.structure.storeys:
         yield storeys_table(result)
+    yield from yielded_tables(result)
     if result.devices:
         yield devices_table(result)
     if verdicts:
@@ -192,6 +194,7 @@ def outcome_table(result: TimeHistoryResult) -> Table:
     demands = fixed_base_demands(result)
     if demands is not None and demands.storey_drift_ratios is not None:
         rows.append(_row(result, "drift_ratio", fixed=float(max(demands.storey_drift_ratios))))
+    rows += _yielding(result)
     e = result.structure.restitution
     if not result.structure.bearing.is_spherical:
         rows.append(("restitution at impact e", shown(e), f"e2 = {shown(e * e)}", ""))
@@ -210,7 +213,7 @@ def outcome_table(result: TimeHistoryResult) -> Table:
     rows.append(_row(result, "friction_demand", of_friction))
     rows += _columns(result)
     rows += [_row(result, "duration"), *_energy(result)]
-    heads = ["", "on bearings", "normalised", "fixed base"]
+    heads = ["", "on bearings", "normalised", f"{_elastic(result)}fixed base"]
     if result.fixed_base is None:
         return Table.of_texts(heads[:3], [row[:3] for row in rows])
     return Table.of_texts(heads, rows)
@@ -222,6 +225,20 @@ def _row(
     _, unit, label, *_ = QUANTITIES[name]
     beside = "" if fixed is None else measured(fixed, unit)
     return label, measured(getattr(result, name), unit), normalised, beside
+
+
+def _yielding(result: TimeHistoryResult) -> list[Row]:
+    if not result.structure.yields:
+        return []
+    ratio = result.residual_drift_ratio
+    of_height = "" if ratio is None else f"{shown(ratio)} of the height"
+    rows = [_row(result, "ductility"), _row(result, "plastic_drift")]
+    return [*rows, _row(result, "residual_drift", of_height)]
+
+
+def _elastic(result: TimeHistoryResult) -> str:
+    """Begins the name of the fixed base, whose building never yields."""
+    return "elastic, " if result.structure.yields else ""
 
 
 def _azimuth(angle: float | None) -> list[Row]:
@@ -300,6 +317,7 @@ def _energy(result: TimeHistoryResult) -> list[Row]:
     parts = {
         "damped": energy.damped,
         **upwards,
+        **({"in storeys that yield": energy.yielded} if result.structure.yields else {}),
         **({"in devices": energy.devices} if result.structure.devices else {}),
         **({"in the joints": energy.bed} if result.structure.bed else {}),
         "lost at impacts": energy.impact,
@@ -326,7 +344,8 @@ def storeys_table(result: TimeHistoryResult) -> Table:
         for storey in reversed(range(result.structure.storeys))
     ]
     drift = "drift ratio" if ratio else "drift mm"
-    heads = ["storey", "shear kN", "fixed", drift, "fixed", "acceleration m/s2", "fixed"]
+    fixed = f"{_elastic(result)}fixed"
+    heads = ["storey", "shear kN", fixed, drift, fixed, "acceleration m/s2", fixed]
     return Table.of_texts(heads, rows)
 
 

@@ -11,6 +11,7 @@ from rpscli.report.table import Part, Table, shown
 
 if TYPE_CHECKING:
     from rpscli.analyses.pushover import PushoverResult
+    from rpscli.analyses.results import TimeHistoryResult
 
 UPPER = (
     "strengths go as the shears of the first mode, so upper storeys yield most: modes of uplifted"
@@ -57,3 +58,27 @@ def yielding_tables(result: PushoverResult) -> Iterator[Part]:
     yield Table.of_texts(heads, rows)
     if building.hardening == 0.0:
         yield "without hardening a curve ends where the first storey yields: it is a mechanism then"
+
+
+def yielded_tables(result: TimeHistoryResult) -> Iterator[Part]:
+    """What a history did to storeys that yield, the roof on top, and which of them yield most."""
+    building = result.structure.superstructure
+    if building is None or not building.yields:
+        return
+    columns = (
+        result.ductilities,
+        1e3 * result.plastic_drifts,
+        1e3 * result.residual_drifts,
+        1e-3 * result.energies_yielded,
+        result.first_yields,
+    )
+    rows = [
+        (str(storey + 1), *(shown(float(column[storey])) for column in columns))
+        for storey in reversed(range(building.storeys))
+    ]
+    heads = "ductility", "plastic drift mm", "residual mm", "yielded kJ", "first at s"
+    yield Table.of_texts(("storey", *heads), rows)
+    most = int(result.ductilities.argmax())
+    if most > 0 and result.ductilities[most] > 1.0:
+        reason = f": {UPPER}" if building.yields_by_first_mode else ""
+        yield f"storey {most + 1} yields most, more than the first one{reason}"

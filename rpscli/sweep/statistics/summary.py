@@ -68,7 +68,10 @@ def summary(table: Table, fixed: FixedBaseReferences) -> Summary:
         known_of = np.isfinite(values).reshape(len(lacks), -1).any(axis=1)
         values[np.repeat(lacks & ~known_of, table.layout.points_of_system)] = np.nan
     rows = (_row(table, known, each.points, each.failed, each.values) for each in found.groups)
-    return Summary(found.keys, found.pooled, found.notes, tuple(known), tuple(rows))
+    notes = [*found.notes]
+    if any("ductility" not in system.lacking for system in table.layout.properties):
+        notes.append("on the fixed base buildings stay elastic, also those whose storeys yield")
+    return Summary(found.keys, found.pooled, tuple(notes), tuple(known), tuple(rows))
 
 
 def summary_of_records(records: Records) -> Summary:

@@ -1,0 +1,157 @@
+"""What a history says of storeys that yield: samples, largest demands, energy, tables, limits."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from paper_structures import building, known, needs_compiled_kernels, podium, waves, yielding
+
+import rpscli
+from rpscli.analyses.demand import demand
+from rpscli.analyses.result_quantities import STOREYS_YIELDING, YIELDING
+from rpscli.analyses.results import TimeHistoryResult
+from rpscli.analyses.settings import TimeHistorySettings
+from rpscli.analyses.timehistory import time_history
+from rpscli.records.ground_motion import MotionComponents
+from rpscli.report.bundles import history_columns, storey_columns
+from rpscli.report.documents import timehistory_document
+from rpscli.report.tables.timehistory import timehistory_tables
+from rpscli.sweep.table import points_csv
+
+pytestmark = [
+    needs_compiled_kernels, pytest.mark.evidence("floors on springs, storeys that yield", "exact")
+]  # fmt: skip
+
+HEIGHTS = np.array([4.0, 3.0, 3.0])
+ABOVE = replace(yielding(building(3), 1.2 * podium(3).static_base_shear), storey_heights=HEIGHTS)
+STRUCTURE, ELASTIC = podium(3, superstructure=ABOVE), podium(3)
+RECORD, OTHER = waves(6.0, 0.002, 6.0, seed=12), waves(6.0, 0.002, 4.0, seed=3)
+SETTINGS = TimeHistorySettings(free_vibration=6.0)
+K, F = ABOVE.stiffnesses, known(ABOVE.strengths)
+
+
+@pytest.fixture(scope="module")
+def result() -> TimeHistoryResult:
+    return time_history(STRUCTURE, RECORD, SETTINGS)
+
+
+@pytest.fixture(scope="module")
+def pair() -> TimeHistoryResult:
+    across = replace(building(3, 0.5), strengths=1.3 * F, hardening=0.1)
+    both = replace(STRUCTURE, superstructure_y=across)
+    return time_history(both, MotionComponents(RECORD, y=OTHER), SETTINGS)
+
+
+def test_largest_demands_are_those_of_the_samples(result: TimeHistoryResult) -> None:
+    """Which are dense: within steps there is little more."""
+    trace, plastic = result.trace, known(result.trace.plastic_drifts)
+    largest = np.abs(trace.drifts).max(axis=0)
+    assert result.ductilities == pytest.approx(largest * K / F, rel=1e-3)
+    assert result.max_drifts == pytest.approx(largest, rel=1e-3)
+    assert trace.storey_shears == pytest.approx(K * (trace.drifts - plastic), abs=1e-6)
+    assert result.storey_shears == pytest.approx(np.abs(trace.storey_shears).max(axis=0), rel=1e-3)
+    assert result.plastic_drifts == pytest.approx(np.ptp(plastic, axis=0), rel=1e-9)
+    assert result.residual_drifts == pytest.approx(np.abs(plastic[-1]), rel=1e-9)
+    path = np.abs(np.diff(plastic, axis=0)).sum(axis=0)
+    assert result.energies_yielded == pytest.approx(F * path, rel=1e-2)
+    begins = [float(trace.time[np.flatnonzero(each)[0]]) for each in plastic.T]
+    assert np.all(np.abs(result.first_yields - begins) <= RECORD.dt)
+    assert result.ductility == result.ductilities.max() > 1.5
+    assert result.residual_drift_ratio == np.max(result.residual_drifts / HEIGHTS)
+    assert result.energy_yielded == result.energies_yielded.sum()
+    assert result.energy.yielded == pytest.approx(known(result.energy_yielded), rel=1e-9)
+    assert abs(result.energy.residual) < 1e-6 * result.energy.input
+    lines = np.abs(trace.storey_shears - 0.05 * K * trace.drifts)
+    assert np.all(lines <= 0.95 * F * (1.0 + 1e-9))  # none is beyond the lines on which it yields
+
+
+def test_largest_demands_need_no_samples(result: TimeHistoryResult) -> None:
+    alone = demand(STRUCTURE, RECORD, SETTINGS)
+    for quantity in (*YIELDING, *STOREYS_YIELDING):
+        one, other = (np.asarray(getattr(of, quantity.name)) for of in (alone, result))
+        assert np.array_equal(one, other), quantity.name
+
+
+def test_of_both_components_results_are_resultants_or_the_larger(pair: TimeHistoryResult) -> None:
+    x, y = pair.trace, known(pair.trace.y)
+    slips = np.stack([known(x.plastic_drifts), known(y.plastic_drifts)])
+    across = known(pair.structure.superstructure_y)
+    yields = np.stack([F / K, known(across.strengths) / across.stiffnesses])
+    drifts = np.abs(np.stack([x.drifts, y.drifts])).max(axis=1)
+    assert pair.ductilities == pytest.approx((drifts / yields).max(axis=0), rel=1e-2)
+    assert pair.plastic_drifts == pytest.approx(np.ptp(slips, axis=1).max(axis=0), rel=1e-9)
+    assert pair.residual_drifts == pytest.approx(np.hypot(*slips[:, -1]), rel=1e-9)
+    assert pair.max_drifts == pytest.approx(np.hypot(*drifts), rel=1e-2)
+    assert np.all(pair.max_drifts >= np.hypot(x.drifts, y.drifts).max(axis=0))
+    assert y.storey_shears == pytest.approx(across.stiffnesses * (y.drifts - slips[1]), abs=1e-6)
+
+
+def test_files_and_tables_have_them(result: TimeHistoryResult, pair: TimeHistoryResult) -> None:
+    document = timehistory_document(result)
+    for quantity in (*YIELDING, *STOREYS_YIELDING):
+        assert quantity.name in document
+    assert document["energy"]["yielded"] == result.energy.yielded
+    names = {column.name for column in storey_columns(result)}
+    assert {quantity.column for quantity in STOREYS_YIELDING} <= names
+    history = {column.name: column.values for column in history_columns(result)}
+    plastic = known(result.trace.plastic_drifts)
+    assert np.array_equal(history["storey_2_plastic_drift"], plastic[:, 1])
+    assert "storey_2_plastic_drift_y" in {column.name for column in history_columns(pair)}
+    assert "energy_yielded" in history
+    parts = [*timehistory_tables(result, (), "a title")]
+    told = " ".join(part for part in parts if isinstance(part, str))
+    assert "storey 3 yields most, more than the first one: strengths go as the shears" in told
+    assert "elastic, fixed base" in repr([part for part in parts if not isinstance(part, str)])
+
+
+def test_an_elastic_building_has_none_of_it() -> None:
+    elastic = time_history(ELASTIC, RECORD, SETTINGS)
+    names = {quantity.name for quantity in (*YIELDING, *STOREYS_YIELDING)}
+    document = timehistory_document(elastic)
+    assert not names & document.keys()
+    assert "yielded" not in document["energy"]
+    assert all(getattr(elastic, quantity.name) is None for quantity in YIELDING)
+    assert elastic.trace.plastic_drifts is None
+    heads = [column.name for column in (*history_columns(elastic), *storey_columns(elastic))]
+    assert not [head for head in heads if "plastic" in head or "yield" in head]
+    strong = replace(building(3), strengths=np.full(3, 1e12), hardening=0.5)
+    beyond = time_history(podium(3, superstructure=strong), RECORD, SETTINGS)
+    assert beyond.storey_shears == pytest.approx(elastic.storey_shears, rel=1e-9)
+    assert beyond.max_drifts == pytest.approx(elastic.max_drifts, rel=1e-9)
+    assert beyond.residual_drift == beyond.energy_yielded == 0.0
+    assert np.isnan(beyond.first_yields).all()
+
+
+def test_hardening_drives_back_what_has_not_come_to_rest() -> None:
+    """As long as the back force exceeds the strength; a record that ends in the first swing."""
+    soft = replace(building(1), strengths=np.array([1e5]), hardening=0.5)
+    pushed = replace(podium(1, superstructure=soft), bearing=podium(1, 0.8).bearing)
+    record = replace(RECORD, acceleration=np.linspace(0.0, 5.0, 200))
+    brief = time_history(pushed, record, TimeHistorySettings(free_vibration=0.0))
+    assert brief.driven_back == (1,)
+    assert any("hardening drives storey 1 back" in text for text in brief.warnings)
+    rested = time_history(pushed, record, TimeHistorySettings())
+    assert rested.driven_back == ()
+
+
+def test_studies_vary_strengths_and_judge_the_ductility() -> None:
+    case = Path(__file__).parents[2] / "cases" / "yielding_storeys.yaml"
+    asked = {
+        "rps": 1, "base": str(case), "records": ["pulse:sine?amplitude=0.5g&period=0.6"],
+        "vary": [{"superstructure.yield.ratio": [1.1, 30.0]}], "limits": {"ductility": 1.5},
+    }  # fmt: skip
+    points = rpscli.load_study(asked).run()
+    weak, strong = points["ductility"]
+    assert weak > 1.5
+    assert strong < 1.0
+    assert points["residual_drift_ratio"][1] == 0.0
+    assert [verdict.exceeded for verdict in points.judgements] == [True, False]
+    assert "on the fixed base buildings stay elastic, also those" in " ".join(points.notes)
+    heads = next(points_csv(points.results.table)).partition("\n")[0]
+    assert "residual_drift_ratio [-]" in heads
+    without = {"base": str(case.with_name("six_storey.yaml")), "limits": {"rotation_ratio": 1}}
+    elastic = rpscli.load_study(asked | without | {"vary": [{"superstructure.storeys": [3]}]})
+    assert "ductility" not in next(points_csv(elastic.run().results.table))
