@@ -98,6 +98,7 @@ class History:
         left = self.left
         spent = left.energy_damped + left.energy_lost + left.energy_stored
         spent += left.device_energy.sum() + left.device_stored.sum() + left.bed_energy
+        spent += left.energy_upwards + left.energy_yielded
         return float((left.energy_input - spent) / left.energy_input)
 
     def of_kind(self, kind: int) -> Record:

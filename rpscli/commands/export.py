@@ -55,6 +55,7 @@ def command(
     vertical = ground.vertical if program == "opensees" else None
     left = {"podium.devices": structure.devices, "record.vertical": vertical,
             "podium.contact": structure.bed,
+            "superstructure.vertical_period": structure.upwards,
             "superstructure.yield": structure.yields and program == "mujoco"}  # fmt: skip
     why = [f"{key} is not exported; remove it by --set {key}=null" for key in left if left[key]]
     if ground.y is not None:

@@ -18,7 +18,7 @@ from paper_structures import needs_compiled_kernels
 from two_components import followed, pair
 
 from hunt.trials import hunt, shares
-from rpscli.analyses.kernels.systems import most_seconds, uplifted_rate
+from rpscli.analyses.kernels.systems import most_seconds, steps_a_second
 from rpscli.analyses.largest_demands import Demand
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
@@ -165,7 +165,7 @@ def settings(random: Random, system: PodiumStructure, record: GroundMotion) -> T
     if random.random() < 0.15:
         share = random.choice([-1.0, 1.0]) * logarithmic(random, 1e-6, 0.95)
         start = share * system.critical_rotation
-    rate = uplifted_rate(system)
+    rate = steps_a_second(system)
     left = MOST_STEPS / rate - record.duration
     chosen = TimeHistorySettings(
         initial_rotation=start,
@@ -184,7 +184,13 @@ def residual(result: TimeHistoryResult) -> float:
     """
 
     def error(trace: Trace) -> float:
-        entries = trace.energy_input, trace.energy_damped, trace.energy_impact, trace.energy_stored
+        entries = (
+            trace.energy_input,
+            trace.energy_damped,
+            trace.energy_damped_vertical,
+            trace.energy_impact,
+            trace.energy_stored,
+        )
         largest = max(float(np.max(np.abs(entry))) for entry in entries)
         return abs(result.energy.residual) / largest if largest > 0.0 else 0.0
 
@@ -282,6 +288,34 @@ def smooth_structure_of_a_pair(random: Random) -> PodiumStructure:
     return system
 
 
+def with_floors_of_its_own(
+    random: Random, draw: Callable[[Random], PodiumStructure]
+) -> PodiumStructure:
+    """Floors on vertical springs, storeys that yield, or both."""
+    system, kind = draw(random), random.choice(["springs", "springs", "yields", "both"])
+    if (above := system.superstructure) is None:
+        return system
+    law = system.impact_law
+    if law.kind != "flexible":
+        law = ImpactLaw("flexible", loss=random.choice([1.0, random.uniform(0.0, 1.2)]))
+    if kind != "yields":
+        period = logarithmic(random, 0.02, 1.0)
+        damping = random.choice([0.0, 0.05, 0.05, random.uniform(0.0, 0.5)])
+        above = replace(above, vertical_period=period, vertical_damping=damping)
+    if kind != "springs":
+        shears = np.cumsum((above.masses * above.shapes[:, 0])[::-1])[::-1]
+        first = system.static_base_shear * logarithmic(random, 0.2, 5.0)
+        above = replace(
+            above,
+            strengths=first * shears / shears[0],
+            hardening=random.choice([0.0, 0.05, random.uniform(0.0, 0.9)]),
+        )
+    across = system.superstructure_y
+    if across is not None:
+        across = replace(above, stiffnesses=across.stiffnesses)
+    return replace(system, superstructure=above, superstructure_y=across, impact_law=law)
+
+
 def judged_pair(
     random: Random, drawn: Callable[[Random], PodiumStructure] = structure_of_a_pair
 ) -> str:
@@ -313,7 +347,7 @@ def judged_pair(
     if outcome == "failed":
         return f"failed: {(Demand(system, here.left).failure or '')[:40]}"
     at, left = here.samples, here.left
-    spent = at.energy_damped + at.energy_lost
+    spent = at.energy_damped + at.energy_upwards + at.energy_yielded + at.energy_lost
     sizes = (at.energy_input, at.energy_damped, at.energy_lost, at.energy_input - spent)
     largest = max(float(np.max(np.abs(size))) for size in sizes)
     error = abs(here.residual * float(left.energy_input)) if left.energy_input else 0.0
@@ -324,7 +358,8 @@ def judged_pair(
     there = followed(system, pair(-record.acceleration, -across, record.dt, up), chosen)
     assert there.left.outcome == left.outcome
     assert np.array_equal(there.samples.theta, at.theta)
-    assert np.array_equal(there.floors, -here.floors)
+    across = 2 * system.storeys  # what goes upwards is not mirrored
+    assert np.array_equal(there.floors[..., :across], -here.floors[..., :across])
     return outcome
 
 
@@ -380,3 +415,23 @@ def test_pairs_on_every_end(long: bool) -> None:
         return judged_pair(random, smooth_structure_of_a_pair)
 
     hunt("pairs on every end", trial, 6, 1000 if long else None)
+
+
+@needs_compiled_kernels
+@shares
+def test_floors_of_their_own(long: bool) -> None:
+    def trial(random: Random) -> str:
+        draw = random.choice([structure, structure, structure_on_a_bed])
+        return judged_history(random, lambda of: with_floors_of_its_own(of, draw))
+
+    hunt("floors of their own", trial, 8, 1000 if long else None)
+
+
+@needs_compiled_kernels
+@shares
+def test_pairs_under_floors_of_their_own(long: bool) -> None:
+    def trial(random: Random) -> str:
+        draw = random.choice([structure_of_a_pair, smooth_structure_of_a_pair])
+        return judged_pair(random, lambda of: with_floors_of_its_own(of, draw))
+
+    hunt("pairs under floors of their own", trial, 8, 1000 if long else None)
