@@ -9,6 +9,8 @@ Each entry point has a name, which users write, and belongs to one of these grou
   a `TargetSpectrum`, or raises `RecordError`;
 - `rpscli.reports`: a `Report` of studies, a class of `ReportOptions` with a function of
   `StudyResults` and such options that returns what was `Found`;
+- `rpscli.dampers`: a `DamperLaw`, a kind of `podium.devices` whose force numba compiles;
+- `rpscli.impact_laws`: a `RestitutionLaw`, a law of `podium.impact`, likewise;
 - `rpscli.figures`: a function that draws a result into axes, as those of `rpscli.figures` do;
   ``--figures png,NAME`` makes files of it.
 
@@ -24,6 +26,8 @@ from __future__ import annotations
 from rpscli.case.schema.fields import Quantity, Whole
 from rpscli.case.study.reports import ReportOptions
 from rpscli.errors import PluginError, RecordError
+from rpscli.model.devices import OwnDamper
+from rpscli.model.own import DamperLaw, RestitutionLaw
 from rpscli.records.formats import RecordFormat
 from rpscli.records.formats.record_text import RecordText
 from rpscli.records.ground_motion import GroundMotion
@@ -37,9 +41,11 @@ from rpscli.sweep.table import StudyResults, point_columns
 
 __all__ = [
     "Column",
+    "DamperLaw",
     "Found",
     "GroundMotion",
     "IntensityMeasure",
+    "OwnDamper",
     "PluginError",
     "Quantity",
     "RecordError",
@@ -47,6 +53,7 @@ __all__ = [
     "RecordText",
     "Report",
     "ReportOptions",
+    "RestitutionLaw",
     "StudyResults",
     "TargetSpectrum",
     "Whole",

@@ -230,8 +230,11 @@ def test_every_command_that_is_shown_has_a_test() -> None:
 
 
 @needs_compiled_kernels
-def test_the_python_example_runs(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    (example,) = (block.text for block in BLOCKS if block.language == "python")
+def test_the_python_examples_run(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    law, example = (block.text for block in BLOCKS if block.language == "python")
+    made: dict[str, Any] = {}
+    exec(compile(law, str(GUIDE), "exec"), made)  # noqa: S102 -- it is ours
+    assert made["OIL"].force(0.0, 0.2, 2e6, 3e5, 0.1) == 3e5 + 0.1 * 2e6 * 0.05
     exec(compile(example, str(GUIDE), "exec"), {})  # noqa: S102 -- it is ours
     first = capsys.readouterr().out.split()
     assert first[0] == "survived"

@@ -299,7 +299,7 @@ class Demand(Shown):
     @property
     def failure(self) -> str | None:
         """The reason why the history could not be carried to its end; None if it could."""
-        return failure_text(self.history)
+        return failure_text(self.history, self.structure)
 
     @property
     def overturned(self) -> bool:

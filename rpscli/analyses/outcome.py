@@ -7,6 +7,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from rpscli.model.devices import own_laws
+from rpscli.model.podium import PodiumStructure
 from rpscli.physics import state
 from rpscli.physics.state import Record
 
@@ -23,7 +25,7 @@ OUTCOMES: dict[int, Outcome] = {
 """Proper endings; every other code is a failure."""
 
 OUTCOME_WORDS = np.array(
-    [OUTCOMES.get(code, "failed") for code in range(state.FAILED_TOO_MANY_STEPS + 1)]
+    [OUTCOMES.get(code, "failed") for code in range(state.FAILED_RESTITUTION + 1)]
 )
 """By the codes of `physics.planar.state`, of which RUNNING counts from the end."""
 
@@ -53,6 +55,7 @@ REASONS = {
         "a viscous damper whose exponent is below 1 holds the cap beam so firmly that steps become"
         " too many; use a friction damper, a larger exponent or a smaller coefficient"
     ),
+    state.FAILED_RESTITUTION: "a restitution is not above 0 and at most 1",
 }
 
 
@@ -63,10 +66,12 @@ def outcomes_of(left: Record) -> NDArray[np.str_]:
     return np.asarray(np.where(held, "stays_tilted", words))
 
 
-def failure_text(history: Record) -> str | None:
+def failure_text(history: Record, structure: PodiumStructure) -> str | None:
     """Time, phase, rotation and reason of a failure; None if the history ended well."""
     reason = REASONS.get(int(history["outcome"]))
     if reason is None:
         return None
+    if own := [*own_laws(structure)]:
+        reason = f"{reason}; with laws of other packages: {', '.join(own)}"
     phase, theta = PHASE_NAMES[int(history["phase"])], history["rotation"] + 0.0
     return f"at t = {history['time']:.6g} s, {phase}, theta = {theta:.6g} rad: {reason}"

@@ -12,14 +12,16 @@ from rpscli.case.schema.case_file import (
     AnalysisSection,
     BearingSection,
     CaseFile,
+    DeviceSection,
     PodiumSection,
     SuperstructureSection,
 )
 from rpscli.model.bearing import Bearing, first_order_critical_curvature_ratio
 from rpscli.model.contact import USUAL_LOSS, Contact
-from rpscli.model.devices import DEVICES
-from rpscli.model.impact import ImpactLaw
-from rpscli.model.podium import PodiumStructure
+from rpscli.model.devices import DAMPERS, OwnDamper
+from rpscli.model.impact import IMPACT_LAWS, ImpactLaw
+from rpscli.model.own import DamperLaw
+from rpscli.model.podium import Device, PodiumStructure
 from rpscli.model.superstructure import (
     VERTICAL_DAMPING,
     ModalDamping,
@@ -64,9 +66,12 @@ def bearing_of(section: BearingSection, shape: Shape) -> Bearing:
 def impact_law_of(section: PodiumSection) -> ImpactLaw:
     """The impact law; how much it loses goes by the contact unless the case says it."""
     given = section.impact.model_dump(exclude={"law", "loss"})
-    loss = section.impact.loss
+    name, loss, own = section.impact.law, section.impact.loss, IMPACT_LAWS[section.impact.law]
+    if own is not None:
+        given |= {"own": own, "constants": tuple(given.pop(each) for each in own.constants)}
+        loss = 1.0 if loss is None else loss
     loss = USUAL_LOSS[section.contact.kind] if loss is None else loss
-    return ImpactLaw(section.impact.law, loss=loss, **given)
+    return ImpactLaw(name, loss=loss, **given)
 
 
 class Masses(NamedTuple):
@@ -122,16 +127,21 @@ def structure_of(
         superstructure=building(floors, at_uplift),
         impact_law=law,
         gravity=file.analysis.gravity,
-        devices=tuple(
-            DEVICES[section.kind](**section.model_dump(exclude={"kind"}, exclude_none=True))
-            for section in podium.devices
-        ),
+        devices=tuple(map(device_of, podium.devices)),
         columns=podium.columns or 1,
         friction=podium.friction,
         rows=() if plan is None else plan.rows or (0.0, plan.length or 0.0),
         superstructure_y=None if across is None else building(across, at_uplift),
         contact=Contact(**podium.contact.model_dump()),
     )
+
+
+def device_of(section: DeviceSection) -> Device:
+    """A device, of ours or of another package."""
+    law, given = DAMPERS[section.kind], section.model_dump(exclude={"kind"}, exclude_none=True)
+    if not isinstance(law, DamperLaw):
+        return law(**given)
+    return OwnDamper(section.kind, law, tuple(given[name] for name in law.constants))
 
 
 def building(section: SuperstructureSection, at_uplift: float) -> Superstructure | None:

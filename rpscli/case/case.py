@@ -118,7 +118,9 @@ class Case(Shown):
     @cached_property
     def document(self) -> dict[str, Any]:
         """The case in SI units with all defaults written out; JSON-able, and a case again."""
-        content = self.file.model_dump(mode="json", exclude_none=True, by_alias=True)
+        content = self.file.model_dump(
+            mode="json", exclude_none=True, by_alias=True, serialize_as_any=True
+        )
         building = content["superstructure"]
         if building["storeys"] == 0:
             content["superstructure"] = {"storeys": 0}

@@ -220,12 +220,14 @@ def _options(word: str) -> Iterator[Entry]:
 
 def _offers(word: str) -> Iterator[Offer]:
     """Items of other packages: all for the word plugins, else those of that name."""
+    from rpscli.model.devices import DAMPERS
+    from rpscli.model.impact import IMPACT_LAWS
     from rpscli.records.formats import FORMATS
     from rpscli.records.measures import MEASURES
     from rpscli.records.target import CODES
     from rpscli.report.figures.look import FIGURES
     from rpscli.report.study.registry import REPORTS
 
-    for registry in (FORMATS, MEASURES, CODES, REPORTS, FIGURES):
+    for registry in (FORMATS, MEASURES, CODES, REPORTS, FIGURES, DAMPERS, IMPACT_LAWS):
         if word == PLUGINS or (word not in registry and word in registry.names()):
             yield from (each for each in registry.offers() if word in {PLUGINS, each.name})

@@ -54,7 +54,7 @@ def command(
     structure = given.case.structure
     vertical = ground.vertical if program == "opensees" else None
     left = {"podium.devices": structure.devices, "record.vertical": vertical,
-            "podium.contact": structure.bed,
+            "podium.contact": structure.bed, "podium.impact": structure.impact_law.own,
             "superstructure.vertical_period": structure.upwards,
             "superstructure.yield": structure.yields and program == "mujoco"}  # fmt: skip
     why = [f"{key} is not exported; remove it by --set {key}=null" for key in left if left[key]]

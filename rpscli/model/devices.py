@@ -8,8 +8,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rpscli.errors import PluginError
 from rpscli.model.bearing import Bearing, UpliftedState
+from rpscli.model.own import DamperLaw, OwnLaw
 from rpscli.model.podium import Array, AtRest, Consequence, Device, Linear, PodiumStructure
+from rpscli.registry import Registry
 
 
 @dataclass(frozen=True)
@@ -285,6 +288,68 @@ class RollingResistance(Device):
         yield Consequence("uplift_share", "over W tan(alpha)", "-", share)
 
 
+@dataclass(frozen=True)
+class OwnDamper(Device):
+    """A damper whose law another package adds.
+
+    Parameters
+    ----------
+    name
+        Its kind in a case.
+    law
+        What it does.
+    values
+        Of its constants, in their order.
+    """
+
+    name: str
+    law: DamperLaw
+    values: tuple[float, ...]
+
+    results = ("max_damper_force",)
+
+    def __post_init__(self) -> None:
+        if force := self.law.force(0.1, 0.0, *self.values):
+            raise PluginError(
+                f"damper {self.name}: its force at rest, at a displacement of 0.1 m, is"
+                f" {force:g} N, and must be 0; friction and stops are kinds of rps"
+            )
+
+    @property
+    def kind(self) -> str:
+        return self.name
+
+    def constants(self, structure: PodiumStructure) -> tuple[float, ...]:
+        return self.values
+
+    def at_rest(self, structure: PodiumStructure, rotation: Array, farthest: float) -> AtRest:
+        return AtRest()
+
+    def stiffness_after_uplift(self, structure: PodiumStructure) -> float:
+        return 0.0
+
+    def linear(self, structure: PodiumStructure, state: UpliftedState) -> Linear:
+        if self.law.linear is None:
+            return Linear(left_out=f"dampers of kind {self.name}, which have a kink at rest")
+        return Linear(damping=self.law.linear(*self.values) * state.height**2)
+
+    def bounds(self, structure: PodiumStructure) -> tuple[float, float]:
+        stiffness = 0.0 if self.law.stiffness is None else self.law.stiffness(*self.values)
+        return stiffness, self.law.damping(*self.values)
+
+    def consequences(self, structure: PodiumStructure) -> Iterator[Consequence]:
+        return iter(())
+
+
+def own_laws(structure: PodiumStructure) -> dict[str, OwnLaw]:
+    """Laws of other packages that a structure has, by their names."""
+    laws: dict[str, OwnLaw] = {
+        device.kind: device.law for device in structure.devices if isinstance(device, OwnDamper)
+    }
+    own = structure.impact_law.own
+    return laws if own is None else {**laws, structure.impact_law.kind: own}
+
+
 def _require_positive(**values: float) -> None:
     for name, value in values.items():
         if not 0.0 < value < math.inf:
@@ -315,3 +380,6 @@ DEVICES: dict[str, type[Device]] = {
     RollingResistance.kind: RollingResistance,
 }
 """Laws by their names in a case, in the order of the kernels' codes."""
+
+DAMPERS: Registry[type[Device] | DamperLaw] = Registry("dampers", {**DEVICES}, DamperLaw)
+"""The same, and what other packages add."""

@@ -4,11 +4,19 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, get_args
 
+from rpscli.errors import PluginError
 from rpscli.model.bearing import Bearing
+from rpscli.model.own import RestitutionLaw
+from rpscli.registry import Registry
 
 ImpactKind = Literal["flexible", "rigid", "value"]
+
+IMPACT_LAWS: Registry[RestitutionLaw | None] = Registry(
+    "impact_laws", dict.fromkeys(get_args(ImpactKind)), RestitutionLaw
+)
+"""Ours by their names, and what other packages add."""
 
 CONTACT_TIME = 2e-3
 """Duration of an impact [s]: a joint that settles by D_0 under the building has sqrt(2 D_0/g), that
@@ -16,6 +24,9 @@ is 2 to 4.5 ms of 20 to 100 um; it moves the medians of many pairs by less than 
 
 LONGEST_CONTACT = 0.02
 """Longest impact [s]; beyond it a pass would no longer be short against the motion."""
+
+SMALL_RATE = 1e-3
+"""Rate of the tilt at which a law of another package gives the one e of tables [rad/s]."""
 
 
 @dataclass(frozen=True)
@@ -27,7 +38,7 @@ class ImpactLaw:
     kind
         ``flexible``: storey springs carry no impulse, so the floors keep their absolute velocities.
         ``rigid``: all floors jump with the cap beam (paper, Eq. 6). ``value``: e is measured; the
-        floors jump as in ``rigid``.
+        floors jump as in ``rigid``. Another name: that of the law `own`.
     restitution
         e of the law ``value``.
     factor
@@ -39,21 +50,28 @@ class ImpactLaw:
     contact_time
         t_c, how long an impact takes [s], 0 to 20 ms. Only motions in both horizontal directions
         ask for it: of a pass near upright it decides how much is lost as at an impact.
+    own
+        The law of another package, whose e goes by the rate of the tilt; floors keep their
+        velocities. Where one number is asked for it is that at 0.001 rad/s.
+    constants
+        Of that law, in their order.
 
     Notes
     -----
     Theory (4.5), (4.9). The paper's coefficient c is e^2.
     """
 
-    kind: ImpactKind = "flexible"
+    kind: str = "flexible"
     restitution: float | None = None
     factor: float = 1.0
     loss: float = 1.0
     contact_time: float = CONTACT_TIME
+    own: RestitutionLaw | None = None
+    constants: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
         """Refuse other words, and an e that the law does not take or lacks."""
-        if self.kind not in ("flexible", "rigid", "value"):
+        if (self.kind in get_args(ImpactKind)) == (self.own is not None):
             raise ValueError(f"impact law {self.kind!r} must be flexible, rigid or value")
         if (self.kind == "value") != (self.restitution is not None):
             raise ValueError("a restitution is needed with the impact law `value`, only there")
@@ -65,7 +83,7 @@ class ImpactLaw:
     @property
     def floors_jump(self) -> bool:
         """True if the floors take part in the velocity jump of the cap beam."""
-        return self.kind != "flexible"
+        return self.kind != "flexible" and self.own is None
 
     def ratio(self, bearing: Bearing, gamma: float, eta: float) -> float:
         """Restitution e = theta'+/theta'- of a bearing with mass ratios gamma and eta.
@@ -88,8 +106,15 @@ class ImpactLaw:
         0.95604
         """
         law = {"rigid": rigid_restitution, "flexible": flexible_restitution}.get(self.kind)
-        if law is not None:
-            return self.factor * (1.0 - self.loss * (1.0 - law(bearing, gamma, eta)))
+        e = None if law is None else law(bearing, gamma, eta)
+        if self.own is not None:
+            given = SMALL_RATE, bearing.slenderness, bearing.inertia_ratio, gamma, eta
+            e = self.own.restitution(*given, *self.constants)
+            if not 0.0 < e <= 1.0:
+                text = f"{self.kind}: its restitution is {e:g} at a rate of {SMALL_RATE:g} rad/s"
+                raise PluginError(f"impact law {text}, and must be above 0 and at most 1")
+        if e is not None:
+            return self.factor * (1.0 - self.loss * (1.0 - e))
         assert self.restitution is not None, "the law `value` has one"
         return self.factor * self.restitution
 

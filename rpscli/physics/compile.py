@@ -8,6 +8,7 @@ what is found there always belongs to the program that runs.
 from __future__ import annotations
 
 import hashlib
+import inspect
 import math
 import re
 import warnings
@@ -17,13 +18,14 @@ from fractions import Fraction
 from functools import cache
 from io import BytesIO
 from pathlib import Path
-from typing import Any, TypeVar, cast
+from typing import Any, TypeAlias, TypeVar, cast
 
 import numba
 from numba.core import cgutils, types
 from numba.core.caching import IndexDataCacheFile
 from numba.extending import intrinsic, overload, register_jitable
 
+from rpscli.errors import PluginError
 from rpscli.user_cache import VARIABLE, alone_in, is_private, user_cache
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -231,6 +233,71 @@ _view: Any = _without_owner
 overload(borrowed, jit_options=cast("Any", OPTIONS), strict=False)(
     lambda _: lambda array: _view(array)  # noqa: PLW0108 -- a function is asked for
 )
+
+
+# Laws of other packages are called by their addresses, which differ from process to process: they
+# stand in records, and machine code on disk knows none.
+
+LAW_NUMBERS = 9
+"""Numbers that such a law is called with; those behind what it takes are left off."""
+
+Numbers: TypeAlias = tuple[float, float, float, float, float, float, float, float, float]
+_laws: dict[int, Callable[..., float]] = {}
+
+
+def own_law(address: int, given: Numbers) -> float:
+    """Call a law of another package by its address."""
+    return float(_laws[int(address)](*given))
+
+
+@intrinsic
+def _by_address(_typing: Any, address: Any, given: Any) -> Any:
+    def code(context: Any, builder: Any, _signature: Any, arguments: Any) -> Any:
+        tools: Any = cgutils
+        number = context.get_value_type(types.float64)
+        law = tools.ir.FunctionType(number, [number] * LAW_NUMBERS).as_pointer()
+        numbers = [builder.extract_value(arguments[1], i) for i in range(LAW_NUMBERS)]
+        return builder.call(builder.inttoptr(arguments[0], law), numbers)
+
+    return types.float64(address, given), code
+
+
+_call: Any = _by_address
+overload(own_law, jit_options=cast("Any", OPTIONS), strict=False)(
+    lambda *_: lambda address, given: _call(address, given)  # noqa: PLW0108 -- a function is asked for
+)
+
+
+@cache
+def address_of(function: Callable[..., float] | None, taken: int) -> int:
+    """Where machine code of a law of so many numbers stands while this process lasts; 0 of none.
+
+    It takes a second to make. What a law raises is NaN. Raises PluginError with what numba says.
+    """
+    if function is None:
+        return 0
+    plain, no_code = inspect.unwrap(function), cast("Any", numba.config).DISABLE_JIT
+    called = plain if no_code else numba.njit(plain, error_model="numpy")
+
+    def law(
+        a: float, b: float, c: float, d: float, e: float, f: float, g: float, h: float, i: float
+    ) -> float:
+        try:
+            return called(*(a, b, c, d, e, f, g, h, i)[:taken])  # type: ignore[no-any-return]
+        except Exception:  # noqa: BLE001 -- of others
+            return math.nan
+
+    made, address = law, 1 + len(_laws)
+    if not no_code:
+        try:
+            made = numba.cfunc(types.float64(*[types.float64] * LAW_NUMBERS))(law)
+        except Exception as error:  # noqa: BLE001 -- of others
+            lines = [line for line in str(error).splitlines() if not line.startswith("Failed in")]
+            place, said = f"{plain.__module__}.{plain.__qualname__}", (lines or [repr(error)])[0]
+            raise PluginError(f"{place} cannot be compiled by numba: {said}") from None
+        address = int(made.address or 0)
+    _laws[address] = made
+    return address
 
 
 _compiled_here: set[str] = set()

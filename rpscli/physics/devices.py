@@ -15,7 +15,7 @@ import math
 from typing import NamedTuple
 
 from rpscli.physics import geometry
-from rpscli.physics.compile import compiled
+from rpscli.physics.compile import compiled, own_law
 from rpscli.physics.ground import log_event
 from rpscli.physics.laws import (
     beam_rates,
@@ -40,6 +40,7 @@ from rpscli.physics.state import (
     FRICTION_FORCE,
     FULL_CONTACT,
     IDLE,
+    OWN,
     ROLLING_MOMENT,
     ROLLING_RESISTANCE,
     SLOTS,
@@ -134,10 +135,21 @@ def tension(s: Record, l: int, i: int, e: float) -> float:
 
 
 @compiled
-def drag_of(s: Record, l: int, i: int, speed: float) -> float:
+def own(s: Record, l: int, i: int, which: int, path: float, speed: float) -> float:
+    """Force (0) or watched value (1) of a law of another package."""
+    of = s.law
+    u, v = max(path, 0.0), max(speed, 0.0)  # a step may try what is beyond upright
+    given = (u, v, of[i, 0, l], of[i, 1, l], of[i, 2, l], of[i, 3, l], 0.0, 0.0, 0.0)
+    return own_law(s.own_law[i, which, l], given)
+
+
+@compiled
+def drag_of(s: Record, l: int, i: int, path: float, speed: float) -> float:
     """Resistance of what acts along the velocity, over |u_b'|; else 0 [N s/m]."""
     if s.device_kind[i, l] == FRICTION and ways_of(s) == 2:
         return float(s.law[i, FRICTION_FORCE, l] / max(speed, 1e-150))
+    if s.device_kind[i, l] == OWN:
+        return own(s, l, i, 0, path, speed) / max(speed, 1e-150)
     if s.device_kind[i, l] != VISCOUS:
         return 0.0
     exponent = s.law[i, DAMPER_EXPONENT, l] - 1.0
@@ -163,9 +175,9 @@ def resistance(s: Record, l: int, i: int, path: float, along: float) -> float:
 def power_of(s: Record, l: int, i: int, at: Worked) -> float:  # noqa: PLR0911 -- a law each
     """What a device dissipates [W]."""
     kind = s.device_kind[i, l]
-    if kind == VISCOUS or (kind == FRICTION and ways_of(s) == 2):
+    if kind in (VISCOUS, OWN) or (kind == FRICTION and ways_of(s) == 2):
         speed = math.sqrt(at.along * at.along + at.across * at.across)
-        return drag_of(s, l, i, speed) * (speed * speed)
+        return drag_of(s, l, i, at.path, speed) * (speed * speed)
     if kind == FRICTION:
         return float(s.direction[l] * s.law[i, FRICTION_FORCE, l] * at.along)
     if kind == ROLLING_RESISTANCE:
@@ -187,7 +199,7 @@ def act(s: Record, l: int, at: Worked) -> None:
     speed = math.sqrt(at.along * at.along + at.across * at.across)
     drag, resisting, tense = 0.0, 0.0, 0.0
     for i in range(s.devices[l]):
-        drag += drag_of(s, l, i, speed)
+        drag += drag_of(s, l, i, at.path, speed)
         resisting += resistance(s, l, i, at.path, at.along)
         tense += s.columns[l] * tension(s, l, i, at.e)
     rolls, across = s.direction[l] * s.friction_moment[l], 0.0
@@ -260,6 +272,10 @@ def load_devices(s: Record, l: int, system: Record) -> None:
         s.device_force[i, l], s.device_velocity[i, l], s.device_energy[i, l] = 0.0, 0.0, 0.0
         for k in range(4):
             s.law[i, k, l] = of[k]
+        for k in range(2):
+            s.own_law[i, k, l] = system.own_law[i, k]
+        if system.own_law[i, 2] == 1:
+            s.kinks[l] = 1.0
         turns = ways_of(s) == 2 and kind in (FRICTION, ROLLING_RESISTANCE)
         if turns or (kind == VISCOUS and of[DAMPER_EXPONENT] != 1.0):
             s.kinks[l] = 1.0
@@ -296,6 +312,7 @@ def release_devices(s: Record, l: int) -> None:
         elif kind == TENDON and tension(s, l, i, at.e) > s.law[i, TENDON_YIELD, l]:
             s.branch[i, l] = BEYOND
     reset_yielded_tendons(s, l)
+    find_branches(s, l)
 
 
 UNLOADED = 1e-12
@@ -370,7 +387,7 @@ def watched(  # noqa: PLR0911 -- a law each
         value = sign * (stiffness * beyond + damping * along)
         return True, value, sign * (stiffness * along + damping * faster)
     if kind != TENDON or branch == BEYOND:
-        return False, 0.0, 0.0
+        return watched_by_own(s, l, i, end) if not second else (False, 0.0, 0.0)
     limit, stiffness = s.law[i, TENDON_YIELD, l], s.law[i, TENDON_STIFFNESS, l]
     if second and (branch == IDLE or limit == math.inf):
         return False, 0.0, 0.0
@@ -378,6 +395,37 @@ def watched(  # noqa: PLR0911 -- a law each
     tense = s.law[i, TENDON_PRESTRESS, l] + stiffness * (e - s.permanent[i, l])
     sign = -1.0 if second or branch == IDLE else 1.0  # tight, or slack; second, not yielding
     return True, (limit - tense if second else sign * tense), sign * stiffness * lever * p
+
+
+NEARBY = 1e-5
+"""Of the sampling interval, to either side: slopes of what own laws watch are found by it."""
+
+
+@compiled
+def watched_by_own(s: Record, l: int, i: int, end: int) -> tuple[bool, float, float]:
+    """What a law of another package watches, positive on its branch, and the slope in time."""
+    if s.device_kind[i, l] != OWN or s.own_law[i, 1, l] == 0:
+        return False, 0.0, 0.0
+    sign = 1.0 if s.branch[i, l] == WORKING else -1.0
+    x, p = (s.new_x[l], s.new_v[l]) if end > 0 else (s.x[l], s.v[l])
+    path, diameter = s.diameter[l] * path_at(s, l, x), s.diameter[l]
+    out = diameter * place_of(s, l, x).C * p
+    u_x, u_y, faster_x, faster_y = beam_rates(s, l, end)
+    speed, near = math.sqrt(u_x * u_x + u_y * u_y), NEARBY * s.dt[l]
+    faster = (u_x * faster_x + u_y * faster_y) / max(speed, 1e-150)
+    later = own(s, l, i, 1, path + near * out, speed + near * faster)
+    before = own(s, l, i, 1, path - near * out, speed - near * faster)
+    return True, sign * own(s, l, i, 1, path, speed), sign * (later - before) / (2.0 * near)
+
+
+@compiled
+def find_branches(s: Record, l: int) -> None:
+    """Own laws follow the branch on whose side of zero their watched value is: after a jump."""
+    for i in range(s.devices[l]):
+        if s.device_kind[i, l] == OWN and s.own_law[i, 1, l] != 0:
+            at = worked(s, l, tilt_of(s, l), rate_of(s, l))
+            speed = math.sqrt(at.along * at.along + at.across * at.across)
+            s.branch[i, l] = WORKING if own(s, l, i, 1, at.path, speed) >= 0.0 else BEYOND
 
 
 @compiled
@@ -400,6 +448,8 @@ def change_law(s: Record, l: int, log: Record, which: int) -> bool:
             branch = IDLE
         else:
             branch, event = WORKING, STOP_MET
+    elif s.device_kind[i, l] == OWN:
+        branch = BEYOND if branch == WORKING else WORKING
     elif second:
         branch, event = BEYOND, TENDON_YIELDING
     elif branch == WORKING:
@@ -442,8 +492,8 @@ def device_at(s: Record, l: int, i: int, at: Worked) -> tuple[float, float, floa
         return moment / (s.diameter[l] * at.C), speed, at.path
     if kind == FRICTION and ways_of(s) == 2:
         return s.law[i, FRICTION_FORCE, l], speed, at.path
-    if kind == VISCOUS:
-        return drag_of(s, l, i, abs(speed)) * speed, speed, at.path
+    if kind in (VISCOUS, OWN):
+        return drag_of(s, l, i, at.path, abs(speed)) * speed, speed, at.path
     return resistance(s, l, i, at.path, at.along), at.along, at.path
 
 

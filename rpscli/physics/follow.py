@@ -19,6 +19,7 @@ from rpscli.physics.demands import observe, observe_start
 from rpscli.physics.devices import (
     SLOWING,
     change_law,
+    find_branches,
     has_friction,
     load_devices,
     release_devices,
@@ -372,6 +373,8 @@ def look_after(s: Record, l: int, systems: Record, output: Output) -> bool:
             renew(s, l)
         if s.outcome[l] != RUNNING or too_many(s, l, system):
             return True
+        if kind != CHANGE:
+            find_branches(s, l)
         observe_start(s, l)
     else:
         if s.interval[l] + 1 == s.npts[l]:  # the ground acceleration may jump to zero
@@ -657,7 +660,7 @@ def load_system(s: Record, l: int, system: Record) -> None:
     s.excess_beta[l] = system.beta - math.sin(system.beta)
     s.half_width[l] = system.R * math.sin(system.alpha)
     s.arc_radius[l] = system.R * system.rolling[2] if system.beta > 0.0 else 0.0
-    s.theta_cr[l], s.restitution[l] = system.theta_cr, system.restitution
+    s.theta_cr[l] = system.theta_cr
     s.contact_time[l], s.shock_time[l] = system.contact_time, system.shock_time
     s.step_error[l], s.bend_ratio[l] = system.step_error, system.bend_ratio
 

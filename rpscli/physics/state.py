@@ -46,7 +46,7 @@ SLOTS = 8
 """Devices that a structure may have."""
 
 # Kinds of device.
-VISCOUS, FRICTION, STOP, TENDON, ROLLING_RESISTANCE = range(5)
+VISCOUS, FRICTION, STOP, TENDON, ROLLING_RESISTANCE, OWN = range(6)
 
 # Where the constants of their laws stand in `device_constants`.
 DAMPER_COEFFICIENT, DAMPER_EXPONENT = range(2)  # c, a
@@ -56,7 +56,8 @@ TENDON_PRESTRESS, TENDON_STIFFNESS, TENDON_YIELD = range(3)  # P_0, k_t, P_y of 
 ROLLING_MOMENT = 0  # 2 W f
 
 # Branches of a device's law: of a stop with its gap open, pushing back, let go before its gap; of
-# a tendon slack, elastic, yielding. The others have one.
+# a tendon slack, elastic, yielding; of an own law what it watches above zero or below. The others
+# have one.
 IDLE, WORKING, BEYOND = range(3)
 
 # Phases of motion; STUCK is held by friction while tilted, BEDDED in full contact that gives way.
@@ -93,7 +94,8 @@ RUNNING = -1
     FAILED_TOO_MANY_EVENTS,
     FAILED_STEP_TOO_SMALL,
     FAILED_TOO_MANY_STEPS,
-) = range(8)
+    FAILED_RESTITUTION,
+) = range(9)
 
 # Where a step is to end: the tilt leaves its range, passes nearest to upright; a storey at rest is
 # no longer held; a device changes its law; a storey begins to yield, or ends.
@@ -199,8 +201,11 @@ SYSTEM = (
         bedded_rate="likewise in full contact on a bed",
         bed_c="damping of full contact, over N m_c R^2",
     ),
-    Field("device_kind", f"{SLOTS}", WHOLE, "VISCOUS to ROLLING_RESISTANCE"),
+    Field("device_kind", f"{SLOTS}", WHOLE, "VISCOUS to OWN"),
     Field("device_constants", f"{SLOTS} 4", "mixed", "of its law, see the kinds"),
+    Field("own_law", f"{SLOTS} 3", WHOLE, "addresses of force and watched value; 1: kink at rest"),
+    Field("impact_law", "", WHOLE, "address of an own law of e, or 0"),
+    Field("impact_constants", "6", "mixed", "of it: a, b of e = a + b e_own, and four of its own"),
     Field("linear_speed", "", "m/s", "up to which |u_b'|^a is followed as linear"),
     Field("start_speed", "", "m/s", "|u_b'| with which a tilt to any side begins to slide"),
     *_fields(
@@ -244,7 +249,6 @@ STATE = (
         sin_beta="sine of beta",
         excess_beta="beta - sin(beta)",
         kappa="sqrt(K(0)/A(0)) of passes near upright",
-        restitution="e",
         step_error="see `system`",
     ),
     *_fields("lanes", "1/m", weigh="(1 + 2 gamma + 2 gamma eta)/R", load="(1 + 2 gamma)/R"),
@@ -371,6 +375,7 @@ STATE = (
     *_fields("lanes", WHOLE, devices="number of devices", tendons="of tendons in a column"),
     Field("device_kind", f"{SLOTS} lanes", WHOLE, "see `system`"),
     Field("law", f"{SLOTS} 4 lanes", "mixed", "`device_constants` of `system`"),
+    Field("own_law", f"{SLOTS} 2 lanes", WHOLE, "addresses, see `system`"),
     Field("branch", f"{SLOTS} lanes", WHOLE, "IDLE, WORKING or BEYOND"),
     Field("permanent", f"{SLOTS} lanes", "m", "plastic elongation of a tendon"),
     *_fields("lanes", "-", columns="N", kinks="1: a force has a kink at u_b' = 0"),

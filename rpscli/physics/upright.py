@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 
 from rpscli.physics.bed import enter_on_bed, first_phase, impact_number
-from rpscli.physics.compile import compiled
+from rpscli.physics.compile import compiled, own_law
 from rpscli.physics.devices import begin_excursion, has_friction, take_up_stops
 from rpscli.physics.friction import force_at_rest, set_limits
 from rpscli.physics.ground import ground_now, log_event
@@ -36,6 +36,7 @@ from rpscli.physics.laws import (
 )
 from rpscli.physics.state import (
     BEDDED,
+    FAILED_RESTITUTION,
     FULL_CONTACT,
     IMPACT,
     PASS,
@@ -127,6 +128,19 @@ def change_rate(s: Record, l: int, system: Record, p: float, q: float) -> float:
 
 
 @compiled
+def restitution_at(s: Record, l: int, system: Record, rate: float) -> float:
+    """e at a rate of the tilt; what an own law gives outside of (0, 1] ends the history."""
+    if system.impact_law == 0:
+        return float(system.restitution)
+    of, tan_a = system.impact_constants, math.tan(system.alpha)
+    given = (rate, tan_a, system.Io, system.gamma, system.eta, of[2], of[3], of[4], of[5])
+    e = of[0] + of[1] * own_law(system.impact_law, given)
+    if not 0.0 < e <= 1.0:
+        s.outcome[l] = FAILED_RESTITUTION
+    return float(e)
+
+
+@compiled
 def loss_share(nearness: float) -> float:
     """l(s): of what an impact loses, what a pass of s = theta_min/(|q| t_c) does (13.14).
 
@@ -154,7 +168,7 @@ def pass_upright(s: Record, l: int, system: Record, log: Record, near: bool) -> 
         least = x * abs(q) / speed
     own = s.contact_time[l]
     nearness = math.inf if own == 0.0 else least / max(speed * own, 1e-300)
-    share, e = loss_share(nearness), s.restitution[l]
+    share, e = loss_share(nearness), restitution_at(s, l, system, math.sqrt(p * p + q * q))
     left, sign = 1.0 - share * (1.0 - e * e), math.copysign(1.0, q)
     keeps, extra, angle = math.sqrt(left), math.pi / kappa - math.pi, 0.0
     if near:
@@ -190,15 +204,14 @@ def impact(s: Record, l: int, system: Record, log: Record) -> None:
     """
     if s.phase[l] != first_phase(system):
         enter_phase(s, l, system, first_phase(system))
-    side, e = s.side[l], system.restitution
-    arriving = min(s.v[l], 0.0)
+    side, arriving = s.side[l], min(s.v[l], 0.0)
     if system.alpha == 0.0:
         s.side[l] = -side
         set_polar(s, l, 0.0, -side, 0.0, -arriving, 0.0)
         begin_excursion(s, l, log)
         return
     at, rate = place_of(s, l, 0.0), side * arriving
-    arm = s.diameter[l] * at.C
+    arm, e = s.diameter[l] * at.C, restitution_at(s, l, system, abs(rate))
     jump = -arm * (1.0 - e) * rate
     lost = tilting_energy(s, l, at, arriving, 0.0)
     if system.floors_jump > 0:
@@ -372,7 +385,7 @@ def pass_on_bed(s: Record, l: int, system: Record, log: Record, enters: bool) ->
     set_polar(s, l, u, n, t, p, q)
     before = beam_now(s, l)
     if enters:
-        keeps = system.restitution
+        keeps = restitution_at(s, l, system, math.sqrt(p * p + q * q))
         change = keeps / change
         lost = (1.0 - keeps * keeps) * tilting_energy(s, l, place_of(s, l, u), p, q)
         chi = impact_number(system, math.sqrt(p * p + q * q))

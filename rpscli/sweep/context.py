@@ -24,6 +24,7 @@ from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.case.case import Case, case_from_mapping
 from rpscli.case.study.schema import Analysis, MeasureScale
 from rpscli.errors import RecordError
+from rpscli.model.devices import own_laws
 from rpscli.model.podium import PodiumStructure
 from rpscli.records.ground_motion import MotionComponents
 from rpscli.records.loading import load_components
@@ -248,6 +249,8 @@ class System:
     def of_case(cls, case: Case) -> System:
         """The system that a case describes."""
         deciding = {name: case.document.get(name) for name in DECIDING}
+        if own := own_laws(case.structure):
+            deciding["sources"] = {name: law.sources for name, law in own.items()}
         digest = hashlib.sha256(json.dumps(deciding, sort_keys=True).encode()).digest()
         return cls(case.structure, case.analysis, digest)
 

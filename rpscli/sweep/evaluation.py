@@ -191,8 +191,10 @@ def _keep(results: PointResults, at: Indices, ended: Histories, columns: dict[st
     outcomes = ended.outcomes
     good = outcomes != FAILED
     results.outcomes[at] = outcomes
-    for row, left in zip(at[~good].tolist(), ended.left[~good], strict=True):
-        results.messages[row] = str(failure_text(left))
+    for row, left, of in zip(
+        at[~good].tolist(), ended.left[~good], ended.number[~good], strict=True
+    ):
+        results.messages[row] = str(failure_text(left, ended.structures[of]))
     for row in at[good].tolist():
         del results.messages[row]
     for name, values in columns.items():

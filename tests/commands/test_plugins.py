@@ -20,10 +20,11 @@ import rpscli
 from rpscli import registry
 from rpscli.case.schema.scale_to import scale_to_of
 from rpscli.commands.record_select import command as select
-from rpscli.errors import PluginError, RecordError
+from rpscli.errors import CaseError, PluginError, RecordError
 from rpscli.records.formats import FORMATS
 from rpscli.records.measures import MEASURES
 from rpscli.records.target import CODES, load_target
+from rpscli.sweep.context import System
 
 from .conftest import Invoke, InvokeJson
 
@@ -148,7 +149,8 @@ def test_a_study(example: None, rps_json: InvokeJson, workplace: Path) -> None:
 
 def test_what_is_installed_is_listed(example: None, rps_json: InvokeJson) -> None:
     found = {each["name"]: each for each in rps_json("explain", "plugins")["plugins"]}
-    assert [*found] == ["tidy", "ASI", "plateau", "worst", "phase_plane"]
+    names = ["tidy", "ASI", "plateau", "worst", "phase_plane", "oil", "crushing"]
+    assert [*found] == names
     assert {each["package"] for each in found.values()} == {"rps-example 1.0"}
     assert found["ASI"]["meaning"].startswith("ASI [m/s]: the integral of Sa")
     assert not any(each["fault"] for each in found.values())
@@ -158,11 +160,70 @@ def test_what_is_installed_is_listed(example: None, rps_json: InvokeJson) -> Non
     assert "worst" in schema
 
 
-def rps_json_schema() -> str:
-    """The JSON schema of studies as text."""
+def rps_json_schema(of: str = "study") -> str:
+    """The JSON schema of a format as text."""
     from rpscli.commands.init import schema_of
 
-    return str(schema_of("study"))
+    return str(schema_of(of))
+
+
+OIL = "{kind: oil, closed_coefficient: 2 MN s/m, relief_force: 300 kN, open_share: 0.1}"
+CRUSHING = "{law: crushing, slow_restitution: 0.95, fast_restitution: 0.7, usual_rate: 0.3}"
+WITH_LAWS = ("--set", f"podium.devices=[{OIL}]", "--set", f"podium.impact={CRUSHING}")
+
+
+def test_laws_in_a_case(example: None, rps: Invoke, rps_json: InvokeJson, workplace: Path) -> None:
+    found = rps_json("timehistory", "small.yaml", *WITH_LAWS, "-o", "here")
+    (damper,) = found["devices"]
+    assert damper["kind"] == "oil"
+    assert damper["force"] > 3e5  # the valve opens
+    resolved = rpscli.load_case("small.yaml", WITH_LAWS[1::2]).document
+    assert resolved["podium"]["devices"][0]["relief_force"] == 3e5
+    again = rpscli.load_case(resolved).structure
+    assert again.restitution == pytest.approx(0.7 + 0.25 * np.exp(-1e-3 / 0.3))
+    assert (workplace / "here" / "devices.png").exists()
+    modes = rps_json("modal", "small.yaml", *WITH_LAWS)
+    assert modes["rolling"] != rps_json("modal", "small.yaml")["rolling"]
+    assert "relief_force" in rps_json_schema("case")
+    refused = rps("export", "small.yaml", "mujoco", *WITH_LAWS)
+    assert "podium.devices is not exported" in refused.stderr
+    refused = rps("export", "small.yaml", "opensees", *WITH_LAWS[2:])
+    assert "podium.impact" in refused.stderr
+
+
+def test_constants_of_laws_are_axes(example: None, rps_json: InvokeJson, workplace: Path) -> None:
+    text = (workplace / "small.yaml").read_text() + "# with laws\n"
+    devices = f"  devices: [{OIL}]\n  impact: {CRUSHING}\nrecord:"
+    (workplace / "laws.yaml").write_text(text.replace("record:", devices))
+    vary = "vary: [{podium.devices.0.relief_force: [200 kN, 400 kN]},"
+    vary += " {podium.impact.fast_restitution: [0.6, 0.9]}]\n"
+    study = STUDY.replace("small.yaml", "laws.yaml").replace("ASI, values: [1", "PGA, values: [3")
+    study = study.split("reports")[0]
+    (workplace / "study.yaml").write_text(study + vary, encoding="utf-8")
+    rps_json("sweep", "study.yaml", "-o", "here")
+    head, *lines = (workplace / "here" / "points.csv").read_text().splitlines()
+    assert "podium.devices.0.relief_force [N]" in head
+    at = [name.split(" [")[0] for name in head.split(",")].index("rotation_ratio")
+    assert len(lines) == 16
+    assert len({line.split(",")[at] for line in lines}) > 8
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        (OIL.replace("300 kN", "3 m"), r"relief_force = '3 m' is a length, but must be a force"),
+        (OIL.replace("0.1", "2"), r"open_share = 2 must be >= 0 and <= 1 \(of c\)"),
+        (OIL.replace(", open_share: 0.1", ""), "open_share is missing: of oil"),
+        (OIL.replace("}", ", gap: 1}"), "gap is not a key of kind: oil, which has"),
+        (OIL.replace("open_share", "open_shar"), "did you mean podium.devices.0.open_share"),
+        (OIL.replace("oil", "oill"), "must be viscous, .* or oil; did you mean oil"),
+        ("{kind: viscous, relief_force: 1}", "relief_force is not a key .*known here: kind"),
+    ],
+)
+def test_constants_are_checked(example: None, workplace: Path, given: str, said: str) -> None:
+    rpscli.load_case("small.yaml", [f"podium.devices=[{OIL}]"])  # its keys are known from here on
+    with pytest.raises(CaseError, match=said):
+        rpscli.load_case("small.yaml", [f"podium.devices=[{given}]"])
 
 
 def test_what_is_broken_is_named_and_breaks_nothing_else(
@@ -217,6 +278,22 @@ def quits(rest, source): raise SystemExit("bye")
 def writes(axes, result): result.trace.rotation[:] = 0.0
 def garbles(axes, result): axes.set_title("$\\\\frac{1$")
 
+def linear(path, speed, c): return c * speed
+def slope(c): return c
+def raises(path, speed, c): raise RuntimeError("no law")
+N = {"c_own": Quantity("N s/m", above=0)}
+sound = DamperLaw(N, linear, slope, slope)
+short_law = DamperLaw(N, lambda path, speed: speed, slope, slope)
+unready = DamperLaw(N, linear, lambda c: None, slope)
+raising = DamperLaw(N, raises, slope, slope)
+unnamed = DamperLaw({"c_own": "N s/m"}, linear, slope, slope)
+ours = DamperLaw({"gap": Quantity("m")}, linear, slope, slope)
+many = DamperLaw({f"c{i}": Quantity() for i in range(5)}, linear, slope, slope)
+bounces = RestitutionLaw({}, lambda *_: 1.5)
+class Lazy:
+    def __get__(self, *_): return DamperLaw(N, linear)
+class Holder: lacking = Lazy()
+
 class Options(ReportOptions):
     pass
 
@@ -227,6 +304,16 @@ plain = report(lambda: 5)
 undrawn = report(lambda: Found({"": [Column("a", "-", [1])]}, lambda title: "no bytes"))
 asks = Report(Options, lambda study, options: None, results=lambda _: 5)
 """
+LAWS = {
+    "short_law": "TypeError",
+    "unready": "what slope gives is of type NoneType|what <lambda> gives is of type NoneType",
+    "raising": "RuntimeError: no law",
+    "unnamed": "must be a name with a Quantity",
+    "ours": "gap must not be called as a key of rps is",
+    "many": "5 constants, at most 4",
+    "lacking": r"missing 2 required positional arguments: 'damping' and 'linear'",
+    "bounces": "must be DamperLaw",
+}
 LYING = {
     "formats": ["form", "blind"],
     "measures": ["nothing", "text", "numbers", "turned", "array", "huge", "nan", "ends"],
@@ -241,6 +328,10 @@ def liars(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, forgotten: None) -> N
     """A package that gives what it should not, under names that it should not have either."""
     groups = {kind: {name: f"liars:{name}" for name in names} for kind, names in LYING.items()}
     groups["figures"] |= {"../x": "liars:writes", "png": "liars:writes"}
+    groups["dampers"] = {name: f"liars:{name}" for name in ("sound", *LAWS)} | {
+        "lacking": "liars:Holder.lacking"
+    }
+    groups["impact_laws"] = {"bounces": "liars:bounces"}
     lines = (f"[rpscli.{kind}]\n" + "".join(f"{k} = {v}\n" for k, v in of.items())
              for kind, of in groups.items())  # fmt: skip
     as_installed(tmp_path / "site", "liars", "".join(lines))
@@ -281,6 +372,28 @@ def test_what_lies_is_named(liars: None, figures: None, rps: Invoke, workplace: 
     assert listed.replace("\n", " ").count("taken") == 1
 
 
+def test_laws_that_lie_are_named(liars: None, workplace: Path) -> None:
+    def used(name: str) -> None:
+        constant = "gap: 1" if name == "ours" else "c_own: 1000"
+        devices = f"podium.devices=[{{kind: {name}, {constant}}}]"
+        structure = rpscli.load_case("small.yaml", [devices]).structure
+        rpscli.demand(structure, rpscli.load_record("pulse:sine?amplitude=0.1g&period=1"))
+
+    for name, said in LAWS.items():
+        with pytest.raises(PluginError, match=f"{name} of liars 1.0 .*({said})"):
+            used(name)
+    with pytest.raises(PluginError, match=r"impact law bounces: its restitution is 1\.5"):
+        rpscli.load_case("small.yaml", ["podium.impact=bounces"])
+
+
+def test_stored_points_know_the_file_of_a_law(liars: None, tmp_path: Path, workplace: Path) -> None:
+    case = rpscli.load_case("small.yaml", ["podium.devices=[{kind: sound, c_own: 1000}]"])
+    before = System.of_case(case).digest
+    assert System.of_case(case).digest == before
+    (tmp_path / "site" / "liars.py").write_text(f"{LIARS}# another law\n", encoding="utf-8")
+    assert System.of_case(case).digest != before
+
+
 def test_nobody_is_asked_for_names_of_ours(
     forgotten: None, monkeypatch: pytest.MonkeyPatch, workplace: Path
 ) -> None:
@@ -314,7 +427,7 @@ def test_the_example_is_installed_by_pip(tmp_path: Path, workplace: Path) -> Non
         words = [sys.executable, "-m", "rpscli", *command(line).words]
         words = [str(ROOT / word) if word.startswith("cases/") else word for word in words]
         printed.append(run_in_shell(shlex.join(words), PYTHONPATH=search))
-    assert printed[0].count("rps-example 1.0") == 5
+    assert printed[0].count("rps-example 1.0") == 7
     assert "ASI" in printed[1]
     assert list(workplace.rglob("phase_plane.png"))
     assert list(workplace.rglob("selection.txt"))

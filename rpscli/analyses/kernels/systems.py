@@ -9,12 +9,12 @@ from functools import lru_cache
 import numpy as np
 
 from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
-from rpscli.model.devices import DEVICES
+from rpscli.model.devices import DEVICES, OwnDamper
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import Superstructure
 from rpscli.physics.state import SYSTEM, Record, record_type, records
 
-DEVICE_KINDS = {kind: code for code, kind in enumerate(DEVICES.values())}
+DEVICE_KINDS = {kind: code for code, kind in enumerate((*DEVICES.values(), OwnDamper))}
 """Codes of laws in the kernels."""
 
 LEAST_SHAKEN = 1e-3
@@ -97,6 +97,8 @@ def _system(structure: PodiumStructure, settings: TimeHistorySettings) -> Record
 
 def fill_podium(record: Record, structure: PodiumStructure) -> None:
     """The rocking storey, its devices with the constants of their laws, and what it stands on."""
+    from rpscli.physics.compile import address_of  # numba is slow
+
     b = structure.bearing
     record["n"], record["axes"] = structure.storeys, 1
     record["R"], record["alpha"], record["beta"] = b.semi_diagonal, b.alpha, b.beta
@@ -112,11 +114,19 @@ def fill_podium(record: Record, structure: PodiumStructure) -> None:
     record["contact_time"] = structure.impact_law.contact_time
     record["shock_time"] = structure.shock_time
     record["floors_jump"] = structure.impact_law.floors_jump
+    if (own := (impact := structure.impact_law).own) is not None:
+        numbers = impact.factor * (1.0 - impact.loss), impact.factor * impact.loss
+        record["impact_law"] = address_of(own.restitution, 5 + len(impact.constants))
+        record["impact_constants"][: 2 + len(impact.constants)] = *numbers, *impact.constants
     record["columns"], record["devices"] = structure.columns, len(structure.devices)
     for i, device in enumerate(structure.devices):
         record["device_kind"][i] = DEVICE_KINDS[type(device)]
         constants = device.constants(structure)
         record["device_constants"][i, : len(constants)] = constants
+        if isinstance(device, OwnDamper):
+            law, taken = device.law, 2 + len(constants)
+            addresses = address_of(law.force, taken), address_of(law.watched, taken)
+            record["own_law"][i] = *addresses, law.linear is None
     if (bed := structure.bed) is not None:
         record["compliant"], record["bed_uplift"] = 1, bed.uplift_rotation
         record["bed_full"], record["bed_height"] = bed.full_rotation, bed.height

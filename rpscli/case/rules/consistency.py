@@ -245,7 +245,8 @@ class Consistency:
             )
         for index, device in enumerate(devices):
             yield from self._device(f"podium.devices.{index}", device)
-        of_columns = [i for i, each in enumerate(devices) if DEVICES[each.kind].in_each_column]
+        kinds = [DEVICES.get(each.kind) for each in devices]
+        of_columns = [i for i, kind in enumerate(kinds) if kind and kind.in_each_column]
         if of_columns and self.file.podium.columns is None:
             yield _of_value(
                 f"podium.devices.{of_columns[0]}",
@@ -254,8 +255,10 @@ class Consistency:
 
     def _device(self, owner: str, device: case_file.DeviceSection) -> Iterator[Fault]:
         """The keys that a kind needs, and none of another kind; a tendon carries its prestress."""
-        needed, optional = case_file.DEVICE_KEYS[device.kind]
-        given = _given(device, *case_file.DeviceSection.model_fields)
+        fields = type(device).model_fields
+        own = tuple(key for key, field in fields.items() if field.is_required())
+        needed, optional = case_file.DEVICE_KEYS.get(device.kind, (own, ()))
+        given = _given(device, *fields)
         for key in needed:
             if key not in given:
                 meaning = case_file.DeviceSection.model_fields[key].description

@@ -13,6 +13,7 @@ from pydantic import BeforeValidator, ConfigDict, Field, model_validator
 from rpscli.case.schema.fields import (
     DampingRatio,
     ModePair,
+    NameOf,
     Quantity,
     Section,
     Text,
@@ -20,10 +21,11 @@ from rpscli.case.schema.fields import (
     must_be,
 )
 from rpscli.case.schema.limits import LimitsSection
+from rpscli.case.schema.own import OwnLaws
 from rpscli.case.schema.scale_to import ScaleToSection
 from rpscli.constants import MOST_STOREYS, STANDARD_GRAVITY
-from rpscli.model.devices import DEVICES
-from rpscli.model.impact import CONTACT_TIME, LONGEST_CONTACT
+from rpscli.model.devices import DAMPERS, DEVICES
+from rpscli.model.impact import CONTACT_TIME, IMPACT_LAWS, LONGEST_CONTACT
 
 DEVICE_KEYS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     kind: (
@@ -55,7 +57,7 @@ class DeviceSection(Section):
 
     model_config = ConfigDict(json_schema_extra=_device_schema)
 
-    kind: Literal["viscous", "friction", "stop", "tendon", "rolling_resistance"] = Field(
+    kind: Annotated[str, NameOf(DAMPERS)] = Field(
         description="viscous or friction damper, elastic stop, unbonded tendon in the axis of each"
         " column, or the resistance of the columns to rolling; friction and rolling_resistance"
         " not under both components"
@@ -84,6 +86,8 @@ class DeviceSection(Section):
         " contact; a moment f N at either end of the columns",
     )
 
+
+OWN_DAMPERS = OwnLaws("kind", DAMPERS, DeviceSection)
 
 FORMAT_VERSION = 1
 
@@ -218,7 +222,7 @@ class BearingSection(Section):
 class ImpactSection(Section):
     """What happens when the columns fall back on their flat ends."""
 
-    law: Literal["flexible", "rigid", "value"] = Field(
+    law: Annotated[str, NameOf(IMPACT_LAWS)] = Field(
         "flexible",
         description="flexible: floors keep their velocity; rigid: floors jump with the cap beam;"
         " value: restitution is given",
@@ -245,6 +249,9 @@ class ImpactSection(Section):
         description="t_c, how long an impact takes, where both horizontal components act: the"
         " nearer a pass to upright, the more of an impact's loss it has; 0 = passes lose nothing",
     )
+
+
+OWN_IMPACTS = OwnLaws("law", IMPACT_LAWS, ImpactSection)
 
 
 def _law_alone(value: object) -> object:
@@ -309,7 +316,7 @@ class PodiumSection(PodiumMasses):
 
     bearing: BearingSection
     """shape of one column"""
-    impact: Annotated[ImpactSection, BeforeValidator(_law_alone)] = ImpactSection()
+    impact: Annotated[ImpactSection, OWN_IMPACTS, BeforeValidator(_law_alone)] = ImpactSection()
     """impact law; a law's name alone may stand here"""
     contact: ContactSection = ContactSection()
     """what the ends of the columns bear on: rigid, or giving way, with a period before uplift"""
@@ -320,7 +327,7 @@ class PodiumSection(PodiumMasses):
     plan: PlanSection | None = None
     """where columns stand along the motion; gives the overturning moment in the forces of columns,
     with superstructure.storey_height"""
-    devices: tuple[DeviceSection, ...] = ()
+    devices: tuple[Annotated[DeviceSection, OWN_DAMPERS], ...] = ()
     """dampers, stops and tendons between ground and cap beam, at most 8"""
 
 

@@ -11,6 +11,7 @@ from pydantic.fields import FieldInfo
 
 from rpscli.case.schema.case_file import CaseFile
 from rpscli.case.schema.fields import PLAIN, NameOf, OneOf, Quantity, Several, ValueRange, Whole
+from rpscli.case.schema.own import OwnLaws
 from rpscli.case.text.document import Fault, Path, dotted
 from rpscli.errors import listed, nearest
 
@@ -40,6 +41,8 @@ def sections_of(annotation: Any) -> Iterator[type[BaseModel]]:
             yield part
         elif isinstance(part, Several) and part.spaced:
             yield ValueRange
+        elif isinstance(part, OwnLaws):
+            yield from part.loaded.values()
 
 
 def section_of(annotation: Any) -> type[BaseModel] | None:
@@ -130,6 +133,7 @@ def unknown_key(model: type[BaseModel], path: Path) -> tuple[Fault, Path | None]
     if now := REMOVED.get(named):
         return Fault(path, f"{dotted(path)} is gone: {now}", at_key=True), None
     suggestion = suggestion_for(model, path)
+    suggestion = None if suggestion == path else suggestion  # a key of another law
     siblings = fields_of(section_at(model, path[:-1]) or model)
     longer = [name for name in siblings if f"_{path[-1]}_" in f"_{name}_"]
     if suggestion is None and longer:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.analyses.results import TimeHistoryResult
-from rpscli.model.devices import FrictionDamper, RollingResistance, Stop, Tendon, ViscousDamper
+from rpscli.model import devices as laws
 from rpscli.model.podium import Device
 from rpscli.report.figures import style
 
@@ -30,11 +30,12 @@ class Drawn(NamedTuple):
 
 
 DRAWN: dict[type[Device], Drawn] = {
-    ViscousDamper: Drawn(BRACE),
-    FrictionDamper: Drawn(BRACE),
-    Stop: Drawn(POSTS),
-    Tendon: Drawn(CABLES, "tension of one", "elongation of one [m]", 1.0),
-    RollingResistance: Drawn(NOWHERE),
+    laws.ViscousDamper: Drawn(BRACE),
+    laws.FrictionDamper: Drawn(BRACE),
+    laws.OwnDamper: Drawn(BRACE),
+    laws.Stop: Drawn(POSTS),
+    laws.Tendon: Drawn(CABLES, "tension of one", "elongation of one [m]", 1.0),
+    laws.RollingResistance: Drawn(NOWHERE),
 }
 """All laws; the one place that a new one is drawn from."""
 

@@ -1,0 +1,326 @@
+"""Laws of other packages: against those of ours that say the same, in lanes, and guarded."""
+
+from __future__ import annotations
+
+import math
+import os
+import subprocess
+import sys
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from paper_structures import FLAT, needs_compiled_kernels, podium, waves
+from two_components import frame, pair, two_pulses
+
+from rpscli.analyses.demand import Request, demands
+from rpscli.analyses.results import TimeHistoryResult
+from rpscli.analyses.settings import TimeHistorySettings
+from rpscli.analyses.timehistory import time_history
+from rpscli.errors import PluginError
+from rpscli.model.contact import Contact
+from rpscli.model.devices import FrictionDamper, OwnDamper, ViscousDamper
+from rpscli.model.impact import ImpactLaw
+from rpscli.model.own import DamperLaw, RestitutionLaw
+from rpscli.model.podium import PodiumStructure
+from rpscli.records.ground_motion import MotionComponents
+
+DT = 0.02
+ONE = MotionComponents(waves(2.0, DT, 3.5, seed=5))
+BOTH = pair(*(0.8 * two_pulses(2.4, DT)), DT)
+SETTINGS = TimeHistorySettings(free_vibration=0.4, recontact_tolerance=1e-3)
+C = 1.5e5
+
+
+def linear(path: float, speed: float, c: float) -> float:
+    return c * speed
+
+
+def square(path: float, speed: float, c: float) -> float:
+    return c * speed**2
+
+
+def relieved(path: float, speed: float, c: float, opens: float) -> float:
+    return c * min(speed, opens)
+
+
+def opening(path: float, speed: float, c: float, opens: float) -> float:
+    return opens - speed
+
+
+def harder(path: float, speed: float, c: float, gap: float) -> float:
+    return c * speed * (1.0 + 10.0 * max(path / gap - 1.0, 0.0))
+
+
+def reached(path: float, speed: float, c: float, gap: float) -> float:
+    return gap - path
+
+
+def most(c: float, *_: float) -> float:
+    return c
+
+
+def thrice(c: float, *_: float) -> float:
+    return 3.0 * c
+
+
+def given(
+    rate: float, tan_alpha: float, inertia: float, gamma: float, eta: float, e: float
+) -> float:
+    return e
+
+
+def softer(rate: float, tan_alpha: float, inertia: float, gamma: float, eta: float) -> float:
+    return 0.95 - 0.5 * min(rate, 1.0) * tan_alpha + 1e-3 * (inertia - 1.0) / (gamma + eta)
+
+
+LINEAR = DamperLaw({"c": None}, linear, most, most)
+RELIEVED = DamperLaw({"c": None, "opens": None}, relieved, most, most, watched=opening)
+HARDER = DamperLaw({"c": None, "gap": None}, harder, thrice, most, watched=reached)
+UNWATCHED = replace(RELIEVED, watched=None)
+OPENS, GAP = 0.05, 0.0235
+GIVEN = RestitutionLaw({"e": None}, given)
+
+
+def with_own(structure: PodiumStructure, law: DamperLaw, *values: float) -> PodiumStructure:
+    others = tuple(each for each in structure.devices if not isinstance(each, ViscousDamper))
+    return replace(structure, devices=(OwnDamper("own", law, values), *others))
+
+
+def history(
+    structure: PodiumStructure, motion: MotionComponents = ONE, accuracy: float = 1.0
+) -> TimeHistoryResult:
+    settings = replace(SETTINGS, accuracy=accuracy)
+    return time_history(structure, motion, settings, with_fixed_base=False)
+
+
+VISCOUS = ViscousDamper(C)
+SMALL = podium(1, 0.1, 0.5, R=0.4, law=ImpactLaw("flexible"))
+USUAL = podium(1, 0.1, 0.5, law=ImpactLaw("flexible"))
+CASES = {
+    "curved ends": (replace(USUAL, devices=(VISCOUS,)), ONE),
+    "flat ends and friction": (
+        replace(
+            podium(0, 0.15, FLAT, law=ImpactLaw("flexible")),
+            devices=(VISCOUS, FrictionDamper(3e4)),
+        ),
+        ONE,
+    ),
+    "plane ends": (
+        frame(
+            1, 3.0, tan_alpha=0.1, contact=Contact("plane", period_ratio=1.2), devices=(VISCOUS,)
+        ),
+        ONE,
+    ),
+    "both components": (frame(1, 3.0, tan_alpha=0.1, devices=(VISCOUS,)), BOTH),
+    "both on curved ends": (
+        frame(1, 2.0, tan_alpha=0.1, tan_wedge=0.2, rho=0.4, contact_time=2e-3, devices=(VISCOUS,)),
+        BOTH,
+    ),
+}
+of_cases = pytest.mark.parametrize("name", CASES)
+
+
+@of_cases
+@needs_compiled_kernels
+def test_a_linear_law_is_the_viscous_damper(name: str) -> None:
+    structure, motion = CASES[name]
+    ours, own = history(structure, motion), history(with_own(structure, LINEAR, C), motion)
+    assert ours.max_rotation > 1e-3
+    np.testing.assert_allclose(
+        own.trace.rotation, ours.trace.rotation, rtol=0.0, atol=1e-12 * ours.max_rotation
+    )
+    assert own.devices[0].force == pytest.approx(ours.devices[0].force, rel=1e-12)
+    assert own.energy.devices == pytest.approx(ours.energy.devices, rel=1e-12)
+
+
+def test_the_same_interpreted_or_compiled() -> None:
+    """Short enough for both."""
+    structure = replace(SMALL, devices=(VISCOUS,))
+    motion = MotionComponents(waves(0.24, DT, 9.0, seed=5))
+    ours, own = history(structure, motion), history(with_own(structure, LINEAR, C), motion)
+    assert ours.max_rotation > 1e-3
+    assert own.max_rotation == pytest.approx(ours.max_rotation, rel=1e-12)
+
+
+@needs_compiled_kernels
+def test_a_law_with_a_kink_at_rest_is_followed_as_ours() -> None:
+    structure = replace(USUAL, devices=(ViscousDamper(1e6, 2.0),))
+    law = DamperLaw({"c": None}, square, most, None)
+    ours, own = history(structure), history(with_own(structure, law, 1e6))
+    assert own.max_rotation == pytest.approx(ours.max_rotation, rel=1e-9)
+    assert own.history["steps"] == ours.history["steps"]
+
+
+@pytest.mark.parametrize(
+    ("name", "c"),
+    [("flat ends and friction", C), ("curved ends", C), ("both components", 10.0 * C)],
+)
+@needs_compiled_kernels
+def test_steps_end_where_a_law_has_a_kink(name: str, c: float) -> None:
+    structure, motion = CASES[name]
+    watched, missed = (with_own(structure, law, c, OPENS) for law in (RELIEVED, UNWATCHED))
+    fine, usual = history(watched, motion, 4.0), history(watched, motion)
+    assert fine.devices[0].velocity > 2.0 * OPENS
+    errors = [
+        abs(each.max_rotation - fine.max_rotation) for each in (usual, history(missed, motion))
+    ]
+    assert errors[0] < 1e-9 * fine.max_rotation
+    assert errors[1] > 20.0 * errors[0]
+    assert abs(usual.energy.residual) < 1e-7 * usual.energy.input
+
+
+@needs_compiled_kernels
+def test_a_relief_valve_opens_after_impacts_too() -> None:
+    own = history(with_own(CASES["flat ends and friction"][0], RELIEVED, C, OPENS))
+    assert own.impacts > 1
+    assert own.devices[0].velocity > 0.1
+    assert own.devices[0].force == pytest.approx(OPENS * C, rel=1e-9)
+    force, limit = np.abs(own.trace.devices.force[:, 0]), OPENS * C
+    assert np.max(force) <= limit * (1.0 + 1e-9)
+    assert abs(own.energy.residual) < 1e-6 * own.energy.input
+
+
+def numbers(structure: PodiumStructure, motion: MotionComponents, count: int) -> list[Any]:
+    scales = np.linspace(0.8, 1.4, count)
+    requests = [Request(structure, motion, SETTINGS, float(scale)) for scale in scales]
+    return [each.history for each in demands(requests)]
+
+
+@pytest.mark.parametrize("name", ["flat ends and friction", "both on curved ends"])
+@needs_compiled_kernels
+def test_the_same_bits_alone_and_in_lanes(name: str) -> None:
+    structure, motion = CASES[name]
+    law = ImpactLaw("softer", own=RestitutionLaw({}, softer), contact_time=2e-3)
+    own = replace(with_own(structure, RELIEVED, C, OPENS), impact_law=law)
+    together = numbers(own, motion, 40)
+    assert len({each["max_theta"] for each in together}) > 30
+    for scale, each in list(zip(np.linspace(0.8, 1.4, 40), together, strict=True))[::8]:
+        (alone,) = demands([Request(own, motion, SETTINGS, float(scale))], worth_lanes=2)
+        assert alone.history["max_theta"] == each["max_theta"]
+        assert alone.history["device_energy"][0] == each["device_energy"][0]
+
+
+@of_cases
+@needs_compiled_kernels
+def test_a_law_that_gives_one_restitution_changes_no_bit(name: str) -> None:
+    structure, motion = CASES[name]
+    ours, e = structure.impact_law, structure.restitution
+    law = ImpactLaw("given", own=GIVEN, constants=(e,), contact_time=ours.contact_time)
+    other = replace(structure, impact_law=law)
+    assert other.restitution == e
+    one, two = history(structure, motion), history(other, motion)
+    assert one.impacts or one.passes or structure.passes_smoothly
+    assert np.array_equal(one.trace.rotation, two.trace.rotation)
+    assert one.energy == two.energy
+
+
+@needs_compiled_kernels
+def test_an_impact_loses_what_its_rate_asks_for() -> None:
+    structure, _ = CASES["flat ends and friction"]
+    law = ImpactLaw("softer", own=RestitutionLaw({}, softer), loss=0.8)
+    own = history(replace(structure, impact_law=law))
+    impacts = [each for each in own.events if each.kind == "impact"]
+    assert len(impacts) > 1
+    b = structure.bearing
+    for each in impacts:
+        before, after = abs(each.rotation_rate_before), abs(each.rotation_rate_after)
+        e = softer(before, b.slenderness, b.inertia_ratio, structure.gamma, structure.eta)
+        assert after == pytest.approx((1.0 - 0.8 * (1.0 - e)) * before, rel=1e-12)
+    assert abs(own.energy.residual) < 1e-6 * own.energy.input
+
+
+def at_speeds(path: float, speed: float, c: float) -> float:
+    if speed > 0.01:
+        return math.nan
+    return c * speed
+
+
+def raises_at_speeds(path: float, speed: float, c: float) -> float:
+    if speed > 0.01:
+        raise ValueError("too fast")
+    return c * speed
+
+
+def too_large(rate: float, tan_alpha: float, inertia: float, gamma: float, eta: float) -> float:
+    return 0.9 if rate < 2e-3 else 1.1
+
+
+def no_number(rate: float, tan_alpha: float, inertia: float, gamma: float, eta: float) -> float:
+    return 0.9 if rate < 2e-3 else math.nan
+
+
+@pytest.mark.parametrize("force", [at_speeds, raises_at_speeds])
+@needs_compiled_kernels
+def test_a_force_that_is_no_number_ends_the_history(force: Any) -> None:
+    own = history(with_own(SMALL, DamperLaw({"c": None}, force, most, most), C))
+    assert own.failure is not None
+    assert "no longer finite" in own.failure
+    assert "laws of other packages: own" in own.failure
+
+
+@pytest.mark.parametrize("law", [too_large, no_number])
+@pytest.mark.parametrize("name", ["flat ends and friction", "both components"])
+@needs_compiled_kernels
+def test_a_restitution_out_of_range_ends_the_history(name: str, law: Any) -> None:
+    structure, motion = CASES[name]
+    wrong = ImpactLaw("wrong", own=RestitutionLaw({}, law), contact_time=2e-3)
+    own = history(replace(structure, impact_law=wrong), motion)
+    assert own.failure is not None
+    assert "restitution is not above 0 and at most 1" in own.failure
+    assert "laws of other packages: wrong" in own.failure
+
+
+def unknown_to_numba(path: float, speed: float, c: float) -> float:
+    return float(eval("c * speed"))  # noqa: S307 -- what cannot be compiled
+
+
+@needs_compiled_kernels
+def test_what_cannot_be_compiled_is_named() -> None:
+    own = with_own(SMALL, DamperLaw({"c": None}, unknown_to_numba, most, most), C)
+    with pytest.raises(PluginError, match=r"test_own_laws\.unknown_to_numba cannot be compiled"):
+        history(own)
+
+
+def test_what_is_no_law_is_refused() -> None:
+    spring = DamperLaw({"k": None}, lambda path, _, k: k * path, most, most)
+    with pytest.raises(PluginError, match="its force at rest, at a displacement of"):
+        OwnDamper("spring", spring, (1e5,))
+    gains = ImpactLaw("gains", own=RestitutionLaw({}, lambda *_: 1.5))
+    with pytest.raises(PluginError, match=r"gains: its restitution is 1\.5 at a rate of 0\.001"):
+        replace(SMALL, impact_law=gains)
+    for kind, own in (("elsewhere", None), ("flexible", GIVEN)):
+        with pytest.raises(ValueError, match="must be flexible, rigid or value"):
+            ImpactLaw(kind, own=own)
+
+
+def test_a_law_answers_for_modes_and_steps() -> None:
+    own = OwnDamper("own", RELIEVED, (C, 0.1))
+    structure = replace(SMALL, devices=(own,))
+    assert own.bounds(structure) == VISCOUS.bounds(structure) == (0.0, C)
+    stiff = replace(RELIEVED, stiffness=thrice, linear=None)
+    assert OwnDamper("own", stiff, (C, 0.1)).bounds(structure) == (3.0 * C, C)
+
+
+@needs_compiled_kernels
+def test_machine_code_from_the_cache_calls_laws_of_this_process() -> None:
+    """Addresses differ from process to process; kernels on disk know none of them."""
+    script = (
+        "import ctypes, test_own_laws as t\n"
+        "room = [ctypes.create_string_buffer(2**n) for n in range(12, 24)]\n"
+        "for law in (t.RELIEVED, t.HARDER):\n"
+        "    print(t.history(t.with_own(t.USUAL, law, t.C, t.GAP)).max_rotation.hex())\n"
+    )
+    tests = Path(__file__).parents[1]
+    places = [str(tests.parent), str(tests), str(tests / "physics")]
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(places)}
+    found = subprocess.run(
+        [sys.executable, "-c", script], env=environment, capture_output=True, text=True, check=True
+    )
+    laws: Sequence[DamperLaw] = RELIEVED, HARDER
+    ours = [history(with_own(USUAL, law, C, GAP)).max_rotation for law in laws]
+    assert [float.fromhex(line) for line in found.stdout.split()] == ours
+    assert ours[0] != ours[1]
