@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import fields, replace
-from typing import get_args
 
 import numpy as np
 import pytest
@@ -23,6 +22,7 @@ from rpscli.model.bearing import uplifted_state
 from rpscli.model.devices import (
     DEVICES,
     FrictionDamper,
+    OwnDamper,
     RollingResistance,
     Stop,
     Tendon,
@@ -267,8 +267,7 @@ def test_bounds_cover_the_stiffness_at_rest(device: Device) -> None:
 @pytest.mark.parametrize("name", DEVICES)
 def test_a_law_can_be_written_and_drawn(name: str) -> None:
     assert {device.kind: type(device) for device in EXAMPLES} == DEVICES
-    assert DRAWN.keys() == set(DEVICES.values())
-    assert get_args(DeviceSection.model_fields["kind"].annotation) == tuple(DEVICES)
+    assert DRAWN.keys() == {*DEVICES.values(), OwnDamper}
     needed, optional = DEVICE_KEYS[name]
     assert {*needed, *optional} == {field.name for field in fields(DEVICES[name])}
     assert {*needed, *optional} <= set(DeviceSection.model_fields)

@@ -30,7 +30,8 @@ from rpscli.records.ground_motion import MotionComponents
 
 DT = 0.02
 ONE = MotionComponents(waves(2.0, DT, 3.5, seed=5))
-BOTH = pair(*(0.8 * two_pulses(2.4, DT)), DT)
+ALONG, ACROSS = 0.8 * two_pulses(2.4, DT)
+BOTH = pair(ALONG, ACROSS, DT)
 SETTINGS = TimeHistorySettings(free_vibration=0.4, recontact_tolerance=1e-3)
 C = 1.5e5
 
