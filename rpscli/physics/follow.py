@@ -369,12 +369,9 @@ def look_after(s: Record, l: int, systems: Record, output: Output) -> bool:
         stands_still = s.time[l] - s.h[l] == s.time[l]
         s.stalled[l] = s.stalled[l] + 1 if stands_still else 0
         switch(s, l, systems, output, kind)
-        if stop_yielding(s, l, systems):
-            renew(s, l)
+        review_laws(s, l, systems, kind)
         if s.outcome[l] != RUNNING or too_many(s, l, system):
             return True
-        if kind != CHANGE:
-            find_branches(s, l)
         observe_start(s, l)
     else:
         if s.interval[l] + 1 == s.npts[l]:  # the ground acceleration may jump to zero
@@ -391,6 +388,15 @@ def look_after(s: Record, l: int, systems: Record, output: Output) -> bool:
     if s.kinks[l] > 0.0 and s.moves[l] > 0.0:
         s.h[l] = min(s.h[l], kink_limit(s, l))
     return False
+
+
+@compiled
+def review_laws(s: Record, l: int, systems: Record, kind: int) -> None:
+    """Velocities may have jumped: storeys may no longer yield, own laws be on another branch."""
+    if stop_yielding(s, l, systems):
+        renew(s, l)
+    if kind != CHANGE:
+        find_branches(s, l)
 
 
 @compiled

@@ -183,7 +183,7 @@ def write_floors(
     if yields:
         free_rows(s, l, system, axis, shears, forces)
     for i in range(n):
-        u, du, ddu = beam, velocity, -forces[i]
+        u, du, ddu = beam, velocity, 0.0 - forces[i]
         for of in range(n):
             r, shape = axis * n + of, system.phi[of, i]
             q, dq = s.looked_at[2 * axis, of], s.looked_at[2 * axis + 1, of]

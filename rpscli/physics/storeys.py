@@ -1,4 +1,4 @@
-"""Storeys that yield: springs with a strength and kinematic hardening (Theory, section 14).
+"""Storeys that yield: springs with a strength and kinematic hardening (Theory, section 15).
 
 A storey's elastic range has a middle c: k |d - c| <= F. While it yields towards its mark, 1 or -1,
 the middle follows the drift at F/k, else it rests. Its plastic drift is delta = (1 - h) c, its

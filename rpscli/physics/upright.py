@@ -133,7 +133,8 @@ def restitution_at(s: Record, l: int, system: Record, rate: float) -> float:
     if system.impact_law == 0:
         return float(system.restitution)
     of, tan_a = system.impact_constants, math.tan(system.alpha)
-    given = (rate, tan_a, system.Io, system.gamma, system.eta, of[2], of[3], of[4], of[5])
+    eta = system.eta if s.spared[l] == 0.0 else 0.0  # floors on springs take no part
+    given = (rate, tan_a, system.Io, system.gamma, eta, of[2], of[3], of[4], of[5])
     e = of[0] + of[1] * own_law(system.impact_law, given)
     if not 0.0 < e <= 1.0:
         s.outcome[l] = FAILED_RESTITUTION

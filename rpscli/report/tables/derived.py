@@ -239,7 +239,7 @@ EDGES = {
     "springs": "(I - 2 * sin(alpha)^2 + 4 * gamma * cos(2 * alpha)) / (I + 4 * gamma)",
     "rigid": "1 - 2 * sin(alpha)^2 * (1 + 4 * gamma_t) / (I + 4 * gamma_t)",
 }
-"""Restitution beside an impulse at the edges of the flat part (Theory (4.6), (4.8), (14.6))."""
+"""Restitution beside an impulse at the edges of the flat part (Theory (4.6), (4.8), (14.5))."""
 
 
 def _formulas(structure: PodiumStructure, podium: Mapping[str, Any]) -> dict[str, str]:
