@@ -25,12 +25,14 @@ KINDS = {
     "m/s2": ("an acceleration", ("m/s2", "cm/s2", "g")),
     "m/s": ("a velocity", ("m/s", "cm/s", "ft/s")),
     "N": ("a force", ("N", "kN", "MN", "kip")),
+    "N m": ("a moment", ("N m", "kN m", "MN m")),
+    "Pa": ("a pressure", ("Pa", "MPa", "GPa", "N/mm2")),
     "rad": ("an angle", ("rad", "mrad", "deg")),
     "deg": ("a direction", ("deg", "rad")),
 }
 """Quantity that each SI unit of the formats measures, and units it is usually written in."""
 
-OTHER_KINDS = {"Pa": "a pressure", "Hz": "a frequency"}
+OTHER_KINDS = {"Hz": "a frequency"}
 
 FOOT, INCH = 0.3048, 0.0254
 """In metres, by definition."""

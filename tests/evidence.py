@@ -34,6 +34,7 @@ CAPABILITIES = (
     "devices",
     "vertical motion",
     "floors on vertical springs",
+    "storeys that yield",
     "both components",
     "steps, events, energy",
     "modes",

@@ -8,12 +8,20 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from rpscli.analyses.column_design import no_line
 from rpscli.analyses.trace import Trace
 from rpscli.errors import listed
 from rpscli.model.podium import PodiumStructure
 from rpscli.physics import state
 
 Array = NDArray[np.float64]
+
+
+OF_COLUMNS = (
+    "max_column_shear", "max_column_force", "min_column_force",
+    "column_moment", "contact_pressure_ratio", "crushed_width_ratio",
+)  # fmt: skip
+"""Results that come from the forces of single columns."""
 
 
 @dataclass(frozen=True)
@@ -28,12 +36,17 @@ class AxialForces:
     over its mean force; None without rows."""
     lift_off: float | None
     """Time at which an outer row would first lift off [s]; None if never."""
+    heaviest: dict[str, Array]
+    """Of the most loaded column at each time of the trace, at both ends [N]."""
 
 
 def no_bound(name: str, structure: PodiumStructure) -> str:
     """The reason why a result of both components bounds no force of a column; empty if it does."""
-    if name not in ("max_column_shear", "max_column_force", "min_column_force"):
+    if name not in OF_COLUMNS:
         return ""
+    on_end = name in ("contact_pressure_ratio", "crushed_width_ratio")
+    if on_end and (corner := no_line(structure, both=True)):
+        return f"{name} under both components is not known: {corner}"
     axial = name != "max_column_shear"
     left_out = structure.left_out_of_columns(both=True, axial=axial)
     if not left_out:
@@ -57,11 +70,13 @@ def axial_forces(structure: PodiumStructure, trace: Trace) -> AxialForces:
         lifts = np.flatnonzero(uneven > trace.normal_top)
         lift_off = float(trace.time[lifts[0]]) if len(lifts) else None
     N = structure.columns
+    heaviest = {end: (force + uneven) / N for end, force in normal.items()}
     return AxialForces(
-        {end: float(np.max(force + uneven)) / N for end, force in normal.items()},
+        {end: float(np.max(force)) for end, force in heaviest.items()},
         {end: float(np.min(force - uneven)) / N for end, force in normal.items()},
         ratio,
         lift_off,
+        heaviest,
     )
 
 

@@ -50,6 +50,8 @@ class ResultQuantity(NamedTuple):
         return f"{words} [{unit.replace('/s2', '/s²')}]" if unit else words
 
 
+_DESIGNED = "podium.column, podium.plan and superstructure.vertical_period in the case"
+
 NEEDS = {
     "superstructure": "a superstructure",
     "superstructure, flat part": "a superstructure on columns with a flat part, so that V_st > 0",
@@ -63,6 +65,8 @@ NEEDS = {
     "plane contact": "podium.contact of the kind plane under flat ends",
     "columns": "podium.plan and superstructure.vertical_period in the case, without which it leaves"
     " out the overturning moment and the shock of impacts",
+    "designed columns": _DESIGNED,
+    "columns on arcs": f"curved ends, {_DESIGNED}",
     "damper": "a damper in podium.devices",
     "stop": "a stop in podium.devices",
     "tendon": "a prestressed tendon in podium.devices",
@@ -210,6 +214,19 @@ SAMPLED = (
         needs="columns",
     ),
     ResultQuantity("overturning_ratio", "-", "overturning ratio of an outer row"),
+    ResultQuantity(
+        "column_moment", "N m", "moment at an end of a column", "$M_{end}$", limit="2e5",
+        needs="designed columns",
+    ),
+    ResultQuantity(
+        "contact_pressure_ratio", "-", "contact pressure ratio", "$p_0/f$", limit="1",
+        needs="columns on arcs",
+        meaning="largest elastic pressure on arcs over podium.column.contact_strength",
+    ),
+    ResultQuantity(
+        "crushed_width_ratio", "-", "crushed width ratio", limit="0.15", needs="designed columns",
+        meaning="largest depth of a plastic edge over the width of the end",
+    ),
     ResultQuantity("sliding_time", "s", "columns slide at", needs="podium.friction"),
 )  # fmt: skip
 """Scalars of a history that is followed with all its samples: a single one, or those of a study

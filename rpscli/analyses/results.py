@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rpscli.analyses.column_design import ColumnDemand
 from rpscli.analyses.column_forces import AxialForces, in_shocks
 from rpscli.analyses.fixed_base import (
     FixedBaseResponse,
@@ -23,6 +24,7 @@ from rpscli.analyses.outcome import STOOD
 from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
 from rpscli.analyses.trace import Event, Trace, sampled
 from rpscli.errors import listed
+from rpscli.model.column import LARGEST_EDGE
 from rpscli.physics import state
 from rpscli.records.ground_motion import GroundMotion, MotionComponents
 from rpscli.shown import data_frame, frozen
@@ -35,6 +37,12 @@ LARGEST_TRIED = 8.0
 
 CRUSHING = 10.0
 """Edge pressure over the mean: 30 MPa where the permanent load presses with 3 MPa."""
+
+STEEL = 100e9
+"""Columns of a larger modulus have ends of steel [Pa]."""
+
+STEEL_ROTATION = 0.05
+"""Of rollers and rockers of EN 1337-4 [rad]."""
 
 RESTING = (state.FULL_CONTACT, state.STUCK, state.BEDDED)
 """Phases in which the storey is down, or held."""
@@ -112,6 +120,8 @@ class TimeHistoryResult(Demand):
     axial
         Axial forces of single columns; None where neither rows of columns nor the vertical period
         of the building are given.
+    column_demand
+        What the most loaded column has to carry; None where `podium.column` is not given.
     """
 
     record: GroundMotion
@@ -121,6 +131,7 @@ class TimeHistoryResult(Demand):
     fixed_base: FixedBaseResponse | None
     motion: MotionComponents
     axial: AxialForces | None = None
+    column_demand: ColumnDemand | None = None
 
     def to_dataframe(self) -> Any:
         """The samples as a table of pandas, which must be installed: columns of `timehistory.csv`.
@@ -277,6 +288,21 @@ class TimeHistoryResult(Demand):
         return self.column_forces["top"].least_normal
 
     @property
+    def column_moment(self) -> float | None:
+        """Largest moment at an end of a column [N m]; None without `podium.column`, as below."""
+        return None if self.column_demand is None else abs(self.column_demand.instants[0].moment)
+
+    @property
+    def contact_pressure_ratio(self) -> float | None:
+        """Largest elastic pressure on arcs over the strength; None of flat ends too."""
+        return None if self.column_demand is None else self.column_demand.pressure_ratio
+
+    @property
+    def crushed_width_ratio(self) -> float | None:
+        """Largest depth of a plastic edge over the width of the end."""
+        return None if self.column_demand is None else self.column_demand.crushed_ratio
+
+    @property
     def is_near_critical(self) -> bool:
         """True if it survived after rotations near the critical one, or beyond."""
         return self.outcome in STOOD and self.rotation_ratio > NEAR_CRITICAL
@@ -322,7 +348,7 @@ class TimeHistoryResult(Demand):
                 " a column, whose axial force would be negative; the model assumes that all columns"
                 " stand"
             )
-        notes += self._beyond()
+        notes += [*self._beyond(), *self._of_column()]
         supplied = abs(self.energy.input) + float(self.trace.energy_stored[0])
         if self.energy.created > 0.02 * supplied:
             share = self.energy.created / supplied
@@ -391,6 +417,21 @@ class TimeHistoryResult(Demand):
                 f"the pressure at an edge reaches {pressure:.3g} times the mean under permanent"
                 " load, at which concrete crushes under usual loads: it loses more at impacts and"
                 " restores less than an elastic bed"
+            )
+
+    def _of_column(self) -> Iterator[str]:
+        """Ends of columns for which the model, or a code, does not hold."""
+        design, crushed = self.structure.column, self.crushed_width_ratio or 0.0
+        if crushed > LARGEST_EDGE:
+            yield (
+                f"an edge crushes over {crushed:.3g} of the width of a column, above a third: it is"
+                " no longer a line about which the column turns, and the weight restores less"
+            )
+        if design and design.modulus > STEEL and self.max_rotation > STEEL_ROTATION:
+            yield (
+                f"the largest rotation of {self.max_rotation:.3g} rad is beyond"
+                f" {STEEL_ROTATION:g} rad, up to which EN 1337-4 gives the strength of steel on"
+                " steel"
             )
 
     def _near_the_limit(self) -> Iterator[str]:

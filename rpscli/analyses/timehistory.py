@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+from rpscli.analyses.column_design import column_demand
 from rpscli.analyses.column_forces import axial_forces
 from rpscli.analyses.fixed_base import fixed_base_response
 from rpscli.analyses.kernels.history import sampled_history
@@ -66,10 +67,14 @@ def time_history(
         fixed_base=fixed,
         motion=motion,
     )
-    if structure.superstructure is None or len(result.left_out_of_columns) > 1:
+    design = structure.column
+    even = structure.superstructure is None or len(result.left_out_of_columns) > 1
+    if even and design is None:
         return result
     dense = denser_trace(result, AXIAL_STEP)
-    return replace(result, axial=axial_forces(structure, dense))
+    axial = axial_forces(structure, dense)
+    designed = None if design is None else column_demand(structure, design, dense, axial.heaviest)
+    return replace(result, axial=None if even else axial, column_demand=designed)
 
 
 AXIAL_STEP = 5e-4

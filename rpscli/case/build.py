@@ -12,11 +12,13 @@ from rpscli.case.schema.case_file import (
     AnalysisSection,
     BearingSection,
     CaseFile,
+    ColumnSection,
     DeviceSection,
     PodiumSection,
     SuperstructureSection,
 )
 from rpscli.model.bearing import Bearing, first_order_critical_curvature_ratio
+from rpscli.model.column import ColumnDesign
 from rpscli.model.contact import USUAL_LOSS, Contact
 from rpscli.model.devices import DAMPERS, OwnDamper
 from rpscli.model.impact import IMPACT_LAWS, ImpactLaw
@@ -133,6 +135,17 @@ def structure_of(
         rows=() if plan is None else plan.rows or (0.0, plan.length or 0.0),
         superstructure_y=None if across is None else building(across, at_uplift),
         contact=Contact(**podium.contact.model_dump()),
+        column=None if podium.column is None else column_of(podium.column),
+    )
+
+
+def column_of(section: ColumnSection) -> ColumnDesign:
+    """What a column and the plates under it are made of."""
+    plate = section.on
+    return ColumnDesign(
+        **section.model_dump(exclude={"on"}),
+        plate_modulus=plate.modulus,
+        plate_poisson=plate.poisson,
     )
 
 

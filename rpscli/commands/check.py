@@ -19,6 +19,7 @@ from rpscli.report.table import Heading, Part, Table, large, shown
 from rpscli.report.tables.derived import (
     AT_CRITICAL,
     BOTH,
+    COLUMN,
     CONTACT,
     DYNAMICS,
     FIRST_PERIOD,
@@ -126,12 +127,13 @@ def check_tables(document: Mapping[str, Any], limits: Sequence[Condition]) -> It
     on_bed = CONTACT if "contact_stiffness" in document else ()
     upwards = UPWARDS if "vertical_period" in document else ()
     dynamics = (*DYNAMICS, FIRST_PERIOD, *upwards, *on_bed)
-    for rows in (LEADING, GEOMETRY, dynamics, BOTH)[: 4 if pair else 3]:
+    designed = [COLUMN] if "column_rest_force" in document else []
+    for rows in (LEADING, GEOMETRY, dynamics, *designed, *([BOTH] if pair else [])):
         texts = []
         for row in rows:
             if row.name.endswith("_paper") or (row in LEADING and rows is not LEADING):
                 continue
-            of_some = row in (*on_bed, *BOTH) or row.name == "rolling_period"
+            of_some = row in (*on_bed, *COLUMN, *BOTH) or row.name == "rolling_period"
             if document[row.name] is None and of_some:
                 continue  # columns with a flat part, edges, or curved ends have none
             value, unit = large(document[row.name], row.unit)

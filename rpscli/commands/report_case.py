@@ -204,6 +204,7 @@ def case_page(
     from rpscli.report.figures.history import record_name
     from rpscli.report.html.case_page import (
         case_input,
+        column_sections,
         ground_section,
         history_short,
         horizontal,
@@ -258,6 +259,7 @@ def case_page(
                 response_section(result, files),
             ]
             title = f"Time history under {record_name(result)}{ends(case)}"
+        results += column_sections(result, files)
         terminal.warn(document["warnings"])
         stored = [] if earlier is None else _stored(earlier, requests, now)
         results += _budget(requests, motions, first, look, terminal) if with_budget else []

@@ -11,7 +11,7 @@ from functools import partial
 from itertools import groupby
 from typing import Any, NamedTuple
 
-from rpscli.analyses.column_forces import no_bound
+from rpscli.analyses.column_forces import OF_COLUMNS, no_bound
 from rpscli.analyses.neighbours import Neighbour, neighbours
 from rpscli.analyses.result_quantities import LIMITED, NEEDS, ResultQuantity
 from rpscli.analyses.results import TimeHistoryResult
@@ -160,7 +160,7 @@ def _refuse_unknown(limit: Condition, result: TimeHistoryResult) -> None:
     if result.both_components and (why := no_bound(limit.name, result.structure)):
         raise UsageError(f"{limit.source}: {why}")
     needs = LIMITS[limit.name].needs if limit.name in LIMITS else ""
-    incomplete = needs == "columns" and result.left_out_of_columns
+    incomplete = limit.name in OF_COLUMNS and result.left_out_of_columns
     if needs and (getattr(result, limit.name) is None or incomplete):
         raise UsageError(f"{limit.source}: {limit.name} needs {NEEDS[needs]}")
 

@@ -154,6 +154,11 @@ class Bearing:
         return self.semi_diagonal * math.sin(self.alpha)
 
     @property
+    def end_half_width(self) -> float:
+        """B', or B where the ends are flat [m]."""
+        return self.half_width + self.radius * math.sin(self.beta)
+
+    @property
     def radius(self) -> float:
         """r, the radius of the arcs [m]."""
         return 2.0 * self.half_height * self.curvature_ratio

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import is_number, is_size, told
 from rpscli.model.bearing import Bearing, UpliftedState
+from rpscli.model.column import ColumnDesign
 from rpscli.model.contact import Bed, Contact, bed_of
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.superstructure import Superstructure
@@ -64,6 +65,8 @@ class PodiumStructure(Shown):
         those along it, x; None if they do not.
     contact
         What the ends bear on; rigid or compliant in full contact.
+    column
+        Section and material of a column; None where it is not designed.
 
     Raises
     ------
@@ -92,6 +95,7 @@ class PodiumStructure(Shown):
     rows: tuple[float, ...] = ()
     superstructure_y: Superstructure | None = None
     contact: Contact = field(default_factory=Contact)
+    column: ColumnDesign | None = None
     bed: Bed | None = field(init=False)
     """Compliant full contact; None on rigid ends."""
 

@@ -25,6 +25,7 @@ from rpscli.records.selection import Selection
 from rpscli.records.spectrum import ResponseSpectrum
 from rpscli.report.figures import style
 from rpscli.report.figures.bearing import bearing_figure
+from rpscli.report.figures.column import column_figure
 from rpscli.report.figures.devices import devices_figure
 from rpscli.report.figures.floors import floor_spectra_figure, profile_figure
 from rpscli.report.figures.history import (
@@ -105,6 +106,7 @@ def timehistory_files(result: TimeHistoryResult, title: str, look: Look = USUAL)
         **({"storey_shears": profile_figure} if result.structure.storeys else {}),
         **({"storey_loops": loops_figure} if result.structure.yields else {}),
         **({"devices": devices_figure} if result.structure.devices else {}),
+        **({"column": column_figure} if result.column_demand is not None else {}),
         **({"orbit": orbit_figure} if result.trace.y is not None else {}),
         "rotation": rotation_figure,
         "displacements": displacement_figure,

@@ -99,6 +99,7 @@ def timehistory_document(result: TimeHistoryResult) -> Document:
 
     isolated, fixed = isolated_demands(result), fixed_base_demands(result)
     yielding = values_of(result, STOREYS_YIELDING if result.structure.yields else ())
+    column = result.column_demand
     return {
         "record": {name: getattr(result.record, name) for name in OF_RECORD},
         "failure": result.failure,
@@ -107,6 +108,7 @@ def timehistory_document(result: TimeHistoryResult) -> Document:
         **values_of(result, SAMPLED),
         "column_forces": {end: asdict(forces) for end, forces in result.column_forces.items()},
         "column_forces_leave_out": list(result.left_out_of_columns),
+        "column_instants": [asdict(each) for each in column.instants] if column else [],
         **values_of(isolated, STOREYS),
         **yielding,
         "fixed_base": None if fixed is None else values_of(fixed, STOREYS),

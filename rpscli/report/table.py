@@ -42,14 +42,18 @@ def standing(value: float | None, digits: int = 4) -> str:
     return shown(value if value is not None and math.isfinite(value) else None, digits)
 
 
-LARGE_UNITS = {"N": "kN", "J": "kJ", "kg": "t", "N/m": "kN/m"}
-"""Names for a thousand of an SI unit; other units are shown as they are."""
+LARGE_UNITS = {
+    "N": ("kN", 1e-3), "J": ("kJ", 1e-3), "kg": ("t", 1e-3), "N/m": ("kN/m", 1e-3),
+    "N m": ("kN m", 1e-3), "Pa": ("MPa", 1e-6),
+}  # fmt: skip
+"""Names for many of an SI unit, and the factor; other units are shown as they are."""
 
 
 def large(value: float | None, unit: str) -> tuple[float | None, str]:
     """A value in SI and its unit as people read them."""
     if unit in LARGE_UNITS:
-        return None if value is None else value * 1e-3, LARGE_UNITS[unit]
+        name, factor = LARGE_UNITS[unit]
+        return None if value is None else value * factor, name
     return value, "" if unit == "-" else unit
 
 

@@ -288,6 +288,12 @@ HAS: dict[str, Callable[[PodiumStructure], bool]] = {
     ),
     "podium.friction": lambda structure: structure.friction is not None,
     "columns": lambda structure: not structure.left_out_of_columns(both=False),
+    "designed columns": lambda structure: (
+        structure.column is not None and HAS["columns"](structure)
+    ),
+    "columns on arcs": lambda structure: (
+        HAS["designed columns"](structure) and not structure.bearing.is_flat
+    ),
     "contact": lambda structure: structure.bed is not None,
     "plane contact": lambda structure: (
         structure.contact.kind == "plane" and structure.bearing.is_flat

@@ -229,6 +229,8 @@ PLAIN_FRAME = (
     "podium.cap_beam_mass=9 t",
     "podium.column_mass=1 t",
 )
+CARRIES = ("podium.plan={length: 1}", "superstructure.vertical_period=0.1", "podium.columns=4")
+ROUND = "podium.column={section: round, modulus: 35 GPa, poisson: 0.2, contact_strength: 25 MPa}"
 TENDON = "[{kind: tendon, prestress: 1 kN, stiffness: 1 kN/mm}]"
 
 
@@ -269,6 +271,15 @@ TENDON = "[{kind: tendon, prestress: 1 kN, stiffness: 1 kN/mm}]"
         ((*PLAIN_FRAME, PLANE[-1]), "without one give stiffness or settlement"),
         (("limits={min_column_force: {at_most: 1 kN}}",), "at_least is missing"),
         (("limits={max_column_force: {at_least: 1 kN}}",), "at_most is missing"),
+        (("limits={column_moment: 1 kN m}", *CARRIES), "column_moment needs podium.column, which"),
+        ((ROUND, "limits={column_moment: 1 kN m}"), "overturning moment and the shock of impacts"),
+        ((ROUND, *CARRIES, *FLAT, "limits={contact_pressure_ratio: 1}"), "flat ones stand on edg"),
+        ((ROUND,), "podium.columns is missing: podium.column asks for the force of one"),
+        ((ROUND, "podium.column.edge_length=1 m"), "edge_length does not go with section: round"),
+        ((ROUND, "podium.column.section=square"), "edge_length is missing: a square column bears"),
+        ((ROUND, "podium.column.modulus=35 kN"), "is a force, but must be a pressure"),
+        ((ROUND, "podium.column.on.poisson=0.6"), "poisson = 0.6 must be >= 0 and <= 0.5 (nu)"),
+        ((ROUND, "podium.column.section=oval"), "square or round"),
     ],
 )  # fmt: skip
 def test_overrides_that_are_refused(

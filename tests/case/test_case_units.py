@@ -32,6 +32,8 @@ FACTORS: dict[str, dict[str, float]] = {
     },
     "m/s": {"m/s": 1.0, "cm/s": 0.01, "mm/s": 1e-3, "ft/s": FOOT, "in/s": INCH},
     "N": {"N": 1.0, "kN": 1e3, "MN": 1e6, "lbf": POUND_FORCE, "kip": KIP},
+    "N m": {"N m": 1.0, "kN m": 1e3, "MN m": 1e6, "N mm": 1e-3, "kip ft": KIP * FOOT},
+    "Pa": {"Pa": 1.0, "MPa": 1e6, "GPa": 1e9, "N/mm2": 1e6, "kN/cm2": 1e7},
     "rad": {"rad": 1.0, "mrad": 1e-3, "deg": math.pi / 180.0},
     "deg": {"deg": 1.0, "rad": 180.0 / math.pi},
 }  # fmt: skip
@@ -92,7 +94,8 @@ def test_si(text: str, unit: str, value: float) -> None:
         ("200 kN", "kg", ["is a force", "must be a mass", "W/g"]),
         ("200 tons", "kg", ["has the unit 'tons'", "write t for 1000 kg"]),
         ("3 kg", "m", ["is a mass", "must be a length: m, cm, mm"]),
-        ("3 kN m", "N/m", ["[length]", "must be a stiffness"]),
+        ("3 kN m", "N/m", ["is a moment", "must be a stiffness"]),
+        ("3 kN m2", "N/m", ["[length]", "must be a stiffness"]),
         ("500 kN", "N s/m", ["is a force", "N s/m, kN s/m, MN s/m or kN s/mm"]),
         ("3 kN/mmm", "N/m", ["'kN/mmm'", "did you mean kN/mm?"]),
         ("3 zorks", "m", ["unknown unit 'zorks'", "use m, cm"]),

@@ -14,8 +14,12 @@ from .conftest import BUILDING
 
 WITH_COLUMNS = BUILDING.replace(
     "  profile: sine\n", "  vertical_period: 0.1 s\n  yield: {ratio: 1.3}\n"
-).replace("  impact: {law: rigid}\n", "  plan: {length: 12 m}\n")
-"""With what the force of a column is made of, and strengths."""
+).replace(
+    "  impact: {law: rigid}\n",
+    "  plan: {length: 12 m}\n  columns: 4\n"
+    "  column: {section: round, modulus: 1, poisson: 0, contact_strength: 1}\n",
+)
+"""What the force of a column is made of, and the column, and strengths."""
 
 
 def limited(text: str) -> tuple[Condition, ...]:

@@ -110,6 +110,7 @@ def run(given: dict[str, Any], fema_record: RecordLoader, accuracy: float = 1.0)
 
 @needs_compiled_kernels
 @pytest.mark.evidence("floors on vertical springs", "program")
+@pytest.mark.evidence("storeys that yield", "program")
 @pytest.mark.parametrize("name", PLANE)
 def test_histories_of_another_program(name: str, fema_record: RecordLoader) -> None:
     given, found = PLANE[name]["given"], PLANE[name]["found"]
@@ -285,7 +286,7 @@ def test_nothing_new_comes_after_the_end(kind: str) -> None:
 
 
 @needs_compiled_kernels
-@pytest.mark.evidence("floors on vertical springs", "exact")
+@pytest.mark.evidence("storeys that yield", "exact")
 def test_the_path_of_plastic_drifts() -> None:
     """Karush-Kuhn-Tucker at every sample: within the range, and moved by its ends only."""
     result = time_history(usual("both"), shaken(5), TimeHistorySettings(free_vibration=1.0))

@@ -124,6 +124,10 @@ def sampled(distribution: str) -> tuple[str, str]:
             *added("whole_histories: true\nlimits: {max_column_force: 1}"),
             ("in all systems podium.plan and superstructure.vertical_period", "leaves out"),
         ),
+        (
+            *added("whole_histories: true\nlimits: {contact_pressure_ratio: 1}"),
+            ("in all systems curved ends, podium.column, podium.plan and",),
+        ),
         # scale
         (
             SCALE,

@@ -22,6 +22,8 @@ YIELD = "superstructure.yield"
 BEARING, DIMENSIONS = "podium.bearing", "podium.bearing.dimensions"
 GAMMA, ETA = "podium.cap_beam_mass_ratio", "podium.superstructure_mass_ratio"
 BEAM, COLUMN = "podium.cap_beam_mass", "podium.column_mass"
+COLUMN_KEY = "podium.column"
+COLUMN_LIMITS = tuple(q.name for q in LIMITED if q.needs in {"designed columns", "columns on arcs"})
 RATIOS = {
     "semi_diagonal": "R = sqrt(H^2 + B^2), as in '1.5 m'",
     "slenderness": "tan(alpha) = B/H, as in 0.15",
@@ -65,6 +67,7 @@ class Consistency:
         yield from self._record()
         yield from self._limits()
         yield from self._plan()
+        yield from self._column()
 
     def _where(self, key: str) -> str:
         return self.document.where(path_of(key))
@@ -311,6 +314,8 @@ class Consistency:
     def _limits(self) -> Iterator[Fault]:
         """A limit on something that the case cannot give would never be exceeded."""
         limits, building = self.file.limits, self.file.superstructure
+        for name in _given(limits, *COLUMN_LIMITS) if self.file.podium.column is None else ():
+            yield _at_key(f"limits.{name}", f" needs {COLUMN_KEY}, which is missing")
         if building.storeys == 0:
             for name in _given(limits, *(q.name for q in LIMITED if "superstructure" in q.needs)):
                 text = f" needs a building, but {STOREYS} = 0{self._where(STOREYS)}"
@@ -329,7 +334,8 @@ class Consistency:
             "the shock of impacts": ("superstructure.vertical_period", building.vertical_period),
         }
         lacking = {what: key for what, (key, value) in needed.items() if value is None}
-        for name in _given(limits, "max_column_force", "min_column_force") if lacking else ():
+        forces = "max_column_force", "min_column_force", *COLUMN_LIMITS
+        for name in _given(limits, *forces) if lacking else ():
             yield _at_key(
                 f"limits.{name}",
                 f": the force of a column is known without {listed(lacking, 'and')} only, and may"
@@ -352,8 +358,27 @@ class Consistency:
             text = " needs superstructure.storey_height: the moment has lever arms"
             yield _at_key("podium.plan", text)
 
+    def _column(self) -> Iterator[Fault]:
+        """Square columns bear on lines, which have a length."""
+        column, key = self.file.podium.column, f"{COLUMN_KEY}.edge_length"
+        if column is None:
+            return
+        if self.file.podium.columns is None:
+            yield _at_key("podium.columns", f" is missing: {COLUMN_KEY} asks for the force of one")
+        if column.section == "square" and column.edge_length is None:
+            text = " is missing: a square column bears on a line, whose length it is, as in 0.45 m"
+            yield _at_key(key, text)
+        if column.section == "round" and column.edge_length is not None:
+            section = self._where(f"{COLUMN_KEY}.section")
+            text = f" does not go with section: round{section}, which bears on a point; remove it"
+            yield _at_key(key, text)
+
     def faults_of_shape(self, shape: Shape) -> Iterator[Fault]:
         """Columns whose ends do not fit together, or do not hold them upright."""
+        if not shape.curvature_ratio or shape.wedge_slenderness == shape.slenderness:
+            for name in _given(self.file.limits, "contact_pressure_ratio"):
+                text = " needs curved ends: flat ones stand on edges; limit crushed_width_ratio"
+                yield _at_key(f"limits.{name}", text)
         if shape.slenderness > 0.0:
             if shape.curvature_ratio:
                 yield from self._faults_of_arc(shape)

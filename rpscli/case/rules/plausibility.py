@@ -193,6 +193,12 @@ def doubts_of_directions(structure: PodiumStructure, *, both: bool) -> Iterator[
             " stay in place, which torsion under their weight hardly ensures: they may roll"
             " away"
         )
+    if structure.column is not None and structure.column.section == "square":
+        yield Doubt(
+            "podium.column.section: square columns are followed as round ones, which hides that"
+            " they resist up to 1.4 times as much towards their corners, wobble over them with an"
+            " impact at each edge, and stand on a corner, whose pressure is not known"
+        )
     lossless = structure.impact_law.contact_time == 0.0 and not structure.passes_smoothly
     if lossless and structure.restitution < 1.0:
         yield Doubt(

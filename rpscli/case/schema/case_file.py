@@ -311,6 +311,36 @@ class PlanSection(Section):
     """places of all rows, with equally many columns each"""
 
 
+Modulus = Annotated[float, Quantity("Pa", symbol="E", above=0)]
+Poisson = Annotated[float, Quantity(symbol="nu", at_least=0, at_most=0.5)]
+
+
+class PlateSection(Section):
+    """Plates under and over the columns."""
+
+    modulus: Modulus | None = None
+    """E of the plate; left out: that of the column"""
+    poisson: Poisson | None = None
+    """nu of the plate; left out: that of the column"""
+
+
+class ColumnSection(Section):
+    """Section and material of one column."""
+
+    section: Literal["square", "round"]
+    """square columns bear on lines, round ones on points"""
+    edge_length: Length | None = None
+    """square: L of the line on which a column bears, across the motion"""
+    modulus: Modulus
+    """E of the column"""
+    poisson: Poisson
+    """nu of the column"""
+    contact_strength: Annotated[float, Quantity("Pa", symbol="f", above=0)]
+    """f, pressure that the ends of the column and the plates can bear"""
+    on: PlateSection = PlateSection()
+    """plates under and over the columns; left out: like the column"""
+
+
 class PodiumSection(PodiumMasses):
     """Columns and cap beam."""
 
@@ -327,6 +357,8 @@ class PodiumSection(PodiumMasses):
     plan: PlanSection | None = None
     """where columns stand along the motion; gives the overturning moment in the forces of columns,
     with superstructure.storey_height"""
+    column: ColumnSection | None = None
+    """what a column is made of; gives its moment and the pressure under its ends"""
     devices: tuple[Annotated[DeviceSection, OWN_DAMPERS], ...] = ()
     """dampers, stops and tendons between ground and cap beam, at most 8"""
 

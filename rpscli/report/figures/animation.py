@@ -12,7 +12,7 @@ from rpscli.analyses.modal import ModalResult
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.errors import UsageError
 from rpscli.report.figures import style
-from rpscli.report.figures.bearing import BearingView, frame_end, half_width, leaning_outline
+from rpscli.report.figures.bearing import BearingView, frame_end, leaning_outline
 from rpscli.report.figures.devices import SceneDevices
 from rpscli.report.figures.film import MOST_FRAMES, FilmRequest, Motion, Progress, film
 from rpscli.report.figures.history import in_plane, lean_azimuth
@@ -118,7 +118,7 @@ class PlanView:
         assert trace.y is not None, "both components act"
         self.x, self.y = trace.cap_beam_displacement, trace.y.cap_beam_displacement
         self.azimuth, self.memory = lean_azimuth(trace), round(MEMORY / result.record.dt)
-        radius = half_width(result.structure.bearing)
+        radius = result.structure.bearing.end_half_width
         farthest = float(np.nanmax(trace.size("cap_beam_displacement")))
         self.reach = 1.15 * (radius + farthest)
         critical = float(

@@ -81,7 +81,7 @@ class BearingView:
     def __init__(self, axes: style.Axes, structure: PodiumStructure) -> None:
         self.structure, bearing = structure, structure.bearing
         self.height = 2.0 * bearing.half_height
-        self.half = (1.0 + 2.0 * BESIDE) * half_width(bearing)
+        self.half = (1.0 + 2.0 * BESIDE) * bearing.end_half_width
         self.thickness = 0.06 * self.height
         axes.axhline(0.0, color=style.BLACK, lw=1.2)
         self.column = axes.fill([], [], fc=COLUMN, ec=style.BLACK, lw=1.0)[0]
@@ -197,7 +197,7 @@ def draw_bearing(axes: style.Axes, structure: PodiumStructure, rotation: float =
 
 def draw_end(axes: style.Axes, bearing: Bearing, bed: Bed | None = None) -> None:
     """The lower end of a column at rest, enlarged: its widths, the radius, the edge's height."""
-    half, B = half_width(bearing), bearing.half_width
+    half, B = bearing.end_half_width, bearing.half_width
     x, y = leaning_outline(bearing, 0.0, 0.0, 0.0).T
     axes.axhline(0.0, color=style.BLACK, lw=1.2)
     axes.fill(x, y, fc=COLUMN, ec=style.BLACK, lw=1.0)
@@ -237,13 +237,8 @@ def draw_end(axes: style.Axes, bearing: Bearing, bed: Bed | None = None) -> None
 
 def frame_end(axes: style.Axes, bearing: Bearing, below: float = 0.1) -> None:
     """Bring the lower end of a column into view; `below` the ground, as a part of the picture."""
-    half = half_width(bearing)
+    half = bearing.end_half_width
     _frame(axes, (-half, half, 0.0, 0.0), (0.2, 0.2, below, 1.0 - below), END_ASPECT)
-
-
-def half_width(bearing: Bearing) -> float:
-    """B', or B where the ends are flat [m]."""
-    return bearing.half_width + bearing.radius * math.sin(bearing.beta)
 
 
 def _state(bearing: Bearing, critical: float, rotation: float, u: float, v: float) -> str:

@@ -11,11 +11,13 @@ from typing import Any
 
 import numpy as np
 
+from rpscli.analyses.column_design import WITHOUT_IMPULSE
 from rpscli.analyses.neighbours import Neighbour
-from rpscli.analyses.results import TimeHistoryResult
+from rpscli.analyses.results import STEEL_ROTATION, TimeHistoryResult
 from rpscli.analyses.trace import Event
 from rpscli.case.case import Case
 from rpscli.case.schema.keys import unit
+from rpscli.errors import listed
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import Superstructure
 from rpscli.records.ground_motion import GroundMotion, MotionComponents
@@ -30,9 +32,15 @@ from rpscli.report.figures.structure import structure_figure
 from rpscli.report.html.page import Block, Code, Notice, Picture, Section, page_look, pictures
 from rpscli.report.limits import limits_table, verdicts_in_short
 from rpscli.report.table import Column, Table, shown
-from rpscli.report.tables.derived import derivations, first_shape
+from rpscli.report.tables.derived import (
+    Derivation,
+    column_derivations,
+    derivations,
+    first_shape,
+)
 from rpscli.report.tables.motions import record_table
 from rpscli.report.tables.timehistory import (
+    column_table,
     neighbours_texts,
     outcome_table,
     outcome_text,
@@ -109,6 +117,8 @@ CAPTIONS = {
     " contacts.",
     "orbit": "From above: the path of the cap beam over the ground, and the moment of ground and"
     " building about the contacts, beyond whose circle upright columns uplift; time in colour.",
+    "column": "The most loaded column when its moment is largest: forces at its ends, to a scale of"
+    " their own, and axial force, shear and moment along it.",
     "rotation": "Ground acceleration, rotation of the columns with the phases of the motion, and"
     " the events.",
     "displacements": "Displacements relative to the ground against time.",
@@ -216,6 +226,16 @@ def _as_typed(value: object) -> str:
 
 def derived_blocks(structure: PodiumStructure, podium: Mapping[str, Any]) -> list[Block]:
     """Derived quantities with formulas, and with the numbers put in."""
+    text = (
+        "Angles are in radians, everything else in SI units. The numbers put in are rounded to"
+        f" {DIGITS} digits; the values follow from unrounded ones. The formulas are derived in"
+        f" {THEORY}, sections 1 to 7 and 14. f, κ and e_given are factor, loss and restitution of"
+        " podium.impact, I is podium.bearing.inertia_ratio."
+    )
+    return [text, _derived(derivations(structure, podium))]
+
+
+def _derived(found: Iterable[Derivation]) -> Table:
     rows = [
         (
             row.label,
@@ -225,16 +245,10 @@ def derived_blocks(structure: PodiumStructure, podium: Mapping[str, Any]) -> lis
             _number(row.value),
             "" if row.unit == "-" else row.unit,
         )
-        for row in derivations(structure, podium)
+        for row in found
     ]
-    text = (
-        "Angles are in radians, everything else in SI units. The numbers put in are rounded to"
-        f" {DIGITS} digits; the values follow from unrounded ones. The formulas are derived in"
-        f" {THEORY}, sections 1 to 7. f, κ and e_given are factor, loss and restitution of"
-        " podium.impact, I is podium.bearing.inertia_ratio."
-    )
     heads = ("quantity", "symbol", "formula", "with numbers", "value", "unit")
-    return [text, Table.of_texts(heads, rows, words=4)]
+    return Table.of_texts(heads, rows, words=4)
 
 
 def hidden_table(*, both: bool) -> Table:
@@ -302,11 +316,35 @@ def response_section(
     figures: Iterable[str] = (),
 ) -> Section:
     """The tables of a history, and all of its figures or some."""
-    drawn, wanted = pictures(files), {*figures} or CAPTIONS.keys()
+    drawn, wanted = pictures(files), {*figures} or CAPTIONS.keys() - {"column"}
     storeys = [storeys_table(result)] if result.structure.storeys else []
     shown = [Picture(each, CAPTIONS[stem]) for stem, each in drawn.items() if stem in wanted]
     passes = passes_blocks(result.events, result.structure.bearing.alpha)
     return Section(title, [outcome_table(result), *storeys, *shown, *passes])
+
+
+def column_sections(
+    result: TimeHistoryResult, files: Iterable[tuple[str, object]]
+) -> Iterator[Section]:
+    """What the most loaded column has to carry, with the numbers of its worst instants put in."""
+    if result.column_demand is None:
+        return
+    drawn = pictures(files).get("column")
+    without = listed([*result.left_out_of_columns, WITHOUT_IMPULSE], "and")
+    codes = (
+        "f is podium.column.contact_strength. By EN 1992-1-1, formula 6.63, concrete in a strip at"
+        " the edge of a column has f_cd, since there is nothing outside it; under an arc the line"
+        " lies inside, and a wider plate has up to 3 f_cd. Steel on steel by EN 1337-4 has"
+        f" 2.0 f_u, for rotations up to {STEEL_ROTATION:g} rad."
+    )
+    yield Section("What a column carries", [
+        f"Maxima at instants of a dense trace under {result.record.name}, without {without}.",
+        *column_table(result),
+        *([Picture(drawn, CAPTIONS["column"])] if drawn else []),
+        "With numbers, in SI units (THEORY.md, section 16):",
+        _derived(column_derivations(result)),
+        codes,
+    ])  # fmt: skip
 
 
 def passes_blocks(events: Sequence[Event], alpha: float) -> Iterator[Block]:

@@ -289,7 +289,7 @@ def _together(names: Sequence[str]) -> str:
     if len(labels) <= MOST_NAMED:
         return ", ".join(dict.fromkeys(map(_axis, names)))
     (unit,) = units if len(units) == 1 else ("SI units",)
-    return f"value [{LARGE_UNITS.get(unit, unit)}]"
+    return f"value [{LARGE_UNITS.get(unit, (unit,))[0]}]"
 
 
 def _axis(name: str) -> str:

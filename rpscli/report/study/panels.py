@@ -165,7 +165,7 @@ def large_axis(axis: Axis, unit: str) -> None:
 
 def large_label(quantity: ResultQuantity) -> str:
     """The label of such an axis."""
-    unit = LARGE_UNITS.get(quantity.unit, quantity.unit)
+    unit = LARGE_UNITS.get(quantity.unit, (quantity.unit,))[0]
     return quantity.in_unit(unit, quantity.symbol)
 
 

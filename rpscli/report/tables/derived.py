@@ -14,6 +14,7 @@ from operator import attrgetter
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
+    from rpscli.analyses.results import TimeHistoryResult
     from rpscli.model.bearing import Bearing
     from rpscli.model.podium import Array, PodiumStructure
     from rpscli.model.superstructure import Superstructure
@@ -154,6 +155,51 @@ UPWARDS = (
 )  # fmt: skip
 """Of floors on vertical springs."""
 
+
+def _column_at_rest(structure: PodiumStructure) -> dict[str, float]:
+    """One column under the weight at rest, tilted to a tenth of alpha, by letters."""
+    b, x = structure.bearing, 0.1 * structure.bearing.alpha
+    mass = structure.columns_mass + structure.cap_beam_mass + structure.superstructure_mass
+    N, y, r = structure.gravity * mass / structure.columns, min(x, b.beta), b.radius
+    turned = math.sin(x) + math.sin(y) * math.cos(x) - math.cos(y) * math.sin(x)
+    moment = N * (b.half_width * math.cos(x) + r * turned)
+    return {"N_0": N, "x": x, "y": y, "moment": moment, **_ends(structure, x, N)}
+
+
+def _ends(structure: PodiumStructure, x: float, N: float) -> dict[str, float]:
+    """Pressure on arcs at a tilt [rad] and the edge under N of a column [N], by letters."""
+    import numpy as np  # slow
+
+    b, design = structure.bearing, structure.column
+    assert design is not None, "there is a column"
+    found = {
+        "L": design.edge_length or math.nan, "E_c": design.contact_modulus,
+        "strength": design.contact_strength, "wide": 2.0 * b.end_half_width,
+    }  # fmt: skip
+    found["crushed"] = design.crushed(b, N)[0] / found["wide"]
+    found["p_c"] = math.acos(max(1.0 - 2.0 * found["crushed"], -1.0))
+    if x < b.beta:
+        pressed = design.pressed(b, np.array(x), np.array(N))
+        found |= zip(("pressure", "a_c", "b_c"), map(float, pressed), strict=True)
+    return found
+
+
+def _at_rest(letter: str) -> Callable[[PodiumStructure], float | None]:
+    return lambda structure: _column_at_rest(structure).get(letter)
+
+
+COLUMN = (
+    Derived("column_rest_force", "weight on a column", "N_0", "N", _at_rest("N_0")),
+    Derived(
+        "column_rest_moment", "moment of a column at 0.1 alpha", "M_end", "N m", _at_rest("moment")
+    ),
+    Derived(
+        "contact_rest_pressure", "pressure on its arcs there", "p_0", "Pa", _at_rest("pressure")
+    ),
+    Derived("crushed_rest_ratio", "crushed width at its edge", "b_c/2B'", "-", _at_rest("crushed")),
+)
+"""Of `podium.column`."""
+
 FIRST_PERIOD = Derived(
     "T1", "first period on a fixed base", "T1", "s",
     lambda s: float(s.superstructure.periods[0]) if s.superstructure else None,
@@ -170,6 +216,7 @@ def derived_quantities(structure: PodiumStructure) -> dict[str, Any]:
         FIRST_PERIOD.name: FIRST_PERIOD.value(structure),
         **({row.name: row.value(structure) for row in CONTACT} if structure.bed else {}),
         **({row.name: row.value(structure) for row in UPWARDS} if structure.upwards else {}),
+        **({row.name: row.value(structure) for row in COLUMN} if structure.column else {}),
         **{name: getattr(building, name) if building else [] for name in lists},
     }
 
@@ -181,7 +228,8 @@ SYMBOLS = {
     "theta_cr": "θ_cr", "tan_alpha": "tan α", "tan_alpha_w": "tan α′", "rho_cr": "ρ_cr",
     "height": "2H", "width": "2B", "radius": "r", "m_column": "m_c", "m_c": "N m_c", "M": "M_tot",
     "gamma_t": "γ(1 + η)", "pi": "π", "sum_m": "Σ m_i φ_i²", "sum_k": "Σ k_i (φ_i − φ_i₋₁)²",
-    "phi_u": "φ_u", "sum_M": "Σ M_i / (1 − (ω/ω_i)²)",
+    "E_c": "E*", "strength": "f", "wide": "2B′", "a_c": "a", "b_c": "b", "p_c": "p",
+    "N_1": "N", "F_1": "F", "phi_u": "φ_u", "sum_M": "Σ M_i / (1 − (ω/ω_i)²)",
 }  # fmt: skip
 """Letters that are written otherwise than in an expression."""
 
@@ -208,6 +256,7 @@ def derivations(structure: PodiumStructure, podium: Mapping[str, Any]) -> Iterat
     letters = _letters(structure)
     formulas = _formulas(structure, podium)
     derived = (*GEOMETRY, *DYNAMICS, FIRST_PERIOD, *(CONTACT if structure.bed else ()))
+    derived += COLUMN if structure.column else ()
     rows = [(*row[:4], row.value(structure)) for row in derived]
     for row in rows:
         for name, label, symbol, unit, value in (*_before(row[0], structure, letters), row):
@@ -215,6 +264,37 @@ def derivations(structure: PodiumStructure, podium: Mapping[str, Any]) -> Iterat
                 formula = formulas.get(name, "")
                 texts = symbolic(formula), numeric(formula, letters)
                 yield Derivation(name, label, greek(symbol), float(value), unit, *texts)
+
+
+def column_derivations(result: TimeHistoryResult) -> Iterator[Derivation]:
+    """Largest moment, pressure and edge of the most loaded column of a history."""
+    structure, demand = result.structure, result.column_demand
+    assert demand is not None, "there is a column"
+    formulas, state = _of_column(structure), demand.at_largest_moment
+    for each in demand.instants:
+        x, N = abs(each.rotation), each.axial_force
+        letters = _letters(structure) | _ends(structure, x, N) | {"x": x, "N_1": N}
+        rows = []
+        if each.largest == "column_moment":
+            letters |= {"s": state.side, "F_1": each.shear, "d": state.rise}
+            P = N * math.cos(x) + state.side * each.shear * math.sin(x)
+            Q = state.side * each.shear * math.cos(x) - N * math.sin(x)
+            letters |= {"e": (each.moment + state.rise * Q) / P, "P": P, "Q": Q}
+            rows = [
+                ("axial force at its end", "P", P, "N", "N_1 * cos(x) + s * F_1 * sin(x)"),
+                ("shear at its end", "Q", Q, "N", "s * F_1 * cos(x) - N_1 * sin(x)"),
+                ("largest moment", "M", each.moment, "N m", "e * P - d * Q"),
+            ]
+        elif each.largest == "contact_pressure_ratio" and each.contact_pressure is not None:
+            formula = formulas["contact_rest_pressure"]
+            rows = [("largest pressure on arcs", "p_0", each.contact_pressure, "Pa", formula)]
+        elif each.largest == "crushed_width_ratio":
+            formula = formulas["crushed_rest_ratio"]
+            rows = [("largest crushed width", "b_c/2B'", letters["crushed"], "-", formula)]
+        for label, symbol, value, unit, formula in rows:
+            own = formula.replace("N_0", "N_1")
+            texts = symbolic(own), numeric(own, letters)
+            yield Derivation(each.largest, label, greek(symbol), value, unit, *texts)
 
 
 Row = tuple[str, str, str, str, Any]
@@ -260,6 +340,21 @@ def _formulas(structure: PodiumStructure, podium: Mapping[str, Any]) -> dict[str
         "e_edge": EDGES.get("springs" if structure.upwards else structure.impact_law.kind, ""),
         "weight": "(m_c / 2 + m_b + M) * g",
         **_of_bed(structure),
+        **_of_column(structure),
+    }
+
+
+def _of_column(structure: PodiumStructure) -> dict[str, str]:
+    """Of a column (Theory (16.2), (16.4) to (16.6)); a and b of an ellipse are those of (16.5)."""
+    square = structure.column is not None and structure.column.section == "square"
+    line, ellipse = "sqrt(N_0 * E_c / (pi * L * radius))", "3 * N_0 / (2 * pi * a_c * b_c)"
+    segment = "N_0 / (strength * (wide / 2)^2) = p_c - sin(p_c) * cos(p_c)"
+    turned = "(sin(x) + sin(y) * cos(x) - cos(y) * sin(x))"
+    return {
+        "column_rest_force": "g * (m_c + m_b + M) / N",
+        "column_rest_moment": f"N_0 * (width / 2 * cos(x) + radius * {turned})",
+        "contact_rest_pressure": line if square else ellipse,
+        "crushed_rest_ratio": "N_0 / (strength * L * wide)" if square else segment,
     }
 
 
@@ -380,6 +475,8 @@ def _letters(structure: PodiumStructure) -> dict[str, float]:
         shaken = building.participation**2 / (1.0 - (w / building.frequencies) ** 2)
         letters |= {"T_c": bed.period, "sum_M": float(shaken.sum())}
         letters["T_1"] = float(building.periods[0])
+    if structure.column is not None:
+        letters |= _column_at_rest(structure)
     if building is not None:
         shape = first_shape(building)
         letters["n"] = building.storeys

@@ -10,10 +10,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rpscli.analyses.column_design import WITHOUT_IMPULSE, no_line
 from rpscli.analyses.neighbours import OTHER_LOSS, Neighbour
 from rpscli.analyses.result_quantities import HISTORY, PAIR, SAMPLED, YIELDING
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
+from rpscli.errors import listed
 from rpscli.model.podium import PodiumStructure
 from rpscli.report.limits import limits_table
 from rpscli.report.table import Heading, Part, Table, measured, percent, shown
@@ -48,6 +50,7 @@ def timehistory_tables(
     if result.structure.storeys:
         yield storeys_table(result)
     yield from yielded_tables(result)
+    yield from column_table(result)
     if result.devices:
         yield devices_table(result)
     if verdicts:
@@ -308,7 +311,43 @@ def _columns(result: TimeHistoryResult) -> list[Row]:
         rows = [(label, *row[1:]) for label, row in zip(labels, rows, strict=True)]
     if result.overturning_ratio is not None:
         rows.append(_row(result, "overturning_ratio"))
-    return [*rows, *((f"  without {what}", "", "", "") for what in result.left_out_of_columns)]
+    left_out = [
+        *result.left_out_of_columns,
+        *[WITHOUT_IMPULSE] * (result.column_demand is not None),
+    ]
+    designed = ("column_moment", "contact_pressure_ratio", "crushed_width_ratio")
+    rows += [_row(result, name) for name in designed if getattr(result, name) is not None]
+    return [*rows, *((f"  without {what}", "", "", "") for what in left_out)]
+
+
+LARGEST = {
+    "column_moment": "moment", "max_column_force": "axial force",
+    "contact_pressure_ratio": "pressure on arcs", "crushed_width_ratio": "crushed edge",
+}  # fmt: skip
+"""Words for what is largest at worst instants."""
+
+
+def column_table(result: TimeHistoryResult) -> Iterator[Part]:
+    """Worst instants of the most loaded column, and where its pressure is another one."""
+    if (column := result.column_demand) is None:
+        return
+    heads = ("largest", "end", "t s", "rad", "N kN", "F kN", "e m", "M kN m", "p_0 MPa", "b_c mm")
+    rows = [
+        (
+            LARGEST[each.largest], each.end, shown(each.time, 5), shown(each.rotation),
+            *(shown(1e-3 * force) for force in (each.axial_force, each.shear)),
+            shown(each.eccentricity, 3), shown(1e-3 * each.moment),
+            shown(each.contact_pressure and 1e-6 * each.contact_pressure),
+            shown(each.crushed_depth and 1e3 * each.crushed_depth),
+        )
+        for each in column.instants
+    ]  # fmt: skip
+    yield Table.of_texts(heads, rows, words=2)
+    for doubt in dict.fromkeys(each.doubt for each in column.instants if each.doubt):
+        of = [LARGEST[each.largest] for each in column.instants if each.doubt == doubt]
+        yield f"p_0 at the largest {listed(of, 'and')}: {doubt}"
+    if corner := no_line(result.structure, both=result.both_components):
+        yield f"no pressure: {corner}"
 
 
 def _energy(result: TimeHistoryResult) -> list[Row]:

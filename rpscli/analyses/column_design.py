@@ -1,0 +1,169 @@
+"""Worst instants of the most loaded column of a history: moment, pressure, crushed edge, force.
+
+Theory, section 16. Maxima are those of a dense trace. At impacts they leave out the impulse of
+beam and columns, which has no bound between rigid ends.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rpscli.analyses.trace import Trace
+from rpscli.model.column import ColumnDesign, ColumnState
+from rpscli.model.podium import PodiumStructure
+from rpscli.physics import state
+from rpscli.physics.geometry import path_along
+
+Array = NDArray[np.float64]
+
+ENDS = ("bottom", "top")
+WITHOUT_IMPULSE = "the impulse of beam and columns at impacts, infinite between rigid ends"
+
+
+@dataclass(frozen=True)
+class ColumnInstant:
+    """One end of the most loaded column when something is largest; in the plane of tilt.
+
+    Parameters
+    ----------
+    largest
+        Name of the result that is.
+    axial_force, shear
+        N, and F to the right on what is above [N].
+    eccentricity, moment
+        M/N [m], M [N m].
+    contact_pressure, crushed_depth
+        p_0 on an arc [Pa], b_c at an edge [m]; None elsewhere.
+    doubt
+        The reason why the pressure is another one; empty where its law is valid.
+    """
+
+    largest: str
+    end: str
+    time: float
+    rotation: float
+    axial_force: float
+    shear: float
+    eccentricity: float
+    moment: float
+    contact_pressure: float | None
+    crushed_depth: float | None
+    doubt: str
+
+
+@dataclass(frozen=True)
+class ColumnDemand:
+    """What the most loaded column has to carry."""
+
+    instants: tuple[ColumnInstant, ...]
+    """At which each result is largest."""
+    at_largest_moment: ColumnState
+    pressure_ratio: float | None
+    """Largest p_0/f on arcs; None where it is not known."""
+    crushed_ratio: float | None
+    """Largest b_c over the width of an end; 0 where no column came onto an edge."""
+
+
+def no_line(structure: PodiumStructure, *, both: bool) -> str:
+    """The reason why neither pressure nor edge is known; empty if they are."""
+    if both and structure.column is not None and structure.column.section == "square":
+        return "a square column that tilts to any side stands on a corner, which bears on no line"
+    return ""
+
+
+class _Loads(NamedTuple):
+    """Arrays (samples,), of forces and moments (2, samples) at the bottom and at the top."""
+
+    down: NDArray[np.bool_]
+    side: Array
+    lever: Array
+    rise: Array
+    F: Array
+    N: Array
+    M: Array
+
+
+def _loads(structure: PodiumStructure, trace: Trace, heaviest: dict[str, Array]) -> _Loads:
+    b, x = structure.bearing, np.abs(trace.rotation)
+    B, r, y = b.half_width, 0.0 if b.is_flat else b.radius, np.minimum(x, b.beta)
+    down = (trace.phase == state.FULL_CONTACT) | (trace.phase == state.BEDDED)
+    F = _along_tilt(trace, down) / structure.columns
+    N = np.array([heaviest[end] for end in ENDS])
+    tilted = np.where(trace.rotation < 0.0, -1.0, 1.0)
+    side = np.where(down, -np.sign(F[0] + F[1]), tilted)
+    arm = structure.weight_arm(x)
+    height = structure.lever_arm(x) / (2.0 * b.semi_diagonal)
+    added = N[0] - trace.normal_bottom / structure.columns
+    # In full contact, where only the sum of both moments is known: one eccentricity, as at uplift.
+    upright = np.minimum(b.half_height * np.abs(F[0] + F[1]) / np.maximum(N[0] + N[1], 1e-9), B)
+    F = F - np.where(down, 0.0, side * added * arm / height)  # (16.3)
+    rigid = arm if structure.bed is None else path_along(b.rolling, b.rocking, b.beta, x)[0]
+    lever = np.where(down, upright, B + r * np.sin(y) - b.semi_diagonal * (rigid - arm))
+    rise = np.where(down, 0.0, r * (1.0 - np.cos(y)))
+    P, Q = N * np.cos(x) + side * F * np.sin(x), side * F * np.cos(x) - N * np.sin(x)
+    return _Loads(down, side, lever, rise, F, N, lever * P - rise * Q)
+
+
+def column_demand(
+    structure: PodiumStructure, design: ColumnDesign, trace: Trace, heaviest: dict[str, Array]
+) -> ColumnDemand:
+    """Worst instants, from axial forces of the most loaded column at the times of a trace."""
+    b, t, x, of = (
+        structure.bearing,
+        trace,
+        np.abs(trace.rotation),
+        _loads(structure, trace, heaviest),
+    )
+    N, up = of.N, ~of.down & (not no_line(structure, both=t.y is not None))
+    rolls, edges = up & (x > 0.0) & (x < b.beta), up & (x >= b.beta)
+
+    def worst(largest: str, values: Array) -> ColumnInstant:
+        end, i = np.unravel_index(int(np.argmax(values)), values.shape)
+        force, moment, tilt = float(N[end, i]), float(of.M[end, i]), float(x[i])
+        return ColumnInstant(
+            largest,
+            ENDS[end],
+            float(t.time[i]),
+            float(t.rotation[i]),
+            force,
+            float(of.F[end, i]),
+            moment / force if force else 0.0,
+            moment,
+            float(design.pressed(b, x[i], N[end, i])[0]) if rolls[i] else None,
+            design.crushed(b, force)[0] if edges[i] else None,
+            design.doubt(b, tilt, force) if rolls[i] else "",
+        )
+
+    found = [worst("column_moment", np.abs(of.M)), worst("max_column_force", N)]
+    known = not no_line(structure, both=t.y is not None)
+    ratio, crushed = 0.0 if known and not b.is_flat else None, 0.0 if known else None
+    if rolls.any():
+        # It grows with N and with the tilt: the others lie below one that has more of both.
+        order = np.argsort(-x)
+        most = np.where(rolls, N.max(axis=0), 0.0)[order]
+        rows = order[(most >= np.maximum.accumulate(most)) & rolls[order]]
+        values = np.zeros_like(N)
+        values[:, rows] = design.pressed(b, np.broadcast_to(x[rows], (2, len(rows))), N[:, rows])[0]
+        found.append(worst("contact_pressure_ratio", values))
+        ratio = (found[-1].contact_pressure or 0.0) / design.contact_strength
+    if edges.any():
+        found.append(worst("crushed_width_ratio", np.where(edges, N, -np.inf)))
+        crushed = (found[-1].crushed_depth or 0.0) / (2.0 * b.end_half_width)
+    i = int(np.argmax(np.abs(of.M).max(axis=0)))
+    forces = of.F[0, i], N[0, i], of.F[1, i], N[1, i]
+    at = of.side[i], x[i], t.rotation_rate[i], of.lever[i], of.rise[i], *forces
+    return ColumnDemand(tuple(found), ColumnState(*map(float, at)), ratio, crushed)
+
+
+def _along_tilt(trace: Trace, down: NDArray[np.bool_]) -> Array:
+    """Shears at both ends in the plane of tilt (2, samples) [N]; of upright columns, the sum's."""
+    x = np.array([trace.shear_bottom, trace.shear_top])
+    if trace.y is None or trace.azimuth is None:
+        return x
+    y = np.array([trace.y.shear_bottom, trace.y.shear_top])
+    azimuth = np.where(down, np.arctan2(y.sum(axis=0), x.sum(axis=0)), trace.azimuth)
+    return np.asarray(x * np.cos(azimuth) + y * np.sin(azimuth))

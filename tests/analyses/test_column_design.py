@@ -1,0 +1,110 @@
+"""What the most loaded column carries in a history: by hand, in the plane and in space."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from paper_structures import building, ground, needs_compiled_kernels, podium, waves
+
+from rpscli.analyses.column_forces import no_bound
+from rpscli.analyses.settings import TimeHistorySettings
+from rpscli.analyses.timehistory import denser_trace, time_history
+from rpscli.model.column import ColumnDesign
+from rpscli.model.podium import PodiumStructure
+from rpscli.records.ground_motion import MotionComponents
+
+SQUARE = ColumnDesign("square", 35e9, 0.2, 25e6, edge_length=0.45)
+ROUND = ColumnDesign("round", 35e9, 0.2, 25e6)
+AT_ONCE = TimeHistorySettings(free_vibration=0.0)
+
+
+def frame(rho: float, design: ColumnDesign) -> PodiumStructure:
+    return replace(podium(0, 0.15, rho), columns=4, column=design)
+
+
+def designed(rho: float = 0.5) -> PodiumStructure:
+    heights = np.full(2, 3.0)
+    above = replace(building(2, 0.4), vertical_period=0.1, storey_heights=heights)
+    of = podium(2, 0.15, rho, superstructure=above)
+    return replace(of, columns=16, rows=(0.0, 4.0, 8.0), column=SQUARE)
+
+
+@pytest.mark.evidence("forces in columns, friction", "exact")
+@pytest.mark.parametrize("pair", [False, True])
+def test_upright_columns_share_the_moment_of_the_shears(pair: bool) -> None:
+    """1 m/s2 on a beam and columns of 200 and 20 t: H (50 + 55 kN) at both ends, as 200 to 220."""
+    of = frame(0.5, ROUND)
+    push = ground([0.0, 1.0, 0.0], 0.1)
+    motion = MotionComponents(push.scaled(0.6), y=push.scaled(0.8)) if pair else push
+    result = time_history(of, motion, AT_ONCE)
+    assert result.column_moment == pytest.approx(
+        of.bearing.half_height * 105e3 * 220.0 / 420.0, rel=1e-12
+    )
+    assert (result.contact_pressure_ratio, result.crushed_width_ratio) == (0.0, 0.0)
+    assert time_history(replace(of, column=None), motion, AT_ONCE).column_moment is None
+    # An elastic joint or an edge cannot give more than N B.
+    strong = time_history(replace(of, gravity=0.7), push, AT_ONCE)
+    assert strong.column_demand is not None
+    weight = 0.7 * (of.columns_mass + of.cap_beam_mass) / 4.0
+    assert 0.0 < (strong.column_moment or 0.0) < 3.0 * weight * of.bearing.half_width
+
+
+@needs_compiled_kernels
+@pytest.mark.evidence("forces in columns, friction", "exact")
+def test_flat_ends_turn_the_force_at_their_edge_into_moment() -> None:
+    of = frame(0.0, SQUARE)
+    result = time_history(of, waves(4.0, 0.01, 4.0, seed=1), AT_ONCE)
+    t, b = denser_trace(result, 5e-4), of.bearing
+    tilted = t.rotation != 0.0
+    x, s = np.abs(t.rotation)[tilted], np.sign(t.rotation)[tilted]
+    pressed = t.normal_bottom[tilted] * np.cos(x) + s * t.shear_bottom[tilted] * np.sin(x)
+    assert result.column_moment == pytest.approx(b.half_width * np.max(pressed) / 4.0, rel=1e-9)
+    N = np.max(t.normal_bottom[tilted]) / 4.0
+    depth = N / (25e6 * 0.45)
+    assert result.crushed_width_ratio == pytest.approx(depth / (2.0 * b.half_width), rel=1e-9)
+    assert result.contact_pressure_ratio is None
+
+
+@needs_compiled_kernels
+@pytest.mark.evidence("forces in columns, friction", "exact")
+def test_worst_instants_of_a_building() -> None:
+    """No sample presses more, and the moment runs to the upper end as that end asks."""
+    of = designed()
+    result = time_history(of, waves(6.0, 0.01, 1.8 * of.uplift_acceleration, seed=2))
+    t, b, axial, demand = denser_trace(result, 5e-4), of.bearing, result.axial, result.column_demand
+    assert axial is not None and demand is not None  # noqa: PT018
+    x, force = np.abs(t.rotation), axial.heaviest["bottom"]
+    rolls = (t.phase == 1) & (x > 0.0)
+    pressure, *_ = SQUARE.pressed(b, x[rolls], force[rolls])
+    assert result.contact_pressure_ratio == pytest.approx(np.max(pressure) / 25e6, rel=1e-12)
+    around = replace(of, column=ROUND)
+    second = time_history(around, result.record)
+    pressure, *_ = ROUND.pressed(b, x[rolls], force[rolls])
+    assert second.contact_pressure_ratio == pytest.approx(np.max(pressure) / 25e6, rel=1e-12)
+    assert demand.instants[1].axial_force == result.max_column_force
+    state, H = demand.at_largest_moment, b.half_height
+    P, Q, M = state.section_forces(b, of.columns_mass / 16, np.array([0.0, 2.0 * H]))
+    assert abs(M[0]) == pytest.approx(result.column_moment, rel=1e-12)
+    assert M[1] == pytest.approx(-(state.lever * P[1] - state.rise * Q[1]), rel=1e-9)
+    assert M[1] == pytest.approx(-M[0], rel=0.05)
+    # The mean shear would leave the outer columns out of balance.
+    mean = np.max(np.abs(t.shear_bottom)) / 16
+    assert abs(state.shear_bottom) > 1.1 * mean
+
+
+@needs_compiled_kernels
+def test_a_pair_in_one_direction_is_the_plane_and_a_square_column_has_no_pressure() -> None:
+    push = waves(3.0, 0.01, 4.0, seed=3)
+    of = frame(0.5, ROUND)
+    plane = time_history(of, push, AT_ONCE)
+    pair = time_history(of, MotionComponents(push, y=push.scaled(0.0)), AT_ONCE)
+    for name in ("column_moment", "contact_pressure_ratio", "crushed_width_ratio"):
+        assert getattr(pair, name) == pytest.approx(getattr(plane, name), rel=1e-6)
+    square = replace(of, column=SQUARE)
+    result = time_history(square, MotionComponents(push, y=push), AT_ONCE)
+    assert result.contact_pressure_ratio is None
+    assert (result.column_moment or 0.0) > 0.0
+    assert "corner" in no_bound("contact_pressure_ratio", square)
+    assert "passes shorter" in no_bound("column_moment", square)

@@ -1,0 +1,182 @@
+"""Forces along one column and the pressure under its ends, against numbers of another program."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from paper_structures import podium
+
+from rpscli.model.bearing import Bearing
+from rpscli.model.column import ColumnDesign, ColumnState
+from rpscli.physics import geometry
+
+STATES = [
+    # side, x, x', F and N below, F and N above; P, Q, M at every half of H
+    (
+        (1, 0.23811128711822446, 0.09913112285501614, -49376.96909623491, 7391581.242615685,
+         -31048.55311076634, 7177271.802634789),
+        (7171382.8, 7120343.2, 7069340.1, 7018373.4, 6967443.1),
+        (-1791418.5, -1763308.2, -1742544.7, -1729128.2, -1723058.6),
+        (2629370.2, 1311713.3, 12181.413, -1274674.8, -2554304.6),
+    ),
+    (
+        (-1, 0.14190248504153427, 0.08823974899665779, 491490.1840812633, 7998029.625785885,
+         502343.06780178356, 7790318.191047987),
+        (7848129.4, 7796296.4, 7744492.4, 7692717.2, 7640970.8),
+        (-1617685.3, -1610710.5, -1605280.2, -1601394.4, -1599053.1),
+        (2414533.8, 1217409.4, 24885.388, -1164183.7, -2350943.5),
+    ),
+    (
+        (-1, 0.11883949347535636, 0.011916632244497696, 231497.0387169002, 7994979.814939541,
+         241076.52693028227, 7814728.757914057),
+        (7911144.1, 7866114.4, 7821085.3, 7776056.7, 7731028.6),
+        (-1177748.8, -1176262.3, -1173790.3, -1170333.0, -1165890.2),
+        (1760314.0, 887243.53, 15641.019, -853762.6, -1720236.4),
+    ),
+]  # fmt: skip
+"""Two of a column on arcs, the last one of a column on flat ends, by an integrator of its own."""
+
+ROUND = ColumnDesign("round", 35e9, 0.2, 25e6)
+SQUARE = ColumnDesign("square", 35e9, 0.2, 25e6, edge_length=0.45)
+
+
+def arcs(radius: float, width: float, wedge: float = 0.5) -> Bearing:
+    """A column whose arcs have this radius, around a flat part of this half width."""
+    H = radius / 1.2
+    return Bearing(math.hypot(H, width), width / H, wedge / H, 0.6)
+
+
+@pytest.mark.evidence("forces in columns, friction", "program")
+@pytest.mark.parametrize("number", range(3))
+def test_forces_along_a_column(number: int) -> None:
+    (side, x, rate, F_b, N_b, F_t, N_t), *wanted = STATES[number]
+    H, B, r, beta = 1.4834045, 0.22251068, 0.59336181, 0.38439677
+    if number == 2:
+        r = beta = 0.0
+    bearing = Bearing(math.hypot(H, B), B / H, (B + r * math.sin(beta)) / H, 0.5 * r / H)
+    y = min(x, beta)
+    lever, rise = B + r * math.sin(y), r * (1.0 - math.cos(y))
+    state = ColumnState(side, x, rate, lever, rise, F_b, N_b, F_t, N_t)
+    found = state.section_forces(bearing, 2e4, np.linspace(0.0, 2.0, 5) * H)
+    for values, other in zip(found, wanted, strict=True):
+        assert values == pytest.approx(other, rel=1e-6)
+
+
+@pytest.mark.evidence("forces in columns, friction", "exact")
+def test_the_moment_ends_as_the_upper_end_asks() -> None:
+    """By the equation of motion (2.3), also of a column that carries more than the mean.
+
+    It holds if the shear follows the axial force: with the mean shear the ends do not balance.
+    """
+    rng = np.random.default_rng(0)
+    for rho in (0.0, 0.5, 0.2):
+        structure = podium(3, 0.15, rho)
+        b, total = structure.bearing, structure.columns_mass
+        R, H, gamma, eta, N = b.semi_diagonal, b.half_height, structure.gamma, structure.eta, 16
+        for _ in range(100):
+            x, side = rng.uniform(0.0, 0.28), rng.choice([-1.0, 1.0])
+            rate, a_g, a_v = rng.normal(0.0, 1.0, 3)
+            V, g = rng.normal(0.0, 2e6), structure.gravity + a_v
+            phase = b.rolling if x < b.beta else b.rocking
+            B = geometry.contact_arm(phase, math.cos(x), math.sin(x))
+            C = geometry.contact_height(phase, math.cos(x), math.sin(x))
+            lifted = 1.0 + 4.0 * gamma * (1.0 + eta)
+            A = geometry.inertia(b.inertia_ratio - 1.0, 1.0 + 4.0 * gamma, lifted, C * C, B * B)
+            D = B * ((1.0 + 4.0 * gamma) * phase.c + 4.0 * gamma * eta * (phase.c - C))
+            driven = a_g / R * (1.0 + 2.0 * gamma) - 2.0 * V / (total * R)
+            moment = B * g / R * (1.0 + 2.0 * gamma * (1.0 + eta))
+            turned = -(moment + side * C * driven + D * rate**2) / A  # of x, by (2.3)
+            beam = 2.0 * R * side * (C * turned + B * rate**2)
+            raised = 2.0 * R * (B * turned + (phase.c - C) * rate**2)
+            F_t = structure.cap_beam_mass * (beam + a_g) - V
+            N_t = (structure.cap_beam_mass + structure.superstructure_mass) * (g + raised)
+            F_b, N_b = F_t + total * (beam / 2 + a_g), N_t + total * (g + raised / 2)
+            added = rng.uniform(-0.9, 2.0) * N_t / N
+            follows = -side * added * B / C  # (16.3)
+            y = min(x, b.beta)
+            radius = 0.0 if b.is_flat else b.radius
+            lever, rise = b.half_width + radius * math.sin(y), radius * (1.0 - math.cos(y))
+            for extra, closes in ((follows, True), (0.0, False)):
+                of = [F_b / N + extra, N_b / N + added, F_t / N + extra, N_t / N + added]
+                state = ColumnState(side, x, rate, lever, rise, *of)
+                _, _, M = state.section_forces(b, total / N, np.array([0.0, 2.0 * H]))
+                P = of[3] * math.cos(x) + side * of[2] * math.sin(x)
+                Q = side * of[2] * math.cos(x) - of[3] * math.sin(x)
+                bars = abs(M[0]) + H * (abs(of[1]) + abs(of[3]))
+                if closes:
+                    assert M[1] == pytest.approx(-(lever * P - rise * Q), abs=1e-12 * bars)
+                    # Of this motion, not of one that the ends would make up.
+                    inertia = (b.inertia_ratio - 1.0) * total / N * R**2
+                    about = R * B * (of[1] + of[3]) + side * R * C * (of[0] + of[2])
+                    assert -about == pytest.approx(inertia * turned, abs=1e-11 * bars)
+                else:
+                    about = R * B * (of[1] + of[3]) + side * R * C * (of[0] + of[2])
+                    assert about + inertia * turned == pytest.approx(2.0 * R * B * added, rel=1e-6)
+
+
+@pytest.mark.evidence("forces in columns, friction", "program")
+@pytest.mark.parametrize(
+    ("design", "force", "radii", "largest", "widths"),
+    [
+        (ROUND, 525e3, (1.483, 1.483), 248525380.0, (0.031758865, 0.031758865)),
+        (ROUND, 525e3, (1.483, 3.71), 187301990.0, (0.026979523, 0.049604836)),
+        (ColumnDesign("round", 210e9, 0.3, 1e9), 1.2e6, (0.9, 12.5), 766295970.0,
+         (0.011629538, 0.06429299)),
+        (SQUARE, 525e3, (1.483, 3.71), 67563368.0, (0.010992985, math.inf)),
+    ],
+)  # fmt: skip
+def test_pressure_on_points_and_lines(
+    design: ColumnDesign,
+    force: float,
+    radii: tuple[float, float],
+    largest: float,
+    widths: tuple[float, float],
+) -> None:
+    x = 0.02
+    bearing = arcs(radii[0], (radii[1] - radii[0]) * math.sin(x))
+    found = design.pressed(bearing, np.array(x), np.array(force))
+    assert [float(value) for value in found] == pytest.approx([largest, *widths], rel=1e-6)
+
+
+@pytest.mark.evidence("forces in columns, friction", "exact")
+def test_an_ellipse_between_a_circle_and_a_line() -> None:
+    """p_0 of a sphere in closed form; of a long ellipse, a line's with the force of its middle."""
+    N, r, E = np.array(525e3), 1.483, ROUND.contact_modulus
+    largest, *_ = ROUND.pressed(arcs(r, 1e-12), np.array(0.1), N)
+    sphere = (6.0 * N * E**2 / (math.pi**3 * r**2)) ** (1.0 / 3.0)
+    assert largest == pytest.approx(sphere, rel=1e-9)
+    assert ROUND.pressed(arcs(r, 0.0), np.array(0.0), N)[0] == pytest.approx(sphere, rel=1e-14)
+    largest, along, across = ROUND.pressed(arcs(r, 0.2), np.array(1e-9), N)
+    of_its_middle = replace(SQUARE, edge_length=4.0 / 3.0 * float(across))
+    line, half, _ = of_its_middle.pressed(arcs(r, 0.2), np.array(1e-9), N)
+    assert (largest, along) == pytest.approx((line, half), rel=1e-9)
+    assert ROUND.pressed(arcs(r, 0.2), np.array(0.1), np.array(-1.0))[0] == 0.0
+
+
+@pytest.mark.evidence("forces in columns, friction", "program")
+def test_edges_that_crush() -> None:
+    flat = Bearing(math.hypot(1.5, 0.2225), 0.2225 / 1.5, 0.2225 / 1.5, 0.0)
+    strip = replace(SQUARE, edge_length=0.445).crushed(flat, 525e3)
+    assert strip == pytest.approx((0.047191011, 0.023595506), rel=1e-6)
+    assert ROUND.crushed(flat, 525e3) == pytest.approx((0.085764436, 0.050820164), rel=1e-6)
+    assert ROUND.crushed(flat, -1.0) == (0.0, 0.0)
+    whole = math.pi * 0.2225**2 * 25e6
+    assert ROUND.crushed(flat, (1.0 - 1e-9) * whole)[0] == pytest.approx(0.445, rel=1e-3)
+    assert ROUND.crushed(flat, 2.0 * whole) == pytest.approx((0.89, 0.2225), rel=1e-12)
+
+
+def test_where_the_laws_of_pressure_end() -> None:
+    curved, ball = Bearing(1.5, 0.15, 0.3, 0.5), arcs(1.483, 0.0)
+    for design in (SQUARE, ROUND):
+        assert "flat part" in design.doubt(curved, 0.001, 5e5)
+        assert design.doubt(curved, 0.1, 5e5) == design.doubt(ball, 0.001, 5e5) == ""
+    assert "half of the distance" in ROUND.doubt(curved, 0.1, 5e6)
+    assert "r/5" in ROUND.doubt(ball, 0.1, 5e9)
+    on_steel = replace(SQUARE, plate_modulus=210e9)
+    pair = [d.pressed(curved, np.array(0.1), np.array(5e5))[0] for d in (on_steel, SQUARE)]
+    assert pair[0] > pair[1]
+    with pytest.raises(ValueError, match="edge_length"):
+        replace(SQUARE, section="round")
