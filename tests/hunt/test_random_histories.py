@@ -358,8 +358,8 @@ def judged_pair(
     there = followed(system, pair(-record.acceleration, -across, record.dt, up), chosen)
     assert there.left.outcome == left.outcome
     assert np.array_equal(there.samples.theta, at.theta)
-    across = 2 * system.storeys  # what goes upwards is not mirrored
-    assert np.array_equal(there.floors[..., :across], -here.floors[..., :across])
+    level = 2 * system.storeys  # what goes upwards is not mirrored
+    assert np.array_equal(there.floors[..., :level], -here.floors[..., :level])
     return outcome
 
 

@@ -173,7 +173,7 @@ def _marks_of(key: str) -> list[object]:
 
 
 SECTIONS = {
-    "superstructure": "7", "superstructure.damping": "6, 7", "superstructure.vertical_period": "8",
+    "superstructure": "7", "superstructure.damping": "6, 7", "superstructure.vertical_period": "14",
     "superstructure.yield": "15", "superstructure.y": "13", "podium": "2", "podium.bearing": "1, 5",
     "podium.bearing.inertia_ratio": "2", "podium.bearing.inertia_ratio_axial": "13",
     "podium.impact": "4", "podium.impact.contact_time": "13", "podium.friction": "8",
