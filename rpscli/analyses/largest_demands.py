@@ -221,14 +221,9 @@ def _drifts(h: Histories) -> Array:
     if not h.yields:
         return _elastic_drifts(h)
     # Both directions of a yielding storey as if they were largest together, an upper bound.
-    yielded = h.yielding("ductility") * h.of_ways(_yield_drifts)
-    drifts = np.sqrt(np.sum(yielded**2, axis=1))
+    yields_at = h.of_ways(lambda b: b.strengths) / h.of_ways(lambda b: b.stiffnesses)
+    drifts = np.linalg.norm(h.yielding("ductility") * yields_at, axis=1)
     return np.where(np.isfinite(drifts), drifts, _elastic_drifts(h))
-
-
-def _yield_drifts(building: Superstructure) -> Array | None:
-    """F_i/k_i."""
-    return None if building.strengths is None else building.strengths / building.stiffnesses
 
 
 def _elastic_drifts(h: Histories) -> Array:
@@ -240,12 +235,6 @@ def _elastic_drifts(h: Histories) -> Array:
     k_y = h.of_building(lambda b: b.stiffnesses, y=True)
     parts = h.of_storeys("storey_shear_x") / k, h.of_storeys("storey_shear_y") / k_y
     return np.minimum(shears / np.minimum(k, k_y), np.hypot(*parts))
-
-
-def _first_yields(h: Histories) -> Array:
-    times = h.yielding("first_yield")
-    first = np.min(np.where(times >= 0.0, times, np.inf), axis=1)
-    return np.where(np.isfinite(first), first, np.nan)
 
 
 def _uplift_shear(structure: PodiumStructure) -> float | None:
@@ -394,34 +383,31 @@ class Demand(Shown):
     )
     residual_drifts = _Result[Array](
         "(n,) plastic drifts at the end [m], of both directions the resultants.",
-        lambda h: np.sqrt(np.sum(h.yielding("slip") ** 2, axis=1)),
+        lambda h: np.linalg.norm(h.yielding("slip"), axis=1),
     )
     energies_yielded = _Result[Array](
         "(n,) energies dissipated by yielding [J].", lambda h: h.yielding("yielded").sum(axis=1)
     )
     first_yields = _Result[Array](
-        "(n,) times of first yield [s]; NaN of storeys that do not.",
-        _first_yields,
+        "(n,) times of first yield [s], infinite if never.",
+        lambda h: np.where((t := h.yielding("first_yield")) >= 0.0, t, np.inf).min(axis=1),
     )
     ductility = _Optional(
-        "Largest of `ductilities`; None of an elastic building.",
+        "Largest of `ductilities`; None of an elastic building, as are the next.",
         lambda h: _largest(h.column("ductilities")),
     )
     plastic_drift = _Optional(
-        "Largest of `plastic_drifts` [m]; None of an elastic building.",
-        lambda h: _largest(h.column("plastic_drifts")),
+        "Largest of `plastic_drifts` [m].", lambda h: _largest(h.column("plastic_drifts"))
     )
     residual_drift = _Optional(
-        "Largest of `residual_drifts` [m]; None of an elastic building.",
-        lambda h: _largest(h.column("residual_drifts")),
+        "Largest of `residual_drifts` [m].", lambda h: _largest(h.column("residual_drifts"))
     )
     residual_drift_ratio = _Optional(
         "Largest residual drift over storey height; None where no heights are given.",
         lambda h: _largest(h.column("residual_drifts") / h.of_building(lambda b: b.storey_heights)),
     )
     energy_yielded = _Optional(
-        "Energy dissipated by all storeys that yield [J]; None of an elastic building.",
-        lambda h: h.column("energies_yielded").sum(axis=1),
+        "Energy dissipated by yielding [J].", lambda h: h.column("energies_yielded").sum(axis=1)
     )
     friction_demand = _Result[float](
         "Largest |F|/N at either end of the columns: the friction required to prevent sliding.",
@@ -534,6 +520,13 @@ class Demand(Shown):
         """Scalar results that such a history has, or could have."""
         yielding = YIELDING if self.structure.yields else ()
         return (*HISTORY, *yielding, *(PAIR if self.both_components else ()))
+
+    @property
+    def driven_back(self) -> NDArray[np.bool_]:
+        """(n,) storeys that less than the residual drift remains of at rest, by hardening."""
+        h = self._alone
+        back = np.abs(h.yielding("slip")) * h.of_ways(lambda b: b.back_stiffness)
+        return np.asarray((back > h.of_ways(lambda b: b.strengths)).any(axis=(0, 1)))
 
     def facts(self) -> dict[str, Any]:
         """Outcome and scalar results with their units, the main demands first."""

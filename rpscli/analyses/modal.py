@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Any, NamedTuple, TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -99,14 +99,6 @@ class UpliftedModes(Shown):
         return {"shapes": self.shapes.T, "elastic_shapes": _from_cap_beam(self.elastic_shapes)}
 
 
-class FirstYield(NamedTuple):
-    """The storey that a vibration mode brings to yield first, counted from 1."""
-
-    storey: int
-    base_shear: float
-    """At which it yields [N]."""
-
-
 @dataclass(frozen=True, eq=False, repr=False)
 class ModalResult(Shown):
     """Modes of the structure in each state. Flat ends never roll: `rolling` is None then.
@@ -153,22 +145,21 @@ class ModalResult(Shown):
         return "fixed_base" if self.full_contact else "full_contact"
 
     @property
-    def first_yield(self) -> dict[str, FirstYield]:
-        """By state, up to where its first vibration mode is that of the elastic building."""
-        building = self.structure.superstructure
-        if building is None or building.strengths is None:
+    def first_yield(self) -> dict[str, dict[str, float]]:
+        """By state the storey that its first mode brings to yield first, and the base shear then.
+
+        Storeys count from 1, shears are in N. Empty of elastic buildings.
+        """
+        building, fixed = self.structure.superstructure, self.fixed_base
+        if building is None or building.strengths is None or fixed is None:
             return {}
-        shapes = {name: modes.elastic_shapes[:, 1] for name, modes in self.uplifted.items()}
-        if (full := self.full_contact) is not None:
-            shapes = {"full_contact": full.shapes[1:, 0] - full.shapes[0, 0], **shapes}
-        if self.fixed_base is not None:
-            shapes = {self.fixed_base_state: self.fixed_base.shapes[:, 0], **shapes}
         found = {}
-        for name, shape in shapes.items():
-            shears = building.stiffnesses * np.diff(shape, prepend=0.0)
-            used = np.abs(shears) / building.strengths
-            storey = int(np.argmax(used))
-            found[name] = FirstYield(storey + 1, float(abs(shears[0]) / used[storey]))
+        shapes = {name: modes.elastic_shapes[:, 1] for name, modes in self.uplifted.items()}
+        for name, shape in {self.fixed_base_state: fixed.shapes[:, 0], **shapes}.items():
+            shears = np.abs(building.stiffnesses * np.diff(shape, prepend=0.0))
+            base_shears = shears[0] * building.strengths / shears
+            storey = int(np.argmin(base_shears))
+            found[name] = {"storey": storey + 1, "base_shear": float(base_shears[storey])}
         return found
 
     @property
@@ -188,7 +179,6 @@ class ModalResult(Shown):
     def results(self) -> dict[str, Any]:
         """Lists by mode and the parameters of each state; None for one that does not exist."""
         fixed, full = self.fixed_base, self.full_contact
-        yields = {name: first._asdict() for name, first in self.first_yield.items()}
         states = {
             name: values_of(exact, UPLIFTED) | {"first_order": values_of(paper, LINEAR)}
             for name, (exact, paper) in self.both_orders.items()
@@ -199,7 +189,7 @@ class ModalResult(Shown):
             "rolling": None,
             **states,
             "left_out": list(self.left_out),
-            **({"first_yield": yields} if yields else {}),
+            **({"first_yield": self.first_yield} if self.structure.yields else {}),
         }
 
 

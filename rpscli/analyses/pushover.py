@@ -249,13 +249,10 @@ def _with_kinks(path: Array, yield_forces: Array, *, hardens: bool) -> Array:
 
 def _plastic_drifts(building: Superstructure, shears: Array) -> Array:
     """Of storeys under shears one after the other (points, n), from rest [m] (Theory (15.1))."""
-    back, h = np.zeros_like(shears), building.hardening
-    for point in range(1, len(shears)):
-        shear = shears[point]
-        back[point] = np.clip(
-            back[point - 1], shear - building.strengths, shear + building.strengths
-        )
-    return np.asarray(back * (1.0 - h) / (h * building.stiffnesses))
+    back, F = np.zeros_like(shears), building.strengths
+    for point, shear in enumerate(shears[1:], 1):
+        back[point] = np.clip(back[point - 1], shear - F, shear + F)
+    return np.asarray(back / building.back_stiffness)
 
 
 def load_pattern(building: Superstructure, pattern: PatternName | Sequence[float]) -> Array:

@@ -382,27 +382,12 @@ class TimeHistoryResult(Demand):
                 notes.append(f"not at rest {LONGEST_FREE_VIBRATION:g} s after the record's end")
         return tuple(notes)
 
-    @property
-    def driven_back(self) -> tuple[int, ...]:
-        """Storeys, counted from 1, whose back force at the end exceeds their strength.
-
-        The plastic drift is what remains at rest in all others.
-        """
-        found = set[int]()
-        across = self.structure, self.structure.across
-        for each, slips in zip(across, self.history["slip"], strict=False):
-            building = each.superstructure
-            if building is not None and building.strengths is not None:
-                hardens = building.stiffnesses * building.hardening / (1.0 - building.hardening)
-                back = hardens * np.abs(slips[: building.storeys])
-                found |= set((np.flatnonzero(back > building.strengths) + 1).tolist())
-        return tuple(sorted(found))
-
     def _beyond(self) -> Iterator[str]:
         """Demands for which compliant ends were not tried, and storeys that still yield back."""
-        if back := self.driven_back:
+        if self.driven_back.any():
+            storeys = listed(map(str, np.flatnonzero(self.driven_back) + 1), "and")
             yield (
-                f"hardening drives storey {listed(map(str, back), 'and')} back as it comes to rest,"
+                f"hardening drives storey {storeys} back as it comes to rest,"
                 " so that less than the residual drift remains; a longer"
                 " `analysis.free_vibration` shows how much"
             )

@@ -97,11 +97,11 @@ def _tables(result: ModalResult, title: str, left_out: Collection[str]) -> Itera
     heads = "rad/s", FIRST_ORDER, "of fixed base", "xi %", FIRST_ORDER, "of fixed base"
     table = Table.of_texts(("uplifted", "mode", *heads), vibrations, words=1, keys=2)
     yield table.without(left_out)
-    if yields := result.first_yield:
-        at = [
-            f"{name.replace('_', ' ')} {measured(first.base_shear, 'N')} (storey {first.storey})"
-            for name, first in yields.items()
-        ]
+    at = [
+        f"{name.replace('_', ' ')} {measured(first['base_shear'], 'N')} (storey {first['storey']})"
+        for name, first in result.first_yield.items()
+    ]
+    if at:
         yield (
             "Modes are those of the elastic building, and end where a storey yields: in the first"
             f" mode at a base shear of {', '.join(at)}."

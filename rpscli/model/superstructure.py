@@ -331,6 +331,11 @@ class Superstructure(Shown):
         return self.strengths is not None
 
     @property
+    def back_stiffness(self) -> NDArray[np.float64]:
+        """X_i/delta_i, back force of hardening over plastic drift, (n,) [N/m]."""
+        return frozen(self.stiffnesses * self.hardening / (1.0 - self.hardening))
+
+    @property
     def yields_by_first_mode(self) -> bool:
         """True if strengths are in the proportions of the shears of the first mode."""
         if self.strengths is None or self.storeys == 1:

@@ -15,6 +15,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import StepPatch
+from paper_structures import known
 from PIL import Image
 
 from report.small_results import (
@@ -34,6 +35,7 @@ from rpscli.analyses.pushover import PushoverResult, pushover
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
+from rpscli.errors import UsageError
 from rpscli.model.bearing import Bearing
 from rpscli.model.devices import FrictionDamper, Stop, Tendon, ViscousDamper
 from rpscli.model.podium import Device
@@ -50,6 +52,7 @@ from rpscli.report.figures.history import (
     moment_figure,
     rotation_figure,
 )
+from rpscli.report.figures.loops import draw_loop, loops_figure, shown_storeys
 from rpscli.report.figures.motions import record_figure
 from rpscli.report.figures.pushover import capacity_figure, storey_curve_figure
 from rpscli.report.figures.structure import ELASTIC, level_heights, modes_figure
@@ -187,6 +190,7 @@ def test_energy(drawn: Drawn, result: TimeHistoryResult) -> None:
     below = np.zeros_like(trace.time)
     parts = [
         ("damped in the building", trace.energy_damped),
+        *[("yielding of storeys", trace.energy_yielded)] * result.structure.yields,
         ("lost at impacts (net)", trace.energy_impact),
         ("kinetic, elastic and gravitational", trace.energy_stored),
     ][result.structure.storeys == 0 :]
@@ -195,7 +199,7 @@ def test_energy(drawn: Drawn, result: TimeHistoryResult) -> None:
         both = np.concatenate([below, above])
         assert reach(axes, name) == pytest.approx((np.nanmin(both), np.nanmax(both)), rel=1e-12)
         below = above
-    assert legend(axes) == [*(name for name, _ in parts), "input"]
+    assert {*legend(axes)} == {*(name for name, _ in parts), "input"}
 
 
 DEVICES: tuple[Device, ...] = (
@@ -244,6 +248,30 @@ def test_energy_of_devices_stands_between(drawn: Drawn, equipped: TimeHistoryRes
         below, top = top, top + trace.devices.energy[:, index]
         both = factor * np.concatenate([below, top])
         assert reach(axes, name) == pytest.approx((np.min(both), np.max(both)), rel=1e-12)
+
+
+def test_loops_of_storeys_that_yield(drawn: Drawn) -> None:
+    result = KINDS["yields"]()
+    trace, above = result.trace, known(result.structure.superstructure)
+    panels, F = drawn(loops_figure, result, "").axes, known(above.strengths)
+    assert len(panels) == 2
+    for i, axes in enumerate(panels):
+        assert axes.get_title() == f"storey {i + 1}, ductility {result.ductilities[i]:.3g}"
+        assert axes.get_xlabel() == "storey drift $d$ [mm]"
+        loop = curve(axes, "shear $f$ of springs")
+        is_drawn(loop, 1e3 * trace.drifts[:, i], 1e-3 * trace.storey_shears[:, i])
+        low, high = (np.asarray(line.get_ydata(), float) for line in axes.lines[:2])
+        elastic = 1e3 * F[i] / above.stiffnesses[i]
+        at = np.asarray(axes.lines[1].get_xdata(), float)
+        assert float(np.interp(elastic, at, high)) == pytest.approx(1e-3 * F[i], rel=1e-12)
+        assert low[::-1] == pytest.approx(-high, rel=1e-12)
+        assert axes.get_ylabel() == ("storey shear $f$ [kN]" if i == 0 else "")
+    with pytest.raises(UsageError, match="needs storeys that yield"):
+        draw_loop(panels[0], KINDS["rolls"](), 1)
+    with pytest.raises(UsageError, match="is none of the storeys; there are 1, 2"):
+        draw_loop(panels[0], result, 3)
+    assert shown_storeys(3) == [1, 2, 3]
+    assert shown_storeys(9) == [1, 3, 4, 6, 7, 9]
 
 
 def test_moment(drawn: Drawn, result: TimeHistoryResult) -> None:

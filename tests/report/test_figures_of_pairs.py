@@ -48,6 +48,8 @@ def test_a_plane_motion_is_found_again(kind: str) -> None:
         side = 1.0 / np.cos(ANGLE)
     names = ["rotation", "rotation_rate", *(each.name for each in fields(Direction))]
     for name in names:
+        if getattr(plane, name) is None:  # nothing yields
+            continue
         was, found = getattr(plane, name), side * getattr(seen, name)
         np.testing.assert_allclose(
             found, was, rtol=0.0, atol=1e-12 * (1.0 + np.abs(was).max(initial=0.0))

@@ -116,7 +116,7 @@ def capacity_figure(result: PushoverResult, title: str) -> bytes:
             draw_capacity(axes, result)
         uplift = float(np.nanmax(lifts))
         close.set_xlim(0.0, 3.0 * uplift or 0.1 * whole.get_xlim()[1])
-        close.locator_params(axis="x", nbins=5)
+        close.locator_params(axis="x", nbins=3 if style.narrow() else 5)
         close.set(ylabel="", title="near uplift" if uplift else "where rolling begins")
         style.legend_below(figure, [close])
 

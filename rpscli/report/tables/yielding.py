@@ -73,7 +73,7 @@ def yielded_tables(result: TimeHistoryResult) -> Iterator[Part]:
         result.first_yields,
     )
     rows = [
-        (str(storey + 1), *(shown(float(column[storey])) for column in columns))
+        (str(storey + 1), *(shown(float(column[storey])).replace("inf", "-") for column in columns))
         for storey in reversed(range(building.storeys))
     ]
     heads = "ductility", "plastic drift mm", "residual mm", "yielded kJ", "first at s"
