@@ -112,18 +112,14 @@ def column_demand(
     structure: PodiumStructure, design: ColumnDesign, trace: Trace, heaviest: dict[str, Array]
 ) -> ColumnDemand:
     """Worst instants, from axial forces of the most loaded column at the times of a trace."""
-    b, t, x, of = (
-        structure.bearing,
-        trace,
-        np.abs(trace.rotation),
-        _loads(structure, trace, heaviest),
-    )
-    N, up = of.N, ~of.down & (not no_line(structure, both=t.y is not None))
+    b, t, x = structure.bearing, trace, np.abs(trace.rotation)
+    of, known = _loads(structure, trace, heaviest), not no_line(structure, both=t.y is not None)
+    N, up = of.N, ~of.down & known
     rolls, edges = up & (x > 0.0) & (x < b.beta), up & (x >= b.beta)
 
     def worst(largest: str, values: Array) -> ColumnInstant:
         end, i = np.unravel_index(int(np.argmax(values)), values.shape)
-        force, moment, tilt = float(N[end, i]), float(of.M[end, i]), float(x[i])
+        force, moment = float(N[end, i]), float(of.M[end, i])
         return ColumnInstant(
             largest,
             ENDS[end],
@@ -135,11 +131,10 @@ def column_demand(
             moment,
             float(design.pressed(b, x[i], N[end, i])[0]) if rolls[i] else None,
             design.crushed(b, force)[0] if edges[i] else None,
-            design.doubt(b, tilt, force) if rolls[i] else "",
+            design.doubt(b, float(x[i]), force) if rolls[i] else "",
         )
 
     found = [worst("column_moment", np.abs(of.M)), worst("max_column_force", N)]
-    known = not no_line(structure, both=t.y is not None)
     ratio, crushed = 0.0 if known and not b.is_flat else None, 0.0 if known else None
     if rolls.any():
         # It grows with N and with the tilt: the others lie below one that has more of both.

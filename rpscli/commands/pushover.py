@@ -14,7 +14,6 @@ from rpscli.commands.shell.terminal import Terminal
 from rpscli.errors import UsageError
 from rpscli.report.figures.look import Look
 from rpscli.report.table import Heading, Part, Table, measured, shown
-from rpscli.report.tables.yielding import yielding_tables
 
 if TYPE_CHECKING:
     from rpscli.analyses.pushover import PatternName, PushoverResult
