@@ -123,9 +123,9 @@ class _Sampled:
     def at(self, rows: Rows) -> Self:
         """Only some samples."""
         values = {each.name: getattr(self, each.name) for each in fields(self)}  # type: ignore[arg-type]
-        known = {name: of for name, of in values.items() if of is not None}
         parts = {
-            n: of.at(rows) if isinstance(of, _Sampled) else of[rows] for n, of in known.items()
+            name: of.at(rows) if isinstance(of, _Sampled) else of if of is None else of[rows]
+            for name, of in values.items()
         }
         return type(self)(**parts)
 
