@@ -93,4 +93,6 @@ def _tables(result: PushoverResult, title: str) -> Iterator[Part]:
             largest = shown(float(curve.sum_of_floor_forces.max()) * 1e-3)
             capacity.append((curve.pattern, shown(curve.roof_displacement_at_uplift), largest))
         yield Table.of_texts(heads, capacity)
+    from rpscli.report.tables.yielding import yielding_tables  # numpy is slow
+
     yield from yielding_tables(result)

@@ -273,7 +273,8 @@ def point_columns(table: Table) -> Columns:
     }
     if (scales := table.factors) is not None:
         columns["scale"] = scales
-    return {**columns, "outcome": table.outcomes, **table.columns}
+    found = {name: of for name, of in table.columns.items() if name in units}
+    return {**columns, "outcome": table.outcomes, **found}
 
 
 def array(values: Iterable[Any]) -> NDArray[Any]:

@@ -12,6 +12,7 @@ from rpscli.analyses.column_forces import no_bound
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import denser_trace, time_history
 from rpscli.model.column import ColumnDesign
+from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import PodiumStructure
 from rpscli.records.ground_motion import MotionComponents
 
@@ -27,7 +28,7 @@ def frame(rho: float, design: ColumnDesign) -> PodiumStructure:
 def designed(rho: float = 0.5) -> PodiumStructure:
     heights = np.full(2, 3.0)
     above = replace(building(2, 0.4), vertical_period=0.1, storey_heights=heights)
-    of = podium(2, 0.15, rho, superstructure=above)
+    of = podium(2, 0.15, rho, superstructure=above, law=ImpactLaw())
     return replace(of, columns=16, rows=(0.0, 4.0, 8.0), column=SQUARE)
 
 
