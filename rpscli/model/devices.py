@@ -15,8 +15,18 @@ from rpscli.model.podium import Array, AtRest, Consequence, Device, Linear, Podi
 from rpscli.registry import Registry
 
 
+class Damper(Device):
+    """What resists motion alone, and holds nothing unless it says so."""
+
+    def at_rest(self, structure: PodiumStructure, rotation: Array, farthest: float) -> AtRest:
+        return AtRest()
+
+    def stiffness_after_uplift(self, structure: PodiumStructure) -> float:
+        return 0.0
+
+
 @dataclass(frozen=True)
-class ViscousDamper(Device):
+class ViscousDamper(Damper):
     """P = -c |u_b'|^a sgn(u_b') on the cap beam, c the force at 1 m/s.
 
     Parameters
@@ -41,12 +51,6 @@ class ViscousDamper(Device):
     def constants(self, structure: PodiumStructure) -> tuple[float, ...]:
         return self.coefficient, self.exponent
 
-    def at_rest(self, structure: PodiumStructure, rotation: Array, farthest: float) -> AtRest:
-        return AtRest()
-
-    def stiffness_after_uplift(self, structure: PodiumStructure) -> float:
-        return 0.0
-
     def linear(self, structure: PodiumStructure, state: UpliftedState) -> Linear:
         if self.exponent != 1.0:
             return Linear(left_out="dampers whose exponent is not 1")
@@ -64,7 +68,7 @@ class ViscousDamper(Device):
 
 
 @dataclass(frozen=True)
-class FrictionDamper(Device):
+class FrictionDamper(Damper):
     """P = -F_d sgn(u_b'); at rest any |P| <= F_d.
 
     Parameters
@@ -86,9 +90,6 @@ class FrictionDamper(Device):
 
     def at_rest(self, structure: PodiumStructure, rotation: Array, farthest: float) -> AtRest:
         return AtRest(held=self.force)
-
-    def stiffness_after_uplift(self, structure: PodiumStructure) -> float:
-        return 0.0
 
     def linear(self, structure: PodiumStructure, state: UpliftedState) -> Linear:
         return Linear(left_out="friction")
@@ -289,7 +290,7 @@ class RollingResistance(Device):
 
 
 @dataclass(frozen=True)
-class OwnDamper(Device):
+class OwnDamper(Damper):
     """A damper whose law another package adds.
 
     Parameters
@@ -321,12 +322,6 @@ class OwnDamper(Device):
 
     def constants(self, structure: PodiumStructure) -> tuple[float, ...]:
         return self.values
-
-    def at_rest(self, structure: PodiumStructure, rotation: Array, farthest: float) -> AtRest:
-        return AtRest()
-
-    def stiffness_after_uplift(self, structure: PodiumStructure) -> float:
-        return 0.0
 
     def linear(self, structure: PodiumStructure, state: UpliftedState) -> Linear:
         if self.law.linear is None:

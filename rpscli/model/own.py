@@ -28,6 +28,13 @@ class OwnLaw:
 
     constants: Mapping[str, Any]
 
+    def __post_init__(self) -> None:
+        for name, quantity in self.constants.items():
+            if not (str(name).isidentifier() and hasattr(quantity, "unit")):
+                raise TypeError(f"its constant {name!r} must be a name with a Quantity")
+        if len(self.constants) > MOST_CONSTANTS:
+            raise ValueError(f"it has {len(self.constants)} constants, at most {MOST_CONSTANTS}")
+
     @property
     def sources(self) -> list[str]:
         """The files in which its functions are written, as far as there are any."""

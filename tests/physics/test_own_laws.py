@@ -20,6 +20,7 @@ from rpscli.analyses.demand import Request, demands
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
+from rpscli.case.schema.fields import Quantity
 from rpscli.errors import PluginError
 from rpscli.model.contact import Contact
 from rpscli.model.devices import FrictionDamper, OwnDamper, ViscousDamper
@@ -78,12 +79,14 @@ def softer(rate: float, tan_alpha: float, inertia: float, gamma: float, eta: flo
     return 0.95 - 0.5 * min(rate, 1.0) * tan_alpha + 1e-3 * (inertia - 1.0) / (gamma + eta)
 
 
-LINEAR = DamperLaw({"c": None}, linear, most, most)
-RELIEVED = DamperLaw({"c": None, "opens": None}, relieved, most, most, watched=opening)
-HARDER = DamperLaw({"c": None, "gap": None}, harder, thrice, most, watched=reached)
+PLAIN = Quantity()
+ONE_CONSTANT = {"c": PLAIN}
+LINEAR = DamperLaw(ONE_CONSTANT, linear, most, most)
+RELIEVED = DamperLaw({"c": PLAIN, "opens": PLAIN}, relieved, most, most, watched=opening)
+HARDER = DamperLaw({"c": PLAIN, "gap": PLAIN}, harder, thrice, most, watched=reached)
 UNWATCHED = replace(RELIEVED, watched=None)
 OPENS, GAP = 0.05, 0.0235
-GIVEN = RestitutionLaw({"e": None}, given)
+GIVEN = RestitutionLaw({"e": PLAIN}, given)
 
 
 def with_own(structure: PodiumStructure, law: DamperLaw, *values: float) -> PodiumStructure:
@@ -150,7 +153,7 @@ def test_the_same_interpreted_or_compiled() -> None:
 @needs_compiled_kernels
 def test_a_law_with_a_kink_at_rest_is_followed_as_ours() -> None:
     structure = replace(USUAL, devices=(ViscousDamper(1e6, 2.0),))
-    law = DamperLaw({"c": None}, square, most, None)
+    law = DamperLaw(ONE_CONSTANT, square, most, None)
     ours, own = history(structure), history(with_own(structure, law, 1e6))
     assert own.max_rotation == pytest.approx(ours.max_rotation, rel=1e-9)
     assert own.history["steps"] == ours.history["steps"]
@@ -257,7 +260,7 @@ def no_number(rate: float, tan_alpha: float, inertia: float, gamma: float, eta: 
 @pytest.mark.parametrize("force", [at_speeds, raises_at_speeds])
 @needs_compiled_kernels
 def test_a_force_that_is_no_number_ends_the_history(force: Any) -> None:
-    own = history(with_own(SMALL, DamperLaw({"c": None}, force, most, most), C))
+    own = history(with_own(SMALL, DamperLaw(ONE_CONSTANT, force, most, most), C))
     assert own.failure is not None
     assert "no longer finite" in own.failure
     assert "laws of other packages: own" in own.failure
@@ -281,13 +284,13 @@ def unknown_to_numba(path: float, speed: float, c: float) -> float:
 
 @needs_compiled_kernels
 def test_what_cannot_be_compiled_is_named() -> None:
-    own = with_own(SMALL, DamperLaw({"c": None}, unknown_to_numba, most, most), C)
+    own = with_own(SMALL, DamperLaw(ONE_CONSTANT, unknown_to_numba, most, most), C)
     with pytest.raises(PluginError, match=r"test_own_laws\.unknown_to_numba cannot be compiled"):
         history(own)
 
 
 def test_what_is_no_law_is_refused() -> None:
-    spring = DamperLaw({"k": None}, lambda path, _, k: k * path, most, most)
+    spring = DamperLaw({"k": PLAIN}, lambda path, _, k: k * path, most, most)
     with pytest.raises(PluginError, match="its force at rest, at a displacement of"):
         OwnDamper("spring", spring, (1e5,))
     gains = ImpactLaw("gains", own=RestitutionLaw({}, lambda *_: 1.5))

@@ -5,15 +5,15 @@ Such a section is one of ours with these keys besides. It is known once a docume
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Annotated, Any, Literal
 
 from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler, create_model
 from pydantic_core import CoreSchema, core_schema
 
-from rpscli.case.schema.fields import Quantity, Section
-from rpscli.model.own import MOST_CONSTANTS
+from rpscli.case.schema.fields import Section
+from rpscli.errors import PluginError
 from rpscli.registry import Registry
 
 
@@ -32,7 +32,8 @@ class OwnLaws:
         if name not in self.loaded:
             constants = self.registry[name].constants
             with self.registry.blaming(name):
-                self._refuse(constants)
+                if taken := [*constants.keys() & self.ours.model_fields.keys()]:
+                    raise ValueError(f"its constant {taken[0]} must not be a key of rps; rename it")
                 keys: dict[str, Any] = {
                     constant: (Annotated[float, quantity], Field(description=f"of {name}"))
                     for constant, quantity in constants.items()
@@ -40,15 +41,6 @@ class OwnLaws:
                 keys[self.key] = (Literal[name], Field(description="of another package"))
                 self.loaded[name] = create_model(name, __base__=self.ours, **keys)
         return self.loaded[name]
-
-    def _refuse(self, constants: Mapping[str, Any]) -> None:
-        if len(constants) > MOST_CONSTANTS:
-            raise ValueError(f"it has {len(constants)} constants, at most {MOST_CONSTANTS} may be")
-        for name, quantity in constants.items():
-            if not isinstance(quantity, Quantity) or not name.isidentifier():
-                raise TypeError(f"its constant {name!r} must be a name with a Quantity")
-            if name in self.ours.model_fields:
-                raise ValueError(f"its constant {name} must not be called as a key of rps is")
 
     def __get_pydantic_core_schema__(
         self, source: Any, handler: GetCoreSchemaHandler
@@ -68,5 +60,8 @@ class OwnLaws:
         self, schema: Any, handler: GetJsonSchemaHandler
     ) -> dict[str, Any]:
         """The JSON schema."""
-        own = [self.section(name).model_json_schema() for name, _ in self.registry.theirs()]
+        own = []
+        for name, _ in self.registry.theirs():
+            with suppress(PluginError):  # told where it is asked for
+                own.append(self.section(name).model_json_schema())
         return {"anyOf": [handler(schema), *own]} if own else handler(schema)
