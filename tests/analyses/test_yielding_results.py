@@ -28,6 +28,7 @@ from rpscli.model.impact import ImpactLaw
 from rpscli.records.ground_motion import MotionComponents
 from rpscli.report.bundles import history_columns, storey_columns
 from rpscli.report.documents import timehistory_document
+from rpscli.report.study.labels import label
 from rpscli.report.tables.timehistory import timehistory_tables
 from rpscli.sweep.table import points_csv
 
@@ -159,6 +160,7 @@ def test_studies_vary_strengths_and_judge_the_ductility() -> None:
     assert strong < 1.0
     assert points["residual_drift_ratio"][1] == 0.0
     assert [verdict.exceeded for verdict in points.judgements] == [True, False]
+    assert label("superstructure.yield.ratio", 1.1) == "F₁/V_st = 1.1"
     assert "on the fixed base buildings stay elastic, also those" in " ".join(points.notes)
     heads = next(points_csv(points.results.table)).partition("\n")[0]
     assert "residual_drift_ratio [-]" in heads

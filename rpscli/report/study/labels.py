@@ -14,6 +14,8 @@ SYMBOLS = {
     "superstructure.storeys": "n",
     "superstructure.period": "T₁",
     "superstructure.damping.ratio": "ξ",
+    "superstructure.yield.ratio": "F₁/V_st",
+    "superstructure.yield.hardening": "h",
     "podium.bearing.semi_diagonal": "R",
     "podium.bearing.slenderness": "tan α",
     "podium.bearing.wedge_slenderness": "tan α′",
