@@ -111,9 +111,9 @@ MOST_FLOORS = 3
 """In the picture; the table has all."""
 
 
-def shown_floors(count: int) -> list[int]:
-    """Numbers of the floors that are drawn, from 1: the lowest, the middle one and the roof."""
-    floors = np.linspace(1.0, count, min(count, MOST_FLOORS))
+def shown_floors(count: int, most: int = MOST_FLOORS) -> list[int]:
+    """Numbers of the floors that are drawn, from 1: the lowest, some between and the roof."""
+    floors = np.linspace(1.0, count, min(count, most))
     return [int(floor + 0.5) for floor in floors]
 
 

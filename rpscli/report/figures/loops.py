@@ -7,20 +7,16 @@ import numpy as np
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.errors import UsageError
 from rpscli.report.figures import style
+from rpscli.report.figures.floors import shown_floors
 from rpscli.report.figures.history import record_name
 
 MOST_STOREYS = 6
 """In the picture; columns of timehistory.csv have all."""
 
 
-def shown_storeys(count: int) -> list[int]:
-    """Numbers of the storeys that are drawn, from 1: the first, the last, and some between."""
-    return [int(each + 0.5) for each in np.linspace(1.0, count, min(count, MOST_STOREYS))]
-
-
 def loops_figure(result: TimeHistoryResult, title: str) -> bytes:
     """Shear over drift of storeys from the first one up, to one scale."""
-    storeys = shown_storeys(result.structure.storeys)
+    storeys = shown_floors(result.structure.storeys, MOST_STOREYS)
     columns = min(len(storeys), 2 if style.narrow() else 3)
     rows = -(-len(storeys) // columns)
 
