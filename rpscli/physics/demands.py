@@ -76,6 +76,9 @@ WITHIN = 1.5
 SURELY = 1.0 - 1e-9
 """Room for the rounding of either side."""
 
+UNSEEN = 1e-6
+"""Of the weight: so little more or less of the floors' force on springs is not looked for."""
+
 NEARLY = 0.999
 """Steps that may pass this part of the largest force so far, with what the base shear may be within
 them above their ends, are looked at within. As long as columns rock |F|/N hardly leaves
@@ -109,7 +112,7 @@ def floors_may_rise(s: Record, l: int) -> bool:
         bent *= part
         rises |= reach(shear, bent) > s.room[j, l]
         rises |= reach(acceleration, bent * s.bend_ratio[l]) > s.room[rows_of(s) + j, l]
-    return rises
+    return rises  # type: ignore[no-any-return]
 
 
 @compiled
@@ -203,10 +206,16 @@ PARTS = 8
 through both ends of a part and its middle leaves 4e-6 of a vibration."""
 
 
+STRAIGHT = 1e-5
+"""Of the floors' weight: forces of springs that leave the chord by less need no parts."""
+
+
 @inlined
-def parts_of(s: Record) -> int:
+def parts_of(s: Record, l: int) -> int:
     """Parts of a step that are looked at, each by its ends and its middle."""
-    return PARTS if s.axes > ways_of(s) else 1
+    springs = s.axes > ways_of(s)
+    turns = bulge(s, l, 0, s.axes) > STRAIGHT * s.floors_mass[l] * s.gravity[l]
+    return PARTS if springs and turns else 1
 
 
 @compiled
@@ -234,7 +243,7 @@ def mode_within(s: Record, r: int, l: int, axis: int, t: float) -> tuple[float, 
 @compiled
 def raise_floors_within(s: Record, l: int, systems: Record) -> None:
     """The same by those at start, middle and end, and of a parabola through them."""
-    parts = parts_of(s)
+    parts = parts_of(s, l)
     for part in range(parts):
         raise_floors_between(s, l, systems, part / parts, (part + 1) / parts)
 
@@ -369,27 +378,29 @@ def observe_contacts(s: Record) -> None:
         V = s.new_V[0, l] + s.drive[0, l] + s.tied[l] * n
         stays = without_shock(s, l, x, rate)
         V_y += s.tied[l] * t
-        up, V_up = (g_up, s.new_V[ways_of(s), l]), bulge(s, l, ways_of(s), ways_of(s) + 1)
+        pressed, V_up = (g_up, s.new_V[ways_of(s), l]), bulge(s, l, ways_of(s), ways_of(s) + 1)
         found = measures_of(
-            s, l, stays, (beam, beam_y), s.new_lift[l], (V, V_y), (ground, ground_y), up
+            s, l, stays, (beam, beam_y), s.new_lift[l], (V, V_y), (ground, ground_y), pressed
         )
         more, heavier = (
             bulge(s, l, 0, ways_of(s)),
             s.diameter[l] * s.share[l] / s.one[l] * s.tan_a[l],
         )
-        heavier *= more / s.gravity[l]
+        springs = s.axes > ways_of(s)
+        heavier *= more / s.gravity[l] * (s.moves[l] if springs else 1.0)
         heavier += V_up / ((s.cap_beam_mass[l] + s.floors_mass[l] + 1e-300) * s.gravity[l])
         rises = found[4] + more > NEARLY * s.shear_top[l]
         rises |= found[5] + more > NEARLY * s.shear_bottom[l]
         more /= s.weigh[l] * s.diameter[l] * s.gravity[l] * s.columns_mass[l] * 0.5
         rises |= found[0] + more > NEARLY * s.friction_top[l]
         rises |= found[1] + more > NEARLY * s.friction_bottom[l]
+        heavier -= UNSEEN if springs else 0.0
         rises |= found[3] - heavier < 1.0 - NEARLY * (1.0 - s.normal_bottom[l])
         rises |= found[3] + heavier > 1.0 + NEARLY * (s.heavy_bottom[l] - 1.0)
         rises |= found[2] - heavier < 1.0 - NEARLY * (1.0 - s.normal_top[l])
         # A vibration upwards may turn just behind the end of the step before.
         near = s.contacts_near[l] > 0.0
-        s.contacts_rise[l] = 1.0 if rises | (near & (s.axes > ways_of(s))) else 0.0
+        s.contacts_rise[l] = 1.0 if rises | (near & springs) else 0.0
         near = rises if s.accepted[l] > 0.0 else near
         s.contacts_near[l] = 1.0 if near else 0.0
     if ways_of(s) == 2:
@@ -441,7 +452,7 @@ def force_within(s: Record, l: int, axis: int, t: float) -> float:
         if s.mark[r, l] == 0:
             slip = free * s.stiffness[r, l] * s.middle[r, l]
         V -= slip - free * s.mark[r, l] * s.strength[r, l]
-    return V
+    return V  # type: ignore[no-any-return]
 
 
 @compiled
@@ -511,7 +522,7 @@ def raise_contacts(s: Record, l: int) -> None:
     """Raise the demands of contacts by those of the step just taken."""
     if s.h[l] <= 0.0:
         return
-    parts = parts_of(s)
+    parts = parts_of(s, l)
     third, end = measures_within(s, l, 0.0)
     raise_by(s, l, end)
     for part in range(parts):

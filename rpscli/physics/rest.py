@@ -86,7 +86,7 @@ def weights_stand(s: Record, l: int) -> bool:
         return True
     upper = s.cap_beam_mass[l] + s.floors_mass[l]
     change = largest_force(s, l, ways_of(s)) / (upper * s.gravity[l])
-    return s.normal_top[l] <= 1.0 - change and s.heavy_top[l] >= 1.0 + change
+    return bool(s.normal_top[l] <= 1.0 - change and s.heavy_top[l] >= 1.0 + change)
 
 
 @compiled

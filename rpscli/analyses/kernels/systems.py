@@ -326,7 +326,8 @@ def most_seconds(
     structure: PodiumStructure, settings: TimeHistorySettings, duration: float
 ) -> float:
     """About the computing time of that [s], for the parameters of `most_steps`."""
-    each = STEP_SECONDS + MODE_SECONDS * structure.storeys
+    modes = structure.storeys * len(directions(structure, pairs=False))
+    each = STEP_SECONDS + MODE_SECONDS * modes
     return each * most_steps(structure, settings, duration)
 
 

@@ -145,12 +145,17 @@ def _steps_for_springs(structure: PodiumStructure) -> float:
     return steps_a_second(structure) / steps_a_second(riding)
 
 
+def _first_sag(structure: PodiumStructure) -> float | None:
+    """Shortening of the first of the vertical springs under the floors' weight [m]."""
+    above = structure.superstructure
+    if above is None or above.upwards is None:
+        return None
+    return float(above.mass * structure.gravity / above.upwards.stiffnesses[0])
+
+
 UPWARDS = (
     Derived("vertical_period", "vertical period", "T_v", "s", "superstructure.vertical_period"),
-    Derived(
-        "first_sag", "sag of the first floor", "W_f/k_v", "m",
-        lambda s: s.superstructure_mass * s.gravity / s.upwards.superstructure.stiffnesses[0],
-    ),
+    Derived("first_sag", "sag of the first floor", "M_tot g/k_v", "m", _first_sag),
     Derived("steps_ratio", "steps, over those without springs", "", "-", _steps_for_springs),
 )  # fmt: skip
 """Of floors on vertical springs."""
