@@ -466,12 +466,12 @@ def measures_within(s: Record, l: int, t: float) -> tuple[float, Measures]:
     tilt, rate = tilt_within(s, l, t)
     V_x, V_y, a_x, a_y, time = 0.0, 0.0, 0.0, 0.0, s.time[l] + t * h
     for axis in range(ways):
-        V = force_within(s, l, axis, t)
+        force = force_within(s, l, axis, t)
         a_g = s.a_g[axis, l] + time * s.a_g_slope[axis, l]
         if axis == 0:
-            V_x, a_x = V, a_g
+            V_x, a_x = force, a_g
         else:
-            V_y, a_y = V, a_g
+            V_y, a_y = force, a_g
     g_up, V_up = s.g_up[l] + time * s.g_up_slope[l], 0.0
     if s.axes > ways:
         V_up = force_within(s, l, ways, t)

@@ -79,7 +79,7 @@ from rpscli.physics.state import (
     scratch,
 )
 from rpscli.physics.step import renew, take_steps
-from rpscli.physics.storeys import keep_slips, load_storeys, stop_yielding, turn_storey
+from rpscli.physics.storeys import keep_slips, load_storeys, review_storeys, turn_storey
 from rpscli.physics.upright import (
     change_rate,
     enter_phase,
@@ -393,7 +393,7 @@ def look_after(s: Record, l: int, systems: Record, output: Output) -> bool:
 @compiled
 def review_laws(s: Record, l: int, systems: Record, kind: int) -> None:
     """Velocities may have jumped: storeys may no longer yield, own laws be on another branch."""
-    if stop_yielding(s, l, systems):
+    if kind != YIELD and review_storeys(s, l, systems):
         renew(s, l)
     if kind != CHANGE:
         find_branches(s, l)

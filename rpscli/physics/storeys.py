@@ -7,9 +7,11 @@ shear k (d - delta). The modes of the elastic building feel k delta as a load, `
 
 from __future__ import annotations
 
+import math
+
 from rpscli.physics.compile import compiled
 from rpscli.physics.ground import time_of
-from rpscli.physics.laws import lanes_of, ways_of
+from rpscli.physics.laws import lanes_of, slip_energy, ways_of
 from rpscli.physics.state import Floats, Record
 from rpscli.physics.tableau import A2, C
 
@@ -186,15 +188,45 @@ def set_mark(s: Record, l: int, system: Record, r: int, mark: int) -> None:
             s.slipping[r + of, l] = free * system.storey_shear_of[of, 0]
 
 
+JUMPED = 1e-9
+"""Of its strength: a storey that yields is so near to it, unless the beam has jumped."""
+
+
 @compiled
-def stop_yielding(s: Record, l: int, systems: Record) -> bool:
-    """Where velocities have jumped: storeys that now drift back no longer yield; True if any."""
-    any_stops = False
-    for r in range(ways_of(s) * s.n if s.marked[l] > 0 else 0):
-        if s.mark[r, l] != 0:
-            axis = r // s.n
-            _, rate, _ = drift_of(s, l, systems[axis], axis, r % s.n, 0)
-            if s.mark[r, l] * rate < 0.0:
-                set_mark(s, l, systems[axis], r, 0)
-                any_stops = True
-    return any_stops
+def review_storeys(s: Record, l: int, systems: Record) -> bool:
+    """Marks and ranges after the beam may have jumped, in velocity or way; True if any changed.
+
+    A storey that now drifts back, or is no longer at its strength, does not yield; one beyond its
+    strength has yielded by what it is.
+    """
+    n, changed = s.n, False
+    for r in range(ways_of(s) * n if s.yields[l] > 0 else 0):
+        axis, F, k = r // n, s.strength[r, l], s.stiffness[r, l]
+        d, rate, _ = drift_of(s, l, systems[axis], axis, r % n, 0)
+        off, mark = d - k * s.middle[r, l], s.mark[r, l]
+        if mark != 0 and (mark * rate < 0.0 or mark * off < F * (1.0 - JUMPED)):
+            set_mark(s, l, systems[axis], r, 0)
+            changed = True
+        if abs(off) > F * (1.0 + JUMPED):
+            yield_at_once(s, l, systems[axis], r, (d - math.copysign(F, off)) / k, abs(d))
+            changed = True
+    return changed
+
+
+@compiled
+def yield_at_once(s: Record, l: int, system: Record, r: int, middle: float, drift: float) -> None:
+    """Move the middle of a storey's range, and book what its springs lose."""
+    n, before = s.n, slip_energy(s, l)
+    moved = (1.0 - s.hardening[l]) * (middle - s.middle[r, l])
+    s.middle[r, l] = middle
+    for of in range(n):
+        row = r // n * n + of
+        s.freed[row, l] += system.storey_shear_of[of, r % n] * moved
+        s.new_freed[row, l] = s.freed[row, l]
+    took = before - slip_energy(s, l)
+    s.yielded[r, l], s.energy_yielded[l] = s.yielded[r, l] + took, s.energy_yielded[l] + took
+    s.middle_most[r, l] = max(s.middle_most[r, l], middle)
+    s.middle_least[r, l] = min(s.middle_least[r, l], middle)
+    s.drift_most[r, l] = max(s.drift_most[r, l], drift)
+    if s.first_yield[r, l] < 0.0:
+        s.first_yield[r, l] = time_of(s, l)

@@ -51,7 +51,8 @@ def stacked_systems(
     stacked = _stacked(tuple(every), axes)
     rows = stacked.view(_PLAIN, np.ndarray)
     # one length of step for all of them
-    rows["step_rate"] = np.repeat(rows["step_rate"].reshape(-1, axes).max(axis=1), axes)
+    for rate in ("step_rate", "bedded_rate"):
+        rows[rate] = np.repeat(rows[rate].reshape(-1, axes).max(axis=1), axes)
     if pairs:
         rows["step_error"] = [
             step_error(settings, 1.0 if structure.passes_smoothly else PASSES_ERROR)
@@ -230,8 +231,9 @@ def step_error(settings: TimeHistorySettings, share: float = 1.0) -> float:
 LEAST_ERROR = 1e-12
 """Below it the difference of both rules is rounding: their weights are up to 176."""
 
-STEP_SECONDS, MODE_SECONDS = 7e-7, 7e-8
-"""About the time of a step of one history, and what each mode adds."""
+STEP_SECONDS, MODE_SECONDS, STRENGTH_SECONDS = 7e-7, 7e-8, 1e-8
+"""About the time of a step of one history, what each mode adds, and each of a storey that yields.
+"""
 
 
 def uplifted_rate(structure: PodiumStructure) -> float:
@@ -286,7 +288,7 @@ def steps_a_second(structure: PodiumStructure, accuracy: float = 1.0) -> float:
     damping = sum(c * speed ** (exponent - 1.0) for c, exponent in powers(structure))
     about_rest = damping / least_base_mass(structure) / UPLIFTED_DECAY
     each = directions(structure, pairs=False)
-    rate = max(bedded_rate(structure), *map(uplifted_rate, each))
+    rate = max(max(bedded_rate(of), uplifted_rate(of)) for of in each)
     return float(accuracy * rate + about_rest)
 
 
@@ -328,6 +330,9 @@ def most_seconds(
     """About the computing time of that [s], for the parameters of `most_steps`."""
     modes = structure.storeys * len(directions(structure, pairs=False))
     each = STEP_SECONDS + MODE_SECONDS * modes
+    above = structure.superstructure
+    if above is not None and above.strengths is not None:
+        each += STRENGTH_SECONDS * structure.storeys**2
     return each * most_steps(structure, settings, duration)
 
 
