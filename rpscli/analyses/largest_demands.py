@@ -526,7 +526,7 @@ class Demand(Shown):
         """(n,) storeys that less than the residual drift remains of at rest, by hardening."""
         h = self._alone
         back = np.abs(h.yielding("slip")) * h.of_ways(lambda b: b.back_stiffness)
-        return np.asarray((back > h.of_ways(lambda b: b.strengths)).any(axis=(0, 1)))
+        return frozen(np.asarray((back > h.of_ways(lambda b: b.strengths)).any(axis=(0, 1))))
 
     def facts(self) -> dict[str, Any]:
         """Outcome and scalar results with their units, the main demands first."""
