@@ -24,6 +24,10 @@ OF_COLUMNS = (
 """Results that come from the forces of single columns."""
 
 
+AMPLE = 1.3
+"""Of tan(alpha): a friction with which rigid floors on the beam would not let columns slide."""
+
+
 @dataclass(frozen=True)
 class AxialForces:
     """Axial forces of single columns, of all rows and times, and what the rows share."""
@@ -36,6 +40,8 @@ class AxialForces:
     over its mean force; None without rows."""
     lift_off: float | None
     """Time at which an outer row would first lift off [s]; None if never."""
+    sliding_time: float
+    """Time during which columns would slide with a friction of `AMPLE` tan(alpha) [s]."""
     heaviest: dict[str, Array]
     """Of the most loaded column at each time of the trace, at both ends [N]."""
 
@@ -65,7 +71,8 @@ def axial_forces(structure: PodiumStructure, trace: Trace) -> AxialForces:
         rows = np.array(structure.rows) - np.mean(structure.rows)
         lever = float(np.mean(rows**2) / np.max(np.abs(rows)))
         moment = overturning_moment(structure, trace)
-        ratio = float(np.max(np.abs(moment) / (np.maximum(trace.normal_top, 1.0) * lever)))
+        stands, least = trace.normal_top > 0.0, np.maximum(trace.normal_top, 1.0)
+        ratio = float(np.max(np.where(stands, np.abs(moment) / (least * lever), np.inf)))
         uneven = np.abs(moment + thrust_moment(structure, trace)) / lever
         lifts = np.flatnonzero(uneven > trace.normal_top)
         lift_off = float(trace.time[lifts[0]]) if len(lifts) else None
@@ -76,8 +83,17 @@ def axial_forces(structure: PodiumStructure, trace: Trace) -> AxialForces:
         {end: float(np.min(force - uneven)) / N for end, force in normal.items()},
         ratio,
         lift_off,
+        sliding_time(structure, trace),
         heaviest,
     )
+
+
+def sliding_time(structure: PodiumStructure, trace: Trace) -> float:
+    """Time during which the friction demand is above `AMPLE` tan(alpha), shocks left out [s]."""
+    limit, slides = AMPLE * structure.bearing.slenderness, np.zeros(len(trace.time), dtype=bool)
+    for end, normal in (("top", trace.normal_top), ("bottom", trace.normal_bottom)):
+        slides |= trace.size(f"shear_{end}") > limit * np.maximum(normal, 0.0)
+    return float(np.count_nonzero(slides & ~in_shocks(structure, trace)) * trace.time[1])
 
 
 def overturning_moment(structure: PodiumStructure, trace: Trace) -> Array:

@@ -206,6 +206,13 @@ class _Optional(_Result[float | None]):
         return float(value) if np.isfinite(value) else None
 
 
+class _Unbounded(_Optional):
+    """One that may be infinite: None where it is not a number."""
+
+    def _plain(self, value: Any) -> Any:
+        return None if np.isnan(value) else float(value)
+
+
 def _largest(values: Array) -> Array:
     """The largest of each row; NaN of empty ones."""
     return np.asarray(values.max(axis=1)) if values.shape[1] else np.full(len(values), np.nan)
@@ -413,8 +420,9 @@ class Demand(Shown):
         "Largest |F|/N at either end of the columns: the friction required to prevent sliding.",
         lambda h: np.maximum(h.left["friction_top"], h.left["friction_bottom"]),
     )
-    friction_ratio = _Optional(
-        "friction_demand over the coefficient of friction; None where that is not given.",
+    friction_ratio = _Unbounded(
+        "friction_demand over the coefficient of friction, infinite where contact is lost; None"
+        " where that is not given.",
         lambda h: h.column("friction_demand") / h.each(lambda structure: structure.friction),
     )
     uplifts = _Result[int](

@@ -31,8 +31,8 @@ def _bound(condition: Condition) -> str:
 
 def _reached(condition: Condition, value: float) -> str:
     """A demand in the unit of its limit."""
-    if math.isinf(value):
-        return "overturned"
+    if math.isinf(value):  # friction is asked for without bound where contact is lost as well
+        return "unbounded" if condition.name == "friction_ratio" else "overturned"
     return measured(value, limit_unit(condition.name), condition.limit)
 
 

@@ -14,8 +14,9 @@ from rpscli.model.podium import PodiumStructure
 
 FOLDER = Path(__file__).parents[2] / "cases"
 NAMES = [
-    "acceptance", "both_components", "designed_columns", "free_standing_block", "friction_dampers",
-    "measured_column", "measured_period", "rigid_frame", "six_storey", "yielding_storeys",
+    "acceptance", "both_components", "designed_columns", "engineers_building", "floors_on_springs",
+    "free_standing_block", "friction_dampers", "measured_column", "measured_period", "rigid_frame",
+    "six_storey", "yielding_storeys",
 ]  # fmt: skip
 
 

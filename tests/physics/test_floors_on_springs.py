@@ -366,3 +366,17 @@ def test_forces_of_columns_under_recorded_pairs(fema_record: RecordLoader) -> No
             both = stands & rode
             assert np.median(shear[both] / riding[both]) == pytest.approx(1.28, abs=0.06)
     assert max(medians) < 1.10 * min(medians)
+
+
+@needs_compiled_kernels
+def test_contact_that_is_lost_asks_for_friction_without_bound() -> None:
+    """Floors on springs lift the beam for instants; a moderate demand is told with its time."""
+    strong = replace(usual("springs"), friction=0.5)
+    peaks = [time_history(strong, shaken(seed)) for seed in (5, 8, 11)]
+    lost = [result for result in peaks if result.history["normal_top"] <= 0.0]
+    assert lost
+    for result in lost:
+        assert result.friction_ratio == result.friction_demand == math.inf
+        assert any("contact is lost" in text for text in result.warnings)
+        assert result.axial is not None
+        assert 0.0 < result.axial.sliding_time < 1.0

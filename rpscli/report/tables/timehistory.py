@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.analyses.column_design import WITHOUT_IMPULSE, no_line
+from rpscli.analyses.column_forces import AMPLE
 from rpscli.analyses.neighbours import OTHER_LOSS, Neighbour
 from rpscli.analyses.result_quantities import HISTORY, PAIR, SAMPLED, YIELDING
 from rpscli.analyses.results import TimeHistoryResult
@@ -211,10 +212,7 @@ def outcome_table(result: TimeHistoryResult) -> Table:
             for name in ("full_contact_share", "max_impact_number", "edge_pressure_ratio")
             if getattr(result, name) is not None
         ]
-    friction = result.friction_ratio
-    of_friction = "" if friction is None else f"{shown(friction)} of mu"
-    rows.append(_row(result, "friction_demand", of_friction))
-    rows += _columns(result)
+    rows += [*_friction(result), *_columns(result)]
     rows += [_row(result, "duration"), *_energy(result)]
     heads = ["", "on bearings", "normalised", f"{_elastic(result)}fixed base"]
     if result.fixed_base is None:
@@ -228,6 +226,14 @@ def _row(
     _, unit, label, *_ = QUANTITIES[name]
     beside = "" if fixed is None else measured(fixed, unit)
     return label, measured(getattr(result, name), unit), normalised, beside
+
+
+def _friction(result: TimeHistoryResult) -> Iterator[Row]:
+    ratio, axial = result.friction_ratio, result.axial
+    yield _row(result, "friction_demand", "" if ratio is None else f"{shown(ratio)} of mu")
+    if result.structure.upwards and axial is not None and axial.sliding_time > 0.0:
+        time = f"{shown(1e3 * axial.sliding_time)} ms"
+        yield f"  above {AMPLE:g} tan(alpha) for", time, "", ""
 
 
 def _yielding(result: TimeHistoryResult) -> list[Row]:
