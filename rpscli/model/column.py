@@ -149,7 +149,7 @@ class ColumnDesign:
         _, along, across = self.pressed(bearing, np.array(rotation), np.array(force))
         r, line = bearing.radius, self.edge_length is not None
         if r * math.sin(rotation) <= along and not bearing.is_spherical:
-            return "at most: the flat part still bears"
+            return "an upper bound, since the flat part still bears"
         if bearing.is_spherical:
             return "" if line or along < r / 5.0 else "the contact is wider than r/5"
         wide = not line and across >= 0.5 * (bearing.half_width + r * math.sin(rotation))

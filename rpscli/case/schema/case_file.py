@@ -358,7 +358,7 @@ class PodiumSection(PodiumMasses):
     """where columns stand along the motion; gives the overturning moment in the forces of columns,
     with superstructure.storey_height"""
     column: ColumnSection | None = None
-    """what a column is made of; gives its moment and the pressure under its ends"""
+    """section and material of a column; give its moment and the pressure under its ends"""
     devices: tuple[Annotated[DeviceSection, OWN_DAMPERS], ...] = ()
     """dampers, stops and tendons between ground and cap beam, at most 8"""
 

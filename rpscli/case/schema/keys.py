@@ -181,7 +181,7 @@ SECTIONS = {
     "record": "2",
     "record.vertical": "2, 8", "record.x": "13", "record.y": "13", "record.rotation": "13",
     "analysis": "10", "analysis.recontact_tolerance": "3, 10", "analysis.initial_rotation": "3",
-    "analysis.overturning_limit": "3", "analysis.gravity": "2", "limits": "8",
+    "analysis.overturning_limit": "3", "analysis.gravity": "2", "limits": "8, 15, 16",
 }  # fmt: skip
 """Sections of THEORY.md in which keys enter; a key without a line has those of its parent."""
 

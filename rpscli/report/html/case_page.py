@@ -337,7 +337,7 @@ def column_sections(
         " lies inside, and a wider plate has up to 3 f_cd. Steel on steel by EN 1337-4 has"
         f" 2.0 f_u, for rotations up to {STEEL_ROTATION:g} rad."
     )
-    yield Section("What a column carries", [
+    yield Section("Forces and pressures of a column", [
         f"Maxima at instants of a dense trace under {result.record.name}, without {without}.",
         *column_table(result),
         *([Picture(drawn, CAPTIONS["column"])] if drawn else []),

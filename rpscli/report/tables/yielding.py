@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     from rpscli.analyses.results import TimeHistoryResult
 
 UPPER = (
-    "strengths go as the shears of the first mode, so upper storeys yield most: modes of uplifted"
-    " columns are stiffer, and load them more than the first mode on a fixed base does"
+    "strengths follow the shears of the first mode on a fixed base, so upper storeys yield most:"
+    " modes of uplifted columns are stiffer, and load upper storeys more than that mode does"
 )
 
 
@@ -38,7 +38,7 @@ def strength_tables(structure: PodiumStructure) -> Iterator[Part]:
             yield Table.of_texts((f"storey{way.replace('_', ', in ')}", *heads), rows)
     building = structure.superstructure
     if building is not None and building.yields_by_first_mode:
-        yield f"{UPPER} (ductility 1.8 of the first, 6.7 of the last of six in one history)"
+        yield f"{UPPER} (one history of six storeys: ductility 1.8 of the first, 6.7 of the last)"
 
 
 def yielding_tables(result: PushoverResult) -> Iterator[Part]:
@@ -81,4 +81,4 @@ def yielded_tables(result: TimeHistoryResult) -> Iterator[Part]:
     most = int(result.ductilities.argmax())
     if most > 0 and result.ductilities[most] > 1.0:
         reason = f": {UPPER}" if building.yields_by_first_mode else ""
-        yield f"storey {most + 1} yields most, more than the first one{reason}"
+        yield f"storey {most + 1}, not the first, has the largest ductility{reason}"
