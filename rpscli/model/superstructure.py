@@ -56,26 +56,6 @@ class RayleighDamping:
         a0, a1 = self.coefficients(frequencies)
         return 0.5 * (a0 / frequencies + a1 * frequencies)
 
-    def matrix(self, M: Array, K: Array, w: Array, Phi: Array) -> Array:
-        """C = a0 M + a1 K.
-
-        Parameters
-        ----------
-        M, K
-            Mass [kg] and stiffness [N/m], (n, n).
-        w
-            Fixed-base circular frequencies, (n,), ascending [rad/s].
-        Phi
-            Mass-normalised mode shapes, (n, n), one a column [kg^-1/2].
-
-        Returns
-        -------
-        (n, n) [N s/m].
-        """
-        del Phi
-        a0, a1 = self.coefficients(w)
-        return a0 * M + a1 * K
-
 
 @dataclass(frozen=True)
 class ModalDamping:
@@ -87,25 +67,11 @@ class ModalDamping:
         """Damping ratio of every mode, (n,)."""
         return np.full_like(frequencies, self.ratio)
 
-    def matrix(self, M: Array, K: Array, w: Array, Phi: Array) -> Array:
-        """C = M Phi diag(2 xi w) Phi^T M.
-
-        Parameters
-        ----------
-        M, K, w, Phi
-            As those of `RayleighDamping.matrix`.
-        """
-        del K
-        weighted = M.diagonal()[:, None] * Phi
-        return np.asarray((weighted * (2.0 * self.ratio * w)) @ weighted.T)
-
 
 Profile = Literal["sine", "uniform", "linear", "flexural"]
 
 
-def profile_stiffnesses(
-    masses: ArrayLike, period: float, profile: Profile = "sine"
-) -> NDArray[np.float64]:
+def profile_stiffnesses(masses: ArrayLike, period: float, profile: Profile = "sine") -> Array:
     """Storey stiffnesses that give a fixed-base first period and mode.
 
     Parameters
@@ -151,9 +117,7 @@ def profile_stiffnesses(
     return np.asarray(shear / np.diff(shape, prepend=0.0))
 
 
-def first_mode_strengths(
-    masses: NDArray[np.float64], stiffnesses: NDArray[np.float64], first: float
-) -> NDArray[np.float64]:
+def first_mode_strengths(masses: Array, stiffnesses: Array, first: float) -> Array:
     """Storey strengths (n,) [N] in the proportions of the shears of the first mode.
 
     Parameters
@@ -167,16 +131,14 @@ def first_mode_strengths(
     return np.asarray(first * shears / shears[0])
 
 
-def stiffness_matrix(stiffnesses: NDArray[np.float64]) -> NDArray[np.float64]:
+def stiffness_matrix(stiffnesses: Array) -> Array:
     """K of a shear building, (n, n), from storey stiffnesses (n,) [N/m]."""
     k = stiffnesses
     above = np.append(k[1:], 0.0)
     return np.asarray(np.diag(k + above) - np.diag(k[1:], 1) - np.diag(k[1:], -1))
 
 
-def shear_modes(
-    masses: NDArray[np.float64], stiffnesses: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def shear_modes(masses: Array, stiffnesses: Array) -> tuple[Array, Array]:
     """Frequencies (n,) [rad/s], ascending, and mass-normalised shapes (n, n), one a column.
 
     The sign of a shape is fixed by a positive roof.
@@ -224,13 +186,13 @@ class Superstructure(Shown):
         If lengths differ, or a value is not positive or no hardening.
     """
 
-    masses: NDArray[np.float64]
-    stiffnesses: NDArray[np.float64]
+    masses: Array
+    stiffnesses: Array
     damping: RayleighDamping | ModalDamping
-    storey_heights: NDArray[np.float64] | None = None
+    storey_heights: Array | None = None
     vertical_period: float | None = None
     vertical_damping: float = VERTICAL_DAMPING
-    strengths: NDArray[np.float64] | None = None
+    strengths: Array | None = None
     hardening: float = 0.0
 
     def __post_init__(self) -> None:
@@ -263,47 +225,51 @@ class Superstructure(Shown):
         """M_tot [kg]."""
         return float(self.masses.sum())
 
-    def drift_ratios(self, drifts: NDArray[np.float64]) -> NDArray[np.float64] | None:
+    def drift_ratios(self, drifts: Array) -> Array | None:
         """Storey drifts (n,) [m] over the storey heights; None where no heights are given."""
         return None if self.storey_heights is None else drifts / self.storey_heights
 
     @cached_property
-    def mass_matrix(self) -> NDArray[np.float64]:
+    def mass_matrix(self) -> Array:
         """M, (n, n) [kg]."""
         return frozen(np.diag(self.masses))
 
     @cached_property
-    def stiffness_matrix(self) -> NDArray[np.float64]:
+    def stiffness_matrix(self) -> Array:
         """K, (n, n) [N/m]."""
         return frozen(stiffness_matrix(self.stiffnesses))
 
     @cached_property
-    def damping_matrix(self) -> NDArray[np.float64]:
-        """C, (n, n) [N s/m]."""
-        M, K = self.mass_matrix, self.stiffness_matrix
-        return frozen(self.damping.matrix(M, K, self.frequencies, self.shapes))
+    def damping_matrix(self) -> Array:
+        """C, (n, n) [N s/m]: a0 M + a1 K, or M Phi diag(2 xi w) Phi^T M."""
+        if isinstance(self.damping, RayleighDamping):
+            a0, a1 = self.damping.coefficients(self.frequencies)
+            return frozen(a0 * self.mass_matrix + a1 * self.stiffness_matrix)
+        weighted = self.masses[:, None] * self.shapes
+        ratios = 2.0 * self.damping_ratios * self.frequencies
+        return frozen(np.asarray((weighted * ratios) @ weighted.T))
 
     @cached_property
-    def _modes(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def _modes(self) -> tuple[Array, Array]:
         return frozen(shear_modes(self.masses, self.stiffnesses))
 
     @property
-    def frequencies(self) -> NDArray[np.float64]:
+    def frequencies(self) -> Array:
         """Fixed-base circular frequencies, (n,), ascending [rad/s]."""
         return self._modes[0]
 
     @property
-    def shapes(self) -> NDArray[np.float64]:
+    def shapes(self) -> Array:
         """Fixed-base mass-normalised mode shapes, (n, n), one a column [kg^-1/2]."""
         return self._modes[1]
 
     @cached_property
-    def damping_ratios(self) -> NDArray[np.float64]:
+    def damping_ratios(self) -> Array:
         """Critical damping ratio of each fixed-base mode, (n,)."""
         return frozen(self.damping.ratios(self.frequencies))
 
     @property
-    def periods(self) -> NDArray[np.float64]:
+    def periods(self) -> Array:
         """Fixed-base periods, (n,), descending [s]."""
         return frozen(2.0 * math.pi / self.frequencies)
 
@@ -321,7 +287,7 @@ class Superstructure(Shown):
         )
 
     @property
-    def carried(self) -> NDArray[np.float64]:
+    def carried(self) -> Array:
         """Mass above each storey, (n,) from the bottom [kg]."""
         return frozen(self.masses[::-1].cumsum()[::-1])
 
@@ -331,7 +297,7 @@ class Superstructure(Shown):
         return self.strengths is not None
 
     @property
-    def back_stiffness(self) -> NDArray[np.float64]:
+    def back_stiffness(self) -> Array:
         """X_i/delta_i, back force of hardening over plastic drift, (n,) [N/m]."""
         return frozen(self.stiffnesses * self.hardening / (1.0 - self.hardening))
 
@@ -344,12 +310,12 @@ class Superstructure(Shown):
         return bool(np.allclose(self.strengths, shears, rtol=1e-3))
 
     @property
-    def participation(self) -> NDArray[np.float64]:
+    def participation(self) -> Array:
         """Gamma_r = phi_r^T M 1 of the mass-normalised modes, (n,) [kg^1/2]."""
         return frozen(self.shapes.T @ self.masses)
 
 
-def _positive(name: str, values: Sequence[float] | NDArray[np.float64]) -> NDArray[np.float64]:
+def _positive(name: str, values: Sequence[float] | Array) -> Array:
     array = np.array(values, dtype=float)
     if array.ndim != 1 or not all(map(is_size, array.tolist())):
         raise ValueError(f"{name} must be a list of finite sizes > 0, from the bottom")
