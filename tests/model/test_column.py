@@ -7,11 +7,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from paper_structures import podium
 
 from rpscli.model.bearing import Bearing
 from rpscli.model.column import ColumnDesign, ColumnState
-from rpscli.physics import geometry
 
 STATES = [
     # side, x, x', F and N below, F and N above; P, Q, M at every half of H
@@ -63,58 +61,6 @@ def test_forces_along_a_column(number: int) -> None:
     found = state.section_forces(bearing, 2e4, np.linspace(0.0, 2.0, 5) * H)
     for values, other in zip(found, wanted, strict=True):
         assert values == pytest.approx(other, rel=1e-6)
-
-
-@pytest.mark.evidence("forces in columns, friction", "exact")
-def test_the_moment_ends_as_the_upper_end_asks() -> None:
-    """By the equation of motion (2.3), also of a column that carries more than the mean.
-
-    It holds if the shear follows the axial force: with the mean shear the ends do not balance.
-    """
-    rng = np.random.default_rng(0)
-    for rho in (0.0, 0.5, 0.2):
-        structure = podium(3, 0.15, rho)
-        b, total = structure.bearing, structure.columns_mass
-        R, H, gamma, eta, N = b.semi_diagonal, b.half_height, structure.gamma, structure.eta, 16
-        for _ in range(100):
-            x, side = rng.uniform(0.0, 0.28), rng.choice([-1.0, 1.0])
-            rate, a_g, a_v = rng.normal(0.0, 1.0, 3)
-            V, g = rng.normal(0.0, 2e6), structure.gravity + a_v
-            phase = b.rolling if x < b.beta else b.rocking
-            B = geometry.contact_arm(phase, math.cos(x), math.sin(x))
-            C = geometry.contact_height(phase, math.cos(x), math.sin(x))
-            lifted = 1.0 + 4.0 * gamma * (1.0 + eta)
-            A = geometry.inertia(b.inertia_ratio - 1.0, 1.0 + 4.0 * gamma, lifted, C * C, B * B)
-            D = B * ((1.0 + 4.0 * gamma) * phase.c + 4.0 * gamma * eta * (phase.c - C))
-            driven = a_g / R * (1.0 + 2.0 * gamma) - 2.0 * V / (total * R)
-            moment = B * g / R * (1.0 + 2.0 * gamma * (1.0 + eta))
-            turned = -(moment + side * C * driven + D * rate**2) / A  # of x, by (2.3)
-            beam = 2.0 * R * side * (C * turned + B * rate**2)
-            raised = 2.0 * R * (B * turned + (phase.c - C) * rate**2)
-            F_t = structure.cap_beam_mass * (beam + a_g) - V
-            N_t = (structure.cap_beam_mass + structure.superstructure_mass) * (g + raised)
-            F_b, N_b = F_t + total * (beam / 2 + a_g), N_t + total * (g + raised / 2)
-            added = rng.uniform(-0.9, 2.0) * N_t / N
-            follows = -side * added * B / C  # (16.3)
-            y = min(x, b.beta)
-            radius = 0.0 if b.is_flat else b.radius
-            lever, rise = b.half_width + radius * math.sin(y), radius * (1.0 - math.cos(y))
-            for extra, closes in ((follows, True), (0.0, False)):
-                of = [F_b / N + extra, N_b / N + added, F_t / N + extra, N_t / N + added]
-                state = ColumnState(side, x, rate, lever, rise, *of)
-                _, _, M = state.section_forces(b, total / N, np.array([0.0, 2.0 * H]))
-                P = of[3] * math.cos(x) + side * of[2] * math.sin(x)
-                Q = side * of[2] * math.cos(x) - of[3] * math.sin(x)
-                bars = abs(M[0]) + H * (abs(of[1]) + abs(of[3]))
-                if closes:
-                    assert M[1] == pytest.approx(-(lever * P - rise * Q), abs=1e-12 * bars)
-                    # Of this motion, not of one that the ends would make up.
-                    inertia = (b.inertia_ratio - 1.0) * total / N * R**2
-                    about = R * B * (of[1] + of[3]) + side * R * C * (of[0] + of[2])
-                    assert -about == pytest.approx(inertia * turned, abs=1e-11 * bars)
-                else:
-                    about = R * B * (of[1] + of[3]) + side * R * C * (of[0] + of[2])
-                    assert about + inertia * turned == pytest.approx(2.0 * R * B * added, rel=1e-6)
 
 
 @pytest.mark.evidence("forces in columns, friction", "program")
