@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +9,7 @@ import pytest
 from click.testing import CliRunner
 from paper_structures import needs_compiled_kernels
 from scipy.integrate import solve_ivp
+from sweep.small_studies import csv_rows
 
 from rpscli.analyses.floor_spectra import (
     fixed_base_floor_spectra,
@@ -89,8 +89,7 @@ def test_floor_spectra_of_the_command(tmp_path: Path) -> None:
     words = ["timehistory", str(CASE), "--record", source, "-o", str(tmp_path / "made"), "-q"]
     CliRunner().invoke(program, [*words, "--floor-spectra", "--figures", "png"])
     assert (tmp_path / "made/floor_spectra.png").read_bytes().startswith(b"\x89PNG")
-    with (tmp_path / "made/floor_spectra.csv").open(encoding="utf-8") as file:
-        rows = list(csv.DictReader(file))
+    rows = csv_rows("floor_spectra.csv", tmp_path / "made")
     case = load_case(str(CASE))
     result = time_history(case.structure, load_record(source), case.analysis)
     found = isolated_floor_spectra(result).pseudo_acceleration

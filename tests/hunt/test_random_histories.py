@@ -14,7 +14,7 @@ from random import Random
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from paper_structures import needs_compiled_kernels
+from paper_structures import needs_compiled_kernels, yielding
 from two_components import followed, pair
 
 from hunt.trials import hunt, shares
@@ -303,13 +303,8 @@ def with_floors_of_its_own(
         damping = random.choice([0.0, 0.05, 0.05, random.uniform(0.0, 0.5)])
         above = replace(above, vertical_period=period, vertical_damping=damping)
     if kind != "springs":
-        shears = np.cumsum((above.masses * above.shapes[:, 0])[::-1])[::-1]
         first = system.static_base_shear * logarithmic(random, 0.2, 5.0)
-        above = replace(
-            above,
-            strengths=first * shears / shears[0],
-            hardening=random.choice([0.0, 0.05, random.uniform(0.0, 0.9)]),
-        )
+        above = yielding(above, first, random.choice([0.0, 0.05, random.uniform(0.0, 0.9)]))
     across = system.superstructure_y
     if across is not None:
         across = replace(above, stiffnesses=across.stiffnesses)
