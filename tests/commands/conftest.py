@@ -13,31 +13,15 @@ from typing import Any
 
 import pytest
 from click.testing import CliRunner, Result
+from sweep.small_studies import BASE, ROOT
 
 from rpscli.cli import program
 
-ROOT = Path(__file__).parents[2]
-
-SMALL_CASE = """\
-rps: 1
-title: "Three storeys [test]"
-superstructure:
-  storeys: 3
-  storey_mass: [200000, 200000, 150000]
-  storey_height: 3.0
-  period: 0.3
-  damping: {ratio: 0.05, modes: [1, 2]}
-podium:
-  bearing:
-    semi_diagonal: 1.5
-    slenderness: 0.15
-    wedge_slenderness: 0.30
-    curvature_ratio: 0.5
-  cap_beam_mass_ratio: 10
-  superstructure_mass_ratio: 3
-record: {source: "pulse:half_sine?amplitude=0.3g&period=0.6"}
-analysis: {free_vibration: 1.0}
-"""
+SMALL_CASE = (
+    BASE.replace("superstructure:", 'title: "Three storeys [test]"\nsuperstructure:', 1)
+    .replace("storey_mass: 200000", "storey_mass: [200000, 200000, 150000]")
+    .replace("analysis", 'record: {source: "pulse:half_sine?amplitude=0.3g&period=0.6"}\nanalysis')
+)
 
 Invoke = Callable[..., Result]
 InvokeJson = Callable[..., dict[str, Any]]

@@ -12,8 +12,8 @@ from typing import Any
 import jsonschema
 import pytest
 from click.testing import Result
+from sweep.small_studies import ROOT
 
-from commands.conftest import ROOT
 from rpscli.case.schema.case_file import CaseFile
 from rpscli.case.schema.keys import known_paths
 from rpscli.case.text.files import read_text

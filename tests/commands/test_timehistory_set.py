@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import importlib.util
 import json
 import math
@@ -12,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 from scipy.integrate import cumulative_trapezoid
+from sweep.small_studies import csv_rows
 
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.loading import load_record
@@ -74,12 +74,9 @@ def test_several_records_end_with_mean_and_largest(rps_json: InvokeJson) -> None
 
 def test_the_tables_of_a_set_are_files(rps_json: InvokeJson) -> None:
     document = rps_json("timehistory", "small.yaml", *asked(PULSES), "-o", "out")
-    with Path("out/records.csv").open(encoding="utf-8") as file:
-        rows = list(csv.DictReader(file))
-    shears = [float(row["max_base_shear [N]"]) for row in rows]
+    shears = [float(row["max_base_shear [N]"]) for row in csv_rows("records.csv", "out")]
     assert shears == pytest.approx([h["max_base_shear"] for h in document["histories"]], rel=1e-9)
-    with Path("out/statistics.csv").open(encoding="utf-8") as file:
-        statistics = {row["quantity [-]"]: row for row in csv.DictReader(file)}
+    statistics = {row["quantity [-]"]: row for row in csv_rows("statistics.csv", "out")}
     assert float(statistics["max_base_shear"]["mean_of_maxima [SI]"]) == pytest.approx(
         np.mean(shears), rel=1e-9
     )

@@ -169,23 +169,15 @@ def test_steps_end_where_a_law_has_a_kink(name: str, c: float) -> None:
     watched, missed = (with_own(structure, law, c, OPENS) for law in (RELIEVED, UNWATCHED))
     fine, usual = history(watched, motion, 4.0), history(watched, motion)
     assert fine.devices[0].velocity > 2.0 * OPENS
+    assert fine.impacts > 1 or name != "flat ends and friction"
+    assert usual.devices[0].force == pytest.approx(OPENS * c, rel=1e-9)
+    assert np.max(np.abs(usual.trace.devices.force[:, 0])) <= OPENS * c * (1.0 + 1e-9)
     errors = [
         abs(each.max_rotation - fine.max_rotation) for each in (usual, history(missed, motion))
     ]
     assert errors[0] < 1e-9 * fine.max_rotation
     assert errors[1] > 20.0 * errors[0]
     assert abs(usual.energy.residual) < 1e-7 * usual.energy.input
-
-
-@needs_compiled_kernels
-def test_a_relief_valve_opens_after_impacts_too() -> None:
-    own = history(with_own(CASES["flat ends and friction"][0], RELIEVED, C, OPENS))
-    assert own.impacts > 1
-    assert own.devices[0].velocity > 0.1
-    assert own.devices[0].force == pytest.approx(OPENS * C, rel=1e-9)
-    force, limit = np.abs(own.trace.devices.force[:, 0]), OPENS * C
-    assert np.max(force) <= limit * (1.0 + 1e-9)
-    assert abs(own.energy.residual) < 1e-6 * own.energy.input
 
 
 def numbers(structure: PodiumStructure, motion: MotionComponents, count: int) -> list[Any]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
@@ -17,13 +16,13 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import StepPatch
 from numpy.typing import NDArray
 from paper_structures import needs_compiled_kernels
+from reproduction.conftest import Row, rows_of
 from sweep.small_studies import BASE, STUDY
 
 from report.small_results import curve, legend
 from rpscli.cli import program
 
 Array = NDArray[np.float64]
-Row = dict[str, str]
 Open = Callable[[str], tuple[Figure, list[Row]]]
 """Of a report: its figure, and the rows of a CSV file of the same name."""
 
@@ -102,18 +101,9 @@ def opened(text: str, folder: Path, *options: str) -> Open:
     assert made.exit_code == 0, made.stderr
 
     def open_(name: str) -> tuple[Figure, list[Row]]:
-        return kept.get(name, Figure()), rows(folder / "made" / f"{name}.csv")
+        return kept.get(name, Figure()), rows_of(folder / "made" / f"{name}.csv")
 
     return open_
-
-
-def rows(path: Path) -> list[Row]:
-    """Cells by the names of their columns, units left out."""
-    with path.open(encoding="utf-8", newline="") as file:
-        return [
-            {name.split(" [")[0]: cell for name, cell in row.items()}
-            for row in csv.DictReader(file)
-        ]
 
 
 @pytest.fixture(scope="module")
