@@ -205,17 +205,15 @@ def _capacity(
     sway = np.linalg.solve(building.stiffness_matrix, forces)
     path = np.stack((curve.rotation, curve.displacement, curve.force))
     path = np.concatenate((np.zeros((3, 1)), path), axis=1)
-    yield_forces = None
+    yield_forces, shears = None, np.cumsum(forces[::-1])[::-1]
     if building.strengths is not None:
-        shears = np.abs(np.cumsum(forces[::-1])[::-1])
-        yield_forces = np.divide(
-            building.strengths, shears, out=np.full_like(shears, np.inf), where=shears > 0.0
-        )
+        with np.errstate(divide="ignore"):  # storeys without a shear never yield
+            yield_forces = building.strengths / np.abs(shears)
         path = _with_kinks(path, yield_forces, hardens=building.hardening > 0.0)
     rotation, base, pushed = path
     roof = base + pushed * sway[-1]
     if yield_forces is not None and building.hardening > 0.0:
-        roof += _plastic_drifts(building, np.outer(pushed, np.cumsum(forces[::-1])[::-1])).sum(1)
+        roof += _plastic_drifts(building, np.outer(pushed, shears)).sum(1)
     lifts = np.interp(uplift, rotation, roof)
     if pushed.max() < np.interp(uplift, curve.rotation, curve.force):
         lifts = np.nan

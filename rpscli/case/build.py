@@ -169,7 +169,6 @@ def building(section: SuperstructureSection, at_uplift: float) -> Superstructure
     else:
         stiffnesses = profile_stiffnesses(masses, section.period, section.profile or "sine")
     heights = None if height is None else np.array(each_storey(height, n))
-    upwards = section.vertical_damping
     damping: RayleighDamping | ModalDamping = ModalDamping(given.ratio)
     if given.modes is not None:
         damping = RayleighDamping(given.ratio, given.modes)
@@ -186,7 +185,7 @@ def building(section: SuperstructureSection, at_uplift: float) -> Superstructure
         damping,
         heights,
         section.vertical_period,
-        VERTICAL_DAMPING if upwards is None else upwards,
+        VERTICAL_DAMPING if section.vertical_damping is None else section.vertical_damping,
         strengths,
         hardening,
     )

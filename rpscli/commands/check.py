@@ -124,28 +124,23 @@ def check_tables(document: Mapping[str, Any], limits: Sequence[Condition]) -> It
     heads = ("", "symbol", "value", "unit")
     yield Heading(document["case"]["title"])
     pair = document["record"] and document["record"]["y"]
-    on_bed = CONTACT if "contact_stiffness" in document else ()
-    upwards = UPWARDS if "vertical_period" in document else ()
-    dynamics = (*DYNAMICS, FIRST_PERIOD, *upwards, *on_bed)
-    designed = [COLUMN] if "column_rest_force" in document else []
-    for rows in (LEADING, GEOMETRY, dynamics, *designed, *([BOTH] if pair else [])):
+    dynamics = (*DYNAMICS, FIRST_PERIOD, *UPWARDS, *CONTACT)
+    for rows in (LEADING, GEOMETRY, dynamics, COLUMN, BOTH if pair else ()):
         texts = []
-        for row in rows:
+        for row in (each for each in rows if each.name in document):
             if row.name.endswith("_paper") or (row in LEADING and rows is not LEADING):
                 continue
-            of_some = row in (*on_bed, *COLUMN, *BOTH) or row.name == "rolling_period"
+            of_some = row in (*CONTACT, *COLUMN, *BOTH) or row.name == "rolling_period"
             if document[row.name] is None and of_some:
                 continue  # columns with a flat part, edges, or curved ends have none
             value, unit = large(document[row.name], row.unit)
             texts.append((row.label, row.symbol, shown(value), unit))
-        if (
-            rows is LEADING
-            and (stiffness := document["stiffnesses"]) is not None
-            and len(stiffness)
-        ):
-            ends = (("bottom", stiffness[0]), ("roof", stiffness[-1]))[: len(stiffness)]
+        if rows is LEADING:
+            given = document["stiffnesses"]
+            ends = zip(("bottom", "roof"), (*given[:1], *given[1:][-1:]), strict=False)
             texts += [(f"storey stiffness, {n}", "", shown(1e-3 * k), "kN/m") for n, k in ends]
-        yield Table.of_texts(heads, texts, words=2)
+        if texts:
+            yield Table.of_texts(heads, texts, words=2)
     if record := document["record"]:
         lines = [
             ("record", record["name"]),
