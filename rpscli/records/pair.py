@@ -9,9 +9,6 @@ import numpy as np
 
 from rpscli.records.ground_motion import GroundMotion, MotionComponents, require_one_step
 
-HALF_TURN = 180.0
-"""Directions half a turn apart are the same motion with the other sign [deg]."""
-
 
 def turned(motion: MotionComponents, rotation: float) -> MotionComponents:
     """A pair turned from x towards y [deg]: what acted along x then acts at that azimuth."""

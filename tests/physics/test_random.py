@@ -62,7 +62,7 @@ def equipped(rng: np.random.Generator) -> PodiumStructure:
         float(rng.uniform(0.06, 0.25)),
         float(rng.choice([FLAT, 0.3, 0.5, 1.0])),
         R=float(rng.uniform(0.7, 2.0)),
-        law=ImpactLaw(str(rng.choice(["rigid", "flexible"]))),  # type: ignore[arg-type]
+        law=ImpactLaw(str(rng.choice(["rigid", "flexible"]))),
         superstructure=building(storeys) if storeys else None,
     )
     devices = tuple(device(rng, bare) for _ in range(int(rng.integers(1, 5))))
