@@ -46,6 +46,8 @@ PAGES = {
         "rpscli/case/starter.yaml",
         "rpscli/case/starter_study.yaml",
         "cases/both_components.yaml",
+        "cases/engineers_building.yaml",
+        "cases/floors_on_springs.yaml",
         "cases/friction_dampers.yaml",
         "cases/measured_period.yaml",
         "cases/yielding_storeys.yaml",

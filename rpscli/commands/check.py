@@ -103,7 +103,8 @@ def command(
 
 def _record(case: Case) -> tuple[dict[str, Any] | None, RpsError | None]:
     """The case's own record, or why it cannot be read; nothing if the case names none."""
-    from rpscli.case.rules.plausibility import doubts_of_directions  # numpy is slow
+    from rpscli.analyses.column_forces import no_bound  # numpy is slow
+    from rpscli.case.rules.plausibility import doubts_of_directions
 
     if case.record is None:
         return None, None
@@ -111,9 +112,11 @@ def _record(case: Case) -> tuple[dict[str, Any] | None, RpsError | None]:
         motion = inputs.load_motion(case, inputs.MotionRequest())
     except (RecordError, CaseError) as error:
         return None, error
-    found = motion.horizontal
+    found, both = motion.horizontal, motion.y is not None
     warnings = [*found.warnings, *motion.warnings]
-    doubts = map(str, doubts_of_directions(case.structure, both=motion.y is not None))
+    doubts = [str(doubt) for doubt in doubts_of_directions(case.structure, both=both)]
+    names = [each.name for each in conditions_of(case.limits, "")] if both else []
+    doubts += filter(None, (no_bound(name, case.structure) for name in names))
     known, y = {name: getattr(found, name) for name in RECORD}, motion.y
     across = y and {name: getattr(y, name) for name in RECORD}
     return {**known, "y": across, "scale": motion.scale, "warnings": [*warnings, *doubts]}, None

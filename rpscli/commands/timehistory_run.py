@@ -131,6 +131,10 @@ def compute(
 ) -> tuple[HistoryResult, TimeHistoryResult]:
     """Run a history, judge it, and collect its files; the caller writes them."""
     case, ground = request.given.case, request.ground
+    limits = [*case_conditions(case.limits, case.structure), *conditions]
+    for limit in limits if ground.y is not None else ():
+        if why := no_bound(limit.name, case.structure):  # known before minutes are spent
+            raise UsageError(f"{limit.source}: {why}")
     with patience(case, ground.horizontal.duration, terminal):
         result = time_history(case.structure, ground, case.analysis)
     request.folder.add_all(timehistory_files(result, case.title, look))
@@ -141,7 +145,6 @@ def compute(
     verdicts: list[Verdict] = []
     error: RpsError | None = AnalysisError(result.failure) if result.failure else None
     if error is None:
-        limits = [*case_conditions(case.limits, case.structure), *conditions]
         for limit in limits:
             _refuse_unknown(limit, result)
         records = Records.of([result.outcome], [demands], [result.record.source])
@@ -157,8 +160,6 @@ def compute(
 
 def _refuse_unknown(limit: Condition, result: TimeHistoryResult) -> None:
     """Refuse a limit on what a history does not know: raises UsageError."""
-    if result.both_components and (why := no_bound(limit.name, result.structure)):
-        raise UsageError(f"{limit.source}: {why}")
     needs = LIMITS[limit.name].needs if limit.name in LIMITS else ""
     incomplete = limit.name in OF_COLUMNS and result.left_out_of_columns
     if needs and (getattr(result, limit.name) is None or incomplete):

@@ -105,6 +105,21 @@ def test_modal_and_pushover_say_where_storeys_yield(rps: Invoke, rps_json: Invok
     assert "protect" not in above.stderr
 
 
+def test_limits_that_pairs_refuse_are_told_before_anything_is_computed(
+    rps: Invoke, rps_json: InvokeJson, workplace: Path
+) -> None:
+    (case,) = (str(each) for each in CASES if each.stem == "engineers_building")
+    pair = [f"pulse:sine?amplitude={a}g&period=0.8" for a in (0.3, 0.2)]
+    both = f'record={{x: "{pair[0]}", y: "{pair[1]}"}}'
+    document = rps_json("check", case, "--set", both)
+    told = [text.split(" under both")[0] for text in document["warnings"]]
+    assert {"max_column_force", "column_moment", "contact_pressure_ratio"} <= set(told)
+    refused = rps("timehistory", case, "--set", both)
+    assert refused.exit_code == 2
+    assert "max_column_force under both components" in refused.stderr
+    assert not list(workplace.rglob("timehistory.csv"))
+
+
 def test_check_draws_the_bearing(rps_json: InvokeJson) -> None:
     document = rps_json("check", "small.yaml", "--draw", "--figures", "svg,pdf", "-o", "drawn")
     assert document["files"] == [
