@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from rpscli.analyses.kernels.compilation import is_ready
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.timehistory import time_history
 from rpscli.case.case import load_case
@@ -290,6 +291,19 @@ def test_the_first_compilation_is_announced(rps: Invoke, monkeypatch: pytest.Mon
     assert heard.count("compiling the kernel") == 1
     monkeypatch.setattr("rpscli.analyses.kernels.compilation._begun", set())
     assert rps("timehistory", "small.yaml", "--quiet").stderr == ""
+
+
+def test_machine_code_of_another_installation_is_not_ours(
+    rps: Invoke, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """numba keeps it by the place of the sources: two environments compile, and both say so."""
+    assert rps("timehistory", "small.yaml").exit_code == 0
+    ready = "rpscli.analyses.kernels.compilation"
+    monkeypatch.setattr(f"{ready}._ready", set())
+    assert is_ready(1, 1)
+    monkeypatch.setattr(f"{ready}._ready", set())
+    monkeypatch.setattr("rpscli.physics.compile.SOURCES", tmp_path)
+    assert not is_ready(1, 1)
 
 
 def test_the_cost_of_a_long_history_is_told_before_it_begins(rps: Invoke) -> None:

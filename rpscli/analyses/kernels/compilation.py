@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, ExitStack, contextmanager
 from threading import Lock
@@ -37,9 +38,16 @@ def is_ready(ways: int, lanes: int) -> bool:
     from rpscli.physics.compile import is_compiled
 
     name = KERNELS[ways, lanes]
-    if name not in _ready and is_compiled(name):
+    if name not in _ready and is_compiled(_mark(name)):
         _ready.add(name)
     return name in _ready
+
+
+def _mark(name: str) -> str:
+    """A kernel of this installation: machine code is kept by the place of its sources."""
+    from rpscli.physics.compile import SOURCES
+
+    return f"{name} {hashlib.sha256(str(SOURCES).encode()).hexdigest()[:8]}"
 
 
 @contextmanager
@@ -64,6 +72,6 @@ def compiled(ways: int, lanes: int) -> Iterator[None]:
                 told.close()
         yield
     if can_prepare():
-        remember_compiled(name)
+        remember_compiled(_mark(name))
     else:  # there is no machine code that other processes find
         _ready.add(name)
