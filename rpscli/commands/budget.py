@@ -123,6 +123,10 @@ def _wishes(
     motion, ground = motions[0], grounds[0]
     for cause, text in _values(case):
         yield cause, (text,), motion
+    given = [f"superstructure.{name}=null" for name in ("vertical_period", "vertical_damping")
+             if getattr(case.file.superstructure, name) is not None]  # fmt: skip
+    if given:
+        yield "vertical period", tuple(given), motion
     if case.file.superstructure.damping is None:
         yield "damping", (), "the case has no storeys, and no damping of theirs"
     yield _direction(case, motion, ground)
@@ -170,7 +174,6 @@ def _values(case: Case) -> Iterator[tuple[str, str]]:
     if (period := file.superstructure.vertical_period) is not None:
         for factor in (0.5, 2.0):
             yield "vertical period", f"superstructure.vertical_period={factor * period:g} s"
-        yield "vertical period", "superstructure.vertical_period=null"
     place = "podium.bearing.dimensions" if bearing.dimensions else "podium.bearing"
     for name in ("semi_diagonal", "slenderness", "height", "width"):
         value = float(getattr(bearing.dimensions or bearing, name, None) or 0.0)

@@ -75,7 +75,8 @@ def test_worst_instants_of_a_building() -> None:
     of = designed()
     result = time_history(of, waves(6.0, 0.01, 1.8 * of.uplift_acceleration, seed=2))
     t, b, axial, demand = denser_trace(result, 5e-4), of.bearing, result.axial, result.column_demand
-    assert axial is not None and demand is not None  # noqa: PT018
+    assert axial is not None
+    assert demand is not None
     x, force = np.abs(t.rotation), axial.heaviest["bottom"]
     rolls = (t.phase == 1) & (x > 0.0)
     pressure, *_ = SQUARE.pressed(b, x[rolls], force[rolls])

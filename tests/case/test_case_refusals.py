@@ -79,6 +79,8 @@ OF_A_BUILDING: list[Row] = [
     ("  profile: sine", "  yield: {shears: [1 MN, 2 MN]}", "7:19", "yield.shears has 2 values"),
     ("  profile: sine", "  yield: {shears: 1 t}", "7:19", "yield.shears = '1 t' is a mass"),
     ("  profile: sine", "  yields: {ratio: 1}", "7:3", "did you mean superstructure.yield?"),
+    ("  profile: sine", "  vertical_damping: 0.1", "7:3: superstructure.vertical_damping needs",
+     "vertical_period, which is missing"),
     # missing and twice
     ("rps: 1\n", "", "1:1: rps is missing", "write `rps: 1`"),
     ("  storeys: 3\n", "", "2:1: superstructure.storeys is missing", "number of storeys"),

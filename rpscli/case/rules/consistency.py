@@ -83,11 +83,15 @@ class Consistency:
         if building.damping is None:
             meaning = "as in {ratio: 0.05, modes: [1, 2]} (Rayleigh) or {ratio: 0.05} (every mode)"
             yield _at_key("superstructure.damping", f" is missing: {meaning}")
-        elif building.damping.modes and max(building.damping.modes) > max(building.storeys, 2):
+        if building.vertical_damping is not None and building.vertical_period is None:
+            text = " needs superstructure.vertical_period, which is missing; give it, or remove"
+            yield _at_key("superstructure.vertical_damping", f"{text} the key")
+        modes = None if building.damping is None else building.damping.modes
+        if modes and max(modes) > max(building.storeys, 2):
             # One storey takes [1, 2] as well: stiffness-proportional, so that storeys can vary.
             yield _of_value(
                 "superstructure.damping.modes",
-                f" = {shown(building.damping.modes)} must be from 1 to {STOREYS} ="
+                f" = {shown(modes)} must be from 1 to {STOREYS} ="
                 f" {building.storeys}{self._where(STOREYS)}; a building has as many modes as"
                 " storeys",
             )
