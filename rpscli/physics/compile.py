@@ -26,6 +26,7 @@ from numba.core.caching import IndexDataCacheFile
 from numba.extending import intrinsic, overload, register_jitable
 
 from rpscli.errors import PluginError
+from rpscli.physics.parts import PartCompiler
 from rpscli.user_cache import VARIABLE, alone_in, is_private, user_cache
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -37,6 +38,8 @@ OPTIONS: dict[str, Any] = {
     # of numba.jit is not in its manual.
     "no_cfunc_wrapper": True,
 }
+PART: dict[str, Any] = {**OPTIONS, "pipeline_class": PartCompiler, "_nrt": False}
+"""The same of what is called by kernels alone, and allocates nothing: no references are counted."""
 
 SOURCES = Path(__file__).parent
 CONSTANTS = SOURCES.parent / "constants.py"
@@ -53,7 +56,6 @@ def _name_in_code(kind: types.Type) -> tuple[str, tuple[int]]:
 # shape. Machine code of two records, compiled by two processes and loaded by a third, then has the
 # same names, and the code of one is called for the other: garbage without a warning.
 cast("Any", types.Record).mangling_args = property(_name_in_code)
-cast("Any", types.NestedArray).mangling_args = property(_name_in_code)
 
 
 def sources_digest(folder: Path, *others: Path) -> str:
@@ -158,12 +160,12 @@ def _not_kept(folder: Path, reason: str) -> None:
 
 def compiled(function: Function) -> Function:
     """Compile with the kernels that call it; called from Python it runs as Python."""
-    return register_jitable(**OPTIONS)(function)
+    return register_jitable(**PART)(function)
 
 
 def inlined(function: Function) -> Function:
     """The same, merged into its callers, whose constants it then knows: for loops over lanes."""
-    return register_jitable(forceinline=True, **OPTIONS)(function)
+    return register_jitable(forceinline=True, **PART)(function)
 
 
 def together(alone: Function) -> Callable[[Function], Function]:
@@ -172,10 +174,10 @@ def together(alone: Function) -> Callable[[Function], Function]:
     def register(function: Function) -> Function:
         def choose(s: Any, systems: Any) -> Callable[..., Any]:
             del systems
-            lanes: int = s.fields["x"].type.shape[0]
+            lanes: int = s.record.fields["x"].type.shape[0]
             return function if lanes > LEAST_LANES else alone
 
-        overload(alone, jit_options=cast("Any", OPTIONS), strict=False)(choose)
+        overload(alone, jit_options=cast("Any", PART), strict=False)(choose)
         return function
 
     return register
@@ -204,34 +206,8 @@ def _fused(_typing: Any, a: Any, b: Any, c: Any) -> Any:
 
 
 _sum: Any = _fused
-overload(fma, jit_options=cast("Any", OPTIONS), strict=False)(
+overload(fma, jit_options=cast("Any", PART), strict=False)(
     lambda *_: lambda a, b, c: _sum(a, b, c)  # noqa: PLW0108 -- a function is asked for
-)
-
-
-def borrowed(array: Any) -> Any:
-    """An array, in machine code without its owner, who keeps it while a kernel runs.
-
-    The references to an array with an owner are counted wherever it is handed on, by atomic
-    operations: a third of the time of a history alone.
-    """
-    return array
-
-
-@intrinsic
-def _without_owner(_typing: Any, array: Any) -> Any:
-    def code(context: Any, builder: Any, _signature: Any, given: Any) -> Any:
-        tools: Any = cgutils
-        view = tools.create_struct_proxy(array)(context, builder, given[0])
-        view.meminfo = tools.get_null_value(view.meminfo.type)
-        return view._getvalue()  # noqa: SLF001 -- as numba's manual has it
-
-    return array(array), code
-
-
-_view: Any = _without_owner
-overload(borrowed, jit_options=cast("Any", OPTIONS), strict=False)(
-    lambda _: lambda array: _view(array)  # noqa: PLW0108 -- a function is asked for
 )
 
 
@@ -263,7 +239,7 @@ def _by_address(_typing: Any, address: Any, given: Any) -> Any:
 
 
 _call: Any = _by_address
-overload(own_law, jit_options=cast("Any", OPTIONS), strict=False)(
+overload(own_law, jit_options=cast("Any", PART), strict=False)(
     lambda *_: lambda address, given: _call(address, given)  # noqa: PLW0108 -- a function is asked for
 )
 

@@ -14,7 +14,7 @@ from threading import Event, Thread, current_thread, main_thread
 import numpy as np
 
 from rpscli.physics.bed import first_phase, load_bed
-from rpscli.physics.compile import borrowed, compiled, inlined, kernel
+from rpscli.physics.compile import compiled, inlined, kernel
 from rpscli.physics.demands import observe, observe_start
 from rpscli.physics.devices import (
     SLOWING,
@@ -27,6 +27,7 @@ from rpscli.physics.devices import (
     worked,
 )
 from rpscli.physics.events import check_steps, resolve_step
+from rpscli.physics.fields import fields_of, rows_of
 from rpscli.physics.friction import grip_at, set_limits, sticks
 from rpscli.physics.ground import azimuth_of, log_event, set_ground, time_of
 from rpscli.physics.laws import (
@@ -158,15 +159,11 @@ def follow(
     output: Output,
 ) -> None:
     """The same, in a state that is made already: an array of one record."""
-    s, lanes = state[0], lanes_of(state[0])
-    systems, requests, results = borrowed(systems), borrowed(requests), borrowed(results)
-    acceleration = borrowed(acceleration)
+    s = fields_of(state[0])
+    lanes = lanes_of(s)
+    systems, requests, results = rows_of(systems), rows_of(requests), rows_of(results)
     output = Output(
-        borrowed(output.samples),
-        borrowed(output.floors),
-        borrowed(output.log),
-        borrowed(output.devices),
-        output.finer,
+        rows_of(output.samples), output.floors, rows_of(output.log), output.devices, output.finer
     )
     s.audited = 1 if output.samples.shape[0] > 0 else 0
     s.waiting, active = 0, 0

@@ -1,8 +1,8 @@
 """The first compilation of the kernel, by two processes side by side.
 
-numba takes one core for more than a minute. What the kernel calls is compiled into numba's cache by
-calls that have nothing to do: a step of all lanes in another process, what is done for one lane
-alone and then the kernel in this one, which finds both there.
+numba takes one core for half a minute. What the kernel calls is compiled into numba's cache before
+it: a step of all lanes in another process, what is done for one lane alone and then the kernel, by
+a call that has nothing to do, in this one, which finds both there.
 """
 
 from __future__ import annotations
@@ -17,8 +17,10 @@ from typing import Any, cast
 
 import numba
 import numpy as np
+from numba.core import types
 
 from rpscli.physics.compile import cache_folder
+from rpscli.physics.fields import Fields, Rows
 from rpscli.physics.follow import advance, follow, look_after, next_history
 from rpscli.physics.run import Output
 from rpscli.physics.state import (
@@ -73,18 +75,28 @@ def nothing_to_do(ways: int, lanes: int) -> tuple[Record, Record, Record, Record
     return state, records(SYSTEM, ways), records(REQUEST, 0), records(RESULT, 0), output
 
 
+def inside(ways: int, lanes: int) -> tuple[Any, ...]:
+    """Types of the same within the kernel."""
+    state, *others = nothing_to_do(ways, lanes)
+    *rows, output = map(numba.typeof, others)
+    samples, floors, log, devices, finer = output.types
+    kept = types.NamedTuple((Rows(samples.dtype), floors, Rows(log.dtype), devices, finer), Output)
+    return Fields(numba.typeof(state).dtype), *(Rows(kind.dtype) for kind in rows), kept
+
+
 def compile_steps(ways: int, lanes: int) -> None:
     """A step of all lanes."""
-    state, systems, _, _, output = nothing_to_do(ways, lanes)
-    advance(state[0], systems, output)
+    state, systems, _, _, output = inside(ways, lanes)
+    cast("Any", advance).compile((state, systems, output))
 
 
 def compile_alone(ways: int, lanes: int) -> None:
     """What is done for one lane alone."""
-    state, systems, requests, results, output = nothing_to_do(ways, lanes)
-    state.outcome[:] = 0
-    look_after(state[0], 0, systems, output)
-    next_history(state[0], 0, systems, requests, np.empty(0), results, output)
+    state, systems, requests, results, output = inside(ways, lanes)
+    lane, acceleration = numba.intp, numba.float64[::1]
+    cast("Any", look_after).compile((state, lane, systems, output))
+    given = state, lane, systems, requests, acceleration, results, output
+    cast("Any", next_history).compile(given)
 
 
 def compile_whole(ways: int, lanes: int) -> None:

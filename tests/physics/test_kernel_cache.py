@@ -267,7 +267,7 @@ def test_other_processes_compile_and_run_nothing_from_the_working_folder(
     fresh_folder.setenv("RPS_CACHE_DIR", str(tmp_path / "cache"))
     fresh_folder.setenv("NUMBA_DISABLE_JIT", "1")  # the others: they have nothing to compile
 
-    for part in ("look_after", "next_history", "follow"):
+    for part in ("compile_alone", "compile_whole"):
         fresh_folder.setattr(prepare, part, lambda *_: None)
     fresh_folder.setattr(sys, "path", [place for place in sys.path if place])
     compile_kernel(1, 1)

@@ -23,6 +23,7 @@ from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.model.devices import FrictionDamper, RollingResistance, Stop, Tendon, ViscousDamper
 from rpscli.model.impact import ImpactLaw
 from rpscli.physics.compile import OPTIONS, fma, kernel
+from rpscli.physics.fields import fields_of
 from rpscli.physics.follow import integrate
 from rpscli.physics.run import Run
 from rpscli.physics.state import (
@@ -199,7 +200,7 @@ def test_a_product_and_a_sum_are_rounded_once() -> None:
 @pytest.mark.parametrize("ways", [1, 2])
 def test_loops_over_lanes_become_vector_instructions(ways: int) -> None:
     def accelerate_all(state: Record) -> None:
-        accelerate(state[0], 0.5)
+        accelerate(fields_of(state[0]), 0.5)
 
     fresh: Any = numba.njit(accelerate_all, **OPTIONS)
     fresh(records(STATE, 1, ways, LANES))
