@@ -17,6 +17,7 @@ from rpscli.case.rules.consistency import Consistency
 from rpscli.case.rules.plausibility import Doubt, doubts_of_structure, doubts_of_text
 from rpscli.case.schema.case_file import CaseFile, RecordSection
 from rpscli.case.schema.check import checked
+from rpscli.case.schema.fields import Section
 from rpscli.case.schema.limits import LimitsSection
 from rpscli.case.text.document import Document, dotted, is_design, is_study, text_of_values
 from rpscli.case.text.files import opened
@@ -118,6 +119,7 @@ class Case(Shown):
     @cached_property
     def document(self) -> dict[str, Any]:
         """The case in SI units with all defaults written out; JSON-able, and a case again."""
+        Section.build()
         content = self.file.model_dump(
             mode="json", exclude_none=True, by_alias=True, serialize_as_any=True
         )

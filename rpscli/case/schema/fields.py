@@ -47,6 +47,13 @@ class Section(BaseModel):
         for each in cls.model_fields.values():
             each.description = each.description and " ".join(each.description.split())
 
+    @classmethod
+    def build(cls) -> None:
+        """Build what was put off, of all sections: pydantic before 2.14 dumps none without."""
+        cls.model_rebuild()
+        for section in cls.__subclasses__():
+            section.build()
+
 
 PLAIN = "1"
 """Unit of a plain number."""
