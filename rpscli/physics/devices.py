@@ -15,7 +15,7 @@ import math
 from typing import NamedTuple
 
 from rpscli.physics import geometry
-from rpscli.physics.compile import compiled, own_law
+from rpscli.physics.compile import compiled, inlined, own_law
 from rpscli.physics.ground import log_event
 from rpscli.physics.laws import (
     beam_rates,
@@ -339,6 +339,12 @@ def reset_yielded_tendons(s: Record, l: int) -> None:
 SLOWING = 1 + 2 * SLOTS
 WATCHED = SLOWING + 1
 """Numbers of watched values."""
+
+
+@inlined
+def may_be_watched(s: Record, l: int, which: int) -> bool:
+    """Whether a number is one of a device that is there, or of the tilt."""
+    return which in (0, SLOWING) or (which - 1) % SLOTS < s.devices[l]
 
 
 @compiled

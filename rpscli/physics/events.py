@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 
 from rpscli.physics.compile import compiled, inlined
-from rpscli.physics.devices import WATCHED, watched
+from rpscli.physics.devices import WATCHED, may_be_watched, watched
 from rpscli.physics.friction import grip_at
 from rpscli.physics.laws import felt_at, lanes_of, ways_of
 from rpscli.physics.quintic import (
@@ -251,6 +251,8 @@ def cubic(h: float, value: float, slope: float, end: float, end_slope: float) ->
 def may_change(s: Record, l: int) -> bool:
     """Whether a device may change its law in the step."""
     for which in range(WATCHED):
+        if not may_be_watched(s, l, which):
+            continue
         there, path = watched_path(s, l, which)
         if there and min(lower_hull(path), path[0]) < 0.0:
             return True
