@@ -4,7 +4,7 @@
 value that everything else asks: `step` takes a Runge-Kutta step of all lanes together (`tableau`),
 `events` finds where it is to end, `upright` has uplift, impact and pass, `demands` what is largest,
 `rest` when nothing more can come, `samples` and `ground` what is kept. `follow` strings them
-together; `compile` and `prepare` make machine code of all.
+together; `compile`, `fields`, `parts` and `prepare` make machine code of all.
 
 What the kernel's functions hand to each other everywhere stands here once:
 

@@ -387,7 +387,7 @@ def observe_contacts(s: Record) -> None:
             s.diameter[l] * s.share[l] / s.one[l] * s.tan_a[l],
         )
         springs = s.axes > ways_of(s)
-        heavier *= more / s.gravity[l] * (s.moves[l] if springs else 1.0)
+        heavier *= more / s.gravity[l] * s.moves[l]
         heavier += V_up / ((s.cap_beam_mass[l] + s.floors_mass[l] + 1e-300) * s.gravity[l])
         rises = found[4] + more > NEARLY * s.shear_top[l]
         rises |= found[5] + more > NEARLY * s.shear_bottom[l]

@@ -2,7 +2,7 @@
 
 numba takes a field of a record for an array like any other, with shape, strides, owner and negative
 indices, built anew wherever a number of it is read. As a place behind a known address it is two
-instructions. `fields_of` and `rows_of` make the change where a kernel begins; indices are never
+instructions. `fields_of` and `records_of` make the change where a kernel begins; indices are never
 negative.
 """
 
@@ -214,7 +214,7 @@ def fields_of(record: Any) -> Any:
     return record
 
 
-def rows_of(records: Any) -> Any:
+def records_of(records: Any) -> Any:
     """An array (count,) of records by its address."""
     return records
 
@@ -245,4 +245,4 @@ def _rows_of(_typing: Any, records: Any) -> Any:
 _record: Any = _fields_of
 _records: Any = _rows_of
 overload(fields_of)(lambda record: lambda record: _record(record))  # noqa: ARG005, PLW0108
-overload(rows_of)(lambda records: lambda records: _records(records))  # noqa: ARG005, PLW0108
+overload(records_of)(lambda records: lambda records: _records(records))  # noqa: ARG005, PLW0108

@@ -27,7 +27,7 @@ from rpscli.physics.devices import (
     worked,
 )
 from rpscli.physics.events import check_steps, resolve_step
-from rpscli.physics.fields import fields_of, rows_of
+from rpscli.physics.fields import fields_of, records_of
 from rpscli.physics.friction import grip_at, set_limits, sticks
 from rpscli.physics.ground import azimuth_of, log_event, set_ground, time_of
 from rpscli.physics.laws import (
@@ -161,9 +161,13 @@ def follow(
     """The same, in a state that is made already: an array of one record."""
     s = fields_of(state[0])
     lanes = lanes_of(s)
-    systems, requests, results = rows_of(systems), rows_of(requests), rows_of(results)
+    systems, requests, results = records_of(systems), records_of(requests), records_of(results)
     output = Output(
-        rows_of(output.samples), output.floors, rows_of(output.log), output.devices, output.finer
+        records_of(output.samples),
+        output.floors,
+        records_of(output.log),
+        output.devices,
+        output.finer,
     )
     s.audited = 1 if output.samples.shape[0] > 0 else 0
     s.waiting, active = 0, 0
