@@ -8,7 +8,6 @@ from typing import NamedTuple
 from rpscli.analyses.demand import Request, demands
 from rpscli.analyses.result_quantities import values_of
 from rpscli.analyses.results import TimeHistoryResult
-from rpscli.records.pair import turned
 
 FACTORS = (0.97, 0.98, 0.99, 1.01, 1.02, 1.03)
 """On the motion."""
@@ -53,8 +52,7 @@ def neighbours(result: TimeHistoryResult) -> list[Neighbour]:
     if structure.restitution < 1.0 and law.kind != "value" and law.loss > OTHER_LOSS:
         beside.append((replace(structure, impact_law=replace(law, loss=OTHER_LOSS)), 1.0, 0.0))
     requests = [
-        Request(of, turned(result.motion, angle) if angle else result.motion, settings, factor)
-        for of, factor, angle in beside
+        Request(of, result.motion.turned(angle), settings, factor) for of, factor, angle in beside
     ]
     # One by one: the kernel for many at a time would have to be compiled first.
     results = demands(requests, worth_lanes=len(requests) + 1)

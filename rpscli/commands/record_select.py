@@ -13,10 +13,12 @@ import click
 from rpscli.commands.inputs import RESULTS, write
 from rpscli.commands.shell.options import (
     FILE,
+    CaseRequest,
     OutputRequest,
     completing,
     figure_options,
     output_options,
+    overrides_option,
     terminal_options,
 )
 from rpscli.commands.shell.terminal import Terminal, concluded, leave
@@ -76,6 +78,7 @@ def _targets() -> list[str]:
     help="Take the range from a structure: 0.2 T1 on a fixed base to the secant period on bearings"
     " at its limit of rotation, or 2 T1 if that is longer.",
 )
+@overrides_option("Override a value of the case of --case")
 @click.option(
     "--component",
     type=click.Choice(COMPONENTS),
@@ -129,6 +132,7 @@ def command(
     count: int,
     periods: tuple[float, float] | None,
     case_source: str | None,
+    overrides: tuple[str, ...],
     component: Component | None,
     rules: str | None,
     where: tuple[str, ...],
@@ -155,10 +159,10 @@ def command(
     Writes selection.txt, for `records: ["list:selection.txt"]` in a study or `rps timehistory CASE
     --record list:selection.txt`, selection.csv, spectra.csv and the figure selection.
     """
-    from rpscli.records.filters import kept, parse_filter
     from rpscli.records.loading import expanded, load_components
     from rpscli.records.measures import USUAL
     from rpscli.records.requirements import RULES as KNOWN
+    from rpscli.records.requirements import kept, parse_filter
     from rpscli.records.selection import SelectionRequest, select
     from rpscli.records.source import Source
     from rpscli.records.target import load_target
@@ -167,7 +171,11 @@ def command(
 
     spectrum = load_target(target)
     wanted_pgv = _pgv(scale_by, pgv, spectrum)
-    structure, limit = (None, "") if case_source is None else _structure(case_source, terminal)
+    if overrides and case_source is None:
+        raise UsageError("--set: overrides a value of a case; name it by --case")
+    structure, limit = None, ""
+    if case_source is not None:
+        structure, limit = _structure(CaseRequest(case_source, overrides), terminal)
     if spectrum.deviation is not None and rules not in {None, "none"}:
         raise UsageError(f"--rules {rules}: is about means, {target} has a sigma_ln to be met")
     asked = KNOWN.get(rules or spectrum.rules)
@@ -212,15 +220,14 @@ def command(
     leave(error)
 
 
-def _structure(source: str, terminal: Terminal) -> tuple[Periods, str]:
+def _structure(request: CaseRequest, terminal: Terminal) -> tuple[Periods, str]:
     """Periods of a case, and where the second one is."""
     from rpscli.case.conditions import conditions_of
     from rpscli.commands.inputs import read_case
-    from rpscli.commands.shell.options import CaseRequest
     from rpscli.model.statics import secant_period
     from rpscli.records.requirements import Periods
 
-    case = read_case(CaseRequest(source, ()), terminal).case
+    case = read_case(request, terminal).case
     structure, critical = case.structure, case.structure.critical_rotation
     scales = {"rotation_ratio": critical, "max_rotation": 1.0}
     limits = [
@@ -230,7 +237,9 @@ def _structure(source: str, terminal: Terminal) -> tuple[Periods, str]:
     ] or [(USUAL_ROTATION * critical, f"{USUAL_ROTATION:g} theta_cr, as the case has no limit")]
     rotation, where = min(limits)
     if rotation >= critical:
-        raise UsageError(f"--case {source}: {where} has no secant; it must be below theta_cr")
+        raise UsageError(
+            f"--case {request.source}: {where} has no secant; it must be below theta_cr"
+        )
     building = structure.superstructure
     fixed = None if building is None else float(building.periods[0])
     return Periods(fixed, secant_period(structure, rotation)), where

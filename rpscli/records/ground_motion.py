@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import hashlib
+import math
 import re
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,8 +52,7 @@ _VERTICAL = re.compile(r"U-?D|UP|DOWN|DWN|VERT\w*|V|[A-Z]*Z\d*", re.IGNORECASE)
 
 UNKNOWN = Recording()
 
-LEAST, MOST = 0.25, 4.0
-"""Factors between these are usual."""
+LEAST, MOST = 0.25, 4.0  # factors between these are usual
 
 
 def scale_doubts(name: str, factor: float) -> tuple[str, ...]:
@@ -115,22 +115,20 @@ class GroundMotion(Shown):
     recording: Recording = UNKNOWN
 
     def __post_init__(self) -> None:
+        values, fault = np.array(self.acceleration, dtype=np.float64, order="C"), ""
         if np.ma.is_masked(self.acceleration):
-            first = int(np.flatnonzero(np.ma.getmaskarray(self.acceleration))[0])
-            raise RecordError(
-                f"{self.source}: sample {first + 1} is masked, a gap; fill it, or cut the record"
-            )
-        values = np.array(self.acceleration, dtype=np.float64, order="C")
-        if values.ndim != 1 or values.size < 2:
-            raise RecordError(
-                f"{self.source}: a ground motion needs one row of at least 2 samples, "
-                f"found the shape {values.shape}"
-            )
-        if not np.isfinite(values).all():
-            first = int(np.flatnonzero(~np.isfinite(values))[0])
-            raise RecordError(f"{self.source}: sample {first + 1} is {values[first]}, not finite")
-        if not (np.isfinite(self.dt) and self.dt > 0.0):
-            raise RecordError(f"{self.source}: dt = {self.dt} s must be positive and finite")
+            first = int(np.argmax(np.ma.getmaskarray(self.acceleration)))
+            fault = f"sample {first + 1} is masked, a gap; fill it, or cut the record"
+        elif values.ndim != 1 or values.size < 2:
+            fault = "a ground motion needs one row of at least 2 samples, found the shape"
+            fault += f" {values.shape}"
+        elif not np.isfinite(values).all():
+            first = int(np.argmin(np.isfinite(values)))
+            fault = f"sample {first + 1} is {values[first]}, not finite"
+        elif not (np.isfinite(self.dt) and self.dt > 0.0):
+            fault = f"dt = {self.dt} s must be positive and finite"
+        if fault:
+            raise RecordError(f"{self.source}: {fault}")
         object.__setattr__(self, "acceleration", frozen(values))
         object.__setattr__(self, "dt", float(self.dt))
 
@@ -179,14 +177,9 @@ class GroundMotion(Shown):
         A step that is a whole part of the old one changes nothing but the number of samples; a
         longer one, up to the duration, loses what is between, and says so.
 
-        Raises
-        ------
-        RecordError
-            If the step is not positive, or longer than the motion.
+        Raises a RecordError if the step is not positive, or longer than the motion.
 
-        Examples
-        --------
-        >>> motion = GroundMotion(np.array([0.0, 2.0, -2.0]), 0.5, "m", "m.at2", "PEER AT2")
+        >>> motion = GroundMotion(np.array([0.0, 2.0, -2.0]), 0.5)
         >>> motion.resampled(0.25).acceleration.tolist()
         [0.0, 1.0, 2.0, 0.0, -2.0]
         """
@@ -200,14 +193,12 @@ class GroundMotion(Shown):
         values = np.interp(
             np.minimum(np.arange(count) * dt, self.duration), self.time, self.acceleration
         )
-        text = f"resampled from {self.dt:g} s to {dt:g} s: what was between the samples is lost"
-        return replace(
-            self,
-            acceleration=values,
-            dt=dt,
-            description=f"{self.description}; resampled from {self.dt:g} s".lstrip("; "),
-            warnings=(*self.warnings, *[text] * (dt > self.dt * (1.0 + 1e-12))),
-        )
+        text = f"resampled from {self.dt:g} s"
+        made = self.noted(text, acceleration=values, dt=dt)
+        if dt <= self.dt * (1.0 + 1e-12):
+            return made
+        lost = f"{text} to {dt:g} s: what was between the samples is lost"
+        return replace(made, warnings=(*self.warnings, lost))
 
     def finer(self, parts: int) -> GroundMotion:
         """The same motion with that many even parts in each sampling interval."""
@@ -219,8 +210,11 @@ class GroundMotion(Shown):
         """The same motion times `factor`, with a description that says so."""
         if not is_number(factor):
             raise RecordError(f"{self.source}: the factor {told(factor)} must be a finite number")
-        note = f"{self.description}; scaled by {factor:g}".lstrip("; ")
-        return replace(self, acceleration=self.acceleration * factor, description=note)
+        return self.noted(f"scaled by {factor:g}", acceleration=self.acceleration * factor)
+
+    def noted(self, note: str, **changed: Any) -> GroundMotion:
+        """A changed motion, with a note on that behind its description."""
+        return replace(self, description=f"{self.description}; {note}".lstrip("; "), **changed)
 
     def scaled_to(
         self,
@@ -239,28 +233,17 @@ class GroundMotion(Shown):
         measure : str
             ``PGA``, ``PGV``, ``PGD``, ``Sa``, ``AvgSa``, ``FIV3``, ``Housner``, ``Arias``,
             ``CAV``, or one that another package adds.
-        value : float [SI]
-            What it is to be.
-        period : float, optional [s]
-            Of Sa, AvgSa and FIV3, which need it.
-        damping : float
-            Of Sa, AvgSa and Housner, a share of critical damping.
+        value, period, damping : float [SI, s, share of critical damping]
+            What it is to be; of Sa, AvgSa and FIV3, which need it; of Sa, AvgSa and Housner.
         second : GroundMotion, optional
-            The other horizontal component: the measure is that of the pair, and the factor, which
-            `second.scaled_to(..., second=first)` has as well.
+            The other horizontal component: the measure is that of the pair, and so is the factor.
         of : str
             What of a pair: ``rotd50``, ``rotd100``, ``geomean``, or ``larger``.
 
-        Raises
-        ------
-        RecordError
-            If there is no such measure, the period is missing, or the motion is zero.
+        Raises a RecordError if there is no such measure, the period is missing, or it is zero.
 
-        Examples
-        --------
-        >>> motion = GroundMotion(np.array([0.0, 2.0, -3.0]), dt=0.5)
-        >>> motion.scaled_to("PGA", 1.5).acceleration.tolist()
-        [0.0, 1.0, -1.5]
+        >>> GroundMotion(np.array([0.0, 2.0, -3.0]), dt=0.5).scaled_to("PGA", 1.5).pga
+        1.5
         """
         from rpscli.records import measures  # which measure motions
 
@@ -365,17 +348,31 @@ class MotionComponents(Frozen):
 
     def finer(self, parts: int) -> MotionComponents:
         """The same motion with that many even parts in each sampling interval."""
-        return self if parts == 1 else self._each(lambda motion: motion.finer(parts), 1.0)
+        return self if parts == 1 else self._each(lambda motion: motion.finer(parts))
 
     def scaled(self, factor: float) -> MotionComponents:
         """All components times `factor`."""
-        return self._each(lambda motion: motion.scaled(factor), self.scale * factor)
+        scaled = self._each(lambda motion: motion.scaled(factor))
+        return replace(scaled, scale=self.scale * factor, scaled_to="")
 
-    def _each(
-        self, change: Callable[[GroundMotion], GroundMotion], scale: float
-    ) -> MotionComponents:
-        made = {name: change(motion) for name, motion in self.named.items()}
-        return MotionComponents(made["horizontal"], made.get("vertical"), scale, y=made.get("y"))
+    def _each(self, change: Callable[[GroundMotion], GroundMotion]) -> MotionComponents:
+        return replace(self, **{name: change(motion) for name, motion in self.named.items()})  # type: ignore[arg-type]
+
+    def turned(self, rotation: float) -> MotionComponents:
+        """A pair turned from x towards y [deg]: what acted along x then acts at that azimuth."""
+        x, y = self.horizontal, self.y
+        if y is None or rotation % 360.0 == 0.0:
+            return self
+        along, across = (
+            replace(
+                rotated(x, y, direction - rotation),
+                name=f"{of.name}_{rotation:g}deg",
+                source=of.source,
+                description=f"{of.description}; pair turned by {rotation:g} deg".lstrip("; "),
+            )
+            for of, direction in ((x, 0.0), (y, 90.0))
+        )
+        return replace(self, horizontal=along, y=across)
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -394,3 +391,18 @@ def require_one_step(one: GroundMotion, other: GroundMotion, name: str) -> None:
             " they must agree; resample one of them with"
             f" `rps record convert {other.source} --resample {one.dt}`"
         )
+
+
+def rotated(first: GroundMotion, second: GroundMotion, angle: float) -> GroundMotion:
+    """The motion in a plane that stands at an angle to the first component [deg]."""
+    require_one_step(first, second, "second")
+    # A component itself is not changed by rounding.
+    quarters, rest = divmod(angle, 90.0)
+    c, s = math.cos(math.radians(rest)), math.sin(math.radians(rest))
+    cosine, sine = ((c, s), (-s, c), (-c, -s), (s, -c))[int(quarters) % 4]
+    values = np.zeros(max(first.npts, second.npts))
+    values[: first.npts] += cosine * first.acceleration
+    values[: second.npts] += sine * second.acceleration
+    warnings = tuple(dict.fromkeys((*first.warnings, *second.warnings)))
+    note = f"turned by {angle:g} deg towards {second.name}"
+    return first.noted(note, acceleration=values, warnings=warnings)

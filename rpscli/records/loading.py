@@ -22,8 +22,7 @@ from rpscli.errors import (
 )
 from rpscli.machine import mode_of
 from rpscli.records import made, sets
-from rpscli.records.ground_motion import GroundMotion, MotionComponents, scale_doubts
-from rpscli.records.pair import rotated, turned
+from rpscli.records.ground_motion import GroundMotion, MotionComponents, rotated, scale_doubts
 from rpscli.records.quantities import LIKENESS
 from rpscli.records.recordings import earthquake, pairs_among, vertical_of, verticals
 from rpscli.records.source import FILE, LIST, PAIRING, SET, Source, is_file, split_options
@@ -36,14 +35,10 @@ _MAKERS: dict[str, Callable[[Source], GroundMotion]] = {
 _REMARK = re.compile(r"(?:^|\s)#")
 
 _readable = partial(
-    refused_by_system,
-    fault=RecordError,
-    verb="read",
-    remedy="check the name and the permissions",
+    refused_by_system, fault=RecordError, verb="read", remedy="check the name and the permissions"
 )
 
-OWN = "own"
-"""In place of a vertical source: the vertical component of the recording itself."""
+OWN = "own"  # in place of a vertical source: the vertical component of the recording itself
 
 
 def load_record(
@@ -120,8 +115,8 @@ def _unscaled(of: Source, folder: Path | None) -> GroundMotion:
 
 def _components(of: Source, folder: Path | None) -> tuple[GroundMotion, GroundMotion]:
     """Both components of a pair, held against each other."""
-    if of.scheme == SET:  # before a component is refused that nobody wrote
-        sets.require_pair(of)
+    if of.scheme == SET and of.place not in sets.PAIRS:
+        raise sets.unknown(of)  # before a component is refused that nobody wrote
     one, other = (load_record(each, folder=folder) for each in of.components or ())
     return one, _beside(one, other, of)
 
@@ -179,11 +174,10 @@ def load_components(
     in_set = of.scheme == SET and of.both
     name = along.name.replace("_a", "_both", 1) if in_set else f"{along.name}_both"
     motion = MotionComponents(replace(along, name=name, source=source), above, y=across)
-    return turned(motion, of.rotation + rotation)
+    return motion.turned(of.rotation + rotation)
 
 
-_LATE = 10.0
-"""Seconds between the starts of components of one recording at most."""
+_LATE = 10.0  # seconds between the starts of components of one recording at most
 
 
 def _beside(first: GroundMotion, second: GroundMotion, source: str) -> GroundMotion:
@@ -349,7 +343,7 @@ def _some(names: Sequence[str]) -> str:
 
 def _paired(of: Source, single: Iterable[Source], folder: Path | None) -> list[Source]:
     """Sources of single components, or pairs of them if a source asks for two."""
-    asked = {name: value for name, value in of.options if name in PAIRING}
+    asked = {name: value for name, value in of.values.items() if name in PAIRING}
     return pairs_among(single, of, asked, folder) if asked else list(single)
 
 

@@ -38,20 +38,21 @@ from rpscli.records.source import Source
 
 Array = NDArray[np.float64]
 
-DOUBTFUL = 0.2
-"""Peaks of numbers without unit below this [g] are asked about."""
-
+DOUBTFUL = 0.2  # peaks of numbers without unit below this [g] are asked about
 _LEAD = 2.5  # periods before the peak of a Ricker wavelet: at its start it is below 1e-12 of it
 _STEPS_PER_PERIOD = 2000
 _MAVROEIDIS = "mavroeidis_papageorgiou"
 
 
 class _Pulse(NamedTuple):
-    """A shape of unit amplitude over time in periods, from zero."""
+    """A shape of unit amplitude over time in periods, from zero, and its length in them.
+
+    It `fits` if its end is part of the definition, so that it has to fall on a sample.
+    """
 
     shape: Callable[[Array], Array]
-    periods: float  # length
-    fits: bool  # the end is part of the definition, so it has to fall on a sample
+    periods: float
+    fits: bool
 
 
 def _ricker(tau: Array) -> Array:
@@ -80,7 +81,6 @@ _PULSES = {
     "ricker_antisymmetric": _Pulse(_ricker_antisymmetric, 2.0 * _LEAD, fits=False),
 }
 PULSES = (*_PULSES, _MAVROEIDIS)
-"""The names of the pulses."""
 
 
 def load_pulse(of: Source) -> GroundMotion:
@@ -105,7 +105,19 @@ def load_pulse(of: Source) -> GroundMotion:
     if amplitude == 0.0:
         key = next(key for key in ("amplitude", "velocity_amplitude") if key in query.values)
         raise RecordError(f"{of}: {key} = 0 makes no pulse")
-    dt, steps = _sampling(query, pulse, period)
+    dt = query.quantity("dt", "time", period / _STEPS_PER_PERIOD)
+    length, fault = pulse.periods * period, ""
+    whole = length / dt if dt else math.nan
+    if not 0.0 < dt <= 0.25 * period:
+        fault = "must be positive and at most a quarter of the period"
+    elif whole > 1e7:
+        fault = f"makes {whole:.3g} samples; raise it"
+    elif pulse.fits and abs(whole - round(whole)) > 1e-6:
+        fault = f"does not divide the pulse of {length:g} s, which has to end on a sample; the"
+        fault += f" nearest that does is dt={length / round(whole):.10g}"
+    if fault:
+        raise RecordError(f"{of}: dt = {dt:g} s {fault}")
+    steps = round(whole) if pulse.fits else math.ceil(whole - 1e-6)
     # The last sample of a pulse that fits is its end exactly, whatever the rounding of dt.
     step = pulse.periods / steps if pulse.fits else dt / period
     peak = abs(amplitude) / STANDARD_GRAVITY
@@ -141,25 +153,6 @@ def _bell_of_waves(query: Query, period: float) -> tuple[_Pulse, float]:
         lambda tau: _mavroeidis_papageorgiou(tau, cycles, phase) / peak, cycles, fits=False
     )
     return pulse, amplitude
-
-
-def _sampling(query: Query, pulse: _Pulse, period: float) -> tuple[float, int]:
-    length = pulse.periods * period
-    dt = query.quantity("dt", "time", period / _STEPS_PER_PERIOD)
-    if not 0.0 < dt <= 0.25 * period:
-        raise RecordError(
-            f"{query.source}: dt = {dt:g} s must be positive and at most a quarter of the period"
-        )
-    if (steps := length / dt) > 1e7:
-        raise RecordError(f"{query.source}: dt = {dt:g} s makes {steps:.3g} samples; raise it")
-    if not pulse.fits:
-        return dt, math.ceil(steps - 1e-6)
-    if abs(steps - round(steps)) > 1e-6:
-        raise RecordError(
-            f"{query.source}: dt = {dt:g} s does not divide the pulse of {length:g} s, which has "
-            f"to end on a sample; the nearest that does is dt={length / round(steps):.10g}"
-        )
-    return dt, round(steps)
 
 
 _FIRM_GROUND, _FIRM_CUT = 15.0 / (2.0 * math.pi), 1.5 / (2.0 * math.pi)  # Hz
@@ -200,12 +193,28 @@ def load_synthetic(of: Source) -> GroundMotion:
         period = query.quantity("pulse_period", "time", 3.0)
         cycles = query.quantity("pulse_cycles", "ratio", 2.0)
         time = np.arange(count, dtype=np.float64) * dt
-        pulse = _brought_to_rest(_velocity_pulse(of, time, amplitude, period, cycles), dt)
+        middle = 1.5 * _PEAK_AT * time[-1]  # a little after the envelope's peak
+        start = max(0.0, middle - 0.5 * cycles * period)
+        if period <= 0.0 or cycles <= 1.0 or start + cycles * period > time[-1]:
+            raise RecordError(
+                f"{of}: a pulse of {cycles:g} cycles of {period:g} s does not fit into"
+                f" {time[-1]:g} s, or has no more than one cycle"
+            )
+        shape = _mavroeidis_papageorgiou((time - start) / period, cycles, _PULSE_PHASE)
+        pulse = _brought_to_rest(amplitude / period * shape, dt)
         label = f" with a velocity pulse of {amplitude:g} m/s, {period:g} s"
     elif query.values.keys() & {"pulse_period", "pulse_cycles"}:
         raise RecordError(f"{of}: a pulse needs pulse_velocity=...")
+    if (own := float(np.max(np.abs(pulse)))) >= pga:
+        raise RecordError(
+            f"{of}: the pulse alone peaks at {own:.4g} m/s2, at or above pga = {pga:.4g} m/s2"
+        )
+    # The factor of the noise at which the sum first reaches the peak, at any sample.
+    size = np.abs(shaped)
+    loud = size > 1e-12 * size.max()
+    room = (pga - pulse * np.sign(shaped))[loud]
     return GroundMotion(
-        _raised_to(pga, shaped, pulse, of),
+        shaped * float(np.min(room / size[loud])) + pulse,
         dt,
         f"synthetic_seed{seed}_{pga / STANDARD_GRAVITY:.4g}g",
         of,
@@ -233,20 +242,6 @@ def _filtered_noise(
     return np.asarray(np.fft.irfft(np.fft.rfft(white) * soil * low_cut, count))
 
 
-def _velocity_pulse(
-    source: str, time: Array, amplitude: float, period: float, cycles: float
-) -> Array:
-    middle = 1.5 * _PEAK_AT * time[-1]  # a little after the envelope's peak
-    start = max(0.0, middle - 0.5 * cycles * period)
-    if period <= 0.0 or cycles <= 1.0 or start + cycles * period > time[-1]:
-        raise RecordError(
-            f"{source}: a pulse of {cycles:g} cycles of {period:g} s does not fit into "
-            f"{time[-1]:g} s, or has no more than one cycle"
-        )
-    shape = _mavroeidis_papageorgiou((time - start) / period, cycles, _PULSE_PHASE)
-    return amplitude / period * shape
-
-
 def _brought_to_rest(acceleration: Array, dt: float) -> Array:
     # Subtracts (p + q t) times the envelope, with p and q such that the last velocity and the
     # last displacement vanish: nothing changes where the ground is quiet.
@@ -259,16 +254,3 @@ def _brought_to_rest(acceleration: Array, dt: float) -> Array:
     matrix = np.array([last(shape) for shape in basis]).T
     p, q = np.linalg.solve(matrix, last(acceleration))
     return np.asarray(acceleration - (p * basis[0] + q * basis[1]))
-
-
-def _raised_to(pga: float, noise: Array, pulse: Array, source: str) -> Array:
-    # The factor of the noise at which the sum first reaches the peak, at any sample.
-    own = float(np.max(np.abs(pulse)))
-    if own >= pga:
-        raise RecordError(
-            f"{source}: the pulse alone peaks at {own:.4g} m/s2, at or above pga = {pga:.4g} m/s2"
-        )
-    size = np.abs(noise)
-    loud = size > 1e-12 * size.max()
-    room = (pga - pulse * np.sign(noise))[loud]
-    return noise * float(np.min(room / size[loud])) + pulse

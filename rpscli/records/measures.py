@@ -1,15 +1,11 @@
 """Measures of a ground motion, and of a pair of them: velocity, intensities; scaling to one.
 
 A measure of one component depends on how the sensors stood. Of a pair it is taken over the 180
-directions 0, 1, ... 179 deg from the first component towards the second: `over_directions` has a
-measure, `spectra_over_directions` spectra, and `of_directions` makes one number of them:
-
-* ``rotd50``: the median over the directions, ``rotd100``: the largest (D. M. Boore, Bull. Seism.
-  Soc. Am. 100, 2010; directions count by themselves at each period);
-* ``geomean``: the geometric mean of both components as they were recorded, ``larger``: the larger
-  of both, ``x``: the first one.
-
-``component`` is no measure of a pair: each component by itself.
+directions 0, 1, ... 179 deg from the first component towards the second, and one number made of
+them: ``rotd50``, their median, or ``rotd100``, the largest (D. M. Boore, Bull. Seism. Soc. Am. 100,
+2010; directions count by themselves at each period); ``geomean``, the geometric mean of both
+components as recorded, ``larger`` the larger of both, ``x`` the first one. ``component`` is no
+measure of a pair: each component by itself.
 """
 
 from __future__ import annotations
@@ -24,8 +20,7 @@ from numpy.typing import NDArray
 
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import RecordError, is_number, listed
-from rpscli.records.ground_motion import GroundMotion
-from rpscli.records.pair import rotated
+from rpscli.records.ground_motion import GroundMotion, rotated
 from rpscli.records.spectrum import (
     pseudo_acceleration_history,
     response_spectrum,
@@ -35,18 +30,16 @@ from rpscli.registry import Registry
 from rpscli.units import KINDS
 
 Array = NDArray[np.float64]
-AVERAGED = {"AvgSa": np.linspace(0.2, 3.0, 10), "Housner": np.linspace(0.1, 2.5, 97)}
-"""Periods of spectra that measures average: over T1 the first, in seconds the second."""
 
 
-def velocity(acceleration: NDArray[np.float64], dt: float) -> NDArray[np.float64]:
+def velocity(acceleration: Array, dt: float) -> Array:
     """Ground velocity at the samples, zero at the first one; any integral by trapezia."""
     result = np.zeros_like(acceleration)
     np.cumsum(0.5 * dt * (acceleration[:-1] + acceleration[1:]), out=result[1:])
     return result
 
 
-def displacement(acceleration: NDArray[np.float64], dt: float) -> NDArray[np.float64]:
+def displacement(acceleration: Array, dt: float) -> Array:
     """Displacement at the samples, zero at first; v dt + (2 a_0 + a_1) dt^2/6 in each step."""
     start = velocity(acceleration, dt)[:-1]
     step = dt * start + dt**2 * (2.0 * acceleration[:-1] + acceleration[1:]) / 6.0
@@ -64,13 +57,10 @@ class IntensityMeasures:
     pgd: float
     """Peak ground acceleration, velocity and displacement; the ground starts from rest and no
     baseline is corrected [m/s2, m/s, m]."""
-    arias: float
-    """Arias intensity, pi/(2 g) times the integral of the squared acceleration [m/s]."""
-    cav: float
-    """Cumulative absolute velocity, the integral of the absolute acceleration [m/s]."""
+    arias: float  # Arias intensity, pi/(2 g) times the integral of the squared acceleration [m/s]
+    cav: float  # cumulative absolute velocity, the integral of the absolute acceleration [m/s]
     d5_75: float
-    d5_95: float
-    """Significant durations, from 5 % to 75 % and to 95 % of the Arias intensity [s]."""
+    d5_95: float  # significant durations, from 5 % to 75 % and to 95 % of the Arias intensity [s]
 
 
 def intensity_measures(motion: GroundMotion) -> IntensityMeasures:
@@ -86,25 +76,24 @@ def intensity_measures(motion: GroundMotion) -> IntensityMeasures:
     """
     a, dt = motion.acceleration, motion.dt
     husid = velocity(a**2, dt)
+
+    def reached(share: float) -> float:
+        level = share * husid[-1]
+        after = int(np.argmax(husid >= level))
+        if after == 0:  # a motion of zeros
+            return 0.0
+        before, beyond = husid[after - 1 : after + 1]
+        return dt * (after - 1 + float((level - before) / (beyond - before)))
+
     return IntensityMeasures(
         pga=motion.pga,
         pgv=float(np.max(np.abs(velocity(a, dt)))),
         pgd=float(np.max(np.abs(displacement(a, dt)))),
         arias=math.pi / (2.0 * STANDARD_GRAVITY) * float(husid[-1]),
         cav=float(velocity(np.abs(a), dt)[-1]),
-        d5_75=_crossing(husid, 0.75, dt) - _crossing(husid, 0.05, dt),
-        d5_95=_crossing(husid, 0.95, dt) - _crossing(husid, 0.05, dt),
+        d5_75=reached(0.75) - reached(0.05),
+        d5_95=reached(0.95) - reached(0.05),
     )
-
-
-def _crossing(husid: NDArray[np.float64], share: float, dt: float) -> float:
-    # First time at which the curve reaches the share, interpolated; 0 for a motion of zeros.
-    level = share * husid[-1]
-    after = int(np.argmax(husid >= level))
-    if after == 0:
-        return 0.0
-    before = after - 1
-    return dt * (before + float((level - husid[before]) / (husid[after] - husid[before])))
 
 
 def filtered_incremental_velocity(motion: GroundMotion, period: float) -> float:
@@ -138,7 +127,14 @@ def filtered_incremental_velocity(motion: GroundMotion, period: float) -> float:
     return float(max(*sums, 0.0))
 
 
-def averaged(spectra: Array, measure: Measure, periods: Array) -> Array:
+def _averaged_periods(measure: Measure, period: float) -> Array:
+    """Those of the spectrum that AvgSa, at a period, or Housner's intensity averages [s]."""
+    if measure == "AvgSa":
+        return np.linspace(0.2, 3.0, 10) * period
+    return np.linspace(0.1, 2.5, 97)
+
+
+def _average(spectra: Array, measure: Measure, periods: Array) -> Array:
     """AvgSa or Housner's intensity (...) of pseudo-accelerations (..., periods).
 
     AvgSa [m/s2] is the geometric mean of Sa at ten periods, evenly spaced from 0.2 T to 3 T. The
@@ -157,34 +153,23 @@ def averaged(spectra: Array, measure: Measure, periods: Array) -> Array:
         return np.asarray(np.exp(np.mean(np.log(spectra), axis=-1)))
 
 
-def _averaged(measure: Measure) -> Callable[[GroundMotion, float, float], float]:
-    def of(motion: GroundMotion, period: float, damping: float) -> float:
-        periods = AVERAGED[measure] * (period if measure == "AvgSa" else 1.0)
-        spectrum = response_spectrum(motion, periods, damping).pseudo_acceleration
-        return float(averaged(spectrum, measure, periods))
-
-    return of
-
-
-Measure = str
-"""A name in `MEASURES`."""
+Measure = str  # a name in `MEASURES`
 
 
 @dataclass(frozen=True)
 class IntensityMeasure:
-    """A measure of ground motions."""
+    """A measure of ground motions in an SI `unit`.
+
+    It is `of` a motion, a period [s] and a share of critical damping; the period is NaN for one
+    that is not `at_period`. The measure grows by the `power` of the factor on a motion.
+    """
 
     unit: str
-    """SI unit."""
     of: Callable[[GroundMotion, float, float], float]
-    """Of a motion, a period [s] and a share of critical damping; SI units."""
     at_period: bool = False
-    """True if it depends on the period, which is NaN otherwise."""
     power: float = 1.0
-    """Of the factor on a motion, by which the measure grows."""
 
     def __post_init__(self) -> None:
-        """Refuse a unit that no value can have."""
         if self.unit not in (known := [*KINDS, "-"]):
             raise ValueError(f"unit = {str(self.unit)[:20]!r} must be {listed(known)}")
         if not (is_number(self.power) and self.power > 0.0):
@@ -193,6 +178,15 @@ class IntensityMeasure:
 
 def _summary(name: str) -> Callable[[GroundMotion, float, float], float]:
     return lambda motion, _period, _damping: float(getattr(intensity_measures(motion), name))
+
+
+def _averaged(measure: Measure) -> Callable[[GroundMotion, float, float], float]:
+    def of(motion: GroundMotion, period: float, damping: float) -> float:
+        periods = _averaged_periods(measure, period)
+        spectrum = response_spectrum(motion, periods, damping).pseudo_acceleration
+        return float(_average(spectrum, measure, periods))
+
+    return of
 
 
 MEASURES = Registry(
@@ -240,14 +234,11 @@ Of = Literal["rotd50", "geomean", "rotd100", "larger", "x", "component"]
 
 OF: tuple[Of, ...] = get_args(Of)
 
-USUAL: Of = "rotd50"
-"""Of pairs, where nothing else is asked for."""
-
+USUAL: Of = "rotd50"  # of pairs, where nothing else is asked for
 SHOWN: dict[Of, str] = {"rotd50": "RotD50", "rotd100": "RotD100"}
 """As outputs name those that have another spelling."""
 
-DIRECTIONS = np.arange(180.0)
-"""From the first component towards the second [deg]."""
+DIRECTIONS = np.arange(180.0)  # from the first component towards the second [deg]
 
 
 def measure_label(measure: str, of: Of | None, at: str = "") -> str:
@@ -279,13 +270,12 @@ def over_directions(
     damping: float = 0.05,
 ) -> Array:
     """(180,) a measure of the pair turned to each direction, SI units."""
-    x, y = (rotated(first, second, angle) for angle in (0.0, 90.0))  # of one length
     if measure in _LINEAR:
+        x, y = (rotated(first, second, angle) for angle in (0.0, 90.0))  # of one length
         return _peaks(*(_linear(each, measure, period, damping) for each in (x, y)))
-    if measure in AVERAGED:
-        periods = AVERAGED[measure] * (period or 1.0 if measure == "AvgSa" else 1.0)
-        spectra = spectra_over_directions(first, second, periods, damping)
-        return averaged(spectra, measure, periods)
+    if measure in ("AvgSa", "Housner"):
+        periods = _averaged_periods(measure, period or 1.0)
+        return _average(spectra_over_directions(first, second, periods, damping), measure, periods)
     turned = (rotated(first, second, angle) for angle in DIRECTIONS.tolist())
     return np.array([measured(each, measure, period, damping) for each in turned])
 
@@ -328,15 +318,10 @@ def _peaks(x: Array, y: Array) -> Array:
     # 90 deg is the second component to the last bit, as it is of a motion that is turned.
     cosines = np.where(DIRECTIONS == 90.0, 0.0, np.cos(turn))
     turns = np.column_stack([cosines, np.sin(turn)])
+    sizes = (np.abs(c * x + s * y) for c, s in turns[::15])
+    corners = [int(np.argmax(size)) for size in sizes]
     # What is nearer than the least reach of some points is the farthest in no direction.
-    corners = [int(np.argmax(np.abs(c * x + s * y))) for c, s in turns[::15].tolist()]
-    reach = float(_reach(turns, x[corners], y[corners]).min())
+    reach = float(np.abs(turns @ [x[corners], y[corners]]).max(axis=1).min())
     far = x**2 + y**2 >= (reach * (1.0 - 1e-9)) ** 2
     x, y = x[far], y[far]
-    parts = np.array_split(turns, 1 + min(x.size // 1000, 179))
-    return np.concatenate([_reach(part, x, y) for part in parts])
-
-
-def _reach(turns: Array, x: Array, y: Array) -> Array:
-    """Largest magnitude of points in each direction, given by cosine and sine."""
-    return np.asarray(np.abs(turns[:, :1] * x + turns[:, 1:] * y).max(axis=1))
+    return np.array([np.abs(c * x + s * y).max() for c, s in turns])

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from rpscli import errors
@@ -22,17 +22,13 @@ _GLUED = re.compile(rf"[+-]?{_UNSIGNED}(?:[+-]{_UNSIGNED})*")
 # `float` alone would also take nan, inf, 1_000 and the digits of other scripts.
 _NUMERIC_LINE = re.compile(r"[-+.0-9EeDd,\s]*")
 
-NUMBER_PATTERN = rf"[+-]?{_UNSIGNED}"
-"""A regular expression for one number."""
-
+NUMBER_PATTERN = rf"[+-]?{_UNSIGNED}"  # a regular expression for one number
 _FACTORS = {
     name: si_factor(name, "m/s2")
     for name in ("g", "m/s2", "cm/s2", "mm/s2", "gal", "in/s2", "ft/s2")
 }
 
-KNOWN_UNITS = ", ".join(_FACTORS)
-"""The canonical names, for messages."""
-
+KNOWN_UNITS = ", ".join(_FACTORS)  # the canonical names, for messages
 UNIT_PATTERN = (
     r"(?:[cm]?m|in|ft)\s*/\s*s(?:ec)?\s*(?:/\s*s(?:ec)?|\^\s*2|\*\*\s*2|2|²)(?![A-Za-z0-9])"
     r"|gals?(?![A-Za-z0-9])|gravity\b|g's(?![A-Za-z0-9])"
@@ -55,10 +51,12 @@ def numbers_in(line: str) -> list[float] | None:
     if "," in line:
         fields = [field.strip() for field in line.strip().removesuffix(",").split(",")]
     try:
-        row: list[float] | None = [float(field) for field in fields]
+        row = [float(field) for field in fields]
     except ValueError:
-        row = _glued(fields)
-    return row if row is not None and all(map(math.isfinite, row)) else None
+        if not all(_GLUED.fullmatch(field) for field in fields):
+            return None
+        row = [to_float(numeral) for field in fields for numeral in _NUMBER.findall(field)]
+    return row if all(map(math.isfinite, row)) else None
 
 
 def why_no_numbers(line: str) -> str:
@@ -85,12 +83,6 @@ def last_digit(numeral: str) -> float:
     # Beyond these the unit is zero or infinite anyway, however many digits the exponent has.
     power = float(exponent or 0.0) - decimals
     return math.pow(10.0, max(min(power, 308.0), -400.0))
-
-
-def _glued(fields: list[str]) -> list[float] | None:
-    if not all(_GLUED.fullmatch(field) for field in fields):
-        return None
-    return [to_float(numeral) for field in fields for numeral in _NUMBER.findall(field)]
 
 
 def canonical_unit(text: str) -> str | None:
@@ -129,11 +121,8 @@ EXAMPLES = {
 }
 """Examples of options."""
 
-LIKENESS = 0.5
-"""Of a name to the one that was meant: names of records are long, and made of parts."""
-
-SOME = 12
-"""Known words that are told where there are more than twice as many."""
+LIKENESS = 0.5  # of a name to the one that was meant: names of records are long, and made of parts
+SOME = 12  # known words that are told where there are more than twice as many
 
 
 def hint(word: str, known: Sequence[str]) -> str:
@@ -162,24 +151,33 @@ class Query:
                 f"{self.source}: {key} is missing; add {key}={EXAMPLES.get(key, '...')}"
             )
         match = _QUANTITY.fullmatch(value)
-        if not match or not math.isfinite(to_float(match[1])):
-            raise RecordError(
-                f"{self.source}: {key} = {value[:40]!r} is not a number; write {key}=0.5"
-            )
-        number, unit = match.groups()
-        if not (unit or bare):
-            raise RecordError(
-                f"{self.source}: say the unit: {key}={number} g, or {key}={number} m/s2"
-            )
+        number, unit = match.groups() if match else ("nan", "")
         known = canonical_unit(unit) or unit if kind == "acceleration" else unit.lower()
-        if (factor := _UNITS[kind].get(known)) is None:
+        factor = _UNITS[kind].get(known)
+        if not re.fullmatch(NUMBER_PATTERN, number) or not math.isfinite(to_float(number)):
+            fault = f"{key} = {value[:40]!r} is not a number; write {key}=0.5"
+        elif not (unit or bare):
+            fault = f"say the unit: {key}={number} g, or {key}={number} m/s2"
+        elif factor is None:
             units = ", ".join(filter(None, _UNITS[kind]))
-            raise RecordError(f"{self.source}: {key} = {value!r} is no {kind} in {units}")
-        return to_float(number) * factor
+            fault = f"{key} = {value!r} is no {kind} in {units}"
+        else:
+            return to_float(number) * factor
+        raise RecordError(f"{self.source}: {fault}")
 
     def acceleration(self, key: str, *, bare: bool = True) -> float:
         """An acceleration [m/s2]: `0.4g`, `3.9 m/s2`, or a number in m/s2 where it may be bare."""
         return self.quantity(key, "acceleration", bare=bare)
+
+    def choice(self, key: str, usual: str, known: Sequence[str]) -> str:
+        """One of the known words, whatever their case."""
+        value = self.values.get(key, usual)
+        found = next((word for word in (usual, *known) if word.lower() == value.lower()), None)
+        if found is None:
+            raise RecordError(
+                f"{self.source}: {key} = {value!r} is not known; {hint(value, known)}"
+            )
+        return found
 
     def integer(self, key: str) -> int:
         """A whole number that is not negative."""
@@ -190,32 +188,30 @@ class Query:
         return int(value)
 
 
-def options_in(text: str, source: str) -> Iterator[tuple[str, str | None]]:
-    """Names and values of `key=value&flag`; a value is None without `=`, and none comes twice."""
-    seen = set[str]()
+def options_in(text: str, source: str) -> dict[str, str | None]:
+    """Values of `key=value&flag` by names; a value is None without `=`, and none comes twice."""
+    found: dict[str, str | None] = {}
     for item in filter(None, map(str.strip, text.split("&"))):
         name, mark, value = map(str.strip, item.partition("="))
-        if name in seen:
+        if name in found:
             raise RecordError(f"{source}: {name} is given twice; keep one")
-        seen.add(name)
-        yield name, value if mark else None
+        found[name] = value if mark else None
+    return found
 
 
 def query_of(
-    options: Iterable[tuple[str, str | None]],
+    options: Mapping[str, str | None],
     source: str,
     allowed: Sequence[str],
     flags: Sequence[str] = (),
 ) -> Query:
     """Options that are all allowed, and have values but for flags."""
-    values: dict[str, str] = {}
-    for key, value in options:
+    for key, value in options.items():
         if key not in allowed:
             raise RecordError(f"{source}: option {key!r} is not known; {hint(key, allowed)}")
         if not value and key not in flags:
             raise RecordError(f"{source}: {key} has no value; write {key}=...")
-        values[key] = value or ""
-    return Query(source, values)
+    return Query(source, {key: value or "" for key, value in options.items()})
 
 
 def parse_query(text: str, source: str, allowed: Sequence[str]) -> Query:

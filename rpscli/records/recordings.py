@@ -34,12 +34,8 @@ from rpscli.records.ground_motion import UNKNOWN, Recording
 from rpscli.records.measures import Of
 from rpscli.records.source import FILE, SET, Source
 
-By = Literal["recordings", "events"]
-"""Units that statistics take to be independent."""
-
-Pair = tuple[str, str]
-"""Sources of two components."""
-
+By = Literal["recordings", "events"]  # units that statistics take to be independent
+Pair = tuple[str, str]  # sources of two components
 _PEER_NUMBER = re.compile(r"(RSN\d+)_.*", re.IGNORECASE)
 _CHANNEL_CODE = re.compile(r"(?<=[._])([A-Z]{2})[ENXY12](?=[._])")
 _WAY = re.compile(r"_[xy](?=\.\w+$)")  # as `rps record convert` calls both components
@@ -97,13 +93,25 @@ def _stated_name(recording: Recording) -> set[str]:
     return {f"{recording.station} {kind} at {when}"} if recording.station and when else set()
 
 
-def _right_angles(files: Iterable[str]) -> set[str]:
-    """Beginnings of the names of two files that end with azimuths of 90 deg between them."""
-    by_azimuth: dict[str, list[int]] = {}
-    for match in filter(None, map(_AZIMUTH.fullmatch, sorted(set(files)))):
+def _families(sources: Sequence[Source], folder: Path | None) -> list[set[str]]:
+    """Of each source the names of its recording: by its file, or both of a pair, and by headers."""
+    named = [[name for name in (of.place, of.second) if name is not None] for of in sources]
+    # Beginnings of the names of two files that end with azimuths of 90 deg between them.
+    azimuths: dict[str, list[int]] = {}
+    for match in filter(
+        None, map(_AZIMUTH.fullmatch, sorted({n for names in named for n in names}))
+    ):
         azimuth = _COMPASS.get(match[2].upper())
-        by_azimuth.setdefault(match[1], []).append(int(match[2]) if azimuth is None else azimuth)
-    return {stem for stem, at in by_azimuth.items() if len(at) == 2 and (at[1] - at[0]) % 180 == 90}
+        azimuths.setdefault(match[1], []).append(int(match[2]) if azimuth is None else azimuth)
+    apart = {of for of, at in azimuths.items() if len(at) == 2 and (at[1] - at[0]) % 180 == 90}
+    families = [
+        {_family(of, name, apart) for name in names}
+        for of, names in zip(sources, named, strict=True)
+    ]
+    for of, names in zip(sources, families, strict=True):
+        if of.scheme == FILE:
+            names.update(_stated_name(stated(of, folder)))
+    return families
 
 
 def _family(of: Source, place: str, apart: set[str]) -> str:
@@ -122,35 +130,16 @@ def _family(of: Source, place: str, apart: set[str]) -> str:
     return str(folder / _KNET.sub(r".\1", _CHANNEL_CODE.sub(r"\1", _WAY.sub("", name))))
 
 
-def _families(sources: Sequence[Source], folder: Path | None) -> list[set[str]]:
-    """Of each source the names of its recording: by its file, or both of a pair, and by headers."""
-    named = [[name for name in (of.place, of.second) if name is not None] for of in sources]
-    apart = _right_angles(name for names in named for name in names)
-    families = [
-        {_family(of, name, apart) for name in names}
-        for of, names in zip(sources, named, strict=True)
-    ]
-    for of, names in zip(sources, families, strict=True):
-        if of.scheme == FILE:
-            names.update(_stated_name(stated(of, folder)))
-    return families
-
-
 def _numbered(families: Sequence[set[str]]) -> list[int]:
     """Numbers from 0 in the order of the sources, the same where names are shared."""
-    root: dict[str, str] = {}
-
-    def find(name: str) -> str:
-        while (above := root.setdefault(name, name)) != name:
-            name = above
-        return name
-
-    for names in families:
-        first, *others = sorted(names)
-        for other in others:
-            root[find(other)] = find(first)
-    numbers: dict[str, int] = {}
-    return [numbers.setdefault(find(min(names)), len(numbers)) for names in families]
+    groups: dict[str, int] = {}
+    for place, names in enumerate(families):
+        shared = {groups[name] for name in names & groups.keys()}
+        groups |= dict.fromkeys(names, first := min(shared, default=place))
+        if len(shared) > 1:
+            groups |= {name: first for name, group in groups.items() if group in shared}
+    numbers: dict[int, int] = {}
+    return [numbers.setdefault(groups[min(names)], len(numbers)) for names in families]
 
 
 def clusters(
@@ -220,35 +209,34 @@ def pairs_among(
         if of.scheme not in (FILE, SET):
             raise RecordError(f"{of}: has no second component, which {text} asks for")
         members.setdefault(number, []).append(of)
-    return [_pair(of_one, text, folder).plus(**asked) for of_one in members.values()]
+    found = []
+    for first, *rest in members.values():
+        options = first.without("channel").values
+        if any(each.without("channel").values != options for each in rest):
+            raise RecordError(
+                f"{text}: {first} and {rest[0]} are of one recording and differ in their options;"
+                " both act together under one factor"
+            )
+        both = [first, first] if first.scheme == SET else _horizontal([first, *rest], folder)
+        if len(both) != 2:
+            some = ", ".join(each.place for each in (first, *rest[:2]))
+            raise RecordError(
+                f"{text}: {some}: names do not tell two horizontal components of one recording, as"
+                " MUL009.AT2 and MUL279.AT2, AOM001.EW and AOM001.NS do; leave it out, or name each"
+                " pair, as in x.at2?second=y.at2&both"
+            )
+        found.append(both[0].together(both[1]).plus(**asked))
+    return found
 
 
-def _is_horizontal(of: Source, folder: Path | None) -> bool:
-    """True for a component that neither its name nor its header tells to be vertical."""
-    by_name = "channel" not in of.values and _VERTICAL.fullmatch(of.place)
-    return not (by_name or stated(of, folder).is_vertical)
-
-
-def _pair(of_one: Sequence[Source], text: str, folder: Path | None) -> Source:
-    """Both components of a recording in one source."""
-    first, *rest = of_one
-    if any(each.without("channel").options != first.without("channel").options for each in rest):
-        raise RecordError(
-            f"{text}: {first} and {rest[0]} are of one recording and differ in their options;"
-            " both act together under one factor"
-        )
-    if first.scheme == SET:
-        return first.together(first)
-    horizontal = [of for of in of_one if _is_horizontal(of, folder)]
-    if len(horizontal) != 2:
-        some = ", ".join(each.place for each in of_one[:3])
-        raise RecordError(
-            f"{text}: {some}: names do not tell two horizontal components of one recording, as"
-            " MUL009.AT2 and MUL279.AT2, AOM001.EW and AOM001.NS do; leave it out, or name each"
-            " pair, as in x.at2?second=y.at2&both"
-        )
-    one, other = horizontal
-    return one.together(other)
+def _horizontal(sources: Iterable[Source], folder: Path | None) -> list[Source]:
+    """Components that neither their names nor their headers tell to be vertical."""
+    return [
+        of
+        for of in sources
+        if not (("channel" not in of.values and _VERTICAL.fullmatch(of.place))
+                or stated(of, folder).is_vertical)
+    ]  # fmt: skip
 
 
 ONE_FACTOR = (
@@ -276,7 +264,14 @@ def pairs(
         members.setdefault(number, {})[direction] = p
     found = []
     for source, number, p in zip(sources, numbers, parsed, strict=True):
-        known = p.components or _components(p, members[number].values(), folder)
+        known = p.components
+        if known is None and p.scheme == FILE:
+            # Both components of the recording that are among the sources, under the factor of one.
+            every = (each for m in members[number].values() for each in m.components or (m,))
+            both = sorted(_horizontal({each.alone.without("factor") for each in every}, folder))
+            if len(both) == 2 and p.alone.without("factor") in both:
+                factor = {name: value for name, value in p.values.items() if name == "factor"}
+                known = both[0].plus(**factor), both[1].plus(**factor)
         if of is not None and known is None:
             raise RecordError(
                 f"{source}: has no second component, of: {of} is for pairs; name it by"
@@ -285,15 +280,3 @@ def pairs(
         several = of is not None or p.of_pair or len(members[number]) > 1
         found.append(known if several else None)
     return tuple(found)
-
-
-def _components(of: Source, members: Iterable[Source], folder: Path | None) -> Pair | None:
-    """Both components of a recording that are among its sources, under the factor of one."""
-    single = {
-        each.alone.without("factor") for m in members for each in m.components or (m,)
-    }  # fmt: skip
-    both = sorted(each for each in single if _is_horizontal(each, folder))
-    if of.scheme != FILE or len(both) != 2 or of.alone.without("factor") not in both:
-        return None
-    factor = {name: value for name, value in of.options if name == "factor"}
-    return both[0].plus(**factor), both[1].plus(**factor)

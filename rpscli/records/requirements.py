@@ -1,4 +1,4 @@
-"""Requirements of codes on a set of ground motions, and verdicts on a set.
+"""Requirements of codes on a set of ground motions, verdicts on a set, and what candidates are.
 
 Each entry says against what it was checked. None of the codes' own texts was at hand: whoever needs
 a clause reads it there.
@@ -7,17 +7,19 @@ a clause reads it there.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
-from rpscli.records.measures import Of
+from rpscli.errors import UsageError, hint
+from rpscli.records.ground_motion import GroundMotion
+from rpscli.records.measures import Of, intensity_measures
+from rpscli.units import bare_or_si
 
 Component = Of | Literal["srss"]
 """Kinds of spectra: measures of pairs, or the root of the sum of both squared spectra."""
 
-NOT_VERIFIED = "NOT VERIFIED"
-"""The beginning of statements that nothing was found to check."""
-
+NOT_VERIFIED = "NOT VERIFIED"  # the beginning of statements that nothing was found to check
 COMPONENTS: dict[Component, str] = {
     "component": "single components",
     "rotd50": "RotD50 of pairs",
@@ -143,3 +145,70 @@ RULES = {
     ),
 }
 """By the names of `--rules`."""
+
+_RANGES = {
+    "magnitude": "",
+    "distance": "m",
+    "vs30": "m/s",
+    "usable_period": "s",
+    "d5_75": "s",
+    "d5_95": "s",
+}
+"""Quantities that have a range, with SI units; significant durations are those of the motion."""
+
+
+class Filter(NamedTuple):
+    """A range that one quantity must lie in, ends included [SI]."""
+
+    text: str
+    name: str
+    low: float
+    high: float
+
+    def keeps(self, motion: GroundMotion) -> bool | None:
+        """True if a motion may be a candidate; None if the quantity is not known of it."""
+        if self.name.startswith("d5"):
+            value = getattr(intensity_measures(motion), self.name)
+        else:
+            value = getattr(motion.recording, self.name)
+        return None if value is None else self.low <= value <= self.high
+
+
+def kept(
+    motions: Sequence[GroundMotion], filters: Iterable[Filter]
+) -> tuple[list[GroundMotion], dict[str, dict[str, int]]]:
+    """Motions that pass every filter, and how many each keeps out, or knows nothing of."""
+    passing, left_out = list(motions), {}
+    for each in filters:
+        verdicts = [each.keeps(motion) for motion in passing]
+        left_out[each.text] = {"outside": verdicts.count(False), "not_known": verdicts.count(None)}
+        passing = [motion for motion, keeps in zip(passing, verdicts, strict=True) if keeps]
+    return passing, left_out
+
+
+def parse_filter(text: str) -> Filter:
+    """A range as ``--where`` gives it, in SI or with units; an end may be left out.
+
+    Such are `magnitude=6.5..7.5` and `pulse=no`.
+    """
+    name, _, wanted = (part.strip() for part in text.partition("="))
+    fault, ends = "", [0.0, 0.0]
+    low, dots, high = wanted.partition("..")
+    if name == "pulse":
+        ends = [1.0 if wanted == "yes" else 0.0] * 2
+        fault = "" if wanted in ("yes", "no") else "write pulse=yes or pulse=no"
+    elif name not in _RANGES:
+        known = f"known are {', '.join(_RANGES)}, pulse"
+        fault = f"{name!r} is not known; {hint(name, _RANGES, known)}"
+    elif not dots:
+        fault = f"write {name}=LOW..HIGH; an end may be left out"
+    else:
+        try:
+            texts = low.strip() or "-inf", high.strip() or "inf"
+            ends = [bare_or_si(end, _RANGES[name]) for end in texts]
+            fault = "" if ends[0] <= ends[1] else "must not fall; write the lower end first"
+        except ValueError as error:
+            fault = f"an end of the range {error}"
+    if fault:
+        raise UsageError(f"--where {text}: {fault}")
+    return Filter(text, name, *ends)

@@ -13,23 +13,12 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Numbers = NDArray[np.int64]
 
-WHOLE = 2_000_000
-"""Sets at most of which all are looked at."""
-
-ROUNDS = 50
-"""Searches, of which the best one counts."""
-
-STARTS = 5
-"""First choices of a search at random, each improved by exchange."""
-
-KICKS = 50
-"""Times that the best of them is left by three motions at random, and improved again."""
-
-ROUNDING = 2e-5
-"""By which a least value is passed: factors are written with six digits."""
-
-SHORT = 10.0
-"""Weight of what is missing to a requirement [1/ln]: more than any fit can win."""
+WHOLE = 2_000_000  # sets at most of which all are looked at
+ROUNDS = 50  # searches, of which the best one counts
+STARTS = 5  # first choices of a search at random, each improved by exchange
+KICKS = 50  # times that the best of them is left by three motions at random, and improved again
+ROUNDING = 2e-5  # by which a least value is passed: factors are written with six digits
+SHORT = 10.0  # weight of what is missing to a requirement [1/ln]: more than any fit can win
 
 
 class Pool(NamedTuple):
@@ -124,13 +113,15 @@ class _Search:
 
     def best_of_all(self) -> list[int]:
         """Places of the best of all sets that keep the rules about recordings and events."""
-        every = itertools.combinations(range(len(self.pool.factors)), self.count)
+        _, every, recordings, events = self.pool
+        choices = itertools.combinations(range(len(every)), self.count)
         best = (math.inf, list[int]())
-        while block := [*itertools.islice(every, 20_000)]:
+        while block := [*itertools.islice(choices, 20_000)]:
             sets = np.array(block)
-            sets = sets[(self._repeats(self.pool.recordings[sets]) == 1)
-                        & (self._repeats(self.pool.events[sets]) <= self.per_event)]  # fmt: skip
-            factors = self.pool.factors[sets]
+            for numbers, most in ((recordings, 1), (events, self.per_event)):
+                same = numbers[sets][:, :, None] == numbers[sets][:, None, :]
+                sets = sets[same.sum(axis=2).max(axis=1) <= most]
+            factors = every[sets]
             total = np.zeros((len(sets), self.features.shape[1]))
             for place in range(self.count):
                 total += self.features[sets[:, place]]
@@ -139,12 +130,6 @@ class _Search:
                 least = int(np.argmin(cost))
                 best = min(best, (float(cost[least]), sets[least].tolist()))
         return best[1]
-
-    @staticmethod
-    def _repeats(numbers: Numbers) -> Numbers:
-        """Count of the commonest number of each row (..., size)."""
-        same = numbers[:, :, None] == numbers[:, None, :]
-        return np.asarray(same.sum(axis=2).max(axis=1))
 
     def free(self, places: list[int]) -> NDArray[np.bool_]:
         """(m,) what may still be chosen beside these places."""

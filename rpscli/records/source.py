@@ -15,8 +15,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterable
-from functools import cached_property
+from collections.abc import Mapping
 from pathlib import Path, PurePath
 from typing import Self
 
@@ -37,48 +36,41 @@ _SCHEME = re.compile(r"([A-Za-z][A-Za-z0-9_.+-]+):(.*)", re.DOTALL)
 _OPTION = r"(?:[A-Za-z_]\w*=[^&?]*|both)"
 _FILE_OPTIONS = re.compile(rf"(.+?)\?({_OPTION}(?:&{_OPTION})*)", re.DOTALL)
 
-Options = tuple[tuple[str, str | None], ...]
+Values = Mapping[str, str | None]
 
 
 class Source(str):  # noqa: SLOT000 -- parts are kept beside the text
     """A source taken apart; its text reads the same.
 
-    Parameters
-    ----------
-    scheme
-        Of what is no file; empty for files, folders and globs of them.
-    place
-        The file, the pair or component of a set, the name of a pulse; empty for synthetic motions.
-    options
-        Names and values, those of `COMMON` last; a value is None without `=`.
+    The `scheme` is empty for files, folders and globs of them, the `place` for synthetic motions.
+    `values` are those of the options by name, of `COMMON` last; None without `=`.
     """
 
     scheme: str
     place: str
-    options: Options
+    values: Values
 
-    def __new__(cls, scheme: str, place: str, options: Iterable[tuple[str, str | None]]) -> Self:
+    def __new__(cls, scheme: str, place: str, values: Values) -> Self:
         """The parts, and the text that they are written as."""
-        rank = {name: number for number, name in enumerate(COMMON)}
-        ordered = tuple(sorted(options, key=lambda each: rank.get(each[0], -1)))
-        words = "&".join(name if value is None else f"{name}={value}" for name, value in ordered)
+        own = {name: value for name, value in values.items() if name not in COMMON}
+        ordered = own | {name: values[name] for name in COMMON if name in values}
+        words = "&".join(
+            name if text is None else f"{name}={text}" for name, text in ordered.items()
+        )
         head = f"{scheme}:{place}" if scheme else place
         made = super().__new__(cls, f"{head}?{words}" if words else head)
-        made.scheme, made.place, made.options = scheme, place, ordered
+        made.scheme, made.place, made.values = scheme, place, ordered
         return made
 
-    def __getnewargs__(self) -> tuple[str, str, Options]:  # type: ignore[override]
+    def __getnewargs__(self) -> tuple[str, str, Values]:  # type: ignore[override]
         """The parts of which a copy in another process is made."""
-        return self.scheme, self.place, self.options
+        return self.scheme, self.place, self.values
 
     @classmethod
     def parse(cls, text: str, folder: Path | None = None) -> Source:
         """The source of a text; relative files are looked for from a folder, or the working one.
 
-        Raises
-        ------
-        RecordError
-            For an unknown scheme, an option twice, and options that exclude each other.
+        Raises a RecordError for an unknown scheme, an option twice, and those that exclude others.
         """
         if isinstance(text, Source):
             return text
@@ -95,36 +87,28 @@ class Source(str):  # noqa: SLOT000 -- parts are kept beside the text
             place, _, options = rest.partition("?")
             if scheme == LIST:
                 place, options = split_options(rest)
-        each = ((SPELLINGS.get(name, name), value) for name, value in options_in(options, text))
-        source = cls(scheme, place, each)
-        source._check()
+        each = options_in(options, text).items()
+        source = cls(scheme, place, {SPELLINGS.get(name, name): value for name, value in each})
+        given, fault = source.values, ""
+        if valued := [name for name in FLAGS if given.get(name) is not None]:
+            fault = f"{valued[0]} takes no value; write {valued[0]} alone"
+        if "rotation" in given and not source.both:
+            fault = "rotation turns both components together; write both&rotation"
+        if source.both and "angle" in given:
+            fault = (
+                "angle= is one direction between the components, in which a plane structure is"
+                " shaken; both has them act together, in two directions: keep one of the options,"
+                " or turn the pair by rotation= in place of angle="
+            )
+        if fault:
+            raise RecordError(f"{source}: {fault}")
+        query_of({n: given[n] for n in COMMON if n in given}, source, COMMON, FLAGS)
+        _ = source.rotation, source.angle, source.factor  # which refuse what is no number
         return source
-
-    def _check(self) -> None:
-        for name in FLAGS:
-            if self.values.get(name) is not None:
-                raise RecordError(f"{self}: {name} takes no value; write {name} alone")
-        if "rotation" in self.values and not self.both:
-            raise RecordError(
-                f"{self}: rotation turns both components together; write both&rotation"
-            )
-        if self.both and "angle" in self.values:
-            raise RecordError(
-                f"{self}: angle= is one direction between the components, in which a plane"
-                " structure is shaken; both has them act together, in two directions: keep one of"
-                " the options, or turn the pair by rotation= in place of angle="
-            )
-        query_of(((n, v) for n, v in self.options if n in COMMON), self, COMMON, FLAGS)
-        _ = self.rotation, self.angle, self.factor  # which refuse what is no number
-
-    @cached_property
-    def values(self) -> dict[str, str | None]:
-        """Values of options by their names."""
-        return dict(self.options)
 
     def number(self, name: str, kind: str, usual: float | None = None) -> float:
         """The value of an option in SI."""
-        given = {key: value or "" for key, value in self.options}
+        given = {key: value or "" for key, value in self.values.items()}
         return Query(self, given).quantity(name, kind, usual)
 
     @property
@@ -160,22 +144,22 @@ class Source(str):  # noqa: SLOT000 -- parts are kept beside the text
 
     def query(self, *allowed: str) -> Query:
         """The options of what reads or makes it: raises RecordError for others than the allowed."""
-        own = query_of(self.options, self, (*allowed, *COMMON), FLAGS)
+        own = query_of(self.values, self, (*allowed, *COMMON), FLAGS)
         return Query(self, {name: own.values[name] for name in allowed if name in own.values})
 
     def without(self, *names: str) -> Source:
         """The same without some options."""
-        kept = (each for each in self.options if each[0] not in names)
+        kept = {name: value for name, value in self.values.items() if name not in names}
         return Source(self.scheme, self.place, kept)
 
     def plus(self, **options: str | None) -> Source:
         """The same with further options, in place of those of the same names."""
-        kept = self.without(*options).options
-        return Source(self.scheme, self.place, (*kept, *options.items()))
+        kept = self.without(*options).values
+        return Source(self.scheme, self.place, {**kept, **options})
 
     def at(self, place: str) -> Source:
         """The same of another place."""
-        return Source(self.scheme, place, self.options)
+        return Source(self.scheme, place, self.values)
 
     @property
     def alone(self) -> Source:
@@ -194,7 +178,7 @@ class Source(str):  # noqa: SLOT000 -- parts are kept beside the text
         return (self.alone.plus(channel=first), self.alone.plus(channel=other)) if comma else None
 
     def together(self, other: Source) -> Source:
-        """A source of both components, of one set, of one file, or of two."""
+        """A source of both components: of one set, of one file, or of two."""
         if self.scheme == SET:
             return self.at(re.sub("/[ab]$", "", self.place))
         if self.place == other.place:

@@ -1,8 +1,9 @@
 """Elastic response spectra, by the exact response to acceleration linear between samples.
 
-The step-by-step solution of Nigam and Jennings (Bull. Seism. Soc. Am. 59, 1969) is a constant
-linear map of two states, so displacement and total acceleration at the samples obey recursions
-of second order, which one call of a digital filter runs through.
+With s = -xi w + i w_d, the integral q of exp(s (t - tau)) times the ground acceleration has the
+displacement -Im(q)/w_d and the velocity -Im(s q)/w_d. The step-by-step solution (N. C. Nigam and
+P. C. Jennings, Bull. Seism. Soc. Am. 59, 1969) is then a recursion of first order, which one call
+of a digital filter runs through.
 """
 
 from __future__ import annotations
@@ -21,6 +22,9 @@ from rpscli.shown import Shown
 _SAMPLES_PER_PERIOD = 50  # so that the largest sample is within 0.2 % of the peak
 _FINEST = 64  # parts of a step; oscillators with periods below a step just follow the ground
 
+SHORTEST = 1e-6  # of periods [s]; 0 is the rigid oscillator
+DAMPING = 0.05
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ResponseSpectrum(Shown):
@@ -36,10 +40,6 @@ class ResponseSpectrum(Shown):
     """(2 pi/T)^2 times the displacement; the PGA at T = 0 [m/s2]."""
     total_acceleration: NDArray[np.float64]
     """Of the mass, in the inertial frame; the PGA at T = 0 [m/s2]."""
-
-
-SHORTEST = 1e-6
-"""Of periods [s]; 0 is the rigid oscillator."""
 
 
 def response_spectrum(
@@ -107,57 +107,26 @@ def pseudo_acceleration_history(
 
 def _histories(motion: GroundMotion, period: float, damping: float) -> list[NDArray[np.float64]]:
     """Displacement [m] and total acceleration [m/s2] of one oscillator."""
+    from scipy.linalg import expm
     from scipy.signal import lfilter
 
-    ground, dt = _refined(motion, period)
-    w = 2.0 * math.pi / period
-    a, b0, b1 = _step_matrices(w, damping, dt)
-    recursion = np.array([1.0, -(a[0, 0] + a[1, 1]), a[0, 0] * a[1, 1] - a[0, 1] * a[1, 0]])
-    # Of x_{n+1} = A x_n + b0 g_n + b1 g_{n+1}, the component i alone obeys the recursion, driven
-    # by g with these weights.
-    other = np.array([[-a[1, 1], a[0, 1]], [a[1, 0], -a[0, 0]]])
-    last = other @ b0
-    start = other @ b1
-    weights = np.array([b1, b0 + start, last])
-    readings = np.array([[1.0, 0.0], [-(w**2), -2.0 * damping * w]])
-    found = []
-    for reading in readings:
-        forcing = weights @ reading
-        # Rest at the first sample, which may be a jump, fixes the state of the filter.
-        rest = np.array([-forcing[0], -float(start @ reading)]) * ground[0]
-        response, _ = lfilter(forcing, recursion, ground, zi=rest)
-        found.append(response)
-    return found
-
-
-def _refined(motion: GroundMotion, period: float) -> tuple[NDArray[np.float64], float]:
-    """The motion on a step that resolves the period, with one period of quiet after it."""
     parts = min(_FINEST, max(1, math.ceil(_SAMPLES_PER_PERIOD * motion.dt / period)))
     fine = motion.finer(parts)
-    quiet = np.zeros(math.ceil(period / fine.dt) + 1)
-    return np.concatenate([fine.acceleration, quiet]), fine.dt
-
-
-def _step_matrices(
-    w: float, damping: float, dt: float
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """Map of (displacement, velocity) over a step, and of the ground acceleration at its ends."""
-    # The system is extended by the acceleration and its slope, and the step is the unit of time:
-    # the closed formulae lose all digits where w dt is small.
-    from scipy.linalg import expm
-
-    k = w * dt
-    system = np.zeros((4, 4))
-    system[0, 1] = system[2, 3] = 1.0
-    system[1, :3] = -(k**2), -2.0 * damping * k, -1.0
-    units = np.array([1.0, 1.0 / dt])  # of displacement and velocity, in steps
-    grown = np.asarray(expm(system), dtype=np.float64)
-    a = grown[:2, :2] * units[:, None] / units
-    level, slope = grown[:2, 2] * units * dt**2, grown[:2, 3] * units * dt**2
-    return a, level - slope, slope
-
-
-DAMPING = 0.05
+    quiet = np.zeros(math.ceil(period / fine.dt) + 1)  # one period after the end
+    ground = np.concatenate([fine.acceleration, quiet])
+    w = 2.0 * math.pi / period
+    s = w * complex(-damping, math.sqrt(1.0 - damping**2))
+    # Re(q), Im(q), the acceleration and its slope, as the closed formulae of the integrals lose
+    # all digits where w dt is small.
+    a, b = s.real * fine.dt, s.imag * fine.dt
+    rows = [[a, -b, 1.0, 0.0], [b, a, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0], [0.0, 0.0, 0.0, 0.0]]
+    step = expm(np.array(rows))
+    grown, _, level, slope = step[0] + 1j * step[1]
+    last, first = fine.dt * slope, fine.dt * (level - slope)
+    # At rest at the first sample, which may be a jump.
+    q, _ = lfilter([last, first], [1.0, -grown], ground, zi=[-last * ground[0]])
+    displacement, velocity = -q.imag / s.imag, -(s * q).imag / s.imag
+    return [displacement, -(w**2) * displacement - 2.0 * damping * w * velocity]
 
 
 def drawn_spectrum(motion: GroundMotion) -> ResponseSpectrum:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import cast, get_args
@@ -25,53 +25,40 @@ from rpscli.records.requirements import NOT_VERIFIED, Component
 from rpscli.registry import Registry
 
 Array = NDArray[np.float64]
-Shape = Callable[[Array], Array]
-"""Periods (n,) [s] to pseudo-accelerations (n,) [m/s2]."""
-
-AMPLIFICATION = 1.65
-"""Pseudo-velocity over PGV: median of Newmark and Hall, 1982, at 5 % damping."""
-
-CONVENTION = "pseudo-velocity at 1 s over 1.65, a convention of Hazus, not of the code"
-"""The PGV of a spectrum whose code gives none."""
+Shape = Callable[[Array], Array]  # periods (n,) [s] to pseudo-accelerations (n,) [m/s2]
 
 
 @dataclass(frozen=True)
 class TargetSpectrum:
-    """What the response spectra of motions are compared with."""
+    """What the response spectra of motions are compared with, defined over a `span` of periods [s].
+
+    `shape` is the pseudo-acceleration over the period. `pgv`, `pgd` and `pga` [m/s, m, m/s2] are
+    peaks of the ground that go with it, None where the code gives none, the PGA that of a spectrum
+    that does not begin with it, and `pgv_by` the origin of the PGV. `edition`, `parameters` (with
+    units) and `level` (of shaking) are those of a code, `checked` says against what its formulae
+    were compared, `rules` are its name in `requirements.RULES`. `damping` is a share of critical
+    damping, `of` the kind of the ordinates, None if it is not said. `deviation` is the standard
+    deviation of ln Sa over the period, None if motions need not scatter, and `pinned` [s] the
+    conditioning period, at which that is zero.
+    """
 
     name: str
-    """Short, for figures."""
     source: str
-    """As the user wrote it."""
     shape: Shape
     pgv: float | None
-    """Peak ground velocity that goes with it; None if it cannot be told [m/s]."""
     pgd: float | None = None
-    """Peak ground displacement; None if the code gives none [m]."""
     damping: float = 0.05
-    """Share of critical damping."""
     span: tuple[float, float] = (0.0, math.inf)
-    """Periods between which it is defined [s]."""
     edition: str = "as the file has it"
-    """Code, edition and clause."""
     checked: str = "the user's own"
-    """Against what its formulae were compared."""
     rules: str = "mean90"
-    """Rules of its code for a set of motions, a name of `requirements.RULES`."""
     of: Component | None = None
-    """Kind of its ordinates; None if it is not said."""
     parameters: str = ""
-    """Those of a code, with their units."""
     level: str = ""
-    """Its level of shaking, as the code calls it."""
-    pgv_by: str = CONVENTION
-    """Origin of its PGV."""
+    pgv_by: str = "pseudo-velocity at 1 s over 1.65, a convention of Hazus, not of the code"
     deviation: Shape | None = None
-    """Standard deviation of ln Sa at periods (n,); None if motions need not scatter."""
     pinned: float | None = None
-    """Period at which that is zero, the conditioning one; None without it [s]."""
     pga: float | None = None
-    """Of the ground, where the spectrum does not begin with it [m/s2]."""
 
     @property
     def ground_acceleration(self) -> float | None:
@@ -90,16 +77,17 @@ class TargetSpectrum:
         return self.shape(np.clip(periods, low, high))
 
 
-def velocity_of(shape: Shape) -> float:
+def _velocity_of(shape: Shape) -> float:
     """PGV [m/s] that goes with a 5 % spectrum: its pseudo-velocity at 1 s over 1.65.
 
-    FEMA, Hazus-MH 2.1, Earthquake Model Technical Manual, section 4.1. Later studies (Earthquake
-    Spectra 31, 2015) let the ratio grow with the magnitude: it is a convention.
+    That ratio is the median of Newmark and Hall, 1982, in FEMA, Hazus-MH 2.1, Earthquake Model
+    Technical Manual, section 4.1. Later studies (Earthquake Spectra 31, 2015) let it grow with the
+    magnitude: it is a convention.
     """
-    return float(shape(np.ones(1))[0]) / (2.0 * math.pi) / AMPLIFICATION
+    return float(shape(np.ones(1))[0]) / (2.0 * math.pi) / 1.65
 
 
-def cornered(start: float, plateau: float, corners: tuple[float, float, float, float]) -> Shape:
+def _cornered(start: float, plateau: float, corners: tuple[float, float, float, float]) -> Shape:
     """A spectrum of four corners: level, linear to a plateau, then over T and over T^2."""
     T_A, T_B, T_C, T_D = corners
 
@@ -112,7 +100,13 @@ def cornered(start: float, plateau: float, corners: tuple[float, float, float, f
     return shape
 
 
-EN1998_SOILS = {
+def _in_words(seconds: dict[str, float] | None = None, **accelerations: float) -> str:
+    """Parameters as readers see them."""
+    words = [f"{name} = {a / STANDARD_GRAVITY:.3g} g" for name, a in accelerations.items()]
+    return ", ".join([*words, *(f"{name} = {t:.3g} s" for name, t in (seconds or {}).items())])
+
+
+_EN1998_SOILS = {
     "1": {
         "A": (1.00, 0.15, 0.4, 2.0),
         "B": (1.20, 0.15, 0.5, 2.0),
@@ -133,40 +127,22 @@ EN1998_SOILS = {
 _NATIONAL = {"s": "ratio", "tb": "time", "tc": "time", "td": "time"}
 """Parameters that a national annex may set."""
 
-EN1998_LONGEST = 4.0
-"""Where clause 3.2.2.2 ends [s]."""
 
-
-def _in_words(seconds: dict[str, float] | None = None, **accelerations: float) -> str:
-    """Parameters as readers see them."""
-    words = [f"{name} = {a / STANDARD_GRAVITY:.3g} g" for name, a in accelerations.items()]
-    return ", ".join([*words, *(f"{name} = {t:.3g} s" for name, t in (seconds or {}).items())])
-
-
-def _choice(source: str, word: str, value: str, known: Sequence[str]) -> str:
-    if value not in known:
-        raise RecordError(f"{source}: {word} = {value!r} is not known; {hint(value, known)}")
-    return value
-
-
-def en1998_spectrum(rest: str, source: str) -> TargetSpectrum:
+def _en1998(rest: str, source: str) -> TargetSpectrum:
     """Elastic spectrum of clause 3.2.2.2, expressions (3.2) to (3.6), `ag=0.3g&soil=B&type=1`.
 
-    a_g is that of ground type A with the importance factor. The parameters of a national annex
-    replace those of the tables: `s=1.3&tb=0.1&tc=0.4&td=2.5` [-, s].
-
-    From a_g S to 2.5 a_g S eta at T_B, corners T_C and T_D, up to 4 s; eta = sqrt(10/(5 + xi))
-    >= 0.55 with xi in per cent. The peak displacement is d_g = 0.025 a_g S T_C T_D, expression
-    (3.12).
+    a_g is that of ground type A with the importance factor. From a_g S to 2.5 a_g S eta at T_B,
+    corners T_C and T_D, up to 4 s; eta = sqrt(10/(5 + xi)) >= 0.55 with xi in per cent. The peak
+    displacement is d_g = 0.025 a_g S T_C T_D, expression (3.12).
     """
     query = parse_query(rest.lstrip("?"), source, ("ag", "soil", "type", "damping", *_NATIONAL))
-    kind = _choice(source, "type", query.values.get("type", "1"), [*EN1998_SOILS])
-    soils = EN1998_SOILS[kind]
-    soil = _choice(source, "soil", query.values.get("soil", "A").upper(), [*soils])
-    usual = zip(_NATIONAL.items(), soils[soil], strict=True)
+    kind = query.choice("type", "1", [*_EN1998_SOILS])
+    soil = query.choice("soil", "A", [*_EN1998_SOILS[kind]])
+    usual = zip(_NATIONAL.items(), _EN1998_SOILS[kind][soil], strict=True)
     S, T_B, T_C, T_D = (query.quantity(key, unit, value) for (key, unit), value in usual)
-    if not (S > 0.0 and 0.0 < T_B < T_C < T_D <= EN1998_LONGEST):
-        raise RecordError(f"{source}: must have s > 0 and 0 < tb < tc < td <= {EN1998_LONGEST:g} s")
+    longest = 4.0  # where the clause ends [s]
+    if not (S > 0.0 and 0.0 < T_B < T_C < T_D <= longest):
+        raise RecordError(f"{source}: must have s > 0 and 0 < tb < tc < td <= {longest:g} s")
     a_g, damping = query.acceleration("ag", bare=False), query.quantity("damping", "ratio", 0.05)
     if a_g <= 0.0 or not 0.0 <= damping < 1.0:
         raise RecordError(f"{source}: ag must be > 0 and damping in [0, 1); 5 % is 0.05")
@@ -177,11 +153,11 @@ def en1998_spectrum(rest: str, source: str) -> TargetSpectrum:
     return TargetSpectrum(
         f"EN 1998-1 type {kind}, ground {soil}" + ", national" * bool(own),
         source,
-        cornered(start, 2.5 * start * eta, corners),
-        velocity_of(cornered(start, 2.5 * start, corners)),
+        _cornered(start, 2.5 * start * eta, corners),
+        _velocity_of(_cornered(start, 2.5 * start, corners)),
         0.025 * start * T_C * T_D,
         damping,
-        (0.0, EN1998_LONGEST),
+        (0.0, longest),
         edition=f"EN 1998-1:2004, 3.2.2.2, whatever A1:2013 changes, {by}",
         checked="tables and expressions compared with public implementations and with manuals of"
         " programs, not with the text",
@@ -190,7 +166,7 @@ def en1998_spectrum(rest: str, source: str) -> TargetSpectrum:
     )
 
 
-def en1998_2024_spectrum(rest: str, source: str) -> TargetSpectrum:
+def _en1998_2024(rest: str, source: str) -> TargetSpectrum:
     """Elastic spectrum of EN 1998-1-1:2024, 5.2.2.2, at 5 %: `s_alpha=0.9g&s_beta=0.35g&td=2`.
 
     S_alpha and S_beta are those of the site, with F_T F_alpha and F_T F_beta. T_D is 2 s where
@@ -212,7 +188,7 @@ def en1998_2024_spectrum(rest: str, source: str) -> TargetSpectrum:
     return TargetSpectrum(
         "EN 1998-1-1:2024",
         source,
-        cornered(0.4 * short, short, (0.02, min(max(T_C / 4.0, 0.05), 0.1), T_C, T_D)),
+        _cornered(0.4 * short, short, (0.02, min(max(T_C / 4.0, 0.05), 0.1), T_C, T_D)),
         0.06 * (short * long) ** 0.55,
         span=(0.0, 6.0),
         edition="EN 1998-1-1:2024, 5.2.2.2, without national annex; what its annex D asks of"
@@ -224,32 +200,26 @@ def en1998_2024_spectrum(rest: str, source: str) -> TargetSpectrum:
     )
 
 
-ASCE7_LEVELS = {"design": 1.0, "mcer": 1.5}
-"""Factors on the design spectrum: clauses 11.4.6 and 11.4.7."""
-
-
-def asce7_spectrum(rest: str, source: str) -> TargetSpectrum:
+def _asce7(rest: str, source: str) -> TargetSpectrum:
     """Design spectrum of clause 11.4.6, equations (11.4-5) to (11.4-7), at 5 % damping.
 
-    `sds=1.0g&sd1=0.6g&tl=8`; `level=mcer` is 1.5 times that, which chapters 16 and 17 ask for, for
-    the maximum direction of pairs. The multi-period spectrum of ASCE/SEI 7-22 is a CSV file.
-
-    From 0.4 S_DS to S_DS at T_0 = 0.2 T_S, corners T_S = S_D1/S_DS (with S_D1 as the acceleration
-    at 1 s) and T_L. The code gives no peak displacement.
+    `sds=1.0g&sd1=0.6g&tl=8`; `level=mcer` is 1.5 times that (11.4.7), which chapters 16 and 17 ask
+    for, for the maximum direction of pairs. From 0.4 S_DS to S_DS at T_0 = 0.2 T_S, corners
+    T_S = S_D1/S_DS (with S_D1 as the acceleration at 1 s) and T_L.
     """
     query = parse_query(rest.lstrip("?"), source, ("sds", "sd1", "tl", "level"))
-    level = _choice(source, "level", query.values.get("level", "design").lower(), [*ASCE7_LEVELS])
+    mcer = query.choice("level", "design", ["design", "mcer"]) == "mcer"
     S_DS, S_D1 = (query.acceleration(key, bare=False) for key in ("sds", "sd1"))
-    T_L, times, mcer = query.quantity("tl", "time"), ASCE7_LEVELS[level], level == "mcer"
+    T_L, times = query.quantity("tl", "time"), 1.5 if mcer else 1.0
     if not (S_DS > 0.0 and 0.0 < S_D1 / S_DS < T_L):
         raise RecordError(f"{source}: sds and sd1 must be > 0, and sd1/sds, in s, below tl")
     T_S = S_D1 / S_DS
-    shape = cornered(0.4 * times * S_DS, times * S_DS, (0.0, 0.2 * T_S, T_S, T_L))
+    shape = _cornered(0.4 * times * S_DS, times * S_DS, (0.0, 0.2 * T_S, T_S, T_L))
     return TargetSpectrum(
         f"ASCE 7, {'MCE_R' if mcer else 'design'}",
         source,
         shape,
-        velocity_of(shape),
+        _velocity_of(shape),
         edition="ASCE/SEI 7-16, 11.4.6, two-period; give the multi-period one of 7-22 as CSV",
         checked="equations compared with manuals of programs, not with the text",
         rules="asce7-ch16",
@@ -259,22 +229,18 @@ def asce7_spectrum(rest: str, source: str) -> TargetSpectrum:
     )
 
 
-SP14_CORNERS = {"I": 0.4, "II": 0.4, "III": 0.8, "IV": 0.8}
-"""End of the plateau [s] by soil category, clause 5.6."""
-
-
-def sp14_spectrum(rest: str, source: str) -> TargetSpectrum:
+def _sp14(rest: str, source: str) -> TargetSpectrum:
     """A times the dynamic coefficient beta(T) of clause 5.6, at 5 % damping.
 
     A is the acceleration of the site: 1, 2 and 4 m/s2 for intensities 7, 8 and 9 (clause 5.5).
-
     beta = 1 + 15 T up to 0.1 s, 2.5 up to 0.4 s (categories I and II) or 0.8 s (III and IV), then
     2.5 sqrt(0.4/T) or 2.5 sqrt(0.8/T), nowhere less than 0.8. The reduction factor of structures
-    that may be damaged is not in it. The code gives no peak displacement.
+    that may be damaged is not in it.
     """
     query = parse_query(rest.lstrip("?"), source, ("acceleration", "soil"))
-    soil = _choice(source, "soil", query.values.get("soil", "II").upper(), [*SP14_CORNERS])
-    A, corner = query.acceleration("acceleration"), SP14_CORNERS[soil]
+    corners = {"I": 0.4, "II": 0.4, "III": 0.8, "IV": 0.8}
+    soil, A = query.choice("soil", "II", [*corners]), query.acceleration("acceleration")
+    corner = corners[soil]
     if A <= 0.0:
         raise RecordError(f"{source}: acceleration must be > 0; it is 4 m/s2 for intensity 9")
 
@@ -286,7 +252,7 @@ def sp14_spectrum(rest: str, source: str) -> TargetSpectrum:
         f"SP 14.13330, soil {soil}",
         source,
         shape,
-        velocity_of(shape),
+        _velocity_of(shape),
         edition="SP 14.13330.2018 without its amendments, 5.5 and 5.6",
         parameters=_in_words(A=A),
         checked=f"{NOT_VERIFIED}: from memory; supply the spectrum as a CSV file where it matters",
@@ -295,24 +261,16 @@ def sp14_spectrum(rest: str, source: str) -> TargetSpectrum:
 
 CODES: Registry[Callable[[str, str], TargetSpectrum]] = Registry(
     "targets",
-    {
-        "en1998": en1998_spectrum,
-        "en1998-2024": en1998_2024_spectrum,
-        "asce7": asce7_spectrum,
-        "sp14": sp14_spectrum,
-    },
+    {"en1998": _en1998, "en1998-2024": _en1998_2024, "asce7": _asce7, "sp14": _sp14},
     Callable[[str, str], TargetSpectrum],
 )
 """Spectra of what follows a name and its colon, and of the whole source."""
-
-_UNKNOWN = ("sprk", "sp_rk", "ntprk", "ntp_rk")
-"""SP RK 2.03-30-2017 and NTP RK 08-01, which are not SP 14.13330 and whose text was not found."""
 
 
 def load_target(source: str) -> TargetSpectrum:
     """A spectrum of a code by its parameters, or from a CSV file."""
     scheme, colon, rest = source.partition(":")
-    if colon and scheme.lower() in _UNKNOWN:
+    if colon and scheme.lower() in ("sprk", "sp_rk", "ntprk", "ntp_rk"):
         raise RecordError(
             f"{source}: the spectra of SP RK 2.03-30-2017 and NTP RK 08-01 could not be verified"
             " and are not those of sp14; give the spectrum as a CSV file"
@@ -321,22 +279,19 @@ def load_target(source: str) -> TargetSpectrum:
         return CODES[scheme](rest, source)
     place, _, options = source.partition("?")
     if (path := Path(place)).is_file():
-        return table_spectrum(path, options, source)
+        return _table(path, options, source)
     known = CODES.names()
+    fault = f"there is no file {path}; give a CSV file or a code: {', '.join(known)}"
     if colon and len(scheme) > 1:
-        raise RecordError(
-            f"{source}: {scheme!r} is not a known code; {hint(scheme, known)}, or a file"
-        )
-    raise RecordError(
-        f"{source}: there is no file {path}; give a CSV file or a code: {', '.join(known)}"
-    )
+        fault = f"{scheme!r} is not a known code; {hint(scheme, known)}, or a file"
+    raise RecordError(f"{source}: {fault}")
 
 
 _HEAD = re.compile(r"\s*(.*?)\s*[\[(]([^\])]*)[\])]\s*")
 _DEVIATION = re.compile(r"\s*sigma_ln\s*(?:\[-\])?\s*", re.IGNORECASE)
 
 
-def table_spectrum(path: Path, options: str, source: str) -> TargetSpectrum:
+def _table(path: Path, options: str, source: str) -> TargetSpectrum:
     """Columns period and acceleration, linear between logarithms, and perhaps `sigma_ln [-]`."""
     # With the third one, the standard deviation of ln Sa, the acceleration is the median.
     try:
@@ -368,16 +323,14 @@ def table_spectrum(path: Path, options: str, source: str) -> TargetSpectrum:
 
     query = parse_query(options, source, ("damping", "component", "level"))
     damping = query.quantity("damping", "ratio", 0.05)
-    of = query.values.get("component", "").lower()
-    if of:
-        _choice(source, "component", of, get_args(Of))
+    of = query.choice("component", "", get_args(Of))
     first, last = float(cells[0, 0]), float(cells[-1, 0])
     pinned = scatters and not cells[:, 2].all()
     return TargetSpectrum(
         stem_of(path),
         source,
         shape,
-        velocity_of(shape) if damping == 0.05 and first <= 1.0 <= last else None,
+        _velocity_of(shape) if damping == 0.05 and first <= 1.0 <= last else None,
         damping=damping,
         span=(first, last),
         of=cast("Of", of) if of else None,

@@ -17,7 +17,6 @@ from rpscli.analyses.trace import sampled
 from rpscli.errors import CaseError
 from rpscli.model.impact import ImpactLaw
 from rpscli.records.ground_motion import GroundMotion, MotionComponents
-from rpscli.records.pair import turned
 from rpscli.report.bundles import event_columns, history_columns
 from rpscli.report.documents import json_text, timehistory_document
 
@@ -84,7 +83,7 @@ def test_samples_do_not_exceed_the_largest_values(result: TimeHistoryResult) -> 
 def test_a_turned_pair_turns_all_results(
     result: TimeHistoryResult, motion: MotionComponents
 ) -> None:
-    other = time_history(BUILDING, turned(motion, 30.0), result.settings)
+    other = time_history(BUILDING, motion.turned(30.0), result.settings)
     assert other.max_rotation == pytest.approx(result.max_rotation, rel=1e-9)
     assert other.max_base_shear == pytest.approx(result.max_base_shear, rel=1e-9)
     assert other.max_floor_velocity == pytest.approx(result.max_floor_velocity, rel=1e-6)

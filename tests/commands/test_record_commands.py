@@ -200,6 +200,11 @@ def test_select_for_a_case(rps_json: InvokeJson, rps: Invoke) -> None:
     secant = 2.0 * np.pi * np.sqrt(mass * displacement / force)
     first = 0.2 * structure.superstructure.periods[0]
     assert document["periods"] == pytest.approx([first, min(secant, 4.0)], rel=1e-5)
+    period = "superstructure.period=0.2"
+    more = ("--case", str(case), "--rules", "none", "--set", period, "-o", "other")
+    other = rps_json(*SELECT, "pool", *more)
+    assert other["periods"][0] == pytest.approx(0.04, rel=1e-5)
+    assert "name it by --case" in rps(*SELECT, "pool", "--set", period).stderr
 
 
 def test_select_refuses(rps: Invoke) -> None:

@@ -1,3 +1,5 @@
+"""What headers and titles state is used: units, steps, counts, quantities, events, directions."""
+
 from __future__ import annotations
 
 import math
@@ -5,23 +7,26 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from small_records import knet
 
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import RecordError
+from rpscli.records.formats.at2 import at2_text
 from rpscli.records.formats.record_text import uniform_step
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.loading import load_record
+from rpscli.report.tables.motions import two_column_text
 
-VALUES = [0.1, -0.2, 0.3, 0.05]
+FOUR = [0.1, -0.2, 0.3, 0.05]
 
 
 def load(folder: Path, text: str, options: str = "", name: str = "rec.txt") -> GroundMotion:
-    (folder / name).write_text(text)
+    (folder / name).write_text(text, encoding="utf-8")
     return load_record(name + options, folder=folder)
 
 
 def table(step: float = 0.02, form: str = "{:.2f} {}") -> str:
-    return "\n".join(form.format(i * step, value) for i, value in enumerate(VALUES))
+    return "\n".join(form.format(i * step, value) for i, value in enumerate(FOUR))
 
 
 @pytest.mark.parametrize(
@@ -33,13 +38,16 @@ def table(step: float = 0.02, form: str = "{:.2f} {}") -> str:
         "Time (s), Acceleration (g)\n",
         "t[s]\tacc[g]\n",
         "Time [s]   a_g [g]\nUnits of g\n",
+        "The units are (g)\n",
+        "unit is g\n",
+        "units in g\n",
     ],
 )
 @pytest.mark.parametrize("form", ["{:.2f} {}", "{:.4e}\t{}", "{:.3f}, {}", "  {:.2f};{}"])
 def test_two_columns(tmp_path: Path, header: str, form: str) -> None:
     text = header + table(form=form.replace(";", " "))
     made = load(tmp_path, text)
-    np.testing.assert_allclose(made.acceleration, np.array(VALUES) * STANDARD_GRAVITY, rtol=1e-15)
+    np.testing.assert_allclose(made.acceleration, np.array(FOUR) * STANDARD_GRAVITY, rtol=1e-15)
     assert made.dt == 0.02
     assert made.format == "two-column text"
     assert "values in g" in made.description
@@ -51,27 +59,6 @@ def test_units_have_to_be_known(tmp_path: Path) -> None:
     assert load(tmp_path, table(), "?units=g").pga == pytest.approx(0.3 * STANDARD_GRAVITY)
     assert load(tmp_path, table(), "?units=m/s2").pga == 0.3
     assert load(tmp_path, table(), "?units=cm/s^2").pga == pytest.approx(0.003)
-
-
-@pytest.mark.parametrize(
-    ("header", "options", "message"),
-    [
-        ("# units: g\n", "?units=m/s2", "units = m/s2 contradicts the file, which says g"),
-        ("# units: parsec\n", "", "not a unit of acceleration"),
-        ("# dt: 0.01\n", "?units=g", r"says dt = 0.01 s and the times advance by 0.02 s"),
-        ("# npts: 5\n", "?units=g", r"announces 5 values and the file holds 4"),
-        ("", "?units=furlong", "units = 'furlong' is not known"),
-        ("", "?units=g&dt=0.01", "dt = 0.01 s contradicts the file, which says 0.02 s"),
-    ],
-)
-def test_contradictions(tmp_path: Path, header: str, options: str, message: str) -> None:
-    with pytest.raises(RecordError, match=message):
-        load(tmp_path, header + table(), options)
-
-
-def test_a_header_that_agrees(tmp_path: Path) -> None:
-    made = load(tmp_path, "# npts = 4, dt = 0.02 s, units: m/s2\n" + table())
-    assert (made.npts, made.dt, made.pga) == (4, 0.02, 0.3)
 
 
 def test_glued_columns(tmp_path: Path) -> None:
@@ -88,36 +75,18 @@ def test_times_that_do_not_begin_at_zero_are_a_warning(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "message"),
-    [
-        ("0 .1\n.02 .1\n.04 .2\n.07 .1\n.08 .2\n", "after sample 3 is 0.03 s"),
-        ("0 .1\n.02 .1\n.02 .2\n.04 .3\n", "do not increase after sample 2; sort them"),
-        (".3 0.0\n.1 .02\n.2 .04\n.1 .06\n", "do not increase"),
-        ("0 .1 1\n.02 .1 2\n.04 .2 3\n", "time and several quantities"),
-        ("0 .1\n.02\n.04 .2\n", "a row of 1 numbers among rows of 2"),
-        ("0 .1\n.02 .1\nend\n.04 .2\n", r"rec.txt:3: 'end' stands among the values"),
-        ("0 .1\n.02 nan\n", "nan"),
-        ("a\nb\n", "no known format"),
-    ],
-)
-def test_refuses(tmp_path: Path, text: str, message: str) -> None:
-    with pytest.raises(RecordError, match=message):
-        load(tmp_path, text, "?units=g&dt=0.02")
-
-
-@pytest.mark.parametrize(
     "header",
     ["dt: 0.005\nunits: g\n", "# dt = 0.005\n# units = g\n", "# time step: 5.0E-3 s; units: g\n"],
 )
 def test_one_column_with_a_header(tmp_path: Path, header: str) -> None:
-    made = load(tmp_path, header + "\n".join(map(str, VALUES)) + "\n# the end\n")
-    np.testing.assert_allclose(made.acceleration, np.array(VALUES) * STANDARD_GRAVITY, rtol=1e-15)
+    made = load(tmp_path, header + "\n".join(map(str, FOUR)) + "\n# the end\n")
+    np.testing.assert_allclose(made.acceleration, np.array(FOUR) * STANDARD_GRAVITY, rtol=1e-15)
     assert made.dt == 0.005
     assert made.format == "one-column text"
 
 
 def test_one_column_with_options(tmp_path: Path) -> None:
-    text = "\n".join(map(str, VALUES))
+    text = "\n".join(map(str, FOUR))
     assert load(tmp_path, text, "?dt=0.005&units=m/s2").dt == 0.005
     assert load(tmp_path, text, "?units=m/s2&dt=5 ms").dt == 0.005
     assert load_record("rec.txt", folder=tmp_path, dt=0.01, units="g").dt == 0.01
@@ -166,3 +135,190 @@ def test_steps_survive_the_printing_of_times(tmp_path: Path, step: float, form: 
 def test_round_steps_come_out_exactly(step: float) -> None:
     times = np.cumsum(np.full(9000, step)) - step  # as a loop t = t + dt prints them
     assert uniform_step(times, 1e-12) == step
+
+
+COUNT, DT = 200, 0.005
+TIMES = np.arange(COUNT) * DT
+VALUES = 0.2 * np.sin(4.0 * np.pi * TIMES) * np.sin(np.pi * TIMES / TIMES[-1]) ** 0.5
+PEAK = float(np.max(np.abs(VALUES)))
+
+
+def rows(*columns: np.ndarray, form: str = "{:.6f}", between: str = ",") -> str:
+    lines = (
+        between.join(form.format(value) for value in row) for row in zip(*columns, strict=True)
+    )
+    return "\n".join(lines) + "\n"
+
+
+ALONE, TIMED = rows(VALUES), rows(TIMES, VALUES)
+THREE = rows(VALUES, 0.5 * VALUES, 0.25 * VALUES, between="  ")
+GAL = rows(100.0 * STANDARD_GRAVITY * VALUES)
+TABLE = "0.00 0.1\n0.02 -0.2\n0.04 0.3\n0.06 0.05"
+HEAD = "NUMBER OF DATA : 200\nSAMPLING INTERVAL (sec) : 0.005\nunits: g\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "options"),
+    [
+        (f"units: g\ndt: 5 ms\n{ALONE}", ""),
+        (f"units: g\nsampling interval (msec) = 5\n{ALONE}", ""),
+        (f"units: g\nEqually spaced intervals of .005 sec.\n{ALONE}", ""),
+        (f"Time [ms],Acceleration [g]\n{rows(1e3 * TIMES, VALUES)}", ""),
+        (f"Time (msec),acc_x (g)\n{rows(1e3 * TIMES, VALUES)}", ""),
+        (f"values as recorded in gal\ndt: 0.005\nPeak acc (g): 0.2000\n{GAL}", ""),
+        (f"an invented motion\n200 0.0050\n{ALONE}", "?units=g"),
+        ('"Time [s]","Acceleration [g]"\n' + TIMED.replace(",", '","').replace("\n", '"\n"'), ""),
+        (
+            "Time [s],Acceleration [g],Velocity [m/s],Displacement [m]\n"
+            + rows(TIMES, VALUES, 2.0 * VALUES, 3.0 * VALUES),
+            "",
+        ),
+        (f"{HEAD}   N-S   E-W   U-D\n{THREE}", "?channel=N-S"),
+        (f"{HEAD}   N-S   E-W   U-D\n{rows(2.0 * VALUES, VALUES, VALUES, between=' ')}",
+         "?channel=e-w"),
+        (f"Time [s],Acceleration N [g],Acceleration E [g]\n{rows(TIMES, VALUES, VALUES / 2)}",
+         "?channel=Acceleration N"),
+        (f"Time [s],Acceleration [g]\n{TIMED}" + "\0" * 300, ""),
+        (f"Time,Acceleration\ns,g\n{TIMED}", ""),
+        (f"(s)   (g)\n{TIMED}", ""),
+        (f"Time, Acceleration in g\n{TIMED}", ""),
+        (f"Time [s],Acceleration (N-S)\n{TIMED}", "?units=g"),
+        (f"units: g\n{rows(TIMES, VALUES / 2, VALUES)}", "?channel=3"),
+    ],
+)  # fmt: skip
+def test_units_steps_counts_and_columns(tmp_path: Path, text: str, options: str) -> None:
+    made = load(tmp_path, text.removesuffix('"'), options)
+    assert (made.npts, made.dt) == (COUNT, DT)
+    np.testing.assert_allclose(made.acceleration, VALUES * STANDARD_GRAVITY, atol=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("text", "options", "message"),
+    [
+        (f"# units: g\n{TABLE}", "?units=m/s2", "units = m/s2 contradicts the file, which says g"),
+        (f"# units: parsec\n{TABLE}", "", "not a unit of acceleration"),
+        (f"# dt: 0.01\n{TABLE}", "?units=g", r"says dt = 0.01 s and the times advance by 0.02 s"),
+        (f"# npts: 5\n{TABLE}", "?units=g", r"announces 5 values and the file holds 4"),
+        (TABLE, "?units=furlong", "units = 'furlong' is not known"),
+        (TABLE, "?units=g&dt=0.01", "dt = 0.01 s contradicts the file, which says 0.02 s"),
+        ("0 .1\n.02 .1\n.04 .2\n.07 .1\n.08 .2\n", "?units=g&dt=0.02", "after sample 3 is 0.03 s"),
+        (
+            "0 .1\n.02 .1\n.02 .2\n.04 .3\n",
+            "?units=g&dt=0.02",
+            "after sample 2; sort them",
+        ),
+        (".3 0.0\n.1 .02\n.2 .04\n.1 .06\n", "?units=g&dt=0.02", "do not increase"),
+        ("0 .1 1\n.02 .1 2\n.04 .2 3\n", "?units=g&dt=0.02", "time and several quantities"),
+        ("0 .1\n.02\n.04 .2\n", "?units=g&dt=0.02", "a row of 1 numbers among rows of 2"),
+        (
+            "0 .1\n.02 .1\nend\n.04 .2\n",
+            "?units=g&dt=0.02",
+            r"rec.txt:3: 'end' stands among",
+        ),
+        ("0 .1\n.02 nan\n", "?units=g&dt=0.02", "nan"),
+        ("a\nb\n", "?units=g&dt=0.02", "no known format"),
+        (f"Time (s),Acceleration (g x 10)\n{TIMED}", "", "'g x 10', which is not a unit"),
+        (f"Time (min),Acceleration (g)\n{TIMED}", "", "a time in 'min' is not known"),
+        (f"Time [samples],Acceleration [g]\n{TIMED}", "", "a time in 'samples' is not known"),
+        (f"units: g\ndt: 0.005.3\n{ALONE}", "", "'0.005.3' is not a finite number"),
+        (f"units: g\ndt: 5 min\n{ALONE}", "", "a time in 'min' is not known"),
+        (f"Period [s],Spectral Acceleration [g]\n{rows(TIMES + 0.02, VALUES)}", "", "a spectrum"),
+        (f"time [s],displacement [mm]\n{TIMED}", "?units=g", ":1: .*is a displacement record"),
+        (f"time,displacement\n{TIMED}", "?units=g", "this is a displacement record"),
+        (f"time;velocity\n{rows(TIMES, VALUES, between=' ')}", "?units=g", "a velocity record"),
+        (f"{HEAD}   N-S   E-W   U-D\n{THREE}", "", r"3 channels; .*\?channel=1.*1: N-S; 2: E-W"),
+        (f"units: g\n  N00E  N90E  V\n---+---+---\n{THREE}", "?dt=0.005", "1: N00E; 2: N90E; 3: V"),
+        (f"{HEAD}{THREE}", "", "as many as there are rows of 3 numbers"),
+        (f"{HEAD}   N-S   E-W   U-D\n{THREE}", "?channel=north", "there is no channel north"),
+        (f"199 0.0050\n{ALONE}", "?units=g", "look like the number of values and their step"),
+        (f"units: g\ndt: 5 ms\ndt: 0.01\n{ALONE}", "", "contradicts dt = 5 ms of line 2"),
+        (f"Acceleration [g]\ndt: 0.005\n{ALONE}", "?units=gal", "contradicts the file"),
+        (f"Time [s],Acceleration [counts]\n{TIMED}", "?units=g", "'counts', which is not a unit"),
+        (f"Time [s],Acceleration [cm]\n{TIMED}", "?units=g", "'cm', which is not a unit"),
+        (f"units: g\n{rows(TIMES, VALUES, VALUES)}", "", "by its place, .channel=2"),
+    ],
+)
+def test_refuses(tmp_path: Path, text: str, options: str, message: str) -> None:
+    with pytest.raises(RecordError, match=message):
+        load(tmp_path, text, options)
+
+
+def test_an_offset_is_a_warning(tmp_path: Path) -> None:
+    (warning,) = load(tmp_path, f"units: g\ndt: 0.005\n{rows(VALUES + 1.0)}").warnings
+    assert "of the peak: an offset of the instrument?" in warning
+    assert load(tmp_path, f"units: g\ndt: 0.005\n{ALONE}").warnings == ()
+
+
+def test_a_peak_that_the_header_contradicts_is_a_warning(tmp_path: Path) -> None:
+    text = f"units: g\ndt: 0.005\nPeak acc (gal): {{}}\n{ALONE}"
+    assert load(tmp_path, text.format(f"{100.0 * STANDARD_GRAVITY * PEAK:.2f}")).warnings == ()
+    (warning,) = load(tmp_path, text.format("98.07")).warnings
+    assert "the values peak at 0.192696" in warning
+    assert "the header says 0.100004" in warning
+
+
+AT2 = "ACCELERATION TIME SERIES IN UNITS OF G\nNPTS=   200, DT=   .0050 SEC\n"
+
+
+def csmip(line: str) -> str:
+    body = rows(*VALUES.reshape(-1, 8).T * 100.0 * STANDARD_GRAVITY, form="{:9.3f}", between=" ")
+    return (
+        "Corrected accelerogram   00000-A0000-00000.00       Chan  1: 360 Deg     from\n"
+        "Uncorrected Accelerogram Data\nRcrd of an invented earthquake\n"
+        f"Peak acceleration =  {100.0 * STANDARD_GRAVITY * PEAK:.3f} cm/sec/sec at .5 sec.\n"
+        f"   200 {line}\n{body}"
+    )
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "POINTS OF ACCEL DATA EQUALLY SPACED AT  .005 SEC.  (UNITS: CM/SEC/SEC)",
+        "points of accel data equally spaced at  .005 sec, in cm/sec2. (8f10.4)",
+    ],
+)
+def test_volume_2_as_written_before_and_since_2000(tmp_path: Path, line: str) -> None:
+    made = load(tmp_path, csmip(line), name="x.v2")
+    assert (made.npts, made.dt, made.warnings) == (COUNT, DT, ())
+    assert made.pga == pytest.approx(PEAK * STANDARD_GRAVITY, abs=1e-5)
+
+
+WRITTEN = {
+    "columns": (f"units: gal, dt: 5 ms, npts: 200\n{GAL}", "x.txt"),
+    "titles": (f"Time [ms],Acceleration [g]\n{rows(1e3 * TIMES, VALUES)}", "x.csv"),
+    "at2": (f"{AT2}{rows(VALUES, form='{:.7E}')}", "x.at2"),
+    "knet": (knet(), "x.EW"),
+    "csmip": (csmip("points of accel data equally spaced at  .005 sec, in cm/sec2."), "x.v2"),
+    "pulse": ("", "pulse:sine?amplitude=0.2 g&period=1&dt=0.005"),
+    "synthetic": ("", "synthetic:?pga=0.2g&seed=1&duration=1&dt=0.005"),
+}
+
+
+@pytest.mark.parametrize("kind", WRITTEN)
+@pytest.mark.parametrize("form", ["at2", "text"])
+def test_what_is_written_reads_back(tmp_path: Path, kind: str, form: str) -> None:
+    text, name = WRITTEN[kind]
+    made = load(tmp_path, text, name=name) if text else load_record(name)
+    out = tmp_path / ("y.at2" if form == "at2" else "y.txt")
+    out.write_text(at2_text(made) if form == "at2" else two_column_text(made), encoding="utf-8")
+    again = load_record(str(out))
+    assert (again.npts, again.dt) == (made.npts, made.dt)
+    digits = 1e-7 if form == "at2" else 1e-8
+    np.testing.assert_allclose(again.acceleration, made.acceleration, atol=digits * made.pga)
+    out.write_text(two_column_text(again), encoding="utf-8")
+    assert load_record(f"{out}").npts == made.npts
+
+
+@pytest.mark.parametrize(
+    "title",
+    ["units: furlongs", "Units of gal", "dt: 3", "DT= 3 SEC", "NPTS= 7", "number of data: 9",
+     "sampling interval (ms) = 2", "equally spaced intervals of 3 sec", "velocity time series"],
+)  # fmt: skip
+@pytest.mark.parametrize("form", ["at2", "text"])
+def test_a_title_states_nothing(tmp_path: Path, title: str, form: str) -> None:
+    motion = GroundMotion(VALUES * STANDARD_GRAVITY, DT, "x", "s", "SMC", title)
+    out = tmp_path / ("y.at2" if form == "at2" else "y.txt")
+    out.write_text(at2_text(motion) if form == "at2" else two_column_text(motion), encoding="utf-8")
+    again = load_record(str(out))
+    assert (again.npts, again.dt) == (COUNT, DT)
+    assert again.pga == pytest.approx(motion.pga, rel=1e-7)

@@ -188,8 +188,7 @@ def test_pairs_under_one_factor() -> None:
     at = selection.periods[::60]
     turned = [
         response_spectrum(
-            GroundMotion(np.cos(a) * x.acceleration + np.sin(a) * y.acceleration, x.dt),
-            at,
+            GroundMotion(np.cos(a) * x.acceleration + np.sin(a) * y.acceleration, x.dt), at
         ).pseudo_acceleration
         for a in np.radians(np.arange(0.0, 180.0, 3.0))
     ]
@@ -282,8 +281,3 @@ def test_refuses(request_: dict[str, object], message: str) -> None:
     whole: dict[str, object] = {"count": 3, "periods": (0.2, 2.0)}
     with pytest.raises(RecordError, match=message):
         SelectionRequest(**(whole | request_))  # type: ignore[arg-type]
-
-
-def test_periods_outside_the_target() -> None:
-    with pytest.raises(RecordError, match="no value at 5 s; it is defined from 0 to 4 s"):
-        load_target(TARGET).acceleration(np.array([1.0, 5.0]))

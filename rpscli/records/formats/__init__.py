@@ -58,7 +58,8 @@ _OFFSET, _MANY = 0.1, 100  # of the peak, samples
 
 def read_record(path: Path, source: str, **stated: Any) -> GroundMotion:
     """Read one record file of any known format, with the options of `read_text`."""
-    if quantity := _OTHER_QUANTITIES.get(path.suffix.lower()):
+    extension = path.suffix.lower()
+    if quantity := _OTHER_QUANTITIES.get(extension):
         raise RecordError(
             f"{path}: {path.suffix} files hold {quantity}; give the acceleration record of the "
             f"same station, {path.with_suffix('.AT2').name}"
@@ -67,18 +68,27 @@ def read_record(path: Path, source: str, **stated: Any) -> GroundMotion:
     form = _by_content(text)
     try:
         # By its extension, the format of that name says what is missing.
-        extension = path.suffix.lower()
         named = (form for form in _in_order() if extension in form.extensions)
         motion = (form or next(named, _PLAIN)).read(text)
     except RecordError as error:
         unusable = [] if form in _OURS else [o.fault for o in FORMATS.offers() if o.fault]
         raise RecordError("\n".join([str(error), *unusable])) from error
-    if motion.pga > _NONSENSE * STANDARD_GRAVITY:
+    peak, mean = motion.pga / STANDARD_GRAVITY, abs(float(motion.acceleration.mean()))
+    if peak > _NONSENSE:
         raise text.fault(
-            f"the largest value is {motion.pga / STANDARD_GRAVITY:.3g} g, which is not a"
-            " ground acceleration; the file is damaged, fetch it again"
+            f"the largest value is {peak:.3g} g, which is not a ground acceleration; the file is"
+            " damaged, fetch it again"
         )
-    return replace(motion, warnings=(*motion.warnings, *_implausible(motion)))
+    doubts = {
+        f"the mean is {mean / max(motion.pga, 1e-300):.2g} of the peak: an offset of the"
+        " instrument? Correct the record": motion.npts >= _MANY and mean > _OFFSET * motion.pga,
+        f"dt = {motion.dt:g} s is unusual for an accelerograph ({_FINEST:g} s to"
+        f" {_COARSEST:g} s): check the time step": not _FINEST <= motion.dt <= _COARSEST,
+        f"PGA = {peak:.3g} g is beyond any recorded earthquake: check the units": peak > _STRONGEST,
+        f"PGA = {peak:.3g} g is weaker than can be felt: check the units": peak < _WEAKEST,
+    }
+    told = (doubt for doubt, doubtful in doubts.items() if doubtful)
+    return replace(motion, warnings=(*motion.warnings, *told))
 
 
 def contents(path: Path) -> tuple[Contents, ...]:
@@ -119,16 +129,3 @@ def _by_content(text: RecordText) -> RecordFormat | None:
             if form.recognises(text):
                 return form
     return None
-
-
-def _implausible(motion: GroundMotion) -> tuple[str, ...]:
-    peak, mean = motion.pga / STANDARD_GRAVITY, abs(float(motion.acceleration.mean()))
-    doubts = {
-        f"the mean is {mean / max(motion.pga, 1e-300):.2g} of the peak: an offset of the"
-        " instrument? Correct the record": motion.npts >= _MANY and mean > _OFFSET * motion.pga,
-        f"dt = {motion.dt:g} s is unusual for an accelerograph ({_FINEST:g} s to"
-        f" {_COARSEST:g} s): check the time step": not _FINEST <= motion.dt <= _COARSEST,
-        f"PGA = {peak:.3g} g is beyond any recorded earthquake: check the units": peak > _STRONGEST,
-        f"PGA = {peak:.3g} g is weaker than can be felt: check the units": peak < _WEAKEST,
-    }
-    return tuple(doubt for doubt, doubtful in doubts.items() if doubtful)

@@ -23,8 +23,7 @@ from rpscli.records.formats.record_text import (
 from rpscli.records.ground_motion import UNKNOWN, GroundMotion, Recording
 from rpscli.records.quantities import NUMBER_PATTERN, UNIT_PATTERN
 
-Said = dict[str, Statement]
-"""Statements of a header, by the names of `Layout.says`."""
+Said = dict[str, Statement]  # statements of a header, by the names of `Layout.says`
 
 
 class Words(NamedTuple):
@@ -36,38 +35,37 @@ class Words(NamedTuple):
 
 @dataclass(frozen=True)
 class Layout:
-    """A format: how a channel begins, what its header says, and how the values are written."""
+    """A format: how a channel begins, what its header says, and how the values are written.
+
+    `begins` is the first line of a file, and of each channel in it, `corrected` that of a channel
+    that can be read, `refusal` the message for others. `header` is the number of its lines, or the
+    line that announces the values, its last one. It `says` the `count`, `step` [s], `rate` [1/s],
+    `duration` [s], `unit`, `peak`, `quantity` and `scale`, which may all be said again, alike, the
+    `place` of the station, and what a `Recording` has; for what is `needed` of these, and missing,
+    `lacks` is the message. `label` is the number and name of a channel in its header, empty for
+    formats with one channel; `unit` that of all files, and `width` that of a row, None where the
+    header says it. There may be several `series` of one length, without a line between, the first
+    one acceleration; a line `ends` them. `numbers` reads the blocks of numbers before or behind
+    the last line of the header, adds what they say, and tells where the values begin. Values are
+    `centred` if they have the offset of the sensor, which is removed, and that is said.
+    """
 
     name: str
     extensions: tuple[str, ...]
     begins: str
-    """The first line of a file, and of each channel in it."""
     corrected: str
-    """That of a channel that can be read."""
     refusal: str
-    """The message for other titles."""
     header: int | str
-    """Number of its lines, or the line that announces the values, its last one."""
     says: Mapping[str, Words]
-    """`count`, `step` [s], `rate` [1/s], `duration` [s], `unit`, `peak`, `quantity`, `scale`, which
-    may all be said again, alike; the `place` of the station, and what a `Recording` has."""
     needed: tuple[str, ...]
     lacks: str = "the header lacks {}; fetch the file again"
     label: str = ""
-    """Number and name of a channel in its header; empty for formats with one channel."""
     unit: str | None = None
-    """That of all files of the format."""
     width: int | None = None
-    """Values in a row; None where the header says it."""
     series: int = 1
-    """Series of one length, without a line between; the first one is acceleration."""
     ends: str | None = None
-    """The line behind the values."""
     numbers: Callable[[RecordText, int, Said], int] | None = None
-    """Reads the blocks of numbers before or behind the last line of the header, adds what they say,
-    and tells where the values begin."""
     centred: bool = False
-    """True if values have the offset of the sensor, which is removed, and that is said."""
 
     def recognises(self, text: RecordText) -> bool:
         """True for a file that begins like one of this format."""
@@ -108,32 +106,29 @@ class Layout:
 
     def stated(self, text: RecordText, channel: Channel) -> tuple[Stated, int, Said]:
         """The statements of the header of a channel, and the line where its values begin."""
-        start = channel.line
-        end = start + self.header if isinstance(self.header, int) else self._announced(text, start)
+        start, heads = channel.line, text.heads
+        first = end = start + self.header if isinstance(self.header, int) else -1
+        if isinstance(self.header, str):
+            begins = re.compile(self.header, re.IGNORECASE).match
+            end = next((at for at in range(start, len(heads)) if begins(heads[at])), -1)
+            first = end + 1
+            if end < 0:
+                raise text.fault(self.lacks.format("the values"), start)
         said = Said()
         for name, words in self.says.items():
             found = [
                 Statement(words.name, match[1].strip(), index)
-                for index in range(start, min(end + 1, len(text.heads)))
-                if (match := re.search(words.pattern, text.heads[index], re.IGNORECASE))
+                for index in range(start, min(end + 1, len(heads)))
+                if (match := re.search(words.pattern, heads[index], re.IGNORECASE))
             ]
-            if found:
-                said[name] = found[0]
-                if name not in Recording._fields:
-                    text.agreed(found, lambda each: each.value)
+            said.update((name, each) for each in found[:1])
+            if name not in Recording._fields:
+                text.agreed(found, lambda each: each.value)
         if missing := [self.says[name].name for name in self.needed if name not in said]:
             raise text.fault(self.lacks.format(", ".join(missing)), start)
-        first = end + isinstance(self.header, str)
         if self.numbers is not None:
             first = self.numbers(text, end, said)
         return self._meant(text, said, channel), first, said
-
-    def _announced(self, text: RecordText, start: int) -> int:
-        pattern = re.compile(str(self.header), re.IGNORECASE)
-        for index in range(start, len(text.heads)):
-            if pattern.match(text.heads[index]):
-                return index
-        raise text.fault(self.lacks.format("the values"), start)
 
     def _meant(self, text: RecordText, said: Said, channel: Channel) -> Stated:
         """The statements as values."""
@@ -147,13 +142,12 @@ class Layout:
         known = {name: said[name].value for name in Recording._fields if name in said}
         if "date" in said:
             known["origin"] = " ".join([said["date"].value, known.get("origin", "")]).strip()
-        magnitude = said.get("magnitude", said.get("other_magnitude"))
         if self.label:
             known["direction"] = channel.label.partition("(")[0].strip()
         recording = Recording(**known)  # type: ignore[arg-type]
+        magnitude = said.get("magnitude", said.get("other_magnitude"))
         recording = recording._replace(magnitude=magnitude and text.number(magnitude))
-        count, duration, peak = (said.get(name) for name in ("count", "duration", "peak"))
-        return Stated(unit, step, 0.0, count, duration, peak, recording=recording)
+        return Stated(unit, step, 0.0, said.get("duration"), said.get("peak"), recording=recording)
 
     def read(self, text: RecordText) -> GroundMotion:
         """The acceleration of one channel."""
@@ -165,10 +159,10 @@ class Layout:
         stated, first, said = self.stated(text, channel)
         width = self.width or (int(said["width"].value) if "width" in said else None)
         count = text.count(said["count"])
-        rows, ends = -(-count // (width or 1)), self.ends and re.compile(self.ends, re.IGNORECASE)
+        rows = -(-count // (width or 1))
         begin = [first + place * rows for place in range(self.series)]
-        values, *_ = (
-            text.series(start, count, width=width, stop=stop, closed_by=ends or None)
+        (values, _), *_ = (
+            text.series(start, count, width=width, stop=stop, closed_by=self.ends)
             for start, stop in zip(begin, [*begin[1:], None], strict=True)
         )
         of, place = stated.recording, said["place"].value if "place" in said else ""
@@ -176,27 +170,21 @@ class Layout:
         if self.label:
             words.append(f"channel {channel.number}, {channel.label}")
         name = ""
-        if "scale" in said:
-            values = values * _factor(text, said["scale"])
+        if "scale" in said:  # such as `3920(gal)/6182761`
+            if (match := re.fullmatch(r"(.*)\(gal\)\s*/(.*)", said["scale"].value)) is None:
+                raise text.fault(
+                    "the header lacks Scale Factor in the form of K-NET; fetch it again",
+                    said["scale"].line,
+                )
+            parts = (said["scale"]._replace(value=part) for part in match.groups())
+            gal, counts = (text.number(part, positive=True) for part in parts)
+            values = values * (gal / counts)
         if self.centred:
             mean = float(values.mean())
             values = values - mean
             words.append(f"mean of {mean:.4g} {stated.unit} removed")
             name = text.path.name.replace(".", "_")  # the extension tells the component
         return text.motion(stated, values, self.name, "; ".join(filter(None, words)), name=name)
-
-
-def _factor(text: RecordText, scale: Statement) -> float:
-    """A scale such as `3920(gal)/6182761`."""
-    match = re.fullmatch(r"(.*)\(gal\)\s*/(.*)", scale.value)
-    if match is None:
-        raise text.fault(
-            "the header lacks Scale Factor in the form of K-NET; fetch it again", scale.line
-        )
-    gal, counts = (
-        text.number(scale._replace(value=part), positive=True) for part in match.groups()
-    )
-    return gal / counts
 
 
 _NUMBER = rf"({NUMBER_PATTERN})"
@@ -214,8 +202,8 @@ def _cosmos_numbers(text: RecordText, end: int, said: Said) -> int:
         announced = re.match(r"\s*(\d+)\s+Real-header values follow", line, re.IGNORECASE)
         if announced:
             count = text.count(Statement("real-header values", announced[1], index))
-            words = re.compile(r"\s*(?:\|.*|.*[A-Za-z]{3})")
-            reals = text.series(index + 1, count, closed_by=words).tolist()
+            words = r"\s*(?:\|.*|.*[A-Za-z]{3})"
+            reals = text.series(index + 1, count, closed_by=words)[0].tolist()
             break
     if len(reals) < 64 or reals[61] <= 0.0:
         raise text.fault(
@@ -229,8 +217,8 @@ def _cosmos_numbers(text: RecordText, end: int, said: Said) -> int:
 
 def _smc_numbers(text: RecordText, end: int, said: Said) -> int:
     """48 integers and 50 reals, then comments."""
-    integers = text.series(end, 48, stop=end + 6)
-    reals = text.series(end + 6, 50, stop=end + 16)
+    integers, _ = text.series(end, 48, stop=end + 6)
+    reals, _ = text.series(end + 6, 50, stop=end + 16)
     comments, count, rate = int(integers[15]), int(integers[16]), reals[1]
     if not (0 <= comments < MOST_VALUES and 0 < count < MOST_VALUES and 0.0 < rate < 1e4):
         raise text.fault(
@@ -241,12 +229,6 @@ def _smc_numbers(text: RecordText, end: int, said: Said) -> int:
     for name, value in {"count": count, "rate": rate, "peak": peak}.items():
         said[name] = Statement(name, f"{value}", end)
     return end + 16 + comments
-
-
-def _geonet_numbers(text: RecordText, end: int, _said: Said) -> int:
-    """Ten rows of ten; a lost line of text shows in their number."""
-    text.series(end, 100, width=10, stop=end + 10)
-    return end + 10
 
 
 def _knet_numbers(text: RecordText, end: int, said: Said) -> int:
@@ -339,7 +321,7 @@ GEONET = Layout(
     begins=r"Corrected accelerogram\b(?!.*\bCHAN\s+\d)",
     corrected=r"Corrected accelerogram\b",
     refusal="the file is {!r}; only corrected accelerograms can be read",
-    header=16,
+    header=26,  # ten rows of numbers included
     label=r"^()Component\s+(\S+)",
     says={
         "count": Words("Number of points", r"^Number of points\s+(\d+)"),
@@ -359,7 +341,6 @@ GEONET = Layout(
     width=10,
     series=3,
     ends=r"Corrected accelerogram\b",
-    numbers=_geonet_numbers,
 )
 
 KNET = Layout(
@@ -423,5 +404,4 @@ SMC = Layout(
     numbers=_smc_numbers,
 )
 
-LAYOUTS = (COSMOS, CSMIP, GEONET, KNET, ESM, SMC)
-"""In the order of recognition."""
+LAYOUTS = (COSMOS, CSMIP, GEONET, KNET, ESM, SMC)  # in the order of recognition

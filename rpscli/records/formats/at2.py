@@ -8,16 +8,12 @@ before or after their numbers, with or without "=", on one line or on two.
 from __future__ import annotations
 
 import re
-from itertools import chain, takewhile
 from typing import NamedTuple
-
-import numpy as np
 
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.records.formats.record_text import (
     STATED_PATTERN,
     STEP_PATTERN,
-    Array,
     Contents,
     RecordText,
     Stated,
@@ -26,13 +22,7 @@ from rpscli.records.formats.record_text import (
     steps_in,
 )
 from rpscli.records.ground_motion import UNKNOWN, GroundMotion, Recording
-from rpscli.records.quantities import (
-    NUMBER_PATTERN,
-    UNIT_PATTERN,
-    last_digit,
-    numbers_in,
-    why_no_numbers,
-)
+from rpscli.records.quantities import NUMBER_PATTERN, UNIT_PATTERN, last_digit, numbers_in
 from rpscli.version import VERSION
 
 FORMAT = "PEER AT2"
@@ -84,10 +74,21 @@ def read_at2(text: RecordText) -> GroundMotion:
             "no header line gives NPTS and DT, so this is not a PEER AT2 file; for plain columns"
             " of numbers rename it to .txt and give ?dt= and ?units="
         )
-    stated, note = _stated(text, header)
-    values, rest = _values(text, header)
+    stated, rounded = _stated(text, header)
+    values, end = text.series(header.start, text.count(header.npts), closed_by="")
+    rest = [line for line in text.lines[end:] if line.strip()]
+    first = f"first {rest[0].strip()[:40]!r}" if rest else ""
+    if any(map(numbers_in, rest)):
+        raise text.fault(
+            f"more numbers follow after the {values.size} values and {first}; keep one record in a"
+            " file",
+            end,
+        )
+    note = [f"{len(rest)} line(s) of text after the values, {first}"] * bool(rest)
     title = _title(text, header)
-    return text.motion(stated, values, FORMAT, "; ".join(title) or "no title", *note, *rest)
+    return text.motion(
+        stated, values, FORMAT, "; ".join(title) or "no title", *filter(None, (rounded, *note))
+    )
 
 
 def contents_of_at2(text: RecordText) -> list[Contents]:
@@ -132,7 +133,7 @@ def _header(text: RecordText) -> _Header | None:
     return None
 
 
-def _stated(text: RecordText, header: _Header) -> tuple[Stated, list[str]]:
+def _stated(text: RecordText, header: _Header) -> tuple[Stated, str]:
     """Statements of the header, each once or alike, and a note on a step that may be rounded."""
     counts, steps = [header.npts], [header.step]
     for index, line in enumerate(text.heads[: header.start]):
@@ -145,58 +146,30 @@ def _stated(text: RecordText, header: _Header) -> tuple[Stated, list[str]]:
         if not _BOTH.search(line):
             counts += [Statement("NPTS", numeral, index) for numeral in _COUNT_GIVEN.findall(line)]
             steps += steps_in("DT", _STEP_GIVEN, line, index)
-    unit = _unit(text, header)
+    # The line of the units stands next to that of NPTS: titles above may mention other units.
+    units: list[Statement] = []
+    for index in range(header.start - 1, -1, -1):
+        line = text.heads[index]
+        if spelling := (_UNITS_DECLARED if units else _UNITS).search(line):
+            units.insert(0, Statement("UNITS", spelling[1], index))
+        elif not units and _UNITS_LINE.search(line):
+            units.append(Statement("the header", line, index))  # which names none
+    unit = text.unit(units)
     text.agreed(counts, text.count)
     text.agreed(steps, text.step)
     # 1/256 s is printed as .0039 by PEER: a whole rate that prints the same, but is not the same.
     step, numeral = text.step(header.step), header.step.value.partition(" ")[0]
     resolution = last_digit(numeral) * step / text.number(header.step._replace(value=numeral))
-    stated = Stated(unit, step, resolution, header.npts, recording=_recording(_title(text, header)))
+    stated = Stated(unit, step, resolution, recording=_recording(_title(text, header)))
     dt = text.agreed_dt(step, 0.51 * resolution / step)
     rate = max(1, round(1.0 / dt))
     if abs(rate * dt - 1.0) < 1e-9 or abs(1.0 / rate - dt) > 0.5 * resolution:
-        return stated, []
-    note = (
+        return stated, ""
+    return stated, (
         f"DT = {step:g} s is not a whole number of samples a second and may be rounded; taken"
         f" as printed, times may be off by {50.0 * resolution / step:.1g} %; if it is"
         f" 1/{rate} s, say ?dt={1.0 / rate:.9g}"
     )
-    return stated, [note]
-
-
-def _unit(text: RecordText, header: _Header) -> str | None:
-    # The line of the units stands next to that of NPTS: titles above may mention other units.
-    said: list[Statement] = []
-    for index in range(header.start - 1, -1, -1):
-        line = text.heads[index]
-        pattern = _UNITS_DECLARED if said else _UNITS
-        if spelling := pattern.search(line):
-            said.insert(0, Statement("UNITS", spelling[1], index))
-        elif not said and _UNITS_LINE.search(line):
-            said.append(Statement("the header", line, index))  # which names none
-    return text.unit(said)
-
-
-def _values(text: RecordText, header: _Header) -> tuple[Array, list[str]]:
-    """The values, and what is said of text behind them."""
-    rows = takewhile(lambda row: row is not None, map(numbers_in, text.lines[header.start :]))
-    read = [row or [] for row in rows]
-    values, count = np.array([*chain.from_iterable(read)]), text.count(header.npts)
-    rest = [line for line in text.lines[header.start + len(read) :] if line.strip()]
-    first = next((f"{line.strip()[:40]!r}{why_no_numbers(line)}" for line in rest), "the end")
-    at = header.start + len(read) if rest else header.npts.line
-    if values.size != count:
-        raise text.fault(
-            f"NPTS = {count}, but the file holds {values.size} values up to {first}; fetch it"
-            f" again, or write NPTS={values.size} if all its values belong to the record",
-            at,
-        )
-    if any(map(numbers_in, rest)):
-        raise text.fault(
-            f"more numbers follow after the {count} values and {first}; keep one record in a file",
-            at,
-        )
-    return values, [f"{len(rest)} line(s) of text after the values, first {first}"] * bool(rest)
 
 
 _VALUES_PER_LINE = 5

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import re
 from array import array
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -88,13 +88,19 @@ class _Title(NamedTuple):
         return bool(_ACCELERATION.fullmatch(self.name) or canonical_unit(self.unit or "-"))
 
 
-@dataclass(frozen=True)
-class _Table:
-    header: tuple[Statement, ...]  # lines of text before the first number
-    values: Array  # (numbers,) of all rows, one after the other
-    widths: NDArray[np.int64]  # (rows,) numbers of each
-    lines: NDArray[np.int64]  # (rows,) of the file
-    above: int  # line of the words above the first number, but for rulers
+class _Table(NamedTuple):
+    """Lines of text before the first number, numbers of all rows, one after the other, and rows.
+
+    Of rows the number of values and the line of the file; `above` is the line of the words above
+    the first number, but for rulers, `announced` the number of values or rows.
+    """
+
+    header: tuple[Statement, ...]
+    values: Array
+    widths: NDArray[np.int64]
+    lines: NDArray[np.int64]
+    above: int
+    announced: int | None
 
     @property
     def words(self) -> str:
@@ -112,7 +118,6 @@ def recognises_columns(text: RecordText) -> bool:
 def read_columns(text: RecordText) -> GroundMotion:
     """Read a series of accelerations, or the rows of a bare AT2 body."""
     table = _table(text)
-    count = _count(text, table)
     width = int(table.widths[0])
     even = not np.any(table.widths != width)
     titles = _titles(table, width)
@@ -123,7 +128,7 @@ def read_columns(text: RecordText) -> GroundMotion:
     if even and width > 1 and (width == 2 or titles):
         return _columns(text, table, titles)
     text.single_channel()
-    note = [] if width == 1 and even else [_wrapped(text, table, count)]
+    note = [] if width == 1 and even else [_wrapped(text, table)]
     return _sequence(text, table, titles[0] if width == 1 and titles else None, *note)
 
 
@@ -197,66 +202,52 @@ def _table(text: RecordText) -> _Table:
         header.append(Statement("count and step", f"npts: {count}, dt: {step}", lines[0]))
         del values[:2], widths[0], lines[0]
     if len(widths) < 2:
-        for index, line in enumerate(text.heads):
-            if why := why_no_numbers(line):
-                raise text.fault(f"{line.strip()[:40]!r} is not a row of numbers{why}", index)
+        odd = next((i for i, line in enumerate(text.heads) if why_no_numbers(line)), None)
+        if odd is not None:
+            line = text.heads[odd]
+            why = why_no_numbers(line)
+            raise text.fault(f"{line.strip()[:40]!r} is not a row of numbers{why}", odd)
         raise text.fault(
             f"no known format of ground motions: {len(widths)} row(s) of numbers; export the "
             f"record as PEER AT2, or as columns of time and acceleration"
         )
     kept = tuple(line for line in header if line.value)
-    return _Table(kept, np.array(values), np.array(widths), np.array(lines), above)
-
-
-def _count(text: RecordText, table: _Table) -> int | None:
-    """The number of values, or of rows, that the header announces."""
-    said = [Statement("npts", number, line.line) for line in table.header
-            for number in _COUNT.findall(line.value)]  # fmt: skip
-    count = text.count(said[0]) if text.agreed(said, text.count) else None
-    rows, numbers = table.widths.size, table.values.size
-    if count not in (None, numbers, rows):
+    said = [
+        Statement("npts", number, of.line) for of in kept for number in _COUNT.findall(of.value)
+    ]
+    if (announced := text.agreed(said, text.count)) not in (None, len(values), len(widths)):
         raise text.fault(
-            f"the header announces {count} values and the file holds {rows} row(s)"
-            f" and {numbers} number(s); fetch it again, or correct the header"
+            f"the header announces {announced} values and the file holds {len(widths)} row(s)"
+            f" and {len(values)} number(s); fetch it again, or correct the header"
         )
-    return count
+    return _Table(kept, np.array(values), np.array(widths), np.array(lines), above, announced)
 
 
 def _columns(text: RecordText, table: _Table, titles: list[_Title]) -> GroundMotion:
     """One of several columns, with the times of another."""
     width = int(table.widths[0])
     values = table.values.reshape(-1, width)
-    place = _chosen(text, titles) if titles else 1
+    series = [i for i, title in enumerate(titles) if title.is_acceleration]
+    series = series or [i for i, title in enumerate(titles) if not title.is_time]
+    place = series[0] if titles else 1
+    if titles and (text.channel is not None or len(series) != 1):
+        named = [Channel(i + 1, titles[i].line, titles[i].name) for i in series]
+        place = text.chosen(named).number - 1
     times = next((i for i, title in enumerate(titles) if title.is_time and i != place), None)
     if times is None and width == 2 and not (titles and text.channel):
         times = 1 - place
     title = titles[place] if titles else None
     stated = _stated(text, table, title)
-    warnings: list[str] = []
+    late: list[str] = []
     if times is not None:
-        stated, warnings = _timed(text, table, stated, values[:, times], times, titles)
+        stated, late = _timed(text, table, stated, values[:, times], times, titles)
     words = table.words + (f", column {title.name}" if title and width > 2 else "")
     form = "two-column text" if width == 2 else "columns of text"
-    return text.motion(stated, values[:, place], form, words, *warnings)
-
-
-def _chosen(text: RecordText, titles: list[_Title]) -> int:
-    """The column that is wanted: the only acceleration, or the one that the user names."""
-    series = [i for i, title in enumerate(titles) if title.is_acceleration]
-    series = series or [i for i, title in enumerate(titles) if not title.is_time]
-    if text.channel is None and len(series) == 1:
-        return series[0]
-    named = [Channel(i + 1, titles[i].line, titles[i].name) for i in series]
-    return text.chosen(named).number - 1
+    return text.motion(stated, values[:, place], form, words, *late)
 
 
 def _timed(
-    text: RecordText,
-    table: _Table,
-    stated: Stated,
-    times: Array,
-    place: int,
-    titles: list[_Title],
+    text: RecordText, table: _Table, stated: Stated, times: Array, place: int, titles: list[_Title]
 ) -> tuple[Stated, list[str]]:
     """The step of a column of times, and what is to be said of them."""
     numerals = (numerals_in(_plain(text.lines[line]))[place] for line in table.lines)
@@ -278,10 +269,10 @@ def _timed(
             f"the header says dt = {stated.step:g} s and the times advance by {step:g} s; "
             f"correct the one or the other"
         )
-    late = factor * times[0]
-    late_by = [f"times begin at {late:g} s; taken as the record's zero"]
-    said = late_by if abs(late) > 0.5 * coarsest else []
-    return replace(stated, step=step, resolution=known_to / 0.51), said
+    begin = factor * times[0]
+    late = [f"times begin at {begin:g} s; taken as the record's zero"]
+    late = late * bool(abs(begin) > 0.5 * coarsest)
+    return replace(stated, step=step, resolution=known_to / 0.51), late
 
 
 def _sequence(text: RecordText, table: _Table, title: _Title | None, *doubts: str) -> GroundMotion:
@@ -303,7 +294,7 @@ def _sequence(text: RecordText, table: _Table, title: _Title | None, *doubts: st
     return text.motion(stated, values, "one-column text", table.words, *doubts)
 
 
-def _wrapped(text: RecordText, table: _Table, count: int | None) -> str:
+def _wrapped(text: RecordText, table: _Table) -> str:
     """A note on rows that were read one after the other; refuses rows that look otherwise."""
     width = int(table.widths[0])
     ragged = np.flatnonzero(table.widths[:-1] != width)
@@ -315,10 +306,10 @@ def _wrapped(text: RecordText, table: _Table, count: int | None) -> str:
             int(table.lines[bad]),
         )
     first = table.values[::width]
-    if count == table.widths.size:
+    if table.announced == table.widths.size:
         raise text.fault(
-            f"the header announces {count} values, as many as there are rows of {width} numbers:"
-            " name the columns in a line of titles, and one of them by ?channel=NAME"
+            f"the header announces {table.announced} values, as many as there are rows of {width}"
+            " numbers: name the columns in a line of titles, and one of them by ?channel=NAME"
         )
     if width == 2 or (first.size > 2 and bool(np.all(np.diff(first) > 0.0))):
         raise text.fault(
@@ -338,14 +329,12 @@ def _stated(text: RecordText, table: _Table, title: _Title | None) -> Stated:
         steps += steps_in("dt", _STEP, value, line)
     if title and title.unit and (canonical_unit(title.unit) or not _NO_UNIT.fullmatch(title.unit)):
         units.append(Statement(f"the title {title.name}", title.unit, title.line))
-    step = text.agreed(steps, text.step)
-    peak = next((m for line in table.header if (m := _PEAK.search(line.value))), None)
-    return Stated(
-        text.unit(units),
-        step and text.step(step),
-        peak=Statement("peak", peak[2], 0) if peak else None,
-        peak_unit=canonical_unit(peak[1]) if peak else None,
-    )
+    stated = Stated(text.unit(units), text.agreed(steps, text.step))
+    for each in table.header:
+        if peak := _PEAK.search(each.value):
+            said = each._replace(name="peak", value=peak[2])
+            return replace(stated, peak=said, peak_unit=canonical_unit(peak[1]))
+    return stated
 
 
 def _refuse_other_quantities(text: RecordText, table: _Table, titles: list[_Title]) -> None:

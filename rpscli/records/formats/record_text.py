@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,6 +27,7 @@ from rpscli.records.quantities import (
 )
 
 Array = NDArray[np.float64]
+Meant = TypeVar("Meant")
 
 STATED_PATTERN = rf"{NUMBER_PATTERN}(?:,[0-9]+)?"
 """A number as a header states it; one with a decimal comma is then refused by name."""
@@ -43,9 +44,7 @@ _TIME_UNITS = {
 }
 _OTHER_TIMES = re.compile(r"(?:us|usec|ns|min|minutes?|hz|h|hours?|days?|years?)", re.IGNORECASE)
 
-MOST_VALUES = 10_000_000
-"""Of one series: more than a day at a hundred samples a second."""
-
+MOST_VALUES = 10_000_000  # of one series: more than a day at a hundred samples a second
 _SHOWN = 40  # letters of a value in a message
 _HEADER_WIDTH = 1000  # letters
 _LARGEST_FILE = 200_000_000  # bytes; a day at a hundred samples a second has a tenth
@@ -90,7 +89,6 @@ class Stated:
     unit: str | None = None
     step: float | None = None
     resolution: float = 0.0
-    count: Statement | None = None
     duration: Statement | None = None
     peak: Statement | None = None
     peak_unit: str | None = None
@@ -99,20 +97,18 @@ class Stated:
 
 @dataclass(frozen=True)
 class RecordText:
-    """Lines of a record file, and the options that came with its source."""
+    """Lines of a record file without their ends, and the options that came with its source.
+
+    A stray carriage return counts as part of a line end. `dt` [s], the canonical unit `units` and
+    the `channel`, its number, from 1, or its name, are those that the user gave.
+    """
 
     path: Path
-    """The file that was read."""
     source: str
-    """The source as the user wrote it."""
     lines: tuple[str, ...]
-    """Without line ends; a stray carriage return counts as part of a line end."""
     dt: float | None = None
-    """Sampling interval that the user gave [s]."""
     units: str | None = None
-    """Canonical unit of acceleration that the user gave."""
     channel: str | None = None
-    """The channel wanted from a file that holds several: its number, from 1, or its name."""
 
     @cached_property
     def heads(self) -> tuple[str, ...]:
@@ -148,23 +144,22 @@ class RecordText:
 
     def agreed_dt(self, stated: float | None, tolerance: float = 1e-9) -> float:
         """The sampling interval [s], from the file or from a user who does not contradict it."""
-        if (dt := stated if self.dt is None else self.dt) is None:
+        dt, fault = stated if self.dt is None else self.dt, ""
+        if dt is None:
             raise self.fault(
                 "the file does not state its sampling interval and none was given; say "
                 "?dt=0.005 after the file name, or write a header line 'dt: 0.005'"
             )
         if dt <= 0.0:
-            raise self.fault(f"dt = {dt} s must be positive")
-        if not _SHORTEST_STEP <= dt <= _LONGEST_STEP:
-            raise self.fault(
-                f"dt = {dt:g} s cannot be the time step of an acceleration record, which lies"
-                f" between {_SHORTEST_STEP:g} s and {_LONGEST_STEP:g} s; correct the file or ?dt="
-            )
-        if stated is not None and abs(dt - stated) > tolerance * dt:
-            raise self.fault(
-                f"dt = {dt} s contradicts the file, which says {stated} s; leave dt out, "
-                f"or correct the file if its header is wrong"
-            )
+            fault = " must be positive"
+        elif not _SHORTEST_STEP <= dt <= _LONGEST_STEP:
+            fault = " cannot be the time step of an acceleration record, which lies between"
+            fault += f" {_SHORTEST_STEP:g} s and {_LONGEST_STEP:g} s; correct the file or ?dt="
+        elif stated is not None and abs(dt - stated) > tolerance * dt:
+            fault = f" contradicts the file, which says {stated} s; leave dt out, or correct the"
+            fault += " file if its header is wrong"
+        if fault:
+            raise self.fault(f"dt = {dt} s{fault}")
         return dt
 
     def single_channel(self) -> None:
@@ -189,32 +184,26 @@ class RecordText:
                 f"the file holds {len(channels)} channels; say which one by "
                 f"?channel={channels[0].number} after the file name ({listing})"
             )
-        asked = self.channel.strip().lower()
+        asked, shown = self.channel.strip().lower(), self.channel[:60]
         wanted = [of for of in channels if asked in (str(of.number), of.label.strip().lower())]
         if not wanted:
-            raise self.fault(f"there is no channel {self.channel[:60]}; the file has {listing}")
+            raise self.fault(f"there is no channel {shown}; the file has {listing}")
         if len(wanted) > 1:
-            raise self.fault(f"channel {self.channel[:60]} comes {len(wanted)} times: {listing}")
+            raise self.fault(f"channel {shown} comes {len(wanted)} times: {listing}")
         return wanted[0]
 
     def number(self, stated: Statement, *, positive: bool = False) -> float:
         """The finite number that a header states."""
-        name, numeral, line = stated.name, stated.value.strip(), stated.line
+        numeral, fault = stated.value.strip(), ""
+        shown = numeral[:_SHOWN]
         if re.fullmatch(r"[+-]?[0-9]*,[0-9]+", numeral):
-            short = numeral[:_SHOWN]
-            raise self.fault(
-                f"{name} = {short} has a decimal comma; write {short.replace(',', '.')}", line
-            )
-        if not re.fullmatch(NUMBER_PATTERN, numeral) or not math.isfinite(to_float(numeral)):
-            raise self.fault(
-                f"{name} = {numeral[:_SHOWN]!r} is not a finite number; correct the header, or"
-                " fetch the file again",
-                line,
-            )
-        if positive and to_float(numeral) <= 0.0:
-            raise self.fault(
-                f"{name} = {numeral[:_SHOWN]} must be positive; correct the header", line
-            )
+            fault = f"{shown} has a decimal comma; write {shown.replace(',', '.')}"
+        elif not re.fullmatch(NUMBER_PATTERN, numeral) or not math.isfinite(to_float(numeral)):
+            fault = f"{shown!r} is not a finite number; correct the header, or fetch the file again"
+        elif positive and to_float(numeral) <= 0.0:
+            fault = f"{shown} must be positive; correct the header"
+        if fault:
+            raise self.fault(f"{stated.name} = {fault}", stated.line)
         return to_float(numeral)
 
     def count(self, stated: Statement) -> int:
@@ -244,33 +233,33 @@ class RecordText:
         return factor or 1.0
 
     def agreed(
-        self, statements: Sequence[Statement], meaning: Callable[[Statement], object]
-    ) -> Statement | None:
-        """The one thing that several statements of a header say; None if there is none."""
-        first = next(iter(statements), None)
-        said = first and meaning(first)
-        for other in statements[1:]:
-            if first is not None and meaning(other) != said:
+        self, said: Sequence[Statement], meaning: Callable[[Statement], Meant]
+    ) -> Meant | None:
+        """The meaning that several statements of a header share; None if there is none."""
+        for other in said[1:]:
+            if meaning(other) != meaning(said[0]):
                 raise self.fault(
                     f"{other.name} = {other.value.strip()[:_SHOWN]} contradicts"
-                    f" {first.name} = {first.value.strip()[:_SHOWN]} of line {first.line + 1};"
-                    " correct the header",
+                    f" {said[0].name} = {said[0].value.strip()[:_SHOWN]} of line"
+                    f" {said[0].line + 1}; correct the header",
                     other.line,
                 )
-        return first
+        return meaning(said[0]) if said else None
 
     def unit(self, statements: Sequence[Statement]) -> str | None:
         """The one unit of acceleration that several statements name."""
-        for name, spelling, line in statements:
-            if canonical_unit(spelling) is None:
+
+        def meaning(each: Statement) -> str:
+            if (unit := canonical_unit(each.value)) is None:
                 raise self.fault(
-                    f"{name} says {spelling.strip()[:_SHOWN]!r}, which is not a unit of"
+                    f"{each.name} says {each.value.strip()[:_SHOWN]!r}, which is not a unit of"
                     f" acceleration that is known ({KNOWN_UNITS}); correct it, or give the"
                     " acceleration file",
-                    line,
+                    each.line,
                 )
-        said = self.agreed(statements, lambda each: canonical_unit(each.value))
-        return said and canonical_unit(said.value)
+            return unit
+
+        return self.agreed(statements, meaning)
 
     def series(
         self,
@@ -279,73 +268,64 @@ class RecordText:
         *,
         width: int | None = None,
         stop: int | None = None,
-        closed_by: re.Pattern[str] | None = None,
-    ) -> Array:
-        """Exactly `count` numbers of the lines from `start` on; blank lines are skipped."""
-        # Rows have `width` numbers, or as many as the first one, but for the last.
-        rows: list[tuple[int, list[float]]] = []
-        index, end = start, len(self.lines) if stop is None else min(stop, len(self.lines))
+        closed_by: str | None = None,
+    ) -> tuple[Array, int]:
+        """Exactly `count` numbers of the lines from `start` on, and the line behind them.
+
+        Rows but the last have `width` numbers, if that is given; blank lines are skipped. Behind
+        the values stands the line `stop`, the end of the file, or a line `closed_by` a pattern.
+        """
+        values, last = list[float](), start
+        index, end = start, min(stop or len(self.lines), len(self.lines))
         while index < end and (row := numbers_in(self.lines[index])) is not None:
-            rows += [(index, row)] * bool(row)
-            index += 1
-        found, line = sum(len(row) for _, row in rows), "".join(self.lines[index : index + 1])
-        closed = index == end or (closed_by is not None and closed_by.match(line))
-        if found != count or not closed:
+            short = width and values and len(values) % width
+            if width and row and (short or len(row) > width):
+                at, held = (last, len(values) % width) if short else (index, len(row))
+                raise self.fault(
+                    f"{held} value(s) in a row where the format has {width}; the file is damaged,"
+                    " fetch it again",
+                    at,
+                )
+            values += row
+            index, last = index + 1, index if row else last
+        line = "".join(self.lines[index : index + 1])
+        ended = closed_by is not None and re.match(closed_by, line, re.IGNORECASE)
+        if len(values) != count or not (index == end or ended):
             before = f"{line.strip()[:_SHOWN]!r}{why_no_numbers(line)}" if line else "the end"
             raise self.fault(
-                f"the header announces {count} values, and {found} stand before {before}; keep one"
-                " record in a file, and fetch it again if it is damaged",
+                f"the header announces {count} values, and {len(values)} stand before {before};"
+                " keep one record in a file, fetch it again if it is damaged, or correct the count",
                 min(index, len(self.lines) - 1),
             )
-        width = width or len(rows[0][1])
-        for index, row in rows:
-            if len(row) != width and not (index == rows[-1][0] and len(row) < width):
-                raise self.fault(
-                    f"{len(row)} value(s) in a row where the format has {width}; the file is"
-                    " damaged, fetch it again",
-                    index,
-                )
-        return np.array([value for _, row in rows for value in row])
+        return np.array(values), index
 
     def motion(
-        self,
-        stated: Stated,
-        values: Array,
-        form: str,
-        description: str,
-        *doubts: str,
-        name: str = "",
+        self, stated: Stated, values: Array, form: str, words: str, *doubts: str, name: str = ""
     ) -> GroundMotion:
         """The motion of values in their unit, held against what the header states of them."""
         unit, factor = self.agreed_factor(stated.unit)
         tolerance = 0.51 * stated.resolution / stated.step if stated.step else 0.0
         dt = self.agreed_dt(stated.step, max(tolerance, 1e-9))
-        if stated.duration is not None:
-            name_of, spelled, line = stated.duration
-            duration, rounding = self.number(stated.duration), last_digit(spelled)
-            if abs(duration - (values.size - 0.5) * dt) > 0.51 * dt + rounding:
+        if (said := stated.duration) is not None:
+            off = abs(self.number(said) - (values.size - 0.5) * dt)
+            if off > 0.51 * dt + last_digit(said.value):
                 raise self.fault(
-                    f"{name_of} = {spelled[:_SHOWN]} s, but {values.size} values {dt:g} s apart"
-                    f" last {values.size * dt:g} s; correct the header, or fetch the file again",
-                    line,
+                    f"{said.name} = {said.value[:_SHOWN]} s, but {values.size} values {dt:g} s"
+                    f" apart last {values.size * dt:g} s; correct the header, or fetch the file"
+                    " again",
+                    said.line,
                 )
-        if stated.peak is not None:
+        if (said := stated.peak) is not None:
             of_peak = unit_factor(stated.peak_unit or unit) / factor
-            peak, said = float(np.max(np.abs(values))), of_peak * abs(self.number(stated.peak))
-            off = 0.51 * of_peak * last_digit(stated.peak.value.strip()) + 1e-3 * said
-            if abs(peak - said) > off:
-                doubts += (f"the values peak at {peak:.6g} and the header says {said:.6g}",)
+            peak, wanted = float(np.max(np.abs(values))), of_peak * abs(self.number(said))
+            if abs(peak - wanted) > 0.51 * of_peak * last_digit(said.value.strip()) + 1e-3 * wanted:
+                doubts += (f"the values peak at {peak:.6g} and the header says {wanted:.6g}",)
+        # A file that was written by rps says the unit of the one before it too.
+        words = f"{re.sub('; values in [^;]*', '', words)}; values in {unit}"
         return GroundMotion(
-            values * factor,
-            dt,
-            name or self.name,
-            self.source,
-            form,
-            # A file that was written by rps says the unit of the one before it too.
-            f"{re.sub('; values in [^;]*', '', description)}; values in {unit}",
-            doubts,
-            recording=stated.recording,
-        )
+            values * factor, dt, name or self.name, self.source, form, words, doubts,
+            stated.recording,
+        )  # fmt: skip
 
 
 def steps_in(name: str, pattern: re.Pattern[str], line: str, place: int) -> list[Statement]:
@@ -371,16 +351,17 @@ def remark(text: str) -> str:
 
 
 _FOREIGN = {
-    b"PK\x03\x04": "a ZIP archive; unpack it first",
-    b"\x1f\x8b": "a gzip archive; unpack it first",
-    b"\x89HDF": "an HDF5 file; export the record as text",
-    b"%PDF": "a PDF document",
-    b"\x89PNG": "a picture",
-    b"\xd0\xcf\x11\xe0": "an old Excel or Word file; save the sheet as CSV",
+    rb"PK\x03\x04.*?(?:xl/|opendocument\.spreadsheet)": "a spreadsheet under another name; save the"
+    " sheet as CSV",
+    rb"PK\x03\x04": "a ZIP archive; unpack it first",
+    rb"\x1f\x8b": "a gzip archive; unpack it first",
+    rb"\x89HDF": "an HDF5 file; export the record as text",
+    rb"%PDF": "a PDF document",
+    rb"\x89PNG": "a picture",
+    rb"\xd0\xcf\x11\xe0": "an old Excel or Word file; save the sheet as CSV",
+    rb"(?:\xef\xbb\xbf)?\s*<(?i:!doctype|html|head|\?xml)": "a web page, perhaps the log-in page of"
+    " the database; download the record itself",
 }
-_SPREADSHEET = re.compile(rb"\APK\x03\x04.*?(?:xl/|opendocument\.spreadsheet)", re.DOTALL)
-_MARKUP = re.compile(rb"(?:\xef\xbb\xbf)?\s*<(?:!doctype|html|head|\?xml)", re.IGNORECASE)
-_UTF_16 = (b"\xff\xfe", b"\xfe\xff")
 _PADDING = re.compile(rb"\0{2,}|\0\Z")  # of old systems, to the ends of their blocks
 
 
@@ -405,34 +386,24 @@ def read_text(
         data = path.read_bytes()
     except OSError as error:
         raise RecordError(f"{path}: cannot be read: {error.strerror}") from error
-    text = re.sub(r"\r+\n?", "\n", _decoded(data, path)).rstrip("\x1a\n")
+    for pattern, kind in _FOREIGN.items():
+        if re.match(pattern, data, re.DOTALL):
+            raise RecordError(f"{path}: not a record but {kind}")
+    if data.startswith((b"\xff\xfe", b"\xfe\xff")):
+        text = data.decode("utf-16", errors="replace")
+    elif b"\0" in (data := _PADDING.sub(b"", data)):
+        raise RecordError(f"{path}: not a text file; export the record as text")
+    else:
+        try:
+            text = data.decode("utf-8-sig")
+        except UnicodeDecodeError:  # station names of older files; all bytes are Latin-1 letters
+            text = data.decode("latin-1")
+    text = re.sub(r"\r+\n?", "\n", text).rstrip("\x1a\n")
     if not text.strip():
         raise RecordError(
             f"{path}: the file is empty; fetch it again, or export the record as text"
         )
     return RecordText(path, source, tuple(text.split("\n")), dt, unit, channel)
-
-
-def _decoded(data: bytes, path: Path) -> str:
-    for magic, kind in _FOREIGN.items():
-        if data.startswith(magic):
-            sheet = "a spreadsheet under another name; save the sheet as CSV"
-            raise RecordError(
-                f"{path}: not a record but {sheet if _SPREADSHEET.search(data) else kind}"
-            )
-    if _MARKUP.match(data):
-        raise RecordError(
-            f"{path}: not a record but a web page, perhaps the log-in page of the database; "
-            f"download the record itself"
-        )
-    if data.startswith(_UTF_16):
-        return data.decode("utf-16", errors="replace")
-    if b"\0" in (data := _PADDING.sub(b"", data)):
-        raise RecordError(f"{path}: not a text file; export the record as text")
-    try:
-        return data.decode("utf-8-sig")
-    except UnicodeDecodeError:  # station names of older files; every byte is a Latin-1 letter
-        return data.decode("latin-1")
 
 
 _SUMMED = (1e-6, 1e-3)
