@@ -41,8 +41,7 @@ class Frozen:
         vars(self).update(frozen(state))
 
 
-IN_A_LINE = 6
-"""Facts that stand in a line; a notebook has them all."""
+IN_A_LINE = 6  # facts that stand in a line; a notebook has them all
 LONGEST_LIST = 4
 LONGEST_TEXT = 60
 

@@ -26,11 +26,9 @@ from rpscli.sweep.statistics.summary import Records
 from rpscli.sweep.statistics.verdicts import exceeds, worse
 from rpscli.sweep.table import Array
 
-FACTOR = 2.0
-"""By which a result changes its order of magnitude."""
+FACTOR = 2.0  # by which a result changes its order of magnitude
 SHARES = (LOW, 0.5, HIGH)
-RECORDS = "records"
-"""The cause of all rows that are other records."""
+RECORDS = "records"  # the cause of all rows that are other records
 REMARK = (
     "one input at a time, without the error of the model itself; the default loss is 0.3 for"
     " plane contact, 1 for edges"

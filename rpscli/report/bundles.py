@@ -52,8 +52,7 @@ from rpscli.report.tables.motions import (
 )
 from rpscli.report.tables.timehistory import fixed_base_demands, isolated_demands
 
-Files = Iterator[tuple[str, str | Content]]
-"""Names and contents."""
+Files = Iterator[tuple[str, str | Content]]  # names and contents
 
 
 def _with_added(

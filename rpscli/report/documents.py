@@ -18,8 +18,7 @@ if TYPE_CHECKING:
     from rpscli.analyses.results import TimeHistoryResult
 
 
-SCHEMA_VERSION = 1
-"""Version of every JSON document that rps writes."""
+SCHEMA_VERSION = 1  # version of every JSON document that rps writes
 
 
 def json_text(document: Mapping[str, Any]) -> str:

@@ -11,8 +11,7 @@ from rpscli.report.table import Table, large, measured
 from rpscli.sweep.statistics.verdicts import Verdict
 from rpscli.units import Written
 
-VERDICT = ("limit", "", "requirement", "result")
-"""Heads of `verdict_texts`."""
+VERDICT = ("limit", "", "requirement", "result")  # heads of `verdict_texts`
 
 
 def limit_unit(name: str) -> str:

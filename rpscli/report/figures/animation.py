@@ -20,8 +20,7 @@ from rpscli.report.figures.structure import draw_modes, level_heights, modes_siz
 
 Array = NDArray[np.float64]
 
-BOX_ASPECT = 0.8
-"""Height of the picture over its width."""
+BOX_ASPECT = 0.8  # height of the picture over its width
 
 COLUMNS = 3
 """Columns that are drawn where there is a cap beam; the model does not know their number."""
@@ -169,12 +168,9 @@ def _magnification(result: TimeHistoryResult, levels: Array) -> float:
     return float(next((m for m in (100, 50, 20, 10, 5, 2) if m <= wanted), 1))
 
 
-MEMORY = 2.0
-"""Time for which the way of a column's head is seen [s]."""
-USUAL_LENGTH = 9.0
-"""Of a film whose speed nobody asked for, at most [s]."""
-SWING = 2.0
-"""Time in which mode shapes swing there and back [s]."""
+MEMORY = 2.0  # time for which the way of a column's head is seen [s]
+USUAL_LENGTH = 9.0  # of a film whose speed nobody asked for, at most [s]
+SWING = 2.0  # time in which mode shapes swing there and back [s]
 
 
 class Plan(NamedTuple):

@@ -18,8 +18,7 @@ from rpscli.report.figures.devices import SceneDevices
 from rpscli.report.figures.pushover import draw_force
 
 Array = NDArray[np.float64]
-At = tuple[float, float]
-"""A place in the axes."""
+At = tuple[float, float]  # a place in the axes
 
 ARC_POINTS = 12
 
@@ -59,18 +58,13 @@ def contact_points(bearing: Bearing, rotation: float, displacement: float, lift:
 
 COLUMN, BEAM = "#DDDDDD", "#CCE3F0"
 
-ASPECT = 1.15
-"""Largest height of the picture of a column over its width."""
+ASPECT = 1.15  # largest height of the picture of a column over its width
 LEAST_ASPECT = 0.2
 """Smallest one: stops may stand far from the column, and layouts need some height."""
-END_ASPECT = 1.0
-"""Largest height of the picture of an end over its width."""
-LOWER_HEIGHT = 2.7
-"""Of the end of a column and the restoring force [in]."""
-NARROW = 1.5
-"""Width of a picture in which a title needs more lines [in]."""
-BESIDE = 0.35
-"""Length of the cap beam to either side of the column, over the column's width."""
+END_ASPECT = 1.0  # largest height of the picture of an end over its width
+LOWER_HEIGHT = 2.7  # of the end of a column and the restoring force [in]
+NARROW = 1.5  # width of a picture in which a title needs more lines [in]
+BESIDE = 0.35  # length of the cap beam to either side of the column, over the column's width
 ROOM = (0.16, 0.10, 0.03, 0.13)
 """For dimensions: left, right, below and above the column, as parts of the picture."""
 

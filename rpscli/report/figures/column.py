@@ -14,8 +14,7 @@ from rpscli.report.figures.bearing import COLUMN, contact_points, leaning_outlin
 from rpscli.report.figures.history import record_name
 
 POINTS = 81
-LONGEST = 0.4
-"""Of the arrow of the larger force, over the height of the column."""
+LONGEST = 0.4  # of the arrow of the larger force, over the height of the column
 
 
 def column_figure(result: TimeHistoryResult, title: str) -> bytes:

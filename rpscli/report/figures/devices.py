@@ -16,8 +16,7 @@ from rpscli.report.figures import style
 if TYPE_CHECKING:
     from matplotlib.lines import Line2D
 
-BRACE, POSTS, CABLES, NOWHERE = range(4)
-"""Signs for devices in pictures of the structure."""
+BRACE, POSTS, CABLES, NOWHERE = range(4)  # signs for devices in pictures of the structure
 
 
 class Drawn(NamedTuple):

@@ -23,16 +23,13 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from PIL.Image import Image
 
-RATES = {".gif": 20, ".mp4": 30}
-"""Frames a second, by the ending of the file."""
-USUAL_SIZE = 900
-"""Width [pixels]."""
+RATES = {".gif": 20, ".mp4": 30}  # frames a second, by the ending of the file
+USUAL_SIZE = 900  # width [pixels]
 MOST_FRAMES = 3000
 ENCODER = "ffmpeg"
 NO_DITHER: Any = 0
 
-Progress = Callable[[int, int], None]
-"""Is told how many frames are drawn, and of how many."""
+Progress = Callable[[int, int], None]  # is told how many frames are drawn, and of how many
 
 
 @dataclass(frozen=True)

@@ -107,8 +107,7 @@ SPECTRA = {
     "pseudo_acceleration": "pseudo-acceleration [m/s²]",
     "displacement": "spectral displacement [m]",
 }
-MOST_FLOORS = 3
-"""In the picture; the table has all."""
+MOST_FLOORS = 3  # in the picture; the table has all
 
 
 def shown_floors(count: int, most: int = MOST_FLOORS) -> list[int]:

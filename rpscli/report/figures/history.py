@@ -64,11 +64,9 @@ def in_plane(result: TimeHistoryResult, *, one_sided: bool = False) -> TimeHisto
     return replace(result, trace=seen)
 
 
-MOST = 50_000
-"""Samples that are drawn as they are."""
+MOST = 50_000  # samples that are drawn as they are
 
-STRETCHES = 2_000
-"""More than a figure has points across."""
+STRETCHES = 2_000  # more than a figure has points across
 
 
 def extremes(*curves: NDArray[Any]) -> NDArray[np.intp]:
@@ -192,8 +190,7 @@ EVENT_ROWS: tuple[EventRow, ...] = (
 
 PHASES = ((1, "rolling", style.ROLLING_SHADE), (2, "rocking", style.ROCKING_SHADE))
 
-NEAR = 8.0
-"""A level up to so many times the largest rotation is brought into view."""
+NEAR = 8.0  # a level up to so many times the largest rotation is brought into view
 
 
 def rotation_figure(result: TimeHistoryResult, title: str) -> bytes:
@@ -252,11 +249,9 @@ def draw_azimuth(axes: style.Axes, result: TimeHistoryResult) -> None:
     axes.set(ylabel="azimuth\n$\\varphi$ [deg]", xlabel="time [s]")
 
 
-QUARTER = 90.0
-"""Turns between two samples that are larger are not drawn as a line [deg]."""
+QUARTER = 90.0  # turns between two samples that are larger are not drawn as a line [deg]
 
-Level = tuple[str, float, str, str]
-"""Symbol, rotation [rad], line and colour."""
+Level = tuple[str, float, str, str]  # symbol, rotation [rad], line and colour
 
 
 def levels(result: TimeHistoryResult, near: float = NEAR) -> tuple[list[Level], float]:

@@ -27,10 +27,8 @@ FIGURES: Registry[Callable[..., Any]] = Registry(
 COLUMN_WIDTHS = {1: 3.5, 2: 7.0}
 """Widths of figures [in] that fill one or two columns of a journal: 89 and 178 mm."""
 
-FONT_SIZE = 9.0
-"""Points, where no style file says otherwise."""
-SMALL = 8.0 / 9.0
-"""Numbers on axes, legends and headings, as a part of the font size."""
+FONT_SIZE = 9.0  # points, where no style file says otherwise
+SMALL = 8.0 / 9.0  # numbers on axes, legends and headings, as a part of the font size
 
 
 @dataclass(frozen=True)
@@ -70,11 +68,9 @@ class Look:
         return {**sizes, **self.style}
 
 
-Draw: TypeAlias = Callable[[], bytes]
-"""Makes the file of a figure."""
+Draw: TypeAlias = Callable[[], bytes]  # makes the file of a figure
 
-USUAL = Look()
-"""The look for a user who asks for nothing."""
+USUAL = Look()  # the look for a user who asks for nothing
 
 
 @dataclass(frozen=True)

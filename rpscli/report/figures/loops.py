@@ -10,8 +10,7 @@ from rpscli.report.figures import style
 from rpscli.report.figures.floors import shown_floors
 from rpscli.report.figures.history import record_name
 
-MOST_STOREYS = 6
-"""In the picture; columns of timehistory.csv have all."""
+MOST_STOREYS = 6  # in the picture; columns of timehistory.csv have all
 
 
 def loops_figure(result: TimeHistoryResult, title: str) -> bytes:

@@ -18,12 +18,9 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-PIECES = 240
-"""Of a path, each of one colour."""
-NEAR = 3.0
-"""A circle up to so many times the largest displacement is brought into view."""
-DARK = 0.88
-"""Colours up to this part of a map can be seen on white."""
+PIECES = 240  # of a path, each of one colour
+NEAR = 3.0  # a circle up to so many times the largest displacement is brought into view
+DARK = 0.88  # colours up to this part of a map can be seen on white
 
 
 def orbit_figure(result: TimeHistoryResult, title: str) -> bytes:

@@ -10,8 +10,7 @@ from rpscli.model.podium import PodiumStructure
 from rpscli.report.figures import style
 from rpscli.report.figures.bearing import BEAM, COLUMN, leaning_outline, measure
 
-STOREY_HEIGHT = 3.0
-"""Drawn for a case that gives none [m]."""
+STOREY_HEIGHT = 3.0  # drawn for a case that gives none [m]
 
 
 def level_heights(structure: PodiumStructure) -> NDArray[np.float64]:
@@ -25,10 +24,8 @@ def level_heights(structure: PodiumStructure) -> NDArray[np.float64]:
     return column + np.concatenate([[0.0], np.cumsum(storeys)])
 
 
-COLUMNS = 3
-"""Columns under a cap beam: their number and distances are not drawn to scale."""
-MOST_LEVELS = 20
-"""With more storeys, their heights are not written one by one."""
+COLUMNS = 3  # columns under a cap beam: their number and distances are not drawn to scale
+MOST_LEVELS = 20  # with more storeys, their heights are not written one by one
 
 
 def structure_figure(structure: PodiumStructure, title: str) -> bytes:
@@ -88,8 +85,7 @@ def _tonnes(mass: float) -> str:
     return f"{1e-3 * mass:.4g} t"
 
 
-MOST_MODES = 3
-"""Vibration modes that are drawn, at most."""
+MOST_MODES = 3  # vibration modes that are drawn, at most
 ELASTIC = "elastic shape (over the cap beam)"
 NORMALISED = "shapes scaled to 1 at their largest component"
 

@@ -41,17 +41,12 @@ ROLLING_SHADE = "#DCEBF7"
 ROCKING_SHADE = "#FBE3D0"
 
 DPI = 150
-COMPRESSION = 3
-"""Of PNG files: a tenth larger than at the usual 6, in two thirds of the time."""
-LINE = 0.15
-"""Height of a line of small letters [in]."""
+COMPRESSION = 3  # of PNG files: a tenth larger than at the usual 6, in two thirds of the time
+LINE = 0.15  # height of a line of small letters [in]
 
-WIDTH = 7.0
-"""Width of a figure [in]: a page with its margins."""
-BESIDE = 0.7
-"""Width of the label and the numbers beside a row of panels, and of the margins [in]."""
-TIGHT = 4.0
-"""Height [in]."""
+WIDTH = 7.0  # width of a figure [in]: a page with its margins
+BESIDE = 0.7  # width of the label and the numbers beside a row of panels, and of the margins [in]
+TIGHT = 4.0  # height [in]
 
 STYLE: dict[str, Any] = {
     "font.family": "sans-serif",

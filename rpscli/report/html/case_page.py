@@ -132,8 +132,7 @@ CAPTIONS = {
 
 DIGITS = 6
 THEORY = "THEORY.md"
-HIDDEN = "| assumed |"
-"""Begins the table of the theory that says what the model cannot tell."""
+HIDDEN = "| assumed |"  # begins the table of the theory that says what the model cannot tell
 
 
 def page_sections(

@@ -50,11 +50,9 @@ def printable(text: str) -> str:
     return "".join(sign if known(sign) else "\ufffd" for sign in text)
 
 
-FORMATS = ("svg", "png")
-"""Of the figures of a page: the second where the first takes too much room."""
+FORMATS = ("svg", "png")  # of the figures of a page: the second where the first takes too much room
 
-COLOURS = 256
-"""Of an image: ours, and those of their edges."""
+COLOURS = 256  # of an image: ours, and those of their edges
 
 
 @dataclass(frozen=True)
@@ -140,10 +138,8 @@ def _rounded(number: re.Match[str]) -> str:
     return f"{float(number[0]):.2f}"
 
 
-MOST_BYTES = 1_000_000
-"""Of a page that can be sent by mail and read on a telephone."""
-FOR_FIGURES = 840_000
-"""Letters for all figures of a page together."""
+MOST_BYTES = 1_000_000  # of a page that can be sent by mail and read on a telephone
+FOR_FIGURES = 840_000  # letters for all figures of a page together
 
 
 @dataclass(frozen=True)
@@ -278,5 +274,4 @@ def _kind(text: str) -> str:
     return "sentence" if len(text) > LONG_TEXT and " " in text else "word"
 
 
-LONGEST_WORD, LONG_TEXT = 36, 24
-"""Letters."""
+LONGEST_WORD, LONG_TEXT = 36, 24  # letters

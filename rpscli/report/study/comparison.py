@@ -36,8 +36,7 @@ from rpscli.sweep.statistics.observations import (
 )
 from rpscli.sweep.table import Array, Indices, Intensity, StudyResults
 
-MOST_ROWS = 8
-"""Of panels in the figure; the CSV files have all."""
+MOST_ROWS = 8  # of panels in the figure; the CSV files have all
 SHOWN = {
     "": ("counted", "agreed_share", "overturned_observed", "overturned_computed", "failed"),
     "_maxima": ("quantity", "counted", "overturned_computed", "median_ratio", "dispersion"),

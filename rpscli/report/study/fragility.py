@@ -47,8 +47,7 @@ Item = TypeVar("Item")
 
 CURVE_POINTS = 101
 MOST_BINS = 10
-MOST_BANDS = 4
-"""Curves in one panel beyond which bands would hide each other."""
+MOST_BANDS = 4  # curves in one panel beyond which bands would hide each other
 
 _THRESHOLDS: Any = {
     quantity.name: (PositiveNumbers | None, Field(None, description=described(quantity)))

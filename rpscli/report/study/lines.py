@@ -48,11 +48,9 @@ LEGEND = {"frequency_parameter": "model", "frequency_parameter_rigid": "rigid es
 """Names of results that are compared in one figure, where the last word says too much."""
 
 MEAN = statistic_words("mean")
-MOST_NAMED = 2
-"""Results whose names stand on the axis; the legend has those of more."""
+MOST_NAMED = 2  # results whose names stand on the axis; the legend has those of more
 
-Values = dict[str, list[Any]]
-"""Some results of all points, by name; None where a point has none."""
+Values = dict[str, list[Any]]  # some results of all points, by name; None where a point has none
 
 
 class LinesOptions(ReportOptions):

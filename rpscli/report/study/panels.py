@@ -18,16 +18,14 @@ if TYPE_CHECKING:
 
 Panel = TypeVar("Panel")
 
-MOST_PANELS = 36
-"""More would be illegible; the CSV has them all."""
+MOST_PANELS = 36  # more would be illegible; the CSV has them all
 
 COLOURS = (
     style.BLUE, style.RED, style.GREEN, style.ORANGE, style.PINK, style.SKY,
     style.BLACK, style.GREY,
 )  # fmt: skip
 MARKERS = "osD^vP*X"
-MOST_TICKS = 5
-"""On each axis of a panel: ticks take most of the time of drawing."""
+MOST_TICKS = 5  # on each axis of a panel: ticks take most of the time of drawing
 NO_PANEL, LEAST_HEIGHT = 1.3, 0.5
 """Of a given figure what is no panel, and of each panel without its title [in]."""
 

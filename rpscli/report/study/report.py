@@ -36,8 +36,7 @@ StatisticOrShare = Annotated[
 ]
 """A statistic of several histories, or the share that overturned."""
 
-ENDS = ("_low", "_high")
-"""Of names of columns that hold the ends of a band."""
+ENDS = ("_low", "_high")  # of names of columns that hold the ends of a band
 
 Tables = Mapping[str, list[Column]]
 """Columns of each CSV file, by what follows the report's name in the file's."""

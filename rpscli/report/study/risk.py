@@ -51,10 +51,8 @@ from rpscli.sweep.points import StudyPoints
 from rpscli.sweep.statistics.verdicts import component_notes
 from rpscli.sweep.table import Array, StudyResults
 
-BINS = 24
-"""Of intensities, for what contributes."""
-CLEARLY = 0.05
-"""Share of the rate beyond which the ends of the hazard curve are worth a note."""
+BINS = 24  # of intensities, for what contributes
+CLEARLY = 0.05  # share of the rate beyond which the ends of the hazard curve are worth a note
 
 
 class RiskOptions(FragilityOptions):

@@ -16,11 +16,9 @@ from rpscli.sweep.statistics.fractiles import Spread
 from rpscli.sweep.statistics.summary import Summary
 from rpscli.sweep.statistics.verdicts import Verdict
 
-MOST_ROWS = 40
-"""Of a table on a page."""
+MOST_ROWS = 40  # of a table on a page
 DIGITS = 3
-A_TABLE = 3
-"""Quantities side by side in a table that fits a page."""
+A_TABLE = 3  # quantities side by side in a table that fits a page
 
 
 def asked(layout: StudyPoints) -> set[str] | None:

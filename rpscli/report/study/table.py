@@ -23,10 +23,8 @@ from rpscli.sweep.table import Array, StudyResults, groups, leading_keys
 
 MOST_ROWS = 60
 MOST_COLUMNS = 12
-SMALLER = 0.75
-"""Second texts of cells, as a part of small letters."""
-LEAST_WIDTH, LINE = 0.55, 0.13
-"""Of a column, and height of a line of its labels [in]."""
+SMALLER = 0.75  # second texts of cells, as a part of small letters
+LEAST_WIDTH, LINE = 0.55, 0.13  # of a column, and height of a line of its labels [in]
 
 
 class OverturningOptions(ReportOptions):

@@ -126,11 +126,9 @@ def selection_columns(selection: Selection) -> list[Column]:
     ]
 
 
-USUAL_DAMPING = 0.05
-"""Of the spectra that codes' rules are about."""
+USUAL_DAMPING = 0.05  # of the spectra that codes' rules are about
 
-FAR = 2.0
-"""Times the target's peaks, or as many parts of them, beyond which it is told."""
+FAR = 2.0  # times the target's peaks, or as many parts of them, beyond which it is told
 
 WHY_PGV = (
     "Sa(T1) is a poor measure for rocking: once lifted the structure has no period of its own,"
