@@ -34,7 +34,7 @@ from typing import Any, TypeVar, cast
 
 from rpscli.errors import UsageError, hint
 from rpscli.report.figures import bearing as _bearing
-from rpscli.report.figures import devices, floors, history, loops, motions, pushover
+from rpscli.report.figures import devices, floors, history, motions, pushover
 from rpscli.report.figures import orbit as _orbit
 from rpscli.report.figures import structure as _structure
 from rpscli.report.figures import style as _style
@@ -92,7 +92,7 @@ spectra = _examined(motions.draw_spectra)
 spectrum = _examined(motions.draw_spectrum)
 storey_curve = _examined(pushover.draw_force)
 storey_drifts = _examined(floors.draw_storey_drifts)
-storey_loop = _examined(loops.draw_loop)
+storey_loop = _examined(floors.draw_loop)
 storey_shears = _examined(floors.draw_shears)
 structure = _examined(_structure.draw_structure)
 style = _style.in_style

@@ -74,7 +74,7 @@ def data_frame(columns: Mapping[str, Any]) -> Any:
     return pd.DataFrame(columns)
 
 
-def fact_text(value: object) -> str:
+def fact_text(value: Any) -> str:
     """A value in a few letters.
 
     >>> fact_text(0.36127), fact_text(None), fact_text([1.0, 2.0]), fact_text([1] * 50)
@@ -84,17 +84,12 @@ def fact_text(value: object) -> str:
         return f"{value:.4g}"
     if isinstance(value, str):
         return value if len(value) <= LONGEST_TEXT else f"{value[: LONGEST_TEXT - 3]}..."
-    if getattr(value, "shape", ()) or isinstance(value, list | tuple):
-        return _several(value)
+    if (shape := getattr(value, "shape", ())) or isinstance(value, list | tuple):
+        sizes = shape or (len(value),)
+        if len(sizes) == 1 and sizes[0] <= LONGEST_LIST:
+            return f"[{', '.join(map(fact_text, value))}]"
+        return f"{' x '.join(map(str, sizes))} values"
     return "-" if value is None else str(value)
-
-
-def _several(values: Any) -> str:
-    """A short list whole, a long one or an array by its size."""
-    shape = getattr(values, "shape", (len(values),))
-    if len(shape) == 1 and shape[0] <= LONGEST_LIST:
-        return f"[{', '.join(map(fact_text, values))}]"
-    return f"{' x '.join(map(str, shape))} values"
 
 
 def with_unit(value: object, unit: str) -> str:

@@ -75,16 +75,21 @@ def command(
     request, asked = options.CaseRequest(subject, overrides), motion
     earlier = report_case.earlier_results(Path(subject)) if Path(subject).is_dir() else None
     kind = report_case.kind_of(subject) if earlier is None else earlier.run["command"]
-    _require_sense(subject, (records, asked), overrides, kind, stored=earlier is not None)
+    if earlier is not None and overrides:
+        raise UsageError(f"{subject}: stored results keep the values they have; leave --set out")
+    if (kind != report_case.HISTORY or earlier) and (records or asked != inputs.MotionRequest()):
+        reason = f"a {'study' if kind == report_case.SWEEP else 'design'} has records of its own"
+        reason = "a stored history has its record" if kind == report_case.HISTORY else reason
+        raise UsageError(f"{subject}: {reason}; leave --record, --vertical and --scale out")
     if with_budget and kind != report_case.HISTORY:
         raise UsageError(f"{subject}: --budget is about one history; name a case")
+    if conditions and kind == report_case.DESIGN:
+        raise UsageError(f"{subject}: a design has limits of its own; leave --fail-on out")
     name: str
     make: Callable[[], report_case.PageDone]
     if kind == report_case.DESIGN:
         from rpscli.commands.report_study import design_page
 
-        if conditions:
-            raise UsageError(f"{subject}: a design has limits of its own; leave --fail-on out")
         name = Path(subject).stem if earlier is None else earlier.run["name"]
         make = partial(design_page, subject, overrides, earlier, look, terminal)
     elif kind == report_case.SWEEP:
@@ -96,44 +101,26 @@ def command(
         name = made.layout.study.name
         make = partial(study_page, made, folder, look, terminal)
     else:
-        if earlier is not None:
+        if earlier is None:
+            given = inputs.read_case(request, terminal)
+            motions = [*inputs.single_motions(records, asked, terminal.warn)]
+            typed: list[report_case.Asked] = [(records, asked)]
+        else:
             given, motions = report_case.earlier_case(earlier)
             typed = report_case.typed_together(given.case, motions)
-        else:
-            given, motions = (
-                inputs.read_case(request, terminal),
-                [*inputs.single_motions(records, asked, terminal.warn)],
-            )
-            typed = [(records, asked)]
         name = given.case.name
         told = (given, motions, typed, conditions, look, earlier, terminal)
         make = partial(report_case.case_page, *told, with_budget=with_budget)
     file = place or inputs.RESULTS / name / "report.html"
     _require_free(file, name, force=force)
     done = make()
-    own = done.signed
     signed = {
-        "project": project or own.project,
-        "made by": author or own.author,
-        "checked by": checker or own.checker,
+        "project": project or done.signed.project,
+        "made by": author or done.signed.author,
+        "checked by": checker or done.signed.checker,
     }
     _write(file, name, done, signed, terminal)
     leave(done.error)
-
-
-def _require_sense(
-    subject: str, motion: report_case.Asked, overrides: tuple[str, ...], kind: str, *, stored: bool
-) -> None:
-    """Refuse options that the subject does not take."""
-    if stored and overrides:
-        raise UsageError(f"{subject}: stored results keep the values they have; leave --set out")
-    if (kind != report_case.HISTORY or stored) and motion != ((), inputs.MotionRequest()):
-        reason = "a stored history has its record"
-        if kind != report_case.HISTORY:
-            reason = (
-                f"a {'study' if kind == report_case.SWEEP else 'design'} has records of its own"
-            )
-        raise UsageError(f"{subject}: {reason}; leave --record, --vertical and --scale out")
 
 
 def _require_free(file: Path, name: str, *, force: bool) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import isnan
 from pathlib import Path
@@ -60,9 +60,11 @@ class Earlier:
 
     @property
     def file(self) -> Path | None:
-        """The case or the study, as seen from the working folder."""
-        name = self.run["file"]
-        return None if name is None else _shortened(self.folder / name)
+        """The case or the study, as seen from the working folder if it is inside."""
+        if self.run["file"] is None:
+            return None
+        absolute, here = self.folder.joinpath(self.run["file"]).resolve(), Path.cwd()
+        return absolute.relative_to(here) if absolute.is_relative_to(here) else absolute
 
     @property
     def subject(self) -> CaseRequest:
@@ -126,10 +128,16 @@ def earlier_case(earlier: Earlier) -> tuple[CaseInput, list[MotionRequest]]:
     name = str(file or f"{run['name']}.yaml")
     # JSON is YAML too.
     case = parse_case(json.dumps(run["inputs"]["case"]), name=name, folder=folder)
-    case = replace(case, digest=run["sha256"], written={})
-    request = CaseRequest(name, tuple(run["inputs"]["overrides"]))
-    motions = [_earlier_motion(case, record) for record in earlier.records]
-    return CaseInput(case, request), motions
+    case, own, motions = replace(case, digest=run["sha256"], written={}), case.record, []
+    for given in earlier.records:
+        sources = (
+            given[name] and str(given[name]["source"]) for name in ("horizontal", "vertical")
+        )
+        horizontal, vertical = sources
+        if own and own.source == horizontal and (own.y is None or given["y"]):
+            horizontal, vertical = None, None if vertical == own.vertical else vertical
+        motions.append(MotionRequest(horizontal, vertical, given["scale"]))
+    return CaseInput(case, CaseRequest(name, tuple(run["inputs"]["overrides"]))), motions
 
 
 def typed_together(case: Case, motions: Sequence[MotionRequest]) -> list[Asked]:
@@ -141,24 +149,6 @@ def typed_together(case: Case, motions: Sequence[MotionRequest]) -> list[Asked]:
         key = replace(motion, record=None if record is None else "")
         alike.setdefault(key, []).extend([record] if record else [])
     return [(records, motion) for motion, records in alike.items()]
-
-
-def _earlier_motion(case: Case, given: Mapping[str, Any]) -> MotionRequest:
-    own = case.record
-    horizontal, vertical = (
-        None if given[name] is None else str(given[name]["source"])
-        for name in ("horizontal", "vertical")
-    )
-    if own is not None and own.source == horizontal and (own.y is None or given["y"]):
-        horizontal, vertical = None, None if vertical == own.vertical else vertical
-    return MotionRequest(horizontal, vertical, given["scale"])
-
-
-def _shortened(path: Path) -> Path:
-    """Without steps back and forth, and relative where that is shorter."""
-    absolute = path.resolve()
-    here = Path.cwd()
-    return absolute.relative_to(here) if absolute.is_relative_to(here) else absolute
 
 
 @dataclass(frozen=True)
@@ -191,112 +181,77 @@ def case_page(
     with_budget: bool = False,
 ) -> PageDone:
     """Compute what belongs to a case, and put it in order."""
-    from rpscli.commands.timehistory_run import (
-        all_document,
-        compute,
-        computed_set,
-        history_requests,
-        look_beside,
-        set_document,
-        set_error,
-        set_tables,
-    )
+    from rpscli.commands import timehistory_run as run
+    from rpscli.commands.budget import case_budget
     from rpscli.report.figures.history import record_name
-    from rpscli.report.html.case_page import (
-        case_input,
-        column_sections,
-        ground_section,
-        history_short,
-        horizontal,
-        motions_section,
-        page_sections,
-        response_section,
-    )
+    from rpscli.report.html import case_page as parts
     from rpscli.report.limits import verdicts_in_short
 
     case, title = given.case, f"Structure{ends(given.case)}"
     document = {**heading(), "case": case_heading(given), "warnings": list(case.warnings)}
     document, error = concluded(document, None), None
-    none = "The case names no ground motion: this page has only the results that need none."
-    short: Iterable[Block] = [none]
-    results: list[Section] = []
-    stored: list[Block] = []
-    requests: list[HistoryRequest] = []
+    short: Iterable[Block] = [
+        "The case names no ground motion: this page has only the results that need none."
+    ]
+    results, stored, requests = list[Section](), list[Block](), list["HistoryRequest"]()
     if case.record is not None or motions[0].record is not None:
         # A place for the files, which are not written there.
-        requests = history_requests([given], motions, OutputRequest(Path(), force=True))
+        requests = run.history_requests([given], motions, OutputRequest(Path(), force=True))
         announce_compilation(terminal)
         first = 0
         if len(requests) > 1:
             quiet = replace(look, formats=())
-            found = computed_set(requests, conditions, quiet, terminal, None, written=False)
-            error = set_error([found])
-            document, now = all_document([found], error), set_document(found)
+            found = run.computed_set(requests, conditions, quiet, terminal, None, written=False)
+            error = run.set_error([found])
+            document, now = run.all_document([found], error), run.set_document(found)
             # That of a history that failed is none, and counts as 0.
             turned = [each.demands["rotation_ratio"] for each in found.histories]
             first = max(range(len(turned)), key=lambda n: 0.0 if isnan(turned[n]) else turned[n])
         worst = requests[first]
-        done, result = compute(worst, conditions, page_look(look), terminal)
+        done, result = run.compute(worst, conditions, page_look(look), terminal)
         files = [(path.name, content) for path, content in worst.folder.contents.items()]
+        title = f"Time history under {record_name(result)}{ends(case)}"
         if len(requests) > 1:
-            short = [verdicts_in_short(found.verdicts), *[*set_tables([found])][1:]]
-            motions_of = horizontal(*(request.ground for request in requests))
-            name, seen = f"{len(motions_of)} records", "as they were scaled"
-            about = f"with the largest rotation of the columns, {record_name(result)}"
+            short = [verdicts_in_short(found.verdicts), *[*run.set_tables([found])][1:]]
+            motions_of = parts.horizontal(*(request.ground for request in requests))
+            largest = "Response to the record with the largest rotation of the columns, "
+            figures = ("orbit", "rotation", "storey_shears")
             results = [
-                motions_section(motions_of, [], name, look, seen),
-                response_section(
-                    result, files, f"Response to the record {about}",
-                    ("orbit", "rotation", "storey_shears"),
+                parts.motions_section(
+                    motions_of, [], f"{len(motions_of)} records", look, "as they were scaled"
                 ),
-            ]  # fmt: skip
+                parts.response_section(result, files, f"{largest}{record_name(result)}", figures),
+            ]
             title = f"Time histories under {len(requests)} records{ends(case)}"
         else:
-            short = history_short(result, done.verdicts, look_beside(done, result))
+            short = parts.history_short(result, done.verdicts, run.look_beside(done, result))
             document, error, now = done.document, done.error, done.document
-            results = [
-                ground_section(worst.ground, result.structure, look),
-                response_section(result, files),
-            ]
-            title = f"Time history under {record_name(result)}{ends(case)}"
-        results += column_sections(result, files)
+            ground = parts.ground_section(worst.ground, result.structure, look)
+            results = [ground, parts.response_section(result, files)]
+        results += parts.column_sections(result, files)
         terminal.warn(document["warnings"])
-        stored = [] if earlier is None else _stored(earlier, requests, now)
-        results += _budget(requests, motions, first, look, terminal) if with_budget else []
+        stored = [] if earlier is None else [*_stored(earlier, requests, now)]
+        if with_budget:
+            order = sorted(range(len(motions)), key=lambda n: n != first)
+            grounds = [requests[n].ground for n in order]
+            budget = case_budget(given, [motions[n] for n in order], grounds, terminal)
+            results.append(budget.section(look, worst.label))
     elif with_budget:
         raise UsageError(f"{case.source}: --budget needs a ground motion; add --record")
-    grounds = [request.ground for request in requests]
-    sections = page_sections(
+    folder = None if earlier is None else earlier.folder
+    sections = parts.page_sections(
         case,
         case.title,
         look,
         short=short,
         warnings=document["warnings"],
-        inputs=case_input(case, given.request.overrides, grounds),
+        inputs=parts.case_input(case, given.request.overrides, [each.ground for each in requests]),
         results=results,
-        commands=_commands(
-            given, asked, None if earlier is None else earlier.folder, with_budget=with_budget
-        ),
+        commands=_commands(given, asked, folder, with_budget=with_budget),
         stored=stored,
-        both=any(ground.y is not None for ground in grounds),
+        both=any(request.ground.y is not None for request in requests),
     )
     return PageDone(case.title, title, sections, document, error, case.file.document)
-
-
-def _budget(
-    requests: Sequence[HistoryRequest],
-    motions: Sequence[MotionRequest],
-    first: int,
-    look: Look,
-    terminal: Terminal,
-) -> list[Section]:
-    """The section of `rps budget` on one of the histories, the others as its records."""
-    from rpscli.commands.budget import case_budget
-
-    given, order = requests[0].given, sorted(range(len(motions)), key=lambda n: n != first)
-    grounds = [requests[n].ground for n in order]
-    found = case_budget(given, [motions[n] for n in order], grounds, terminal)
-    return [found.section(look, requests[first].label)]
 
 
 def subject_words(source: str, overrides: Iterable[str]) -> list[str]:
@@ -324,26 +279,19 @@ def _commands(
 
 def _stored(
     earlier: Earlier, requests: Sequence[HistoryRequest], document: Mapping[str, Any]
-) -> list[Block]:
+) -> Iterator[Block]:
     """Differences of case, records and results from the stored ones."""
-    found: list[Block] = []
-    file = earlier.file
     for request, record in zip(requests, earlier.records, strict=True):
         named = request.ground.named
         if any(record[n]["sha256"] != named[n].digest for n in ("horizontal", "y") if record[n]):
-            text = f"The record {request.label} is no longer that of the stored results."
-            found.append(Notice(text))
-    if file is not None:
-        try:
-            now = hashlib.sha256(file.read_bytes()).hexdigest()
-        except OSError:
-            now = ""
-        if now != earlier.run["sha256"]:
-            state = "has changed since" if now else "is not there any more"
-            found.append(Notice(f"{file} {state}; this page keeps to the case in run.json."))
+            yield Notice(f"The record {request.label} is no longer that of the stored results.")
+    if (file := earlier.file) is not None:
+        digest = hashlib.sha256(file.read_bytes()).hexdigest() if file.is_file() else ""
+        if digest != earlier.run["sha256"]:
+            state = "has changed since" if digest else "is not there any more"
+            yield Notice(f"{file} {state}; this page keeps to the case in run.json.")
     if (earlier.folder / SUMMARY).exists():
-        found += compared(earlier.folder, document)
-    return found
+        yield from compared(earlier.folder, document)
 
 
 def compared(folder: Path, document: Mapping[str, Any]) -> list[Block]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from rpscli.case.case import Case
@@ -12,11 +12,7 @@ from rpscli.commands.report_case import Earlier, PageDone, ends, subject_words
 from rpscli.commands.shell.options import CaseRequest, OutputRequest
 from rpscli.commands.shell.terminal import Terminal, concluded
 from rpscli.commands.shell.waiting import passing_time
-from rpscli.commands.study import (
-    SweepChoices,
-    computed,
-    study_heading,
-)
+from rpscli.commands.study import SweepChoices, computed, study_heading
 from rpscli.errors import RecordError
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.report.documents import heading
@@ -24,7 +20,7 @@ from rpscli.report.figures.look import Look
 from rpscli.report.html import case_page
 from rpscli.report.html.page import Block, Picture, Section, page_look, pictures
 from rpscli.report.limits import verdicts_in_short
-from rpscli.report.study.labels import label
+from rpscli.report.study.labels import labels
 from rpscli.report.study.shown import cut, of_first_system, summary_tables, verdict_table
 from rpscli.report.table import Heading, Table
 from rpscli.studies import Study, StudyResult
@@ -58,17 +54,14 @@ def study_page(study: Study, place: Path | None, look: Look, terminal: Terminal)
     varied = any(key.startswith("podium.contact") for key in layout.plan.keys)
     first = resolved(layout.plan, layout[0].values)
     contact = ", contact varied" if varied else ends(first)
-    figures = pictures(found.files.items())
-    drawn = [Picture(each, _caption(study, stem)) for stem, each in figures.items()]
-    results = [Section("Figures", drawn)]
+    results = [_figures(found.files, study)]
     if run.summary:
         statistics = [*summary_tables(run.summary), of_first_system(run.layout), *found.parts]
         motions = case_page.motions_section(*motions_of(study), study.title, look)
         results = [motions, Section("Statistics", [*cut(statistics)]), *results]
     which = []
     if (systems := len(layout.properties)) > 1:
-        values = zip(layout.plan.keys, layout[0].values, strict=True)
-        named = ", ".join(label(key, value) for key, value in values)
+        named = labels(layout.plan.keys, layout[0].values)
         which = [f"The first of {systems} systems: {named}."]
     words = subject_words(layout.study.source, study.overrides)
     warnings = [*notes, *(str(error) for error in found.broken)]
@@ -112,20 +105,23 @@ def motions_of(study: Study) -> tuple[list[GroundMotion], list[str]]:
     """The records before they are scaled, and why some cannot be read."""
     layout, motions, reasons = study.layout, [], []
     own = [properties.record for properties in layout.properties if None in layout.records]
-    for request in dict.fromkeys((*layout.records, *own)):
+    for request in filter(None, dict.fromkeys((*layout.records, *own))):
         try:
-            if request is not None:
-                motions.append(study.layout.context.records.motion(request).horizontal)
+            motions.append(layout.context.records.motion(request).horizontal)
         except RecordError as error:
             reasons.append(str(error))
     return motions, reasons
 
 
-def _caption(study: Study, stem: str) -> str:
-    if (request := study.reports.get(stem)) is None:
-        return stem
-    title = request.options.title
-    return f"{request.kind.replace('_', ' ').capitalize()}{f': {title}' if title else ''}."
+def _figures(files: Mapping[str, object], study: Study) -> Section:
+    """All of them, with the kind and the title of the report that each is of."""
+    drawn = []
+    for stem, each in pictures(files.items()).items():
+        request = study.reports.get(stem)
+        kind, title = (request.kind, request.options.title) if request else (stem, None)
+        caption = f"{kind.replace('_', ' ').capitalize()}{f': {title}' if title else ''}."
+        drawn.append(Picture(each, caption))
+    return Section("Figures", drawn)
 
 
 def study_input(study: Study, first: Case, which: str) -> Iterator[Block]:
@@ -158,17 +154,11 @@ def design_page(
     at = done.judged.layout
     case = resolved(at.plan, at[0].values)
     named = {path.name: content for path, content in done.folder.contents.items()}
-    drawn = [
-        Picture(each, f"{stem.replace('_', ' ').capitalize()}.")
-        for stem, each in pictures(named.items()).items()
-    ]
     short = [
         part for part in tables_of(done) if not (isinstance(part, Heading) and part == study.title)
     ]
-    results = [
-        case_page.motions_section(*motions_of(study), study.title, look),
-        Section("Figures", drawn),
-    ]
+    motions = case_page.motions_section(*motions_of(study), study.title, look)
+    results = [motions, _figures(named, study)]
     words = subject_words(source, overrides)
     stored = f"Every point is stored in {done.folder.folder}."
     title = "the best design" if document["best"] else "the least violated design"

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Iterator, Mapping
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -15,7 +16,7 @@ from rpscli.analyses.floor_spectra import (
     isolated_floor_spectra,
 )
 from rpscli.analyses.modal import ModalResult
-from rpscli.analyses.pushover import CapacityCurve, PushoverResult, StoreyCurve, pushover
+from rpscli.analyses.pushover import CapacityCurve, PushoverResult, pushover
 from rpscli.analyses.result_quantities import STOREY_CURVE, STOREYS, STOREYS_YIELDING
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.trace import Event, sampled
@@ -23,33 +24,22 @@ from rpscli.model.podium import PodiumStructure
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.selection import Selection
 from rpscli.records.spectrum import ResponseSpectrum
-from rpscli.report.figures import style
-from rpscli.report.figures.bearing import bearing_figure
-from rpscli.report.figures.column import column_figure
-from rpscli.report.figures.devices import devices_figure
-from rpscli.report.figures.floors import floor_spectra_figure, profile_figure
-from rpscli.report.figures.history import (
-    displacement_figure,
-    energy_figure,
-    moment_figure,
-    rotation_figure,
-    thinned,
+from rpscli.report.figures import (
+    bearing,
+    column,
+    devices,
+    floors,
+    history,
+    motions,
+    orbit,
+    structure,
+    style,
 )
+from rpscli.report.figures import pushover as static
 from rpscli.report.figures.look import FIGURES, USUAL, Draw, Look, figure_files
-from rpscli.report.figures.loops import loops_figure
-from rpscli.report.figures.motions import record_figure, selection_figure
-from rpscli.report.figures.orbit import orbit_figure
-from rpscli.report.figures.pushover import capacity_figure, storey_curve_figure
-from rpscli.report.figures.structure import modes_figure
 from rpscli.report.files import Content
 from rpscli.report.table import Column, columns_of, csv_lines, csv_text
-from rpscli.report.tables.motions import (
-    mean_columns,
-    motion_columns,
-    selection_columns,
-    selection_list,
-    spectrum_columns,
-)
+from rpscli.report.tables import motions as tables
 from rpscli.report.tables.timehistory import fixed_base_demands, isolated_demands
 
 Files = Iterator[tuple[str, str | Content]]  # names and contents
@@ -68,9 +58,9 @@ def _with_added(
     return {**{name: partial(drawn, name) for name in look.added}, **figures}
 
 
-def bearing_files(structure: PodiumStructure, title: str, look: Look = USUAL) -> Files:
+def bearing_files(of: PodiumStructure, title: str, look: Look = USUAL) -> Files:
     """The drawing of the bearing."""
-    draw = partial(bearing_figure, pushover(structure, patterns=()), title)
+    draw = partial(bearing.bearing_figure, pushover(of, patterns=()), title)
     yield from figure_files({"bearing": draw}, look).items()
 
 
@@ -79,20 +69,21 @@ def modal_files(result: ModalResult, title: str, look: Look = USUAL) -> Files:
     yield "modes.csv", csv_text(mode_columns(result))
     yield "shapes.csv", csv_text(shape_columns(result))
     yield "eigenvalues.csv", csv_text(eigenvalue_columns(result))
-    figures = _with_added({"modes": partial(modes_figure, result, title)}, result, title, look)
-    yield from figure_files(figures, look).items()
+    figures: dict[str, Draw] = {"modes": partial(structure.modes_figure, result, title)}
+    yield from figure_files(_with_added(figures, result, title, look), look).items()
 
 
 def pushover_files(result: PushoverResult, title: str, look: Look = USUAL) -> Files:
     """Files of the static characteristics; without a building there are no capacity curves."""
-    yield "storey_curve.csv", csv_text(storey_curve_columns(result.curve))
+    curve = [Column(q.name, q.unit, getattr(result.curve, q.name)) for q in STOREY_CURVE]
+    yield "storey_curve.csv", csv_text(curve)  # one row a point, from the uplift on
     figures: dict[str, Draw] = {
-        "bearing": partial(bearing_figure, result, title),
-        "storey_curve": partial(storey_curve_figure, result, title),
+        "bearing": partial(bearing.bearing_figure, result, title),
+        "storey_curve": partial(static.storey_curve_figure, result, title),
     }
     if result.capacity:
         yield "capacity.csv", csv_text(capacity_columns(result.capacity))
-        figures["capacity"] = partial(capacity_figure, result, title)
+        figures["capacity"] = partial(static.capacity_figure, result, title)
     yield from figure_files(_with_added(figures, result, title, look), look).items()
 
 
@@ -102,20 +93,20 @@ def timehistory_files(result: TimeHistoryResult, title: str, look: Look = USUAL)
     yield "events.csv", csv_text(event_columns(result.events))
     yield "storeys.csv", csv_text(storey_columns(result))
     figures: dict[str, Callable[..., bytes]] = {
-        **({"storey_shears": profile_figure} if result.structure.storeys else {}),
-        **({"storey_loops": loops_figure} if result.structure.yields else {}),
-        **({"devices": devices_figure} if result.structure.devices else {}),
-        **({"column": column_figure} if result.column_demand is not None else {}),
-        **({"orbit": orbit_figure} if result.trace.y is not None else {}),
-        "rotation": rotation_figure,
-        "displacements": displacement_figure,
-        "moment_rotation": moment_figure,
-        "energy": energy_figure,
+        **({"storey_shears": floors.profile_figure} if result.structure.storeys else {}),
+        **({"storey_loops": floors.loops_figure} if result.structure.yields else {}),
+        **({"devices": devices.devices_figure} if result.structure.devices else {}),
+        **({"column": column.column_figure} if result.column_demand is not None else {}),
+        **({"orbit": orbit.orbit_figure} if result.trace.y is not None else {}),
+        "rotation": history.rotation_figure,
+        "displacements": history.displacement_figure,
+        "moment_rotation": history.moment_figure,
+        "energy": history.energy_figure,
     }
-    few = thinned(result)
+    few = history.thinned(result)
     draws = {
         # Maxima over the height are those of all samples.
-        stem: partial(draw, result if draw is profile_figure else few, title)
+        stem: partial(draw, result if stem == "storey_shears" else few, title)
         for stem, draw in figures.items()
     }
     yield from figure_files(_with_added(draws, result, title, look), look).items()
@@ -128,48 +119,46 @@ def floor_spectra_files(result: TimeHistoryResult, title: str, look: Look = USUA
     isolated, fixed = isolated_floor_spectra(result), fixed_base_floor_spectra(result)
     yield "floor_spectra.csv", csv_text(floor_spectra_columns(isolated, fixed))
     record = f"{result.record.name}{', fixed base elastic' * result.structure.yields}"
-    draw = partial(floor_spectra_figure, isolated, fixed, title, record)
+    draw = partial(floors.floor_spectra_figure, isolated, fixed, title, record)
     yield from figure_files({"floor_spectra": draw}, look).items()
 
 
 def record_files(motion: GroundMotion, spectrum: ResponseSpectrum, look: Look = USUAL) -> Files:
     """Files of a ground motion."""
-    yield "record.csv", csv_lines(motion_columns(motion))
-    yield "spectrum.csv", csv_text(spectrum_columns(spectrum))
-    yield from figure_files({"record": partial(record_figure, motion, spectrum)}, look).items()
+    yield "record.csv", csv_lines(tables.motion_columns(motion))
+    yield "spectrum.csv", csv_text(tables.spectrum_columns(spectrum))
+    draw = partial(motions.record_figure, motion, spectrum)
+    yield from figure_files({"record": draw}, look).items()
 
 
 def selection_files(selection: Selection, folder: Path, look: Look = USUAL) -> Files:
     """Files of a choice of motions; the list names them as seen from the folder."""
-    yield "selection.txt", selection_list(selection, folder)
-    yield "selection.csv", csv_text(selection_columns(selection))
-    yield "spectra.csv", csv_text(mean_columns(selection))
-    draw = partial(selection_figure, selection, selection.target.name)
+    yield "selection.txt", tables.selection_list(selection, folder)
+    yield "selection.csv", csv_text(tables.selection_columns(selection))
+    yield "spectra.csv", csv_text(tables.mean_columns(selection))
+    draw = partial(motions.selection_figure, selection, selection.target.name)
     yield from figure_files({"selection": draw}, look).items()
 
 
 def mode_columns(result: ModalResult) -> list[Column]:
     """`modes.csv`: one row a vibration mode of each state; those uplifted in both orders."""
     heads = {"state": "-", "mode": "-", "frequency": "rad/s", "period": "s", "damping": "-"}
-    ratios = {"frequency_ratio": "-", "damping_ratio": "-"}
-    paper = {"first_order_frequency": "rad/s", "first_order_damping": "-"}
-    return columns_of(heads | ratios | paper, _mode_rows(result))
-
-
-def _mode_rows(result: ModalResult) -> Iterator[tuple[str | int | float | None, ...]]:
-    for state, alone, of_itself in (
+    heads |= {"frequency_ratio": "-", "damping_ratio": "-"}
+    heads |= {"first_order_frequency": "rad/s", "first_order_damping": "-"}
+    rows: list[tuple[Any, ...]] = []
+    for state, modes, of_itself in (
         ("full_contact", result.full_contact, None),
         (result.fixed_base_state, result.fixed_base, 1.0),
     ):
-        pairs = zip(alone.frequencies, alone.damping, strict=True) if alone else ()
-        for i, (w, xi) in enumerate(pairs):
-            numbers = float(w), 2.0 * math.pi / w, float(xi), of_itself, of_itself
-            yield state, i + 1, *numbers, None, None
-    for name, (modes, first) in result.both_orders.items():
-        for i, (w, xi) in enumerate(zip(modes.frequencies, modes.damping, strict=True)):
-            ratios = float(modes.frequency_ratio[i]), float(modes.damping_ratio[i])
-            paper = float(first.frequencies[i]), float(first.damping[i])
-            yield name, i + 1, float(w), 2.0 * math.pi / w, float(xi), *ratios, *paper
+        pairs = np.transpose([modes.frequencies, modes.damping]).tolist() if modes else ()
+        for i, (w, xi) in enumerate(pairs, 1):
+            rows.append((state, i, w, 2.0 * math.pi / w, xi, of_itself, of_itself, None, None))
+    for name, (exact, first) in result.both_orders.items():
+        found = (exact.frequencies, exact.damping, exact.frequency_ratio, exact.damping_ratio)
+        numbers = np.transpose([*found, first.frequencies, first.damping]).tolist()
+        for i, (w, *others) in enumerate(numbers, 1):
+            rows.append((name, i, w, 2.0 * math.pi / w, *others))
+    return columns_of(heads, rows)
 
 
 def shape_columns(result: ModalResult) -> list[Column]:
@@ -199,11 +188,6 @@ def eigenvalue_columns(result: ModalResult) -> list[Column]:
         for index, value in enumerate(modes.eigenvalues.tolist())
     ]
     return columns_of(heads, rows)
-
-
-def storey_curve_columns(curve: StoreyCurve) -> list[Column]:
-    """`storey_curve.csv`: one row a point, from the uplift on."""
-    return [Column(q.name, q.unit, getattr(curve, q.name)) for q in STOREY_CURVE]
 
 
 def capacity_columns(curves: tuple[CapacityCurve, ...]) -> list[Column]:

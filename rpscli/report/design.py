@@ -314,8 +314,7 @@ def region_figure(answer: Answer, title: str) -> bytes:
         colours = colormaps[rcParams["image.cmap"]]
         norm = BoundaryNorm(SHARES, colours.N)
         look: dict[str, Any] = {"s": 18.0, "linewidths": 0.5, "clip_on": False}
-        for axes in grid.flat[len(shown) :]:
-            axes.set_axis_off()
+        style.blank(grid.flat[len(shown) :])
         for axes, (x, y) in zip(grid.flat, shown, strict=False):
             axes.locator_params(nbins=MOST_TICKS)
             for name, marker, colour in MARKS:

@@ -38,12 +38,8 @@ def _text(value: Any, indent: str) -> str:
 
 def versions() -> dict[str, str | None]:
     """Versions of rps, Python, numpy and numba, without importing any of them."""
-    return {
-        "rps": VERSION,
-        "python": platform.python_version(),
-        "numpy": installed("numpy"),
-        "numba": installed("numba"),
-    }
+    others = {name: installed(name) for name in ("numpy", "numba")}
+    return {"rps": VERSION, "python": platform.python_version(), **others}
 
 
 def installed(package: str) -> str | None:
@@ -67,10 +63,7 @@ BOTH = (
 
 
 def direction_note(pairs: Iterable[bool], refused: str) -> str:
-    """That one direction says too little, and what to do; empty where all histories have both.
-
-    It stands wherever results of histories are read. `refused` is why a structure cannot have both.
-    """
+    """That one direction says too little, and what to do; `refused` is why both cannot be had."""
     remedy = f"both components together cannot be followed: {refused}" if refused else BOTH
     return "" if all(pairs) else f"one horizontal direction at a time, not conservative: {remedy}"
 
@@ -125,17 +118,8 @@ def _energy(result: TimeHistoryResult) -> dict[str, float]:
 
 
 def read_json(path: Path, kinds: Any) -> Document:
-    """A document of an earlier run, checked whole; keys that may be missing are None.
-
-    `kinds` are types, lists of one kind, tuples of one that may be missing, mappings of kinds.
-
-    Raises
-    ------
-    FileNotFoundError
-        If there is none.
-    ValueError
-        If it is no JSON, or not of these kinds: the text says where.
-    """
+    """A document of an earlier run, checked whole; a ValueError says what is wrong and where."""
+    # Kinds are types, lists of one kind, tuples of one that may be missing, mappings of kinds.
     try:
         document = json.loads(path.read_text(encoding="utf-8"))
     except FileNotFoundError:
@@ -161,9 +145,7 @@ def _checked(value: Any, kinds: Any, place: str) -> Any:
     return value
 
 
-MADE_ANEW = frozenset(
-    ("files", "rps_version", "case", "verdicts", "passed", "exit_code", "command")
-)
+MADE_ANEW = {"files", "rps_version", "case", "verdicts", "passed", "exit_code", "command"}
 """Keys of a document that are no results."""
 
 

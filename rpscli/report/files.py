@@ -24,14 +24,11 @@ _writing = partial(
 
 @dataclass
 class Drawing:
-    """A file that is drawn when this is called, after results are written; empty if that fails.
-
-    `fault` then says why. What was asked for in vain is an error all the same.
-    """
+    """A file that is drawn when called, after results are written; empty if that fails."""
 
     name: str
     draw: Callable[[], bytes]
-    fault: str = ""
+    fault: str = ""  # why it failed
 
     @property
     def ending(self) -> str:
@@ -42,7 +39,7 @@ class Drawing:
         """The content of the file."""
         try:
             return self.draw()
-        except UsageError:
+        except UsageError:  # what was asked for in vain is an error all the same
             raise
         except Exception as error:  # noqa: BLE001 -- no picture is worth the results
             kind = "" if isinstance(error, RpsError) else f"{type(error).__name__}: "
@@ -141,20 +138,15 @@ class Run:
 
 
 class OutputFolder:
-    """The files that one run leaves behind, in a folder that is made when they are written.
+    """The files that one run leaves behind, in a folder that is made when they are written."""
 
-    A later run of the same command on the same file under the same record may replace them, though
-    the file's content or the options have changed; `force` overwrites whatever is in the way.
-    """
-
+    # A later run of the same command on the same file under the same record may replace them,
+    # though the file's content or the options have changed.
     def __init__(self, folder: Path, run: Run, *, force: bool = False) -> None:
-        self.folder = folder
-        self.run = run
-        self.force = force
+        self.folder, self.run, self.force = folder, run, force
         self.contents: dict[Path, Content] = {}
         self.removed: list[str] = []
-        self.undrawn: list[str] = []
-        """Why figures could not be drawn."""
+        self.undrawn: list[str] = []  # why figures could not be drawn
         self._earlier = self._claimed()
 
     @property
@@ -193,7 +185,18 @@ class OutputFolder:
                     self._refuse(f"{path} exists and is not an earlier output of this command")
             run = self.folder / RUN_FILE
             results = {p: c for p, c in self.contents.items() if not isinstance(c, Drawing)}
-            write_whole({**results, run: self._run_text().encode()})
+            document = {
+                "schema_version": SCHEMA_VERSION,
+                "command": self.run.command,
+                "name": self.run.name,
+                "file": self._subject["file"],
+                "sha256": self.run.digest,
+                "record": self._subject["record"],
+                "inputs": self.run.inputs,
+                "versions": versions(),
+                "files": [self._known_as(path) for path in self.contents],
+            }
+            write_whole({**results, run: json_text(document).encode()})
             for stale in self._own - {self._known_as(path) for path in (*self.contents, run)}:
                 if Path(stale).name == stale and (self.folder / stale).is_file():
                     (self.folder / stale).unlink()  # never outside the folder
@@ -205,28 +208,14 @@ class OutputFolder:
                         write_whole({path: drawn})
                     self.undrawn += [drawing.fault] * bool(drawing.fault)
 
-    def _run_text(self) -> str:
-        document = {
-            "schema_version": SCHEMA_VERSION,
-            "command": self.run.command,
-            "name": self.run.name,
-            "file": self._subject,
-            "sha256": self.run.digest,
-            "record": self._record,
-            "inputs": self.run.inputs,
-            "versions": versions(),
-            "files": [self._known_as(path) for path in self.contents],
+    @property
+    def _subject(self) -> dict[str, Any]:
+        """File and record of the run, as the folder knows them."""
+        run, record = self.run, self.run.record
+        return {
+            "file": None if run.file is None else self._known_as(run.file),
+            "record": self._known_as(record) if isinstance(record, Path) else record,
         }
-        return json_text(document)
-
-    @property
-    def _subject(self) -> str | None:
-        return None if self.run.file is None else self._known_as(self.run.file)
-
-    @property
-    def _record(self) -> str | None:
-        record = self.run.record
-        return self._known_as(record) if isinstance(record, Path) else record
 
     def _known_as(self, path: Path) -> str:
         # Relative to the folder: a project that is moved as a whole keeps knowing its results.
@@ -253,11 +242,10 @@ class OutputFolder:
         owner = f"`rps {earlier['command']}` on {earlier['name']}{file}"
         if record := earlier["record"]:
             owner = f"{owner} under {record}"
-        same = earlier["command"] == self.run.command and earlier["file"] == self._subject
-        same = same and record == self._record
-        if same and self.run.file is None:  # what has no file is known by what it says
-            same = earlier["sha256"] == self.run.digest
-        if same:
+        own = {"command": self.run.command, **self._subject}
+        if self.run.file is None:  # what has no file is known by what it says
+            own["sha256"] = self.run.digest
+        if own == {key: earlier[key] for key in own}:
             return earlier
         return self._refuse(f"{self.folder} holds the results of {owner}")
 

@@ -28,13 +28,11 @@ def shown(value: float | str | None, digits: int = 4) -> str:
         return str(value)
     if not math.isfinite(value):
         return "inf" if value > 0.0 else "-"
-    size = abs(value)
-    if size == 0.0:
+    if value == 0.0:
         return "0"
-    if not 1e-4 <= size < 1e7:
+    if not 1e-4 <= (size := abs(value)) < 1e7:
         return f"{value:.{digits - 1}e}"
-    decimals = max(0, digits - 1 - math.floor(math.log10(size)))
-    return f"{value:.{decimals}f}"
+    return f"{value:.{max(0, digits - 1 - math.floor(math.log10(size)))}f}"
 
 
 def standing(value: float | None, digits: int = 4) -> str:
@@ -80,17 +78,13 @@ _QUOTED = re.compile(r'[,"\n\r]')
 
 
 class Column(NamedTuple):
-    """One column of a table; a value that does not exist is None, and an empty cell.
-
-    `label` and `form` are for readers: what stands above, with the unit that they see, and how a
-    value becomes a text.
-    """
+    """One column of a table; a value that does not exist is None, and an empty cell."""
 
     name: str
     unit: str
     values: Iterable[Any] | NDArray[Any]
-    label: str = ""
-    form: Callable[[Any], str] | None = None
+    label: str = ""  # what readers see above it, with the unit that they see
+    form: Callable[[Any], str] | None = None  # text of a value for readers
 
     @property
     def title(self) -> str:
@@ -105,16 +99,11 @@ class Column(NamedTuple):
 
 @dataclass(frozen=True)
 class Table:
-    """Columns as readers see them.
-
-    The first `words` columns hold words, which may be broken; those after them hold numbers. The
-    first `keys` columns say what a row is about, and begin each part of a table that is too wide
-    for a terminal.
-    """
+    """Columns as readers see them."""
 
     columns: Sequence[Column]
-    words: int = 1
-    keys: int = 1
+    words: int = 1  # first columns that hold words, which may be broken; numbers follow
+    keys: int = 1  # first columns that say what a row is about, and begin each part of a wide table
 
     @classmethod
     def of_texts(

@@ -9,7 +9,7 @@ import numpy as np
 
 from report.small_results import KINDS, Array
 from rpscli.analyses.results import TimeHistoryResult
-from rpscli.analyses.trace import Direction, Event
+from rpscli.analyses.trace import Direction
 
 ANGLE = np.radians(140.0)
 """Of the plane of motion, from x towards y."""
@@ -48,8 +48,3 @@ def turned(kind: str = "rolls", angle: float | Array = ANGLE) -> TimeHistoryResu
         plane, record=x, motion=replace(plane.motion, horizontal=x, y=y), events=events,
         trace=replace(trace, **pair),
     )  # fmt: skip
-
-
-def a_pass(number: int) -> Event:
-    """A pass that lost half of what an impact would."""
-    return Event(0.1 * number, "pass", 3e-5, 0.0, 0.0, 1.5, -0.5 * np.pi, 3e-5, 0.25, 0.5)

@@ -90,6 +90,10 @@ def test_the_branch_of_the_critical_rotation_is_the_one_that_is_travelled() -> N
     assert formula(between, "critical_rotation") == rolling
     assert formula(between, "critical_rotation_paper") == rocking
     assert formula(case_of("overturns rolling"), "critical_rotation") == rolling
+    # Where both are the same in all digits shown, one row is enough.
+    for name, rows in (("between the two critical ratios", 2), ("stiffens", 1), ("flat", 1)):
+        shown = [row.name for row in found(case_of(name))]
+        assert sum(each.startswith("critical_rotation") for each in shown) == rows
     assert formula(case_of("stiffens"), "critical_rotation") == rocking
 
 

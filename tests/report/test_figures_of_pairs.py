@@ -12,7 +12,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
-from report.made_up_pairs import ANGLE, a_pass, turned
+from report.made_up_pairs import ANGLE, turned
 from report.small_results import KINDS, curve, is_drawn, legend, prefix
 from rpscli import figures
 from rpscli.analyses.trace import Direction
@@ -29,8 +29,6 @@ from rpscli.report.figures.history import (
     rotation_figure,
 )
 from rpscli.report.figures.orbit import orbit_figure
-from rpscli.report.html.case_page import MOST_ROWS, passes_blocks
-from rpscli.report.table import Table
 
 
 @pytest.fixture(params=["rolls", "overturns", "frame", "at rest"])
@@ -169,16 +167,3 @@ def test_film_from_the_side_and_from_above(tmp_path: Path) -> None:
     assert np.abs(x * np.sin(ANGLE) - y * np.cos(ANGLE)).max() < 1e-9
     wanted = FilmRequest(tmp_path / "film.gif", size=300, first=0.2, last=0.4)
     assert history_film(pair, "a title", wanted).startswith(b"GIF")
-
-
-def test_passes_on_pages() -> None:
-    text, table = passes_blocks([a_pass(n) for n in range(1, 4)], 0.15)
-    assert isinstance(table, Table)
-    assert "events.csv" not in str(text)
-    rows = list(zip(*(column.texts() for column in table.columns), strict=True))
-    assert rows[1] == ("2", "0.2000", "-90.00", "0.0002000", "0.2500", "0.5000", "1.500")
-    cut, table = passes_blocks([a_pass(n) for n in range(MOST_ROWS + 5)], 0.15)
-    assert f"The first {MOST_ROWS} of {MOST_ROWS + 5}; events.csv has all" in str(cut)
-    assert isinstance(table, Table)
-    assert len(table.columns[0].texts()) == MOST_ROWS
-    assert not [*passes_blocks(KINDS["frame"]().events, 0.15)]

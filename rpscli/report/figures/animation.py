@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,10 +33,9 @@ class Scene:
         self, axes: style.Axes, result: TimeHistoryResult, title: str, speed: float
     ) -> None:
         of_pair, result = result.trace.y is not None, in_plane(result)
-        self.result = result
-        self.levels = level_heights(result.structure)
+        self.result, structure = result, result.structure
+        self.levels = level_heights(structure)
         self.magnification = _magnification(result, self.levels)
-        structure = result.structure
         height = 2.0 * structure.bearing.half_height
         self.width = 1.6 * max(height, 0.35 * float(self.levels[-1]))
         count = COLUMNS if structure.cap_beam_mass > 0.0 else 1
@@ -59,16 +58,9 @@ class Scene:
             axes.set_title("along the tilt", loc="left", fontsize=style.small())
         legend = f"bearings to scale{drifts}; {_pace(speed)}"
         axes.set_xlabel(legend, fontsize=style.small())
-        self._frame(axes)
-
-    @property
-    def moving(self) -> list[style.Artist]:
-        """Artists that `show` moves."""
         parts = [*self.columns, self.beam, *self.sides, *self.floors, *self.devices.moving]
-        return [*parts, self.clock]
-
-    def _frame(self, axes: style.Axes) -> None:
-        trace = self.result.trace
+        self.moving: list[style.Artist] = [*parts, self.clock]
+        trace = result.trace
         shift = float(np.nanmax(np.abs(trace.cap_beam_displacement)))
         reach = 0.5 * self.width + shift + 0.12 * float(self.levels[-1])
         top = float(self.levels[-1] + np.nanmax(trace.lift)) + 2.0 * self.thickness
@@ -105,10 +97,7 @@ class Scene:
 
 
 class PlanView:
-    """A column from above under both components: its foot, its head and where the head was.
-
-    A line shows the plane in which it leans, and which end of it is on the right from the side.
-    """
+    """A column from above: foot, head and where it was, and the plane in which it leans."""
 
     def __init__(self, axes: style.Axes, result: TimeHistoryResult) -> None:
         from matplotlib.patches import Circle
@@ -120,9 +109,8 @@ class PlanView:
         radius = result.structure.bearing.end_half_width
         farthest = float(np.nanmax(trace.size("cap_beam_displacement")))
         self.reach = 1.15 * (radius + farthest)
-        critical = float(
-            result.structure.path(np.array([result.structure.critical_rotation]))[1][0]
-        )
+        limit = np.array([result.structure.critical_rotation])
+        critical = float(result.structure.path(limit)[1][0])
         for size, colour, line in ((radius, style.BLACK, ":"), (critical, style.RED, "--")):
             axes.add_patch(Circle((0.0, 0.0), size, fill=False, ec=colour, ls=line, lw=0.8))
         self.plane = axes.plot([], [], color=style.BLACK, lw=0.6, ls=(0, (6, 3)))[0]
@@ -173,15 +161,8 @@ USUAL_LENGTH = 9.0  # of a film whose speed nobody asked for, at most [s]
 SWING = 2.0  # time in which mode shapes swing there and back [s]
 
 
-class Plan(NamedTuple):
-    """Samples that become frames, and how much faster than in reality they follow."""
-
-    samples: NDArray[np.int64]
-    speed: float
-
-
-def frame_plan(result: TimeHistoryResult, wanted: FilmRequest) -> Plan:
-    """Evenly spaced samples of the wanted part, by default from the first motion to the last."""
+def frame_plan(result: TimeHistoryResult, wanted: FilmRequest) -> tuple[NDArray[np.int64], float]:
+    """Samples that become frames, by default of all motion, and how much faster they follow."""
     time, rotation = result.trace.time, np.abs(result.trace.rotation)
     moving = np.flatnonzero(rotation > 0.01 * rotation.max()) if rotation.any() else np.empty(0)
     first = max(time[int(moving[0])] - 0.5, 0.0) if moving.size else 0.0
@@ -204,43 +185,39 @@ def frame_plan(result: TimeHistoryResult, wanted: FilmRequest) -> Plan:
     frames = max(int(count), 2)
     at = np.linspace(first, last, frames)
     samples = np.minimum(np.searchsorted(time, at), len(time) - 1)
-    return Plan(samples, float((last - first) * wanted.rate / frames))
+    return samples, float((last - first) * wanted.rate / frames)
 
 
 def history_film(
     result: TimeHistoryResult, title: str, wanted: FilmRequest, progress: Progress = lambda *_: None
 ) -> bytes:
-    """The structure, a column's end enlarged, and the record; storey drifts alone are magnified.
-
-    Under both components the structure is seen where its columns lean, beside a column from above.
-    """
-    plan = frame_plan(result, wanted)
+    """The structure where its columns lean, an end enlarged or one from above, and the record."""
+    samples, speed = frame_plan(result, wanted)
 
     def draw(figure: style.Figure) -> Motion:
         panels = figure.subplot_mosaic(
             [["scene", "detail"], ["record", "record"]], width_ratios=[1.7, 1.0],
             height_ratios=[4.2, 1.0],
         )  # fmt: skip
-        scene = Scene(panels["scene"], result, title, plan.speed)
+        scene = Scene(panels["scene"], result, title, speed)
         trace, record = result.trace, panels["record"]
         show_detail, moving = _detail(panels["detail"], result)
-        if trace.y is not None:
-            record.plot(trace.time, trace.y.ground_acceleration, color=style.RED, lw=0.6, label="y")
-        name = None if trace.y is None else "x"
-        record.plot(trace.time, trace.ground_acceleration, color=style.BLACK, lw=0.6, label=name)
+        for name, of, colour in (("y", trace.y, style.RED), ("x", trace, style.BLACK)):
+            if of is not None:
+                record.plot(trace.time, of.ground_acceleration, color=colour, lw=0.6, label=name)
         if trace.y is not None:
             record.legend(loc="upper right", ncols=2, borderaxespad=0.1)
-        first, last = trace.time[plan.samples[[0, -1]]]
+        first, last = trace.time[samples[[0, -1]]]
         record.set(xlim=(first, last), ylabel="$a_g$ [m/s²]", xlabel="time [s]")
         cursor = record.axvline(first, color=style.RED, lw=1.2)
 
         def show(frame: int) -> None:
-            sample = int(plan.samples[frame])
+            sample = int(samples[frame])
             scene.show(sample)
             show_detail(sample)
             cursor.set_xdata([trace.time[sample]] * 2)
 
-        return Motion(len(plan.samples), show, [*scene.moving, *moving, cursor])
+        return Motion(len(samples), show, [*scene.moving, *moving, cursor])
 
     return film(draw, 6.2, 4.4, wanted, progress)
 

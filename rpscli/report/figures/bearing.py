@@ -24,16 +24,8 @@ ARC_POINTS = 12
 
 
 def upright_outline(bearing: Bearing) -> Array:
-    """Corners of the upright column about its centre, (points, 2) [m], counter-clockwise.
-
-    ::
-
-        .---.      flat part up to B, an arc of radius r up to B', straight sides
-       (     )
-        |   |
-       (     )
-        '---'
-    """
+    """Corners of the upright column about its centre, (points, 2) [m], counter-clockwise."""
+    # Up to B the ends are flat, then arcs of radius r up to B', and sides are straight.
     H, B, r = bearing.half_height, bearing.half_width, bearing.radius
     turn = np.linspace(0.0, bearing.beta, ARC_POINTS if bearing.beta > 0.0 else 1)
     corner = np.column_stack([B + r * np.sin(turn), -H + r * (1.0 - np.cos(turn))])
@@ -88,12 +80,9 @@ class BearingView:
         self.devices = SceneDevices(axes, structure.devices, np.zeros(1), self.half, self.height)
         axes.set(xticks=[], yticks=[])
         axes.grid(visible=False)
-
-    @property
-    def moving(self) -> list[style.Artist]:
-        """Artists that `show` moves."""
         beam = [] if self.beam is None else [self.beam]
-        return [self.column, *beam, self.thrust, self.contacts, *self.devices.moving]
+        parts = [self.column, *beam, self.thrust, self.contacts, *self.devices.moving]
+        self.moving: list[style.Artist] = parts
 
     def show(self, rotation: float) -> tuple[float, float]:
         """Lean the column to a rotation [rad]; u_b and v_b there [m]."""
@@ -137,8 +126,7 @@ def bearing_figure(result: PushoverResult, title: str) -> bytes:
             end, force = cells[len(states)], below.subplots()
         else:
             end, force = below.subplots(1, 2, width_ratios=[1.0, 2.0])
-        for axes in cells[len(states) + 1 :]:
-            axes.set_axis_off()
+        style.blank(cells[len(states) + 1 :])
         draw_end(end, structure.bearing, structure.bed)
         draw_force(force, result)
         # As high as columns are with their titles: wide ones leave no gap.
@@ -192,6 +180,7 @@ def draw_bearing(axes: style.Axes, structure: PodiumStructure, rotation: float =
 def draw_end(axes: style.Axes, bearing: Bearing, bed: Bed | None = None) -> None:
     """The lower end of a column at rest, enlarged: its widths, the radius, the edge's height."""
     half, B = bearing.end_half_width, bearing.half_width
+    beside: dict[str, Any] = {"textcoords": "offset points", "fontsize": style.small()}
     x, y = leaning_outline(bearing, 0.0, 0.0, 0.0).T
     axes.axhline(0.0, color=style.BLACK, lw=1.2)
     axes.fill(x, y, fc=COLUMN, ec=style.BLACK, lw=1.0)
@@ -213,19 +202,14 @@ def draw_end(axes: style.Axes, bearing: Bearing, bed: Bed | None = None) -> None
             arc, (0.0, 4.0 * step), arrowprops={"arrowstyle": "->", "lw": 0.6},
             ha="center", va="center", fontsize=style.small(),
         )  # fmt: skip
-        axes.annotate(
-            f"{1e3 * edge:.3g} mm", (1.06 * half, edge), (0.0, 3.0), va="bottom",
-            textcoords="offset points", fontsize=style.small(),
-        )  # fmt: skip
+        words = f"{1e3 * edge:.3g} mm"
+        axes.annotate(words, (1.06 * half, edge), (0.0, 3.0), va="bottom", **beside)
         title = "an end, enlarged"
     if bed is not None and bed.contact_share is not None:
         x, y = B * (1.0 - 2.0 * bed.contact_share), -3.2 * step
         axes.plot([x, B], [y, y], color=style.RED, lw=2.5, solid_capstyle="butt")
         words = f"{1e3 * (B - x):.3g} mm in contact at α/10"
-        axes.annotate(
-            words, (B, y), (0.0, -4.0), va="top", ha="right",
-            textcoords="offset points", fontsize=style.small(),
-        )  # fmt: skip
+        axes.annotate(words, (B, y), (0.0, -4.0), va="top", ha="right", **beside)
     axes.set_title(title, fontsize=style.small())
 
 
@@ -284,8 +268,8 @@ def _frame(
 
 def measure(axes: style.Axes, start: At, end: At, text: str, *, turned: bool = False) -> None:
     """A dimension line with arrows at both ends and its text beside: on its left or below."""
-    upright = start[0] == end[0]
-    _arrow(axes, start, end, text, (-3.0, 0.0) if upright else (0.0, -3.0), turned=turned)
+    offset = (-3.0, 0.0) if start[0] == end[0] else (0.0, -3.0)
+    _arrow(axes, start, end, text, offset, turned=turned)
 
 
 def _arrow(

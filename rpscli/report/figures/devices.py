@@ -16,6 +16,8 @@ from rpscli.report.figures import style
 if TYPE_CHECKING:
     from matplotlib.lines import Line2D
 
+Array = NDArray[np.float64]
+
 BRACE, POSTS, CABLES, NOWHERE = range(4)  # signs for devices in pictures of the structure
 
 
@@ -50,8 +52,7 @@ def devices_figure(result: TimeHistoryResult, title: str) -> bytes:
         panels = figure.subplots(rows, columns, squeeze=False).ravel()
         for index, axes in enumerate(panels[:count]):
             draw_device(axes, result, index)
-        for axes in panels[count:]:
-            axes.set_axis_off()
+        style.blank(panels[count:])
 
     return style.picture(draw, 0.5 + 2.7 * rows, max(2.6 * columns, 4.0))
 
@@ -64,8 +65,7 @@ def draw_device(axes: style.Axes, result: TimeHistoryResult, index: int) -> None
     force = drawn.sign * trace.force[:, index]
     factor, prefix = style.engineering(float(np.nanmax(np.abs(force), initial=0.0)))
     axes.plot(trace.displacement[:, index], factor * force, color=style.BLUE, lw=0.8)
-    axes.axhline(0.0, color=style.BLACK, lw=0.5)
-    axes.axvline(0.0, color=style.BLACK, lw=0.5)
+    style.cross(axes)
     axes.set_title(f"device {index}: {device.kind.replace('_', ' ')}", fontsize=style.small())
     stroke = drawn.stroke if result.motion.y is None else drawn.stroke.replace("u_b", "|u_b|")
     axes.set(xlabel=stroke, ylabel=f"{drawn.force} [{prefix}N]")
@@ -73,20 +73,13 @@ def draw_device(axes: style.Axes, result: TimeHistoryResult, index: int) -> None
 
 
 class SceneDevices:
-    """Devices in pictures of the structure, moved with the cap beam; a legend has their names.
+    """Devices in pictures of the structure, moved with the cap beam; a legend has their names."""
 
-    Posts stand at the gap of each stop, red and pushed aside beyond it; dampers share a brace;
-    cables stand where the feet of the columns do. `half` is half the width of the beam, `base` the
-    height of its underside at rest [m].
-    """
-
+    # Posts stand at the gap of each stop, red and pushed aside beyond it; dampers share a brace;
+    # cables stand where the feet of the columns do. `half` is half the width of the beam, `base`
+    # the height of its underside at rest [m].
     def __init__(
-        self,
-        axes: style.Axes,
-        devices: Sequence[Device],
-        feet: NDArray[np.float64],
-        half: float,
-        base: float,
+        self, axes: style.Axes, devices: Sequence[Device], feet: Array, half: float, base: float
     ) -> None:
         self.feet, self.half, self.base = feet, half, base
         by_scene: dict[int, list[Any]] = {BRACE: [], POSTS: [], CABLES: [], NOWHERE: []}
@@ -104,12 +97,8 @@ class SceneDevices:
         look: dict[str, Any] = {"color": style.GREEN, "lw": 1.5, "marker": "s", "markevery": [1]}
         look["label"] = f"{' and '.join(kinds)} damper"
         self.brace = axes.plot([], [], **look, ms=5.0)[0] if kinds else None
-
-    @property
-    def moving(self) -> list[Line2D]:
-        """All of them."""
         brace = [] if self.brace is None else [self.brace]
-        return [*(post for _, _, post in self.stops), *self.tendons, *brace]
+        self.moving = [*(post for _, _, post in self.stops), *self.tendons, *brace]
 
     def show(self, shift: float, lift: float) -> None:
         """Move them with the cap beam, displaced and lifted [m]."""

@@ -75,10 +75,7 @@ class FilmRequest:
 
 
 class Motion(NamedTuple):
-    """A moving figure: so many frames, what shows each of them, counted from 0, and what moves.
-
-    All that does not move is drawn once, below what does.
-    """
+    """A moving figure: frames, what shows each of them, and what moves above all that does not."""
 
     frames: int
     show: Callable[[int], None]

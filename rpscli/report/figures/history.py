@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import fields, replace
+from functools import partial
 from typing import Any, Literal, get_args
 
 import numpy as np
@@ -117,17 +119,9 @@ def displacement_figure(result: TimeHistoryResult, title: str) -> bytes:
     """Roof and cap beam over the ground; below, roof and floors at mid-height over the cap beam."""
     draws = [draw_displacements, draw_drifts][: 2 if result.structure.storeys else 1]
     ways = WAYS if result.trace.y is not None else WAYS[:1]
-    rows = [(draw_one, way) for draw_one in draws for way in ways]
-
-    def draw(figure: style.Figure) -> None:
-        style.heading(figure, title, record_name(result), result.sampling)
-        panels = figure.subplots(len(rows), 1, sharex=True, squeeze=False)[:, 0]
-        for axes, (draw_one, way) in zip(panels, rows, strict=True):
-            draw_one(axes, result, way)
-            axes.label_outer()
-        figure.align_ylabels()
-
-    return style.picture(draw, 1.2 + 1.8 * len(rows))
+    panels = [partial(draw_one, result=result, way=way) for draw_one in draws for way in ways]
+    words = title, record_name(result), result.sampling
+    return style.stacked(panels, words, 1.2 + 1.8 * len(panels))
 
 
 def draw_displacements(axes: style.Axes, result: TimeHistoryResult, way: Way = "x") -> None:
@@ -196,20 +190,18 @@ NEAR = 8.0  # a level up to so many times the largest rotation is brought into v
 def rotation_figure(result: TimeHistoryResult, title: str) -> bytes:
     """Ground acceleration, rotation with its phases, and events; of pairs the azimuth as well."""
     rows, both = _rows(result), result.trace.azimuth is not None
+    draws: list[Callable[..., None]]
     draws = [draw_ground, draw_rotation, *[draw_azimuth] * both, *[draw_events] * bool(rows)]
     heights = [1.3 if both else 1.0, 2.4, *[0.9] * both, *[0.18 * len(rows)] * bool(rows)]
 
-    def draw(figure: style.Figure) -> None:
-        style.heading(figure, title, record_name(result), result.sampling)
-        panels = figure.subplots(len(draws), 1, sharex=True, height_ratios=heights)
-        for axes, draw_one in zip(panels, draws, strict=True):
-            draw_one(axes, result)
-        panels[-1].set(xlim=(0.0, result.trace.time[-1]), xlabel="time [s]")
-        for axes in panels[:-1]:
-            axes.label_outer()
-        figure.align_ylabels(panels[:-1])
+    def draw_last(axes: style.Axes) -> None:
+        draws[-1](axes, result)
+        axes.set(xlim=(0.0, result.trace.time[-1]), xlabel="time [s]")
 
-    return style.picture(draw, 4.6 + 0.15 * len(rows) + 1.3 * both + 0.6 * style.narrow())
+    panels = [partial(draw_one, result=result) for draw_one in draws[:-1]]
+    words = title, record_name(result), result.sampling
+    height = 4.6 + 0.15 * len(rows) + 1.3 * both + 0.6 * style.narrow()
+    return style.stacked([*panels, draw_last], words, height, ratios=heights)
 
 
 def _rows(result: TimeHistoryResult) -> list[EventRow]:
@@ -331,8 +323,7 @@ def draw_moment(axes: style.Axes, result: TimeHistoryResult) -> None:
         static = factor * result.restoring_moment(rotation)
         axes.plot(rotation, static, color=style.RED, lw=2.5, zorder=1.5, label=name)
         name = None
-    axes.axhline(0.0, color=style.BLACK, lw=0.5)
-    axes.axvline(0.0, color=style.BLACK, lw=0.5)
+    style.cross(axes)
     axes.set_xlim(0.0 if one_sided else -reach, reach)
     axes.locator_params(axis="x", nbins=5)
     axes.set_xlabel("rotation $\\theta$ [rad]")

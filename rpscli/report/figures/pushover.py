@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,16 +17,9 @@ DISPLACEMENT = "cap beam displacement $u_b$ [m]"
 
 def storey_curve_figure(result: PushoverResult, title: str) -> bytes:
     """Force and lift of the cap beam against its displacement, to the critical rotation."""
-
-    def draw(figure: style.Figure) -> None:
-        style.heading(figure, title, "storey of the bearings alone")
-        force, lift = figure.subplots(2, 1, sharex=True, height_ratios=[2.6, 1.0])
-        draw_force(force, result)
-        draw_lift(lift, result)
-        force.label_outer()
-        figure.align_ylabels()
-
-    return style.picture(draw, 4.8, 5.8)
+    panels = [partial(draw_one, result=result) for draw_one in (draw_force, draw_lift)]
+    words = title, "storey of the bearings alone"
+    return style.stacked(panels, words, 4.8, 5.8, ratios=[2.6, 1.0])
 
 
 def draw_force(axes: style.Axes, result: PushoverResult) -> None:
@@ -124,15 +118,12 @@ def capacity_figure(result: PushoverResult, title: str) -> bytes:
 
 
 def draw_capacity(axes: style.Axes, result: PushoverResult) -> None:
-    """Sum of floor forces against roof displacement by pattern, and where it uplifts.
-
-    Curves may coincide: the first one drawn is the widest.
-    """
+    """Sum of floor forces against roof displacement by pattern, and where it uplifts."""
     if not result.capacity:
         raise UsageError("a structure without storeys has no capacity curve; draw `storey_curve`")
     factor, prefix = style.engineering(max(c.sum_of_floor_forces.max() for c in result.capacity))
     for k, curve in enumerate(result.capacity):
-        colour, line = LOOKS[k % len(LOOKS)]
+        colour, line = LOOKS[k % len(LOOKS)]  # curves may coincide: the first is the widest
         axes.plot(
             curve.roof_displacement, factor * curve.sum_of_floor_forces,
             color=colour, ls=line, lw=3.6 / (k + 1), label=curve.pattern.replace("_", " "),
@@ -150,9 +141,6 @@ def draw_capacity(axes: style.Axes, result: PushoverResult) -> None:
         axes.plot([], [], "o", color=style.GREY, ms=4.5, label=begins)
     if any(curve.yielding for curve in result.capacity):
         axes.plot([], [], "D", color=style.GREY, ms=4.5, label="first storey yields")
-    axes.set_xlim(left=0.0)
-    axes.set_ylim(
-        bottom=min(0.0, *(factor * np.min(c.sum_of_floor_forces) for c in result.capacity))
-    )
-    axes.set_xlabel("roof displacement [m]")
+    lowest = min(0.0, *(factor * np.min(c.sum_of_floor_forces) for c in result.capacity))
+    axes.set(xlim=(0.0, None), ylim=(lowest, None), xlabel="roof displacement [m]")
     axes.set_ylabel(f"sum of floor forces [{prefix}N]")

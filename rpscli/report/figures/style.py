@@ -161,6 +161,38 @@ def single(
     return picture(fill, height, width)
 
 
+def stacked(
+    draws: Sequence[Callable[[Axes], None]],
+    words: Sequence[str],
+    height: float,
+    width: float = WIDTH,
+    ratios: Sequence[float] | None = None,
+) -> bytes:
+    """The file of a figure of panels on top of each other, over one axis, under a heading."""
+
+    def fill(figure: Figure) -> None:
+        heading(figure, *words)
+        grid = figure.subplots(len(draws), 1, sharex=True, squeeze=False, height_ratios=ratios)
+        for axes, draw in zip(grid[:, 0], draws, strict=True):
+            draw(axes)
+            axes.label_outer()
+        figure.align_ylabels([axes for axes in grid[:, 0] if axes.get_ylabel()])
+
+    return picture(fill, height, width)
+
+
+def blank(panels: Iterable[Axes]) -> None:
+    """Leave places of a grid empty."""
+    for axes in panels:
+        axes.set_axis_off()
+
+
+def cross(axes: Axes) -> None:
+    """Lines through the origin."""
+    axes.axhline(0.0, color=BLACK, lw=0.5)
+    axes.axvline(0.0, color=BLACK, lw=0.5)
+
+
 @dataclass
 class Kept:
     """A figure that is to be kept, in place of becoming a file."""
@@ -290,10 +322,7 @@ def width_of(text: str, size: float) -> float:
 
 
 def folded(text: str, room: float, size: float) -> str:
-    """A text in lines that fit into a room [in], broken at commas or words, never in formulas.
-
-    Only words that are too long themselves are broken anywhere.
-    """
+    """A text in lines that fit into a room [in], broken at commas or words, never in formulas."""
     lines = []
     for line in text.split("\n"):
         pieces = _PARTS.findall(line)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 import shlex
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from importlib import resources
@@ -14,7 +13,6 @@ import numpy as np
 from rpscli.analyses.column_design import WITHOUT_IMPULSE
 from rpscli.analyses.neighbours import Neighbour
 from rpscli.analyses.results import STEEL_ROTATION, TimeHistoryResult
-from rpscli.analyses.trace import Event
 from rpscli.case.case import Case
 from rpscli.case.schema.keys import unit
 from rpscli.errors import listed
@@ -31,22 +29,9 @@ from rpscli.report.figures.motions import record_figure, spectra_figure
 from rpscli.report.figures.structure import structure_figure
 from rpscli.report.html.page import Block, Code, Notice, Picture, Section, page_look, pictures
 from rpscli.report.limits import limits_table, verdicts_in_short
-from rpscli.report.table import Column, Table, shown
-from rpscli.report.tables.derived import (
-    Derivation,
-    column_derivations,
-    derivations,
-    first_shape,
-)
+from rpscli.report.table import Column, Table
+from rpscli.report.tables import derived, timehistory
 from rpscli.report.tables.motions import record_table
-from rpscli.report.tables.timehistory import (
-    column_table,
-    neighbours_texts,
-    outcome_table,
-    outcome_text,
-    restitution_text,
-    storeys_table,
-)
 from rpscli.sweep.statistics.verdicts import Verdict
 
 MOST_ROWS = 100
@@ -67,8 +52,7 @@ def motion_pictures(
 
 
 def _picture(draw: Draw, look: Look, caption: str) -> Picture:
-    (files,) = pictures(figure_files({"figure": draw}, page_look(look)).items()).values()
-    return Picture(files, caption)
+    return Picture(pictures(figure_files({"": draw}, page_look(look)).items())[""], caption)
 
 
 def motions_section(
@@ -81,32 +65,22 @@ def motions_section(
     """Records of a study, or of several histories: peaks, digests and spectra."""
     blocks: list[Block] = [*unreadable]
     if motions:
-        blocks.append(_table(motions[:MOST_ROWS]))
-        shown = motions[:MOST_SPECTRA]
-        blocks.append(
-            _picture(
-                lambda: spectra_figure([drawn_spectrum(each) for each in shown], title),
-                look,
-                f"Response spectra of {len(shown)} records {which}, at"
-                f" {style.percent(DAMPING)} of critical damping, with their median.",
-            )
+        heads = ("record", "SHA-256 begins with", "duration [s]", "PGA [m/s2]", "PGV [m/s]")
+        rows = []
+        for each in motions[:MOST_ROWS]:
+            of = intensity_measures(each)
+            numbers = map("{:.4g}".format, (each.duration, of.pga, of.pgv, of.d5_95))
+            rows.append((each.source, each.digest[:16], *numbers))
+        blocks.append(Table.of_texts((*heads, "5-95 % [s]"), rows, words=2))
+        spectra = [drawn_spectrum(each) for each in motions[:MOST_SPECTRA]]
+        caption = (
+            f"Response spectra of {len(spectra)} records {which}, at {style.percent(DAMPING)} of"
+            " critical damping, with their median."
         )
+        blocks.append(_picture(lambda: spectra_figure(spectra, title), look, caption))
     if len(motions) > MOST_ROWS:
         blocks.append(f"The table shows the first {MOST_ROWS} of {len(motions)} records.")
     return Section("Ground motions", blocks)
-
-
-def _table(motions: Sequence[GroundMotion]) -> Table:
-    rows = [
-        (each.source, each.digest[:16], *map("{:.4g}".format, numbers))
-        for each in motions
-        for of in [intensity_measures(each)]
-        for numbers in [(each.duration, of.pga, of.pgv, of.d5_95)]
-    ]
-    heads = (
-        "record", "SHA-256 begins with", "duration [s]", "PGA [m/s2]", "PGV [m/s]", "5-95 % [s]"
-    )  # fmt: skip
-    return Table.of_texts(heads, rows, words=2)
 
 
 CAPTIONS = {
@@ -149,12 +123,7 @@ def page_sections(
     both: bool,
     which: Sequence[Block] = (),
 ) -> list[Section]:
-    """All of a page in its order; `which` says of which system structure and formulas are.
-
-    Where both components act, what the model leaves out is more, and less.
-
-    `commands` make the same again; `stored` says what there was before, and where it is.
-    """
+    """All of a page in its order; `which` says of which system structure and formulas are."""
     structure, podium = case.structure, case.document["podium"]
     told = [Notice(f"Warning: {text}") for text in warnings]
     repeat: list[Block] = [
@@ -192,7 +161,7 @@ def structure_blocks(structure: PodiumStructure, title: str, look: Look) -> list
 def _storeys(structure: PodiumStructure) -> Table:
     building = structure.superstructure
     assert building is not None, "there are storeys"
-    shape, heights = first_shape(building), building.storey_heights
+    shape, heights = derived.first_shape(building), building.storey_heights
     count = building.storeys
     columns = {
         "storey": np.arange(count) + 1,
@@ -218,9 +187,7 @@ def input_table(content: Mapping[str, Any], written: Mapping[str, Any] | None = 
 
 def _as_typed(value: object) -> str:
     """A value of the file, lists of texts without their quotes."""
-    if isinstance(value, list):
-        return f"[{', '.join(map(_as_typed, value))}]"
-    return _plain(value)
+    return f"[{', '.join(map(_as_typed, value))}]" if isinstance(value, list) else _plain(value)
 
 
 def derived_blocks(structure: PodiumStructure, podium: Mapping[str, Any]) -> list[Block]:
@@ -231,18 +198,17 @@ def derived_blocks(structure: PodiumStructure, podium: Mapping[str, Any]) -> lis
         f" {THEORY}, sections 1 to 7 and 14. f, κ and e_given are factor, loss and restitution of"
         " podium.impact, I is podium.bearing.inertia_ratio."
     )
-    return [text, _derived(derivations(structure, podium))]
+    return [text, _derived(derived.derivations(structure, podium))]
 
 
-def _derived(found: Iterable[Derivation]) -> Table:
+def _derived(found: Iterable[derived.Derivation]) -> Table:
     rows = [
         (
-            row.label,
-            row.symbol,
+            *row[1:3],
             row.formula or "from the case",
             row.numbers,
             _number(row.value),
-            "" if row.unit == "-" else row.unit,
+            row.unit.strip("-"),
         )
         for row in found
     ]
@@ -279,14 +245,14 @@ def history_short(
     beside: Sequence[Neighbour],
 ) -> Iterator[Block]:
     """Outcome and verdicts of one history, and how much it says."""
-    yield f"Outcome: {outcome_text(result)}."
+    yield f"Outcome: {timehistory.outcome_text(result)}."
     if result.failure:
         yield Notice(result.failure)
     yield verdicts_in_short(verdicts)
     if verdicts:
         yield limits_table(verdicts)
-    yield restitution_text(result.structure)
-    yield from map(Notice, neighbours_texts(result, beside))
+    yield timehistory.restitution_text(result.structure)
+    yield from map(Notice, timehistory.neighbours_texts(result, beside))
     both, planar = [result.motion.y is not None], result.structure.planar_only
     yield from filter(None, [direction_note(both, planar)])
 
@@ -315,11 +281,10 @@ def response_section(
     figures: Iterable[str] = (),
 ) -> Section:
     """The tables of a history, and all of its figures or some."""
-    drawn, wanted = pictures(files), {*figures} or CAPTIONS.keys() - {"column"}
-    storeys = [storeys_table(result)] if result.structure.storeys else []
-    shown = [Picture(each, CAPTIONS[stem]) for stem, each in drawn.items() if stem in wanted]
-    passes = passes_blocks(result.events, result.structure.bearing.alpha)
-    return Section(title, [outcome_table(result), *storeys, *shown, *passes])
+    wanted = {*figures} or CAPTIONS.keys() - {"column"}
+    drawn = [(CAPTIONS[stem], each) for stem, each in pictures(files).items() if stem in wanted]
+    shown = [Picture(each, caption) for caption, each in drawn]
+    return Section(title, [*timehistory.demand_tables(result), *shown])
 
 
 def column_sections(
@@ -338,34 +303,12 @@ def column_sections(
     )
     yield Section("Forces and pressures of a column", [
         f"Maxima at instants of a dense trace under {result.record.name}, without {without}.",
-        *column_table(result),
+        *timehistory.column_table(result),
         *([Picture(drawn, CAPTIONS["column"])] if drawn else []),
         "With numbers, in SI units (THEORY.md, section 16):",
-        _derived(column_derivations(result)),
+        _derived(derived.column_derivations(result)),
         codes,
     ])  # fmt: skip
-
-
-def passes_blocks(events: Sequence[Event], alpha: float) -> Iterator[Block]:
-    """Passes of a pair near upright: when, how near, and what each took."""
-    passes = [event for event in events if event.kind == "pass"]
-    if not passes:
-        return
-    rows = []
-    for number, each in enumerate(passes[:MOST_ROWS], 1):
-        azimuth, least = math.degrees(each.azimuth or 0.0), (each.least_tilt or 0.0) / alpha
-        numbers = each.time, azimuth, least, each.nearness, each.loss_share, each.energy_lost
-        rows.append((str(number), *map(shown, numbers)))
-    cut = f" The first {MOST_ROWS} of {len(passes)}; events.csv has all." * (
-        len(passes) > MOST_ROWS
-    )
-    yield (
-        "Passes: where columns came nearest to upright, and the azimuth after it, from x towards y."
-        " s is the time they take there over that of a contact, l how much of what an impact would"
-        f" lose is lost.{cut}"
-    )
-    heads = ("pass", "time [s]", "azimuth [deg]", "θ_min/α", "s", "l", "lost [J]")
-    yield Table.of_texts(heads, rows)
 
 
 def case_input(

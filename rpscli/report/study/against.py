@@ -13,8 +13,8 @@ from rpscli.case.study.reports import ReportOptions, ReportRequest, VariedKey, V
 from rpscli.case.text.document import Document, Fault, Path, dotted, shown
 from rpscli.errors import listed
 from rpscli.report.figures import style
+from rpscli.report.study import panels
 from rpscli.report.study.labels import keyed, label
-from rpscli.report.study.panels import colour, in_panels, marker, noted, shaded
 from rpscli.report.study.report import Found, Report, without_uplift
 from rpscli.sweep.statistics.grouping import INTENSITY, Histories, grouping, own_keys
 from rpscli.sweep.table import Group, Indices, StudyResults, groups, leading_keys
@@ -57,11 +57,9 @@ def rotation(study: StudyResults, options: RotationOptions) -> Found:
         bad = table.failed[mine] | table.failed[theirs]
         return Pairs(system.values[0], mine[~bad], theirs[~bad], int(bad.sum()))
 
-    panels = {
-        group: [paired(system, group) for system in systems if system is not reference]
-        for group in found.groups
-    }
-    pairs, count = [each for group in panels.values() for each in group], len(systems) - 1
+    others = [system for system in systems if system is not reference]
+    shown = {group: [paired(system, group) for system in others] for group in found.groups}
+    pairs, count = [each for group in shown.values() for each in group], len(others)
     alpha = np.array([properties.alpha for properties in layout.properties])
     ratio = table.columns["max_rotation"] / alpha[np.arange(len(table)) // layout.points_of_system]
     ratio = np.where(table.overturned, np.inf, ratio)
@@ -72,12 +70,11 @@ def rotation(study: StudyResults, options: RotationOptions) -> Found:
     )
 
     def draw(axes: style.Axes, group: Histories) -> None:
-        for place, each in enumerate(panels[group]):
+        for place, each in enumerate(shown[group]):
             x, y = ratio[each.references], ratio[each.points]
             stood = np.isfinite(x) & np.isfinite(y)
-            look: dict[str, Any] = {
-                "color": colour(place, count), "marker": marker(place), "ls": "", "ms": 3.2
-            }  # fmt: skip
+            look: dict[str, Any] = {"color": panels.colour(place, count), "ls": "", "ms": 3.2}
+            look["marker"] = panels.marker(place)
             axes.plot(x[stood], y[stood], **look, alpha=0.75, label=label(key, each.value))
             (fell,) = axes.plot(
                 np.minimum(x[~stood], x_top), np.minimum(y[~stood], y_top), **look,
@@ -99,19 +96,16 @@ def rotation(study: StudyResults, options: RotationOptions) -> Found:
         "outcome", "rotation_over_alpha", f"reference {key}", "reference_outcome",
         "reference_rotation_over_alpha",
     )  # fmt: skip
-    against = label(key, reference.values[0])
-    failed = sum(each.failed for each in pairs)
+    remarks = "open markers: overturned", panels.shaded(count)
+    words: dict[str, Any] = {
+        "x_label": rf"$|\theta_{{max}}|/\alpha$ [-], {label(key, reference.values[0])}",
+        "y_label": r"$|\theta_{max}|/\alpha$ [-], the others",
+        "limits": lambda axes: axes.set(xlim=(0.0, x_top), ylim=(0.0, y_top)),
+        "note": panels.noted(found, *remarks, failed=sum(each.failed for each in pairs)),
+    }
     return Found(
         {"": keyed(names, dict.fromkeys(heads, "-"), rows)},
-        in_panels(
-            found.keys,
-            found.groups,
-            draw,
-            x_label=rf"$|\theta_{{max}}|/\alpha$ [-], {against}",
-            y_label=r"$|\theta_{max}|/\alpha$ [-], the others",
-            limits=lambda axes: axes.set(xlim=(0.0, x_top), ylim=(0.0, y_top)),
-            note=noted(found, "open markers: overturned", shaded(count), failed=failed),
-        ),
+        panels.in_panels(found.keys, found.groups, draw, **words),
     )
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -11,29 +11,17 @@ import numpy as np
 from rpscli.analyses.result_quantities import LIMITED
 from rpscli.case.study.observed import OVERTURNED
 from rpscli.report.figures import style
-from rpscli.report.study.fragility import (
-    MeasureOptions,
-    Observed,
-    binned,
-    measure_name,
-    measure_without_period,
-)
+from rpscli.report.study import fragility, panels
+from rpscli.report.study.fragility import Observed, binned
 from rpscli.report.study.labels import keyed, labels
-from rpscli.report.study.panels import first, log_ticks
 from rpscli.report.study.report import Found, Report
 from rpscli.report.study.statistics import reached
 from rpscli.report.table import Column
 from rpscli.sweep.points import StudyPoints
+from rpscli.sweep.statistics import observations
 from rpscli.sweep.statistics.fractiles import demand
 from rpscli.sweep.statistics.grouping import Histories, grouping
-from rpscli.sweep.statistics.observations import (
-    Agreement,
-    Maxima,
-    agreement,
-    maxima,
-    observed_pairs,
-    unpaired,
-)
+from rpscli.sweep.statistics.observations import Agreement, Maxima
 from rpscli.sweep.table import Array, Indices, Intensity, StudyResults
 
 MOST_ROWS = 8  # of panels in the figure; the CSV files have all
@@ -49,7 +37,7 @@ TOLD = {(1, 1): "both", (0, 1): "computed only", (1, 0): "observed only", (0, 0)
 """Words for observed and computed overturning."""
 
 
-class ComparisonOptions(MeasureOptions):
+class ComparisonOptions(fragility.MeasureOptions):
     """Outcomes and maxima beside those that were observed."""
 
 
@@ -62,18 +50,14 @@ class Outcomes(NamedTuple):
 
 
 class Compared(NamedTuple):
-    """One quantity of one system; `points` (m,) are those that did not fail.
-
-    `observed` and `computed` (m,) are 1 where overturned, or maxima in SI units, of which computed
-    ones are infinite where overturned.
-    """
+    """One quantity of one system: 1 where overturned, or maxima [SI], infinite where overturned."""
 
     values: tuple[object, ...]
     quantity: str
     found: Outcomes | Maxima
-    points: Indices
-    observed: Array
-    computed: Array
+    points: Indices  # (m,) that did not fail
+    observed: Array  # (m,)
+    computed: Array  # (m,)
     failed: int
 
 
@@ -83,16 +67,15 @@ def comparison(study: StudyResults, options: ComparisonOptions) -> Found:
     intensity = study.table.intensity(options.measure, options.period, options.damping)
     observed = layout.study.observed
     assert observed is not None, "`unpaired` was asked before"
-    pairs, systems = observed_pairs(layout, observed), grouping(study.table)
+    pairs, systems = observations.observed_pairs(layout, observed), grouping(study.table)
     compared = []
     for system in systems.groups:
         of_system = np.isin(pairs.points, system.every)
         for name, values in zip(observed.quantities, pairs.values, strict=True):
             seen = of_system & np.isfinite(values)
             if seen.any():
-                compared.append(
-                    _compared(system, name, pairs.points[seen], values[seen], intensity)
-                )
+                of = system, name, pairs.points[seen], values[seen], intensity
+                compared.append(_compared(*of))
     kinds = {"": Outcomes, "_maxima": Maxima}
     shown = [s for s, kind in kinds.items() if any(isinstance(c.found, kind) for c in compared)]
     return Found(
@@ -114,14 +97,15 @@ def _compared(
     computed = np.asarray(results[points], dtype=float)
     found: Outcomes | Maxima
     if name != OVERTURNED:
-        found = maxima(computed, observed)
+        found = observations.maxima(computed, observed)
     else:
         at = intensity.values[points]
         kept = np.flatnonzero(at > 0.0)
         seen, told = (
             binned(table, points[kept], at[kept], of[kept] == 1.0) for of in (observed, computed)
         )
-        counts = agreement(computed == 1.0, observed == 1.0, table.layout.clusters[points])
+        fell, clusters = (computed == 1.0, observed == 1.0), table.layout.clusters[points]
+        counts = observations.agreement(*fell, clusters)
         found = Outcomes(counts, seen, told)
     return Compared(system.values, name, found, points, observed, computed, int((~known).sum()))
 
@@ -129,7 +113,7 @@ def _compared(
 def _tables(
     keys: Sequence[str], compared: Sequence[Compared], intensity: Intensity, layout: StudyPoints
 ) -> dict[str, list[Column]]:
-    """Outcomes, maxima, and every pair."""
+    """Outcomes, maxima, and every pair: hits and misses by record."""
     outcomes = (
         "counted", "agreed", "agreed_share", "agreed_low", "agreed_high", "overturned_observed",
         "overturned_computed", "both", "computed_only", "observed_only", "neither", "failed",
@@ -138,52 +122,29 @@ def _tables(
         "quantity", "counted", "overturned_computed", "median_ratio", "dispersion",
         "kolmogorov_smirnov", "failed",
     )  # fmt: skip
-    of_pair = {
-        "record": "-", "point": "-", intensity.name: intensity.unit, "quantity": "-",
-        "observed": "SI", "computed": "SI", "told": "-",
-    }  # fmt: skip
-
-    return {
-        "": keyed(
-            keys,
-            dict.fromkeys(outcomes, "-"),
-            [
-                (each.values, found.counted, share.number, share.fraction, share.low, share.high,
-                 found.observed, found.computed, *found[:4], each.failed)
-                for each in compared
-                if isinstance(each.found, Outcomes)
-                for found in [each.found.agreement]
-                for share in [found.agreed]
-            ],
-        ),
-        "_maxima": keyed(
-            keys,
-            dict.fromkeys(ratios, "-"),
-            [
-                (each.values, each.quantity, found.counted, found.overturned, found.median,
-                 found.dispersion, found.distance, each.failed)
-                for each in compared
-                if isinstance(found := each.found, Maxima)
-            ],
-        ),
-        "_pairs": keyed(keys, of_pair, _pair_rows(compared, intensity, layout)),
-    }  # fmt: skip
-
-
-def _pair_rows(
-    compared: Iterable[Compared], intensity: Intensity, layout: StudyPoints
-) -> Iterator[tuple[Any, ...]]:
-    """Every pair: hits and misses by record."""
+    heads = {"record": "-", "point": "-", intensity.name: intensity.unit, "quantity": "-"}
+    heads |= {"observed": "SI", "computed": "SI", "told": "-"}
+    rows: dict[str, list[tuple[Any, ...]]] = {"": [], "_maxima": [], "_pairs": []}
     for each in compared:
-        values = zip(each.points.tolist(), each.observed, each.computed, strict=True)
-        for point, observed, computed in values:
+        found, values = each.found, each.values
+        if isinstance(found, Maxima):
+            ratio = found.counted, found.overturned, found.median, found.dispersion, found.distance
+            rows["_maxima"].append((values, each.quantity, *ratio, each.failed))
+        else:
+            of, share = found.agreement, found.agreement.agreed
+            shares = share.number, share.fraction, share.low, share.high
+            counts = of.observed, of.computed, *of[:4], each.failed
+            rows[""].append((values, of.counted, *shares, *counts))
+        pairs = zip(each.points.tolist(), each.observed, each.computed, strict=True)
+        for point, observed, computed in pairs:
             request = layout[point].record
             assert request is not None, "points of histories have a record"
             told = TOLD[int(observed), int(computed)] if each.quantity == OVERTURNED else None
-            yield (
-                each.values, request.source, point + 1, intensity.values[point], each.quantity,
-                observed, reached(computed), told,
-            )  # fmt: skip
+            at = request.source, point + 1, intensity.values[point], each.quantity
+            rows["_pairs"].append((values, *at, observed, reached(computed), told))
+    units = {"": dict.fromkeys(outcomes, "-"), "_maxima": dict.fromkeys(ratios, "-")}
+    units["_pairs"] = heads
+    return {suffix: keyed(keys, units[suffix], of) for suffix, of in rows.items()}
 
 
 def comparison_figure(
@@ -191,14 +152,13 @@ def comparison_figure(
 ) -> bytes:
     """One panel a system and quantity."""
     across = 1 if len(compared) == 1 or style.narrow() else 2
-    shown, cut = first(compared, across, MOST_ROWS * across, 5)
+    shown, cut = panels.first(compared, across, MOST_ROWS * across, 5)
     down = -(-len(shown) // across)
 
     def draw(figure: style.Figure) -> None:
         style.heading(figure, title, cut)
         grid = figure.subplots(down, across, squeeze=False)
-        for axes in grid.flat[len(shown) :]:
-            axes.set_axis_off()
+        style.blank(grid.flat[len(shown) :])
         for axes, each in zip(grid.flat, shown, strict=False):
             if isinstance(each.found, Outcomes):
                 line = _draw_outcomes(axes, each, each.found, intensity)
@@ -218,23 +178,16 @@ def _draw_outcomes(axes: style.Axes, each: Compared, found: Outcomes, intensity:
         ("observed", found.observed, style.BLACK, "o"),
         ("computed", found.computed, style.BLUE, "s"),
     ):
-        axes.plot(
-            bins.intensity, bins.share, color=colour, lw=0.8, marker=marker, ms=3.2, label=name
-        )
-    for sign, height, name in (
-        (1.0, 1.05, "above: computed only"),
-        (-1.0, -0.05, "below: observed only"),
-    ):
+        look: dict[str, Any] = {"color": colour, "lw": 0.8, "marker": marker, "ms": 3.2}
+        axes.plot(bins.intensity, bins.share, label=name, **look)
+    marks = {1.0: (1.05, "above: computed only"), -1.0: (-0.05, "below: observed only")}
+    for sign, (height, name) in marks.items():
         chosen = at[each.computed - each.observed == sign]
-        axes.plot(
-            chosen, np.full(len(chosen), height), ls="", marker="|", ms=6, color=style.RED,
-            label=name,
-        )  # fmt: skip
+        axes.plot(chosen, [height] * len(chosen), "|", ms=6, color=style.RED, label=name)
     axes.set_xscale("log")
-    log_ticks(axes.xaxis)
-    axes.set_ylim(-0.1, 1.1)
-    axes.set_xlabel(style.typeset(f"{measure_name(intensity)} [{intensity.unit}]"))
-    axes.set_ylabel("share that overturned")
+    panels.log_ticks(axes.xaxis)
+    name = style.typeset(f"{fragility.measure_name(intensity)} [{intensity.unit}]")
+    axes.set(ylim=(-0.1, 1.1), xlabel=name, ylabel="share that overturned")
     percent = 100.0 * (counts.agreed.fraction or 0.0)
     line = f"{percent:.1f} % of {counts.counted} agree"
     return f"{line}; overturned {counts.computed}, observed {counts.observed}"
@@ -250,25 +203,22 @@ def _draw_maxima(axes: style.Axes, each: Compared, found: Maxima) -> str:
         span = [float(both.min()), float(both.max())]
         axes.plot(span, span, color=style.GREY, lw=0.8)
         fallen = observed[np.isinf(computed) & (observed > 0.0)]
-        axes.plot(
-            fallen, np.full(len(fallen), 1.3 * span[1]), ls="", marker="^", ms=4, color=style.RED
-        )
+        axes.plot(fallen, [1.3 * span[1]] * len(fallen), "^", ms=4, color=style.RED)
     axes.set(xscale="log", yscale="log")
     for axis in (axes.xaxis, axes.yaxis):
-        log_ticks(axis)
+        panels.log_ticks(axis)
     name = QUANTITIES[each.quantity].axis_label
     axes.set(xlabel=f"observed {name}", ylabel=f"computed {name}")
-    line = (
-        f"ratio {found.median:.2f} in the median, dispersion {found.dispersion:.2f},"
-        f" n = {found.counted}"
+    line = f"ratio {found.median:.2f} in the median, dispersion {found.dispersion:.2f}"
+    return f"{line}, n = {found.counted}" + f"\n{found.overturned} overturned (triangles)" * bool(
+        found.overturned
     )
-    return line + f"\n{found.overturned} overturned (triangles)" * bool(found.overturned)
 
 
 def uncomparable(layout: StudyPoints, options: ComparisonOptions) -> Iterator[str]:
     """Faults that keep a study from this report."""
-    yield from unpaired(layout)
-    yield from measure_without_period(layout, options)
+    yield from observations.unpaired(layout)
+    yield from fragility.measure_without_period(layout, options)
 
 
 REPORT = Report(ComparisonOptions, comparison, requires=uncomparable)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from operator import attrgetter
 from typing import Annotated, Any, NamedTuple, TypeVar
@@ -23,16 +23,8 @@ from rpscli.case.study.reports import ReportOptions, VariedKeys
 from rpscli.case.study.schema import Option, PositiveNumber, PositiveNumbers, Seed
 from rpscli.records.measures import MEASURES, measure_label, needs_period
 from rpscli.report.figures import style
+from rpscli.report.study import panels
 from rpscli.report.study.labels import keyed, labels
-from rpscli.report.study.panels import (
-    COLOURS,
-    colour,
-    left_out,
-    marker,
-    over,
-    panel_figure,
-    remarks,
-)
 from rpscli.report.study.report import Found, Report
 from rpscli.report.study.statistics import counted_columns, share_columns
 from rpscli.report.table import Column
@@ -184,12 +176,7 @@ class Observed(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Fragility:
-    """Data and fit of one limit state of one group of systems; `failed` points are left out.
-
-    `overturned` of the points that exceed the limit do so because they overturned. `place` is that
-    of the group, `total` the beta with what is uncertain besides the records, `largest` the largest
-    intensity that was computed.
-    """
+    """Data and fit of one limit state of one group of systems; `failed` points are left out."""
 
     values: tuple[object, ...]
     limit: LimitState
@@ -198,11 +185,11 @@ class Fragility:
     observed: Observed
     counted: int
     exceeded: int
-    overturned: int
+    overturned: int  # of those that exceed the limit
     failed: int
-    place: int
-    total: float
-    largest: float
+    place: int  # of the group
+    total: float  # beta with what is uncertain besides the records
+    largest: float  # intensity that was computed
 
 
 @dataclass(frozen=True, eq=False)
@@ -232,12 +219,9 @@ class Fragilities:
         yield from self.told((curve, curve.fit.note) for curve in self.curves)
 
     def placed(self, curve: Fragility) -> tuple[str, str, int, int]:
-        """Panel, name and place among how many: systems in panels of limit states, or the reverse.
-
-        These where there are more systems than colours.
-        """
+        """Panel, name and place among how many: systems in panels of states, or the reverse."""
         system, limit = labels(self.systems.keys, curve.values), curve.limit.title
-        if len(self.systems.groups) > len(COLOURS):
+        if len(self.systems.groups) > len(panels.COLOURS):
             return system, limit, self.limits.index(curve.limit), len(self.limits)
         return limit, system, curve.place, len(self.systems.groups)
 
@@ -245,10 +229,28 @@ class Fragilities:
         self, items: Iterable[Item], of: Callable[[Item], Fragility]
     ) -> dict[str, list[Item]]:
         """Items whose curves share a panel, by its title."""
-        panels: dict[str, list[Item]] = {}
+        found: dict[str, list[Item]] = {}
         for item in items:
-            panels.setdefault(self.placed(of(item))[0], []).append(item)
-        return panels
+            found.setdefault(self.placed(of(item))[0], []).append(item)
+        return found
+
+    def figure(
+        self,
+        groups: Mapping[str, list[Item]],
+        draw: Callable[[style.Axes, list[Item]], None],
+        y_label: str,
+        note: str,
+        limits: Callable[[style.Axes], object] | None = None,
+    ) -> Callable[[str], bytes]:
+        """A figure of panels by their titles."""
+        words: dict[str, Any] = {
+            "x_label": self.axis,
+            "y_label": y_label,
+            "note": note,
+            "limits": limits,
+        }
+        row, shown = 2 if len(groups) == 4 else 3, [*groups.values()]
+        return panels.panel_figure([*groups], shown, draw, in_row=row, **words)
 
     def told(self, notes: Iterable[tuple[Fragility, str | None]]) -> Iterator[str]:
         """Notes on curves, each once with all that it is about."""
@@ -298,20 +300,10 @@ def _fragility(
     level = np.exp(np.round(means, 9))[cell] if len(means) < len(kept) else intensity
     bootstrap = Bootstrap(options.resamples, options.confidence, options.seed)
     fit = lognormal_fit(intensity, beyond, layout.clusters[kept], weight, grid, bootstrap, level)
-    return Fragility(
-        place=place,
-        values=group.values,
-        limit=limit,
-        fit=fit,
-        total=float(options.dispersion.total(fit.beta)),
-        largest=float(intensity.max(initial=0.0)),
-        grid=grid,
-        observed=binned(table, kept, intensity, beyond),
-        counted=len(kept),
-        exceeded=int(beyond.sum()),
-        overturned=int(table.overturned[kept].sum()),
-        failed=len(group.every) - len(kept),
-    )
+    counts = len(kept), int(beyond.sum()), int(table.overturned[kept].sum())
+    total, largest = float(options.dispersion.total(fit.beta)), float(intensity.max(initial=0.0))
+    seen, failed = binned(table, kept, intensity, beyond), len(group.every) - len(kept)
+    return Fragility(group.values, limit, fit, grid, seen, *counts, failed, place, total, largest)
 
 
 def binned(table: Table, kept: Indices, intensity: Array, beyond: NDArray[np.bool_]) -> Observed:
@@ -327,8 +319,8 @@ def binned(table: Table, kept: Indices, intensity: Array, beyond: NDArray[np.boo
 
 def measure_without_period(layout: StudyPoints, options: MeasureOptions) -> Iterator[str]:
     """The fault of a measure at T1 in a study with systems that have none."""
-    at_first_period = needs_period(options.measure) and options.period is None
-    if at_first_period and any(system.period is None for system in layout.properties):
+    at_t1 = needs_period(options.measure) and options.period is None
+    if at_t1 and any(system.period is None for system in layout.properties):
         yield f"{options.measure} at T1 needs storeys; give the report a `period`"
 
 
@@ -437,14 +429,14 @@ def fragility_figure(report: Fragilities) -> Callable[[str], bytes]:
     from scipy.special import ndtr
 
     drawn = [curve for curve in report.curves if curve.fit.fitted]
-    panels = report.in_panels(drawn, lambda curve: curve)
+    groups = report.in_panels(drawn, lambda curve: curve)
 
     def draw(axes: style.Axes, curves: list[Fragility]) -> None:
         for curve in curves:
             fit, grid, seen = curve.fit, curve.grid, curve.observed
             _, name, place, count = report.placed(curve)
             look: dict[str, Any] = {
-                "color": colour(place, count), "marker": marker(place), "ms": 3.2,
+                "color": panels.colour(place, count), "marker": panels.marker(place), "ms": 3.2,
             }  # fmt: skip
             axes.plot(
                 grid, fit.curve, "--" if fit.method == "penalised" else "-", lw=1.4, markevery=[],
@@ -460,34 +452,25 @@ def fragility_figure(report: Fragilities) -> Callable[[str], bytes]:
         axes.set_xlim(0.0, max(curve.grid[-1] for curve in curves))
         beyond_computed(axes, max(curve.largest for curve in curves), axes.get_xlim()[1])
 
-    banded = [curve for panel in panels.values() if len(panel) <= MOST_BANDS for curve in panel]
-    bands = any(np.isfinite(curve.fit.band[0]).any() for curve in banded)
+    banded = [curve for group in groups.values() if len(group) <= MOST_BANDS for curve in group]
+    bands = f"bands: {style.percent(report.confidence)}, the choice of records"
+    if not any(np.isfinite(curve.fit.band[0]).any() for curve in banded):
+        few = f"no bands of more than {MOST_BANDS} curves, see CSV"
+        bands = "no bands are determined" if banded else few
     missing = sum(not curve.fit.fitted for curve in report.curves)
-    return panel_figure(
-        [*panels],
-        [*panels.values()],
-        draw,
-        in_row=in_row(len(panels)),
-        x_label=report.axis,
-        y_label="probability of exceedance",
-        note=remarks(
-            "markers: observed",
-            f"bands: {style.percent(report.confidence)}, the choice of records"
-            if bands
-            else f"no bands of more than {MOST_BANDS} curves, see CSV"
-            if drawn and not banded
-            else "no bands are determined",
-            "dotted: with further dispersion" * any(c.total != c.fit.beta for c in drawn),
-            BEYOND_COMPUTED,
-            "dashed: separated data, penalised fit"
-            * any(c.fit.method == "penalised" for c in report.curves),
-            "overturning exceeds every limit"
-            * any(curve.limit.threshold is not None for curve in drawn),
-            f"{missing} of {len(report.curves)} curves without a fit, see CSV" * bool(missing),
-            over(report.systems.pooled),
-            left_out(sum({curve.place: curve.failed for curve in drawn}.values())),
-        ),
+    penalised = any(curve.fit.method == "penalised" for curve in report.curves)
+    note = panels.remarks(
+        "markers: observed",
+        bands,
+        "dotted: with further dispersion" * any(c.total != c.fit.beta for c in drawn),
+        BEYOND_COMPUTED,
+        "dashed: separated data, penalised fit" * penalised,
+        "overturning exceeds every limit" * any(c.limit.threshold is not None for c in drawn),
+        f"{missing} of {len(report.curves)} curves without a fit, see CSV" * bool(missing),
+        panels.over(report.systems.pooled),
+        panels.left_out(sum({curve.place: curve.failed for curve in drawn}.values())),
     )
+    return report.figure(groups, draw, "probability of exceedance", note)
 
 
 BEYOND_COMPUTED = "grey: stronger than computed"
@@ -499,11 +482,6 @@ def beyond_computed(axes: style.Axes, largest: float, end: float) -> None:
         axes.axvspan(largest, end, color=style.GREY, alpha=0.15, lw=0, zorder=0)
 
 
-def in_row(panels: int) -> int:
-    """Panels side by side."""
-    return 2 if panels == 4 else 3
-
-
 def measure_name(intensity: Intensity) -> str:
     """The measure with its period."""
     if not needs_period(intensity.measure):
@@ -512,12 +490,12 @@ def measure_name(intensity: Intensity) -> str:
     return measure_label(intensity.measure, intensity.of, at)
 
 
+def fragility_faults(layout: StudyPoints, options: FragilityOptions) -> Iterator[str]:
+    """Faults that keep a study from having a fragility."""
+    yield from measure_without_period(layout, options)
+    yield from wrong_intensities(layout, options)
+
+
 REPORT = Report(
-    FragilityOptions,
-    fragility,
-    requires=lambda layout, options: [
-        *measure_without_period(layout, options),
-        *wrong_intensities(layout, options),
-    ],
-    results=lambda options: options.results,
+    FragilityOptions, fragility, results=lambda of: of.results, requires=fragility_faults
 )

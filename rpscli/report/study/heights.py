@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from typing import Literal, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from pydantic import Field
@@ -13,8 +13,8 @@ from rpscli.analyses.result_quantities import STOREY_SHEARS
 from rpscli.case.schema.fields import DampingRatio
 from rpscli.case.study.reports import ReportOptions, VariedKeys
 from rpscli.report.figures import style
+from rpscli.report.study import panels
 from rpscli.report.study.labels import keyed
-from rpscli.report.study.panels import break_if_narrow, in_panels, noted
 from rpscli.report.study.report import Found, Report, without_uplift
 from rpscli.report.study.statistics import reached
 from rpscli.sweep.points import StudyPoints
@@ -46,16 +46,12 @@ SHEARS = (
 
 
 class Profile(NamedTuple):
-    """Storey shears of a group of systems over V_st, in the order of `SHEARS`, each (n,).
-
-    Overturned and failed points are left out, of the fixed base too. `static` is V_st [N]; NaN if
-    the systems of the group differ in it.
-    """
+    """Storey shears of the survivors of a group of systems, on the fixed base too."""
 
     values: tuple[object, ...]
     histories: Histories
-    shears: tuple[Array, ...]
-    static: float
+    shears: tuple[Array, ...]  # over V_st, in the order of `SHEARS`, each (n,)
+    static: float  # V_st [N]; NaN if the systems of the group differ in it
 
 
 def storey_shear(study: StudyResults, options: StoreyShearOptions) -> Found:
@@ -90,31 +86,24 @@ def storey_shear(study: StudyResults, options: StoreyShearOptions) -> Found:
                 axes.locator_params(axis="x", nbins=3)  # long numbers
                 values = shear * profile.static * 1e-3
             # The shear is the same all the way up a storey.
-            axes.stairs(
-                values, edges, orientation="horizontal", color=colour, ls=line, lw=1.3, label=name
-            )
+            look: dict[str, Any] = {"color": colour, "ls": line, "lw": 1.3, "label": name}
+            axes.stairs(values, edges, orientation="horizontal", **look)
         axes.set_ylim(0.0, len(edges) - 1)
         axes.locator_params(axis="y", integer=True)
         survivors, every = len(profile.histories.survivors), len(profile.histories)
         axes.text(
-            0.96, 0.95, f"{survivors} survivors{break_if_narrow()}of {every}",
+            0.96, 0.95, f"{survivors} survivors{panels.break_if_narrow()}of {every}",
             transform=axes.transAxes, ha="right", va="top", fontsize=0.9 * style.small(),
         )  # fmt: skip
 
+    words: dict[str, Any] = {"share": "x", "limits": lambda axes: axes.set_xlim(left=0.0)}
+    in_kn_label = STOREY_SHEARS.in_unit("kN", STOREY_SHEARS.symbol)
+    words |= {"x_label": in_kn_label if in_kn else "$V_i/V_{st}$ [-]"}
+    words |= {"y_label": "level (0 = cap beam)"}
+    words["note"] = panels.noted(found, failed=sum(group.failed for group in histories))
     return Found(
         {"": keyed(found.keys, {"storey": "-", **heads}, rows)},
-        in_panels(
-            found.keys,
-            profiles,
-            draw,
-            x_label=STOREY_SHEARS.in_unit("kN", STOREY_SHEARS.symbol)
-            if in_kn
-            else "$V_i/V_{st}$ [-]",
-            y_label="level (0 = cap beam)",
-            share="x",
-            limits=lambda axes: axes.set_xlim(left=0.0),
-            note=noted(found, failed=sum(group.failed for group in histories)),
-        ),
+        panels.in_panels(found.keys, profiles, draw, **words),
         notes,
     )
 
@@ -162,14 +151,10 @@ def unlike_buildings(layout: StudyPoints, options: StoreyShearOptions) -> Iterat
 
 
 class Floors(NamedTuple):
-    """Spectra of the histories of a group: fractiles (3, 2, 2, n, p).
-
-    They are of the states isolated and fixed base, of pseudo-accelerations [m/s2] and displacements
-    relative to the floor [m], by floors and periods; infinite if overturned.
-    """
+    """Fractiles of the spectra of a group, infinite if overturned."""
 
     values: tuple[object, ...]
-    fractiles: Array
+    fractiles: Array  # (3, 2, 2, n, p): by `STATES`, `SPECTRA`, floors and periods
 
 
 STATES = {"isolated": ("on bearings", style.BLUE), "fixed_base": ("fixed base", style.BLACK)}
@@ -199,7 +184,7 @@ def floor_spectra(study: StudyResults, options: FloorSpectraOptions) -> Found:
         for floor, of_floor in enumerate(one.fractiles.transpose(3, 4, 1, 2, 0), start=1)
         for period, cells in zip(PERIODS, of_floor, strict=True)
     ]
-    note = noted(found, NOT_DRAWN if found.overturned else "")
+    note = panels.noted(found, NOT_DRAWN if found.overturned else "")
     return Found(
         {"": keyed(found.keys, {"floor": "-", "period": "s", **heads}, rows)},
         floor_spectra_figure(found.keys, floors, note) if floors else None,
@@ -211,7 +196,7 @@ def floor_spectra_figure(
     keys: Sequence[str], floors: Sequence[Floors], note: str
 ) -> Callable[[str], bytes]:
     """Median and 84 % fractile of the pseudo-acceleration, on the lowest floor and the roof."""
-    panels = [
+    shown = [
         Floors((*one.values, number), one.fractiles[:, :, 0, number - 1])
         for one in floors
         for number in dict.fromkeys((1, one.fractiles.shape[3]))
@@ -233,15 +218,9 @@ def floor_spectra_figure(
         for each in axes.figure.axes:
             each.xaxis.set_major_formatter("{x:g}")
 
-    return in_panels(
-        (*keys, "floor"),
-        panels,
-        draw,
-        x_label="period [s]",
-        y_label="pseudo-acceleration [m/s²]",
-        limits=limits,
-        note=note,
-    )
+    words: dict[str, Any] = {"x_label": "period [s]", "y_label": "pseudo-acceleration [m/s²]"}
+    words |= {"limits": limits, "note": note}
+    return panels.in_panels((*keys, "floor"), shown, draw, **words)
 
 
 def without_floors(layout: StudyPoints, _options: ReportOptions) -> Iterator[str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from pydantic import AliasChoices, Field
@@ -13,8 +13,8 @@ from rpscli.case.study.reports import ReportOptions, ReportRequest, VariedKeys
 from rpscli.case.text.document import Document, Fault
 from rpscli.errors import listed
 from rpscli.report.figures import style
+from rpscli.report.study import panels
 from rpscli.report.study.labels import keyed
-from rpscli.report.study.panels import in_panels, large_axis, large_label, noted
 from rpscli.report.study.report import DemandName, Found, Report
 from rpscli.sweep.evaluation import SCALARS
 from rpscli.sweep.statistics.fractiles import THREE, demand, fractiles
@@ -37,17 +37,13 @@ class IdaOptions(ReportOptions):
 
 
 class Panel(NamedTuple):
-    """Demands of one group of systems at ascending intensities, or factors on the records.
-
-    `curves` (curves, levels) are of each record, sample and member, NaN where the point failed;
-    `fractiles` (3, levels) of the points that did not fail. Infinite is overturned.
-    """
+    """Demands of one group at ascending intensities, or factors; infinite is overturned."""
 
     values: tuple[object, ...]
     levels: list[Histories]
     heights: Array
-    curves: Array
-    fractiles: Array
+    curves: Array  # (curves, levels) of each record, sample and member, NaN where it failed
+    fractiles: Array  # (3, levels) of the points that did not fail
 
 
 def ida(study: StudyResults, options: IdaOptions) -> Found:
@@ -55,65 +51,55 @@ def ida(study: StudyResults, options: IdaOptions) -> Found:
     table = study.table
     found = grouping(table, options.panels, (INTENSITY,))
     demands = demand(table, table.columns[options.result])
-    panels = [_panel(group, demands) for group in found.groups]
+    shown = []
+    for group in found.groups:
+        levels = sorted(group.parts([INTENSITY]), key=height)
+        curves = np.column_stack([demands[level.every] for level in levels])
+        spread = np.column_stack([fractiles(column, THREE) for column in curves.T])
+        heights = np.array(list(map(height, levels)))
+        shown.append(Panel(group.values, levels, heights, curves, spread))
     (name,) = shown_keys(table.layout, (INTENSITY,))
     quantity, level_unit = SCALARS["timehistory"][options.result], unit_of(name)
     heads = {name: level_unit}
     heads |= {f"{options.result}_{round(100 * share)}": quantity.unit for share in THREE}
     heads |= dict.fromkeys(("counted", "overturned", "failed"), "-")
     rows = [
-        (panel.values, height, *spread, len(level), level.overturned.number, level.failed)
-        for panel in panels
-        for level, height, spread in zip(
+        (panel.values, at, *spread, len(level), level.overturned.number, level.failed)
+        for panel in shown
+        for level, at, spread in zip(
             panel.levels, panel.heights.tolist(), panel.fractiles.T.tolist(), strict=True
         )
     ]
-    finite = [panel.curves[np.isfinite(panel.curves)] for panel in panels]
+    finite = [panel.curves[np.isfinite(panel.curves)] for panel in shown]
     edge = 1.15 * max((float(values.max()) for values in finite if len(values)), default=1.0)
-    top = 1.04 * max(float(panel.heights.max()) for panel in panels)
-
-    numbers = sorted({str(len(panel.curves)) for panel in panels})
+    top = 1.04 * max(float(panel.heights.max()) for panel in shown)
+    numbers = sorted({str(len(panel.curves)) for panel in shown})
 
     def draw(axes: style.Axes, panel: Panel) -> None:
         levels = np.concatenate([[0.0], panel.heights])
-        large_axis(axes.xaxis, quantity.unit)
+        panels.large_axis(axes.xaxis, quantity.unit)
         # Evenly through all of them: more would only blacken the panel.
         for curve in panel.curves[:: max(1, len(panel.curves) // MOST_CURVES)]:
-            axes.plot(
-                *_run_out(curve, levels, edge), color=style.GREY, lw=0.8,
-                label="single curves",
-            )  # fmt: skip
-        for fractile, (colour, line), share in zip(panel.fractiles, LINES, THREE, strict=True):
-            axes.plot(
-                *_run_out(fractile, levels, edge), color=colour, ls=line, lw=1.8,
-                label="median" if share == 0.5 else f"{style.percent(share)} fractile",
-            )  # fmt: skip
+            line = _run_out(curve, levels, edge)
+            axes.plot(*line, color=style.GREY, lw=0.8, label="single curves")
+        for fractile, (colour, dashes), share in zip(panel.fractiles, LINES, THREE, strict=True):
+            label = "median" if share == 0.5 else f"{style.percent(share)} fractile"
+            line = _run_out(fractile, levels, edge)
+            axes.plot(*line, color=colour, ls=dashes, lw=1.8, label=label)
 
-    return Found(
-        {"": keyed(found.keys, heads, rows)},
-        in_panels(
-            found.keys,
-            panels,
-            draw,
-            x_label=large_label(quantity),
-            y_label=f"{name} [{level_unit}]",
-            limits=lambda axes: axes.set(xlim=(0.0, 0.97 * edge), ylim=(0.0, top)),
-            note=noted(
-                found,
-                f"fractiles of {listed(numbers)} curves",
-                "level to the right: overturned at the next intensity" if found.overturned else "",
-                "back to the left: stronger motions, smaller rotations",
-            ),
+    words: dict[str, Any] = {
+        "x_label": panels.large_label(quantity),
+        "y_label": f"{name} [{level_unit}]",
+        "limits": lambda axes: axes.set(xlim=(0.0, 0.97 * edge), ylim=(0.0, top)),
+        "note": panels.noted(
+            found,
+            f"fractiles of {listed(numbers)} curves",
+            "level to the right: overturned at the next intensity" if found.overturned else "",
+            "back to the left: stronger motions, smaller rotations",
         ),
-        found.notes,
-    )
-
-
-def _panel(group: Histories, demands: Array) -> Panel:
-    levels = sorted(group.parts([INTENSITY]), key=height)
-    curves = np.column_stack([demands[level.every] for level in levels])
-    spread = np.column_stack([fractiles(column, THREE) for column in curves.T])
-    return Panel(group.values, levels, np.array(list(map(height, levels))), curves, spread)
+    }
+    drawn = panels.in_panels(found.keys, shown, draw, **words)
+    return Found({"": keyed(found.keys, heads, rows)}, drawn, found.notes)
 
 
 def height(level: Histories) -> float:

@@ -18,29 +18,14 @@ from rpscli.case.study.schema import AnyKeys, Keys
 from rpscli.case.text.document import Document, Fault, Path, dotted
 from rpscli.errors import hint
 from rpscli.report.figures import style
+from rpscli.report.study import panels
 from rpscli.report.study.labels import keyed, labels, plain, symbol
-from rpscli.report.study.panels import (
-    colour,
-    in_panels,
-    large_axis,
-    large_label,
-    left_out,
-    over,
-    remarks,
-    shaded,
-)
 from rpscli.report.study.report import Found, Report, Statistic
 from rpscli.report.study.statistics import reached
 from rpscli.report.table import LARGE_UNITS
 from rpscli.sweep.evaluation import KNOWN, quantity
-from rpscli.sweep.statistics.grouping import (
-    Histories,
-    axis_keys,
-    grouping,
-    own_keys,
-    shown_keys,
-    statistic_words,
-)
+from rpscli.sweep.statistics import grouping as of_groups
+from rpscli.sweep.statistics.grouping import Histories, shown_keys, statistic_words
 from rpscli.sweep.table import StudyResults, unit_of
 from rpscli.units import in_si
 
@@ -75,17 +60,13 @@ class LinesOptions(ReportOptions):
 
 
 class Line(NamedTuple):
-    """One line: a result of the points of one series.
-
-    `x` holds numbers, or words if the varied key has any. Where points share an abscissa,
-    `counted` of them stood and `overturned` did not, one number for each abscissa.
-    """
+    """One line: a result of the points of one series."""
 
     values: tuple[object, ...]
     result: str
-    x: tuple[Any, ...]
+    x: tuple[Any, ...]  # numbers, or words if the varied key has any
     y: tuple[float, ...]
-    counted: tuple[int, ...] = ()
+    counted: tuple[int, ...] = ()  # of the points that share an abscissa, those that stood
     overturned: tuple[int, ...] = ()
 
 
@@ -98,19 +79,19 @@ class Panel(NamedTuple):
 
 def lines(study: StudyResults, options: LinesOptions) -> Found:
     """The lines of every series of every panel; a statistic where points share an abscissa."""
-    layout, together = study.table.layout, axis_keys(study.table.layout, options.x)
+    layout, together = study.table.layout, of_groups.axis_keys(study.table.layout, options.x)
     panel_keys, series = options.panels or (), options.series
     if series is None:
-        series = own_keys(layout, (*panel_keys, *together))
+        series = of_groups.own_keys(layout, (*panel_keys, *together))
     names = (*options.result, *options.dashed)
-    found = grouping(study.table, panel_keys, (*series, options.x))
+    found = of_groups.grouping(study.table, panel_keys, (*series, options.x))
     values = _collected(study, names if together else (*names, options.x))
-    panels = []
+    shown = []
     for group in found.groups:
         parts = itertools.product(names, group.parts(series))
         of_group = [line for name, part in parts for line in _lines(values, options, part, name)]
-        panels.append(Panel(group.values, of_group))
-    every = [line for panel in panels for line in panel.lines]
+        shown.append(Panel(group.values, of_group))
+    every = [line for panel in shown for line in panel.lines]
     single = all(c + o < 2 for x in every for c, o in zip(x.counted, x.overturned, strict=True))
     statistic = "" if single else statistic_words(options.statistic)
     x_name, series_keys = shown_keys(layout, (options.x,))[0], shown_keys(layout, series)
@@ -119,7 +100,7 @@ def lines(study: StudyResults, options: LinesOptions) -> Found:
             (*panel.values, *line.values), line.result, _unit(line.result), line.x[i],
             reached(line.y[i]), *(statistic and (statistic, line.counted[i], line.overturned[i])),
         )
-        for panel in panels
+        for panel in shown
         for line in panel.lines
         for i in range(len(line.x))
     ]  # fmt: skip
@@ -131,36 +112,35 @@ def lines(study: StudyResults, options: LinesOptions) -> Found:
     if statistic:
         heads |= {"statistic": "-", "counted": "-", "overturned": "-"}
     notes = [*found.notes] if together else []
-    if statistic == MEAN and (fallen := _left_out_of_means(panels)):
+    if statistic == MEAN and (fallen := _left_out_of_means(shown)):
         notes.append(fallen)
 
     y_label = ", ".join(filter(None, (options.y_label or _together(names), statistic)))
     both = (options.x_label or _axis(x_name), y_label)
     unbounded = any(math.inf in line.y for line in every)
+    hollow = statistic == MEAN and any(any(line.overturned) for line in every)
+    note = panels.remarks(
+        panels.over(found.pooled) if together else "",
+        "hollow: means without those that overturned, counts in the CSV" * hollow,
+        panels.shaded(max(len({line.values for line in every}), len(names))),
+        f"not drawn where the {statistic} overturned" if unbounded else "",
+        panels.left_out(found.failed),
+    )
+
+    def draw(axes: style.Axes, panel: Panel) -> None:
+        _draw(axes, panel, every, options, series_keys, statistic)
+
+    x, y = reversed(both) if options.upright else both
     return Found(
         {"": keyed((*found.keys, *series_keys), heads, rows)},
-        in_panels(
-            found.keys,
-            panels,
-            lambda axes, panel: _draw(axes, panel, every, options, series_keys, statistic),
-            x_label=both[options.upright],
-            y_label=both[not options.upright],
-            note=remarks(
-                over(found.pooled) if together else "",
-                "hollow: means without those that overturned, counts in the CSV"
-                * (statistic == MEAN and any(any(line.overturned) for line in every)),
-                shaded(max(len({line.values for line in every}), len(names))),
-                f"not drawn where the {statistic} overturned" if unbounded else "",
-                left_out(found.failed),
-            ),
-        ),
+        panels.in_panels(found.keys, shown, draw, x_label=x, y_label=y, note=note),
         notes,
     )
 
 
-def _left_out_of_means(panels: Sequence[Panel]) -> str:
+def _left_out_of_means(shown: Sequence[Panel]) -> str:
     """The note on the histories that all means leave out."""
-    first = {repr((p.values, line.values)): line for p in panels for line in reversed(p.lines)}
+    first = {repr((p.values, line.values)): line for p in shown for line in reversed(p.lines)}
     overturned = sum(sum(line.overturned) for line in first.values())
     of = overturned + sum(sum(line.counted) for line in first.values())
     if not overturned:
@@ -233,8 +213,8 @@ def _draw(
     paths = {tuple(plain(y) for y in line.y) for line in dashed}
     among, count = len(dashed) if len(paths) == 1 else 1, max(len(series), len(results))
     of_x, of_y = (axes.yaxis, axes.xaxis) if options.upright else (axes.xaxis, axes.yaxis)
-    large_axis(of_x, _unit(options.x))
-    large_axis(of_y, _unit(results[0]))
+    panels.large_axis(of_x, _unit(options.x))
+    panels.large_axis(of_y, _unit(results[0]))
     for line in panel.lines:
         place = series.index(line.values)
         if len(series) == 1:
@@ -242,20 +222,16 @@ def _draw(
         x, words_at = _abscissae(line.x)
         pair = (line.y, x) if options.upright else (x, line.y)
         parts = (labels(series_keys, line.values), names[line.result])
-        is_dashed = line.result in options.dashed
-        axes.plot(
-            *pair, lw=1.4,
-            ls=_staggered(place, among)
-            if is_dashed
-            else ("-", "-.", ":")[options.result.index(line.result) % 3],
-            color=colour(place, count),
-            marker="o" if len(x) < 25 and not is_dashed else "", ms=3.0,
-            label=", ".join(filter(None, parts)) or None,
-        )  # fmt: skip
+        look: dict[str, Any] = {"ls": _staggered(place, among)}
+        if line.result not in options.dashed:
+            look = {"ls": ("-", "-.", ":")[options.result.index(line.result) % 3]}
+            look["marker"] = "o" if len(x) < 25 else ""
+        name, shade = ", ".join(filter(None, parts)) or None, panels.colour(place, count)
+        axes.plot(*pair, lw=1.4, color=shade, ms=3.0, label=name, **look)
         if statistic == MEAN:
             fallen = [n for n, overturned in enumerate(line.overturned) if overturned]
             at = [[values[n] for n in fallen] for values in pair]
-            axes.plot(*at, "o", color="white", mec=colour(place, count), ms=4.5, zorder=3.0)
+            axes.plot(*at, "o", color="white", mec=shade, ms=4.5, zorder=3.0)
         if words_at:
             (axes.set_yticks if options.upright else axes.set_xticks)(x, words_at)
 
@@ -293,7 +269,7 @@ def _together(names: Sequence[str]) -> str:
 def _axis(name: str) -> str:
     """Label of an axis: that of the result, or the varied key with its unit."""
     found = _quantity(name)
-    return large_label(found) if found else f"{symbol(name)} [{unit_of(name)}]"
+    return panels.large_label(found) if found else f"{symbol(name)} [{unit_of(name)}]"
 
 
 def _quantity(name: str) -> ResultQuantity | None:

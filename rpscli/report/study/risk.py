@@ -15,37 +15,13 @@ from rpscli.case.study.schema import HazardSection
 from rpscli.errors import CaseError
 from rpscli.records.measures import Of, needs_period
 from rpscli.report.figures import style
-from rpscli.report.study.fragility import (
-    BEYOND_COMPUTED,
-    MOST_BANDS,
-    Fragilities,
-    Fragility,
-    FragilityOptions,
-    beyond_computed,
-    fragilities,
-    in_row,
-    margins,
-    what_bands_hold,
-    wrong_intensities,
-)
+from rpscli.report.study import fragility as fragile
+from rpscli.report.study import panels
+from rpscli.report.study.fragility import MOST_BANDS, Fragilities, Fragility
 from rpscli.report.study.labels import keyed
-from rpscli.report.study.panels import (
-    break_if_narrow,
-    colour,
-    log_ticks,
-    over,
-    panel_figure,
-    remarks,
-)
 from rpscli.report.study.report import Found, Report, with_band
-from rpscli.sweep.fits.hazard import (
-    Hazard,
-    annual_rate,
-    exceeded,
-    rate_of_shares,
-    rates_above,
-    read_hazard,
-)
+from rpscli.sweep.fits import hazard as rates
+from rpscli.sweep.fits.hazard import Hazard, annual_rate
 from rpscli.sweep.fits.lognormal import NOTHING, Band, band
 from rpscli.sweep.points import StudyPoints
 from rpscli.sweep.statistics.verdicts import component_notes
@@ -55,7 +31,7 @@ BINS = 24  # of intensities, for what contributes
 CLEARLY = 0.05  # share of the rate beyond which the ends of the hazard curve are worth a note
 
 
-class RiskOptions(FragilityOptions):
+class RiskOptions(fragile.FragilityOptions):
     """Annual rates of limit states, from their fragilities and a hazard curve."""
 
     hazard: HazardSection | None = Field(
@@ -68,26 +44,18 @@ class RiskOptions(FragilityOptions):
 
 @dataclass(frozen=True, eq=False)
 class Risk:
-    """Annual rate of one limit state of one group of systems; NaN without a fragility.
-
-    `rates` (bins,) are from motions between `edges` (bins + 1,), the last of which is infinite.
-    `band` encloses the confidence asked for over the bootstrap samples of the fragility; `half` is
-    the intensity that half of the rate comes from below. `of_records` is the rate without other
-    uncertainties, `of_shares` that straight from the observed shares, `of_hazard` (fractiles,)
-    those of the further hazard curves. Shares of the rate come from beyond the largest intensity
-    that was computed, and from beyond the hazard curve.
-    """
+    """Annual rate of one limit state of one group of systems; NaN without a fragility."""
 
     fragility: Fragility
     rate: float
-    band: Band
-    edges: Array
-    rates: Array
-    half: float
-    of_records: float
-    of_shares: float
-    of_hazard: tuple[float, ...]
-    beyond_computed: float
+    band: Band  # over the bootstrap samples of the fragility
+    edges: Array  # of bins of intensity (bins + 1,), the last is infinite
+    rates: Array  # from motions in these (bins,)
+    half: float  # intensity below which half of the rate comes from
+    of_records: float  # without other uncertainties
+    of_shares: float  # straight from the observed shares
+    of_hazard: tuple[float, ...]  # of the further hazard curves (fractiles,)
+    beyond_computed: float  # share of the rate beyond the largest intensity that was computed
     notes: tuple[str, ...]
 
     @property
@@ -121,9 +89,9 @@ def risk_faults(layout: StudyPoints, options: RiskOptions) -> Iterator[str]:
         yield f"measure: {options.measure} is not hazard.measure: {measure}; remove the first"
     if needs_period(measure) and options.period is None:
         yield f"a hazard curve of {measure} is for one period; give the report a `period`"
-    yield from wrong_intensities(layout, options.model_copy(update={"measure": measure}))
+    yield from fragile.wrong_intensities(layout, options.model_copy(update={"measure": measure}))
     try:
-        read_hazard(layout.study.folder / section.file, section.measure)
+        rates.read_hazard(layout.study.folder / section.file, section.measure)
     except CaseError as error:
         yield str(error)
 
@@ -133,9 +101,9 @@ def risk(study: StudyResults, options: RiskOptions) -> Found:
     layout = study.table.layout
     section = options.hazard or layout.study.file.hazard
     assert section is not None, "asked before"
-    hazard = read_hazard(layout.study.folder / section.file, section.measure)
+    hazard = rates.read_hazard(layout.study.folder / section.file, section.measure)
     options = options.model_copy(update={"measure": section.measure})
-    found = fragilities(study, options)
+    found = fragile.fragilities(study, options)
     risks = [risk_of(curve, hazard, options) for curve in found.curves]
     known = [each for each in risks if each.fragility.fit.fitted]
     keys, measured, unit = found.systems.keys, found.intensity.name, found.intensity.unit
@@ -185,7 +153,7 @@ def risk(study: StudyResults, options: RiskOptions) -> Found:
     tables = {
         "": keyed(keys, {name: of_unit for name, of_unit, *_ in columns}, rows),
         "_contributions": keyed(keys, part_heads, parts),
-        **({"_at": margins(study, options, found)} if options.at else {}),
+        **({"_at": fragile.margins(study, options, found)} if options.at else {}),
     }
     readers = {name: label for name, _, label, _ in columns if label}
     return Found(
@@ -193,8 +161,8 @@ def risk(study: StudyResults, options: RiskOptions) -> Found:
         risk_figure(found, known, years) if known else None,
         [*_report_notes(found, known, section.component), *found.notes],
         shown={"": dict.fromkeys(keys, "") | readers} | ({"_at": {}} if options.at else {}),
-        remark=f"{what_bands_hold(layout, options)}; rate of shares: of the observed ones, no"
-        " lognormal",
+        remark=f"{fragile.what_bands_hold(layout, options)}; rate of shares: of the observed ones,"
+        " no lognormal",
     )
 
 
@@ -205,31 +173,25 @@ def risk_of(fragility: Fragility, hazard: Hazard, options: RiskOptions) -> Risk:
     fit, total, observed = fragility.fit, fragility.total, fragility.observed
     nan, of_shares = math.nan, math.nan
     if observed.share.any():
-        of_shares = rate_of_shares(hazard, observed.intensity, observed.share)
+        of_shares = rates.rate_of_shares(hazard, observed.intensity, observed.share)
     if not fit.fitted:
         none, lost = np.full(BINS + 1, nan), (nan,) * len(hazard.fractiles)
         return Risk(fragility, nan, NOTHING, edges, none, nan, nan, of_shares, lost, nan, ())
     at = np.append(edges[:-1], max(fragility.largest, low))
-    above = rates_above(hazard, fit.median, total, at)
+    above = rates.rates_above(hazard, fit.median, total, at)
     medians, betas = fit.resampled
     sampled = [
         annual_rate(hazard, *pair) if 0.0 < pair[0] < math.inf else nan
         for pair in zip(medians, options.dispersion.total(betas), strict=True)
     ]
     rate, curves = float(above[0]), [hazard.fractile(share) for share in hazard.fractiles]
-    return Risk(
-        fragility=fragility,
-        rate=rate,
-        band=band(np.array(sampled), options.confidence),
-        edges=edges,
-        rates=-np.diff(np.append(above[:-1], 0.0)),
-        half=_half(hazard, fit.median, total),
-        of_records=annual_rate(hazard, fit.median, fit.beta),
-        of_shares=of_shares,
-        of_hazard=tuple(annual_rate(curve, fit.median, total) for curve in curves),
-        beyond_computed=float(above[-1] / rate),
-        notes=tuple(_notes(fragility, hazard, rate, of_shares)),
-    )
+    ends = band(np.array(sampled), options.confidence)
+    parts, half = -np.diff(np.append(above[:-1], 0.0)), _half(hazard, fit.median, total)
+    others = annual_rate(hazard, fit.median, fit.beta), of_shares
+    of_hazard = tuple(annual_rate(curve, fit.median, total) for curve in curves)
+    doubts = tuple(_notes(fragility, hazard, rate, of_shares))
+    far = float(above[-1] / rate)
+    return Risk(fragility, rate, ends, edges, parts, half, *others, of_hazard, far, doubts)
 
 
 def _half(hazard: Hazard, median: float, beta: float) -> float:
@@ -238,7 +200,7 @@ def _half(hazard: Hazard, median: float, beta: float) -> float:
     whole = annual_rate(hazard, median, beta)
     for _ in range(60):  # halving, to the last digits
         middle = 0.5 * (low + high)
-        rest = rates_above(hazard, median, beta, np.exp([middle]))[0]
+        rest = rates.rates_above(hazard, median, beta, np.exp([middle]))[0]
         low, high = (middle, high) if rest > 0.5 * whole else (low, middle)
     return float(np.exp(low))
 
@@ -246,7 +208,7 @@ def _half(hazard: Hazard, median: float, beta: float) -> float:
 def _notes(fragility: Fragility, hazard: Hazard, rate: float, of_shares: float) -> Iterator[str]:
     """Doubts about one rate, and about that of the shares."""
     fit, weakest = fragility.fit, fragility.observed.intensity[:1]
-    unseen = fragility.observed.share[0] * (hazard.rate[0] - exceeded(hazard, weakest)[0])
+    unseen = fragility.observed.share[0] * (hazard.rate[0] - rates.exceeded(hazard, weakest)[0])
     if unseen > CLEARLY * of_shares:
         yield (
             f"{100.0 * unseen / of_shares:.0f} % of the rate of shares come from below the weakest"
@@ -261,8 +223,8 @@ def _notes(fragility: Fragility, hazard: Hazard, rate: float, of_shares: float) 
         )
     if fit.method == "penalised":
         below, above = fit.between
-        most = exceeded(hazard, np.array([max(below, hazard.intensity[0])]))[0]
-        least = exceeded(hazard, np.array([above]))[0] if above < math.inf else 0.0
+        most = rates.exceeded(hazard, np.array([max(below, hazard.intensity[0])]))[0]
+        least = rates.exceeded(hazard, np.array([above]))[0] if above < math.inf else 0.0
         yield f"separated data show only that the rate is between {least:.2g} and {most:.2g}"
 
 
@@ -287,13 +249,13 @@ def _report_notes(found: Fragilities, risks: Sequence[Risk], of: Of | None) -> I
 
 def risk_figure(found: Fragilities, risks: Sequence[Risk], years: float) -> Callable[[str], bytes]:
     """One panel a limit state: what share of its rate comes from which intensities."""
-    panels = found.in_panels(risks, lambda each: each.fragility)
-    most, (low, high) = max(map(len, panels.values())), _shown(risks)
+    groups = found.in_panels(risks, lambda each: each.fragility)
+    most, (low, high) = max(map(len, groups.values())), _shown(risks)
     last = float(risks[0].edges[-2])
 
     def line() -> float:
         """Height of the numbers above the steps: two lines where panels are narrow."""
-        return 0.075 * (1 + break_if_narrow().count("\n"))
+        return 0.075 * (1 + panels.break_if_narrow().count("\n"))
 
     def room() -> float:
         return 0.03 + line() * min(most, MOST_BANDS)
@@ -301,7 +263,7 @@ def risk_figure(found: Fragilities, risks: Sequence[Risk], years: float) -> Call
     def draw(axes: style.Axes, panel: list[Risk]) -> None:
         for row, each in enumerate(panel):
             _, name, place, count = found.placed(each.fragility)
-            shade = colour(place, count)
+            shade = panels.colour(place, count)
             shares = 100.0 * each.rates / each.rate
             axes.stairs(shares[:-1], each.edges[:-1], color=shade, lw=1.4, label=name or None)
             if high > last:
@@ -315,31 +277,22 @@ def risk_figure(found: Fragilities, risks: Sequence[Risk], years: float) -> Call
                     0.02, 0.98 - line() * row, words, color=shade, transform=axes.transAxes,
                     va="top", fontsize=0.85 * style.small(),
                 )  # fmt: skip
-        beyond_computed(axes, max(each.fragility.largest for each in panel), high)
+        fragile.beyond_computed(axes, max(each.fragility.largest for each in panel), high)
 
     def limit_axes(axes: style.Axes) -> None:
         axes.set_xscale("log")  # of all panels at the end: ticks of logarithms are of another kind
-        log_ticks(axes.xaxis)
+        panels.log_ticks(axes.xaxis)
         axes.set_xlim(low, high)
         axes.set_ylim(0.0, axes.get_ylim()[1] / (1.0 - room()))
 
-    return panel_figure(
-        [*panels],
-        [*panels.values()],
-        draw,
-        in_row=in_row(len(panels)),
-        x_label=found.axis,
-        y_label="share of the annual rate [%]",
-        limits=limit_axes,
-        note=remarks(
-            f"P in {years:g} years, {style.percent(found.confidence)} bands of the"
-            " choice of records",
-            "dashed: half of the rate from either side",
-            "dotted: all from beyond the hazard curve" if high > last else "",
-            BEYOND_COMPUTED,
-            over(found.systems.pooled),
-        ),
+    note = panels.remarks(
+        f"P in {years:g} years, {style.percent(found.confidence)} bands of the choice of records",
+        "dashed: half of the rate from either side",
+        "dotted: all from beyond the hazard curve" * (high > last),
+        fragile.BEYOND_COMPUTED,
+        panels.over(found.systems.pooled),
     )
+    return found.figure(groups, draw, "share of the annual rate [%]", note, limit_axes)
 
 
 def _shown(risks: Sequence[Risk]) -> tuple[float, float]:

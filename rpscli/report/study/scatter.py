@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from pathlib import PurePath
-from typing import Annotated, Literal, NamedTuple
+from typing import Annotated, Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,18 +21,9 @@ from rpscli.errors import CaseError, RecordError, hint, is_number
 from rpscli.records.measures import MEASURES
 from rpscli.records.source import Source
 from rpscli.report.figures import style
+from rpscli.report.study import panels
 from rpscli.report.study.fragility import MeasureOptions, measure_name, measure_without_period
 from rpscli.report.study.labels import axis_label, keyed, labels
-from rpscli.report.study.panels import (
-    break_if_narrow,
-    colour,
-    in_panels,
-    large_axis,
-    large_label,
-    marker,
-    noted,
-    shaded,
-)
 from rpscli.report.study.report import Found, Report, without_uplift
 from rpscli.report.table import Column, measured
 from rpscli.sweep.context import RecordRequest
@@ -81,7 +72,7 @@ class Ordinate(NamedTuple):
 def ordinate(table: Table, name: str) -> Ordinate:
     """A demand, a measure of the scaled motion (at T1), or a varied key, NaN where no number."""
     if (quantity := SCALARS["timehistory"].get(name)) is not None:
-        return Ordinate(table.columns[name], quantity.unit, large_label(quantity))
+        return Ordinate(table.columns[name], quantity.unit, panels.large_label(quantity))
     if name in MEASURES.names():
         found = table.intensity(name)
         return Ordinate(found.values, found.unit, f"{measure_name(found)} [{found.unit}]")
@@ -143,11 +134,12 @@ def _scatter(
 
     def draw(axes: style.Axes, cloud: Cloud) -> None:
         for axis, each in zip((axes.xaxis, axes.yaxis), both, strict=True):
-            large_axis(axis, each.unit)
+            panels.large_axis(axis, each.unit)
         for place, part in enumerate(cloud.shown.parts(series)):
             axes.plot(
-                x[part.points], y[part.points], ls="", marker=marker(place), ms=3.0, alpha=0.7,
-                mew=0.0, color=colour(place, most), label=labels(series_keys, part.values) or None,
+                x[part.points], y[part.points], ls="", marker=panels.marker(place), ms=3.0,
+                mew=0.0, alpha=0.7, color=panels.colour(place, most),
+                label=labels(series_keys, part.values) or None,
             )  # fmt: skip
         if curved:
             _draw_curve(axes, cloud.fit, x[cloud.shown.points], (highest, top), units)
@@ -155,7 +147,6 @@ def _scatter(
     def limits(axes: style.Axes) -> None:
         axes.set(xlim=(0.0, 1.04 * highest or 1.0), ylim=(0.0, None))
 
-    fallen = f"{found.overturned} overturned points left out" if found.overturned else ""
     tables = {}
     if curved:
         tables["_curve" * plain] = _fits(found.keys, clouds, (x_name, y_name), both)
@@ -172,24 +163,11 @@ def _scatter(
     notes = list(found.notes)
     if without:
         notes.append(f"{len(without)} of {len(clouds)} panels have no curve: {without[0]}")
-    return Found(
-        tables,
-        in_panels(
-            found.keys,
-            clouds,
-            draw,
-            x_label=both[0].label,
-            y_label=both[1].label,
-            limits=limits,
-            note=noted(
-                found,
-                "fits without bands" * any(cloud.fit for cloud in clouds),
-                shaded(most),
-                fallen,
-            ),
-        ),
-        notes,
-    )
+    fallen = f"{found.overturned} overturned points left out" if found.overturned else ""
+    fits = "fits without bands" * any(cloud.fit for cloud in clouds)
+    words: dict[str, Any] = {"x_label": both[0].label, "y_label": both[1].label, "limits": limits}
+    words["note"] = panels.noted(found, fits, panels.shaded(most), fallen)
+    return Found(tables, panels.in_panels(found.keys, clouds, draw, **words), notes)
 
 
 def _draw_curve(
@@ -201,7 +179,7 @@ def _draw_curve(
 ) -> None:
     """The curve as far as its points (m,) go, with its numbers where it leaves room for them."""
     highest, top = room
-    apart, text, rising = break_if_narrow(), "no curve: too few points", False
+    apart, text, rising = panels.break_if_narrow(), "no curve: too few points", False
     if fit is not None:
         ends = np.array([x.min(), fit.break_x, x.max()])
         axes.plot(ends, fit(ends), color=style.BLACK, lw=1.6, label="bilinear fit")
@@ -296,20 +274,17 @@ def overturning_spectrum(study: StudyResults, options: SpectrumOptions) -> Found
     )
 
     def draw(axes: style.Axes, group: Histories) -> None:
-        parts = clouds[group]
-        for place, part in enumerate(parts):
+        for place, part in enumerate(clouds[group]):
             boundary = _boundary(part, frequency, amplitude)
             if several:
                 # What overturned and the least that did; survivors would hide the other series.
-                fell, shade = part.points[part.fallen], colour(place, most)
-                axes.plot(
-                    frequency[fell], amplitude[fell], ls="", color=shade, marker=marker(place),
-                    ms=2.6, mew=0.0, alpha=0.35,
-                )  # fmt: skip
-                axes.plot(
-                    *boundary, color=shade, marker=marker(place), ms=3.4, lw=1.3,
-                    label=labels(series_keys, part.values),
-                )  # fmt: skip
+                fell, name = part.points[part.fallen], labels(series_keys, part.values)
+                look: dict[str, Any] = {
+                    "color": panels.colour(place, most), "marker": panels.marker(place)
+                }  # fmt: skip
+                faint: dict[str, Any] = {"ls": "", "ms": 2.6, "mew": 0.0, "alpha": 0.35} | look
+                axes.plot(frequency[fell], amplitude[fell], **faint)
+                axes.plot(*boundary, ms=3.4, lw=1.3, label=name, **look)
                 continue
             for word, name, shade, mark, size in LOOKS:
                 chosen = part.every[np.char.startswith(shown[part.every], word)]
@@ -333,17 +308,12 @@ def overturning_spectrum(study: StudyResults, options: SpectrumOptions) -> Found
         for part in parts
         for n in part.every.tolist()
     ]
+    words: dict[str, Any] = {"x_label": r"$\omega/p$ [-]", "limits": limits}
+    words["y_label"] = r"$a_p/(g\,\tan\alpha)$ [-]"
+    words["note"] = panels.noted(found, "only what overturned" * several, panels.shaded(most))
     return Found(
         {"": keyed((*found.keys, *series_keys), dict.fromkeys(heads, "-"), rows)},
-        in_panels(
-            found.keys,
-            found.groups,
-            draw,
-            x_label=r"$\omega/p$ [-]",
-            y_label=r"$a_p/(g\,\tan\alpha)$ [-]",
-            limits=limits,
-            note=noted(found, "only what overturned" * several, shaded(most)),
-        ),
+        panels.in_panels(found.keys, found.groups, draw, **words),
     )
 
 
@@ -354,16 +324,13 @@ def _pulses_of(study: StudyResults, options: SpectrumOptions) -> tuple[Array, Ar
     frequency, amplitude = np.full((2, len(table)), np.nan)
     for point in layout:
         assert point.record is not None, "points of histories have a record"
-        properties = layout.properties[point.system]
-        if point.record not in pulses:
-            pulses[point.record] = pulse_of(point.record.source, options)
-        pulse = pulses[point.record]
-        omega = 2.0 * math.pi / pulse.period
-        frequency[point.number] = omega / properties.frequency_parameter
-        if not table.failed[point.number]:
+        of, number = layout.properties[point.system], point.number
+        if (pulse := pulses.get(point.record)) is None:
+            pulse = pulses[point.record] = pulse_of(point.record.source, options)
+        frequency[number] = 2.0 * math.pi / pulse.period / of.frequency_parameter
+        if not table.failed[number]:
             peak = pulse.amplitude or study.context.records.intensity(point.record, "PGA")
-            size = peak * abs(table.scale[point.number])
-            amplitude[point.number] = size / properties.uplift_acceleration
+            amplitude[number] = peak * abs(table.scale[number]) / of.uplift_acceleration
     return frequency, amplitude
 
 
@@ -375,15 +342,8 @@ def _boundary(part: Histories, frequency: Array, amplitude: Array) -> tuple[Arra
 
 
 def pulse_of(source: str, options: SpectrumOptions) -> PulseSection:
-    """The pulse of a record.
+    """The pulse of a record; a CaseError if it is none, and the options do not say what it is.
 
-    Raises
-    ------
-    CaseError
-        If the source is no pulse, and the options do not say what it is.
-
-    Examples
-    --------
     >>> pulse_of("pulse:sine?amplitude=0.4g&period=1.2&factor=2", SpectrumOptions())
     PulseSection(period=1.2, amplitude=None)
     """

@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
     from rpscli.analyses.results import TimeHistoryResult
-    from rpscli.model.bearing import Bearing
     from rpscli.model.podium import Array, PodiumStructure
     from rpscli.model.superstructure import Superstructure
 
@@ -215,13 +214,12 @@ def derived_quantities(structure: PodiumStructure) -> dict[str, Any]:
     """All of them under their names; lists by mode or storey are empty without a building."""
     building = structure.superstructure
     lists = ("periods", "damping_ratios", "stiffnesses")
+    some = ((CONTACT, structure.bed), (UPWARDS, structure.upwards), (COLUMN, structure.column))
+    further = [row for rows, has in some if has for row in rows]
     return {
         **{row.name: row.value(structure) for row in (*GEOMETRY, *AT_CRITICAL, *DYNAMICS, *BOTH)},
         "storeys": structure.storeys,
-        FIRST_PERIOD.name: FIRST_PERIOD.value(structure),
-        **({row.name: row.value(structure) for row in CONTACT} if structure.bed else {}),
-        **({row.name: row.value(structure) for row in UPWARDS} if structure.upwards else {}),
-        **({row.name: row.value(structure) for row in COLUMN} if structure.column else {}),
+        **{row.name: row.value(structure) for row in (FIRST_PERIOD, *further)},
         **{name: getattr(building, name) if building else [] for name in lists},
     }
 
@@ -242,10 +240,7 @@ FUNCTIONS = ("sin", "cos", "tan", "asin", "atan", "sqrt")
 
 
 class Derivation(NamedTuple):
-    """One quantity: its words and symbol, value and unit, formula, and formula with numbers.
-
-    `formula` is empty for what the case gives.
-    """
+    """One quantity: words, symbol, value, unit, formula, empty for inputs, and it with numbers."""
 
     name: str
     label: str
@@ -256,19 +251,34 @@ class Derivation(NamedTuple):
     numbers: str
 
 
+BEFORE = {
+    "restitution": (
+        Derived("inertia_ratio", "I_o / (m_c R²) of a column", "I", "-", "bearing.inertia_ratio"),
+        Derived(
+            "e_edge", "restitution, impulse at the edges", "e_edge", "-",
+            lambda s: _letters(s).get("e_edge"),
+        ),
+    ),
+    "uplift_force": (Derived("weight", "weight that is lifted", "W", "N"),),
+}  # fmt: skip
+"""What is no result of its own, but stands in the next formula."""
+
+
 def derivations(structure: PodiumStructure, podium: Mapping[str, Any]) -> Iterator[Derivation]:
     """All derived quantities that are numbers, in the order in which they follow."""
-    letters = _letters(structure)
-    formulas = _formulas(structure, podium)
-    derived = (*GEOMETRY, *DYNAMICS, FIRST_PERIOD, *(CONTACT if structure.bed else ()))
-    derived += COLUMN if structure.column else ()
-    rows = [(*row[:4], row.value(structure)) for row in derived]
-    for row in rows:
-        for name, label, symbol, unit, value in (*_before(row[0], structure, letters), row):
-            if isinstance(value, float | int):
-                formula = formulas.get(name, "")
-                texts = symbolic(formula), numeric(formula, letters)
-                yield Derivation(name, label, greek(symbol), float(value), unit, *texts)
+    letters, formulas = _letters(structure), _formulas(structure, podium)
+    further = (*CONTACT * bool(structure.bed), *COLUMN * bool(structure.column))
+    exact = f"{structure.critical_rotation:.{DIGITS}g}"
+    for quantity in (*GEOMETRY, *DYNAMICS, FIRST_PERIOD, *further):
+        for row in (*BEFORE.get(quantity.name, ()), quantity):
+            value, formula = row.value(structure), formulas.get(row.name, "")
+            if not isinstance(value, float | int):
+                continue
+            if row.name == "critical_rotation_paper" and f"{value:.{DIGITS}g}" == exact:
+                continue
+            texts = symbolic(formula), numeric(formula, letters)
+            symbol = greek(row.symbol)
+            yield Derivation(row.name, row.label, symbol, float(value), row.unit, *texts)
 
 
 def column_derivations(result: TimeHistoryResult) -> Iterator[Derivation]:
@@ -302,20 +312,6 @@ def column_derivations(result: TimeHistoryResult) -> Iterator[Derivation]:
             yield Derivation(each.largest, label, greek(symbol), value, unit, *texts)
 
 
-Row = tuple[str, str, str, str, Any]
-
-
-def _before(name: str, structure: PodiumStructure, letters: Mapping[str, float]) -> Iterator[Row]:
-    """Rows of what is no result of its own, but stands in the next formula."""
-    if name == "restitution":
-        inertia = structure.bearing.inertia_ratio
-        yield "inertia_ratio", "I_o / (m_c R²) of a column", "I", "-", inertia
-        edge = letters.get("e_edge")
-        yield "e_edge", "restitution, impulse at the edges", "e_edge", "-", edge
-    if name == "uplift_force":
-        yield "weight", "weight that is lifted", "W", "N", structure.weight
-
-
 EDGES = {
     "flexible": (
         "(I - 2 * sin(alpha)^2 + 4 * gamma * cos(2 * alpha) - 4 * gamma * eta * sin(alpha)^2)"
@@ -329,22 +325,61 @@ EDGES = {
 
 def _formulas(structure: PodiumStructure, podium: Mapping[str, Any]) -> dict[str, str]:
     """Expressions by the names of the quantities; empty for what the case gives."""
-    return {**_of_shape(structure.bearing, podium["bearing"]), **_of_masses(structure, podium)} | {
-        "restitution": "f * e_given"
-        if structure.impact_law.kind == "value"
-        else "f * (1 - kappa * (1 - e_edge))",
+    bearing, building, law = structure.bearing, structure.superstructure, structure.impact_law.kind
+    flat, beam = bearing.is_flat, structure.cap_beam_mass > 0.0
+    given, sizes = podium["bearing"], "dimensions" in podium["bearing"]
+    by_eta = building is not None and "superstructure_mass_ratio" in podium
+    floors = [] if building is None else building.masses.tolist()
+    first_order = "(1 - tan_alpha / tan_alpha_w) / 2"
+    own_ratio = "radius / height" if sizes else ""
+    rolls = bearing.curvature_ratio <= bearing.critical_curvature_ratio_of_paper
+    of_beta, of_exact = (f"asin((tan_alpha_w - tan_alpha) / (2 * {r}))" for r in ("rho", "rho_cr"))
+    slope = "" if flat else " * (1 - 2 * rho * cos(alpha)^2)"
+    by_mass = "M / eta" if by_eta else "" if "cap_beam_mass" in podium else "gamma * m_c"
+    by_beam = "M / m_b" if beam else "0"
+    # Compliant ends: phi_u is the root of its formula (Theory (12.8)).
+    lost = "2 / 3 * sin(alpha)" if structure.contact.kind == "plane" else "0"
+    stiffness = f"W * (B_u - {lost}) / (2 * R * phi_u * C_u^2)"
+    return {
+        "semi_diagonal": "sqrt((height)^2 + (width)^2) / 2" if sizes else "",
+        "column_height": "" if sizes else "2 * R * cos(alpha)",
+        "flat_width": "" if sizes else "2 * R * sin(alpha)",
+        "arc_radius": "" if sizes else "rho * height",
+        "alpha": "atan(width / height)" if sizes else "atan(tan_alpha)",
+        "alpha_wedge": "atan(tan_alpha_w)",
+        "beta": "0" if flat else of_beta,
+        "curvature_ratio": first_order if given.get("curvature_ratio") == "critical" else own_ratio,
+        "rho_cr_paper": first_order,
+        "rho_cr_exact": "0" if flat else f"tan_alpha / (1 - 2 * rho_cr) = tan({of_exact})",
+        "critical_rotation": _critical(flat=flat, rolls=bearing.overturns_rolling),
+        "critical_rotation_paper": _critical(flat=flat, rolls=rolls),
+        "columns_mass": "m_b / gamma" if beam and "column_mass" not in podium else "N * m_column",
+        "cap_beam_mass": by_mass,
+        "superstructure_mass": "n * m_i"
+        if len(set(floors)) == 1
+        else " + ".join(f"m_{i + 1}" for i in range(len(floors))) or "0",
+        "gamma": "" if "cap_beam_mass_ratio" in podium else "m_b / (m_c)",
+        "eta": "" if by_eta else by_beam,
+        "gamma_total": "gamma * (1 + eta)",
+        "restitution": "f * e_given" if law == "value" else "f * (1 - kappa * (1 - e_edge))",
         "uplift_acceleration": "g * tan_alpha",
         "uplift_force": "W * tan_alpha",
         "static_base_shear": "M * g * tan_alpha",
-        "initial_stiffness": "-W / (2 * R * cos(alpha)^3)"
-        if structure.bearing.is_flat
-        else "-W * (1 - 2 * rho * cos(alpha)^2) / (2 * R * cos(alpha)^3)",
+        "initial_stiffness": f"-W{slope} / (2 * R * cos(alpha)^3)",
         "rolling_period": "2 * pi * sqrt((m_c * I / 4 + m_b + M) / K)",
         "p_hat": "sqrt(g / R * (1 + 2 * gamma_t) / (I + 4 * gamma_t))",
         "T1": "2 * pi * sqrt(sum_m / sum_k)",
-        "e_edge": EDGES.get("springs" if structure.upwards else structure.impact_law.kind, ""),
+        "e_edge": EDGES.get("springs" if structure.upwards else law, ""),
         "weight": "(m_c / 2 + m_b + M) * g",
-        **_of_bed(structure),
+        "period_ratio": "T_c / T_1",
+        "contact_period": "2 * pi * sqrt((m_0 + sum_M) / K_s)",
+        "contact_stiffness": stiffness,
+        "settlement": "phi_u * width / 2",
+        "joint_stiffness": "W / D_0",
+        "lifts_from": f"K_s = {stiffness}",
+        "lifts_from_ratio": "phi_u / alpha",
+        "contact_mass": "m_c * ((I - 1) / C_u^2 + 1 + 4 * gamma) / 4",
+        "contact_share": "sqrt(phi_u / (alpha / 10))",
         **_of_column(structure),
     }
 
@@ -363,68 +398,6 @@ def _of_column(structure: PodiumStructure) -> dict[str, str]:
     }
 
 
-def _of_bed(structure: PodiumStructure) -> dict[str, str]:
-    """Of compliant ends, whose phi_u is the root of its formula (Theory (12.8))."""
-    lost = "2 / 3 * sin(alpha)" if structure.contact.kind == "plane" else "0"
-    stiffness = f"W * (B_u - {lost}) / (2 * R * phi_u * C_u^2)"
-    return {
-        "period_ratio": "T_c / T_1",
-        "contact_period": "2 * pi * sqrt((m_0 + sum_M) / K_s)",
-        "contact_stiffness": stiffness,
-        "settlement": "phi_u * width / 2",
-        "joint_stiffness": "W / D_0",
-        "lifts_from": f"K_s = {stiffness}",
-        "lifts_from_ratio": "phi_u / alpha",
-        "contact_mass": "m_c * ((I - 1) / C_u^2 + 1 + 4 * gamma) / 4",
-        "contact_share": "sqrt(phi_u / (alpha / 10))",
-    }
-
-
-def _of_shape(bearing: Bearing, given: Mapping[str, Any]) -> dict[str, str]:
-    flat, sizes = bearing.is_flat, "dimensions" in given
-    first_order = "(1 - tan_alpha / tan_alpha_w) / 2"
-    return {
-        "semi_diagonal": "sqrt((height)^2 + (width)^2) / 2" if sizes else "",
-        "column_height": "" if sizes else "2 * R * cos(alpha)",
-        "flat_width": "" if sizes else "2 * R * sin(alpha)",
-        "arc_radius": "" if sizes else "rho * height",
-        "alpha": "atan(width / height)" if sizes else "atan(tan_alpha)",
-        "alpha_wedge": "atan(tan_alpha_w)",
-        "beta": "0" if flat else "asin((tan_alpha_w - tan_alpha) / (2 * rho))",
-        "curvature_ratio": "radius / height" if sizes else "",
-        "rho_cr_paper": first_order,
-        "rho_cr_exact": "0"
-        if flat
-        else "tan_alpha / (1 - 2 * rho_cr) = tan(asin((tan_alpha_w - tan_alpha) / (2 * rho_cr)))",
-        "critical_rotation": _critical(flat=flat, rolls=bearing.overturns_rolling),
-        "critical_rotation_paper": _critical(
-            flat=flat, rolls=bearing.curvature_ratio <= bearing.critical_curvature_ratio_of_paper
-        ),
-    } | ({"curvature_ratio": first_order} if given.get("curvature_ratio") == "critical" else {})
-
-
-def _of_masses(structure: PodiumStructure, podium: Mapping[str, Any]) -> dict[str, str]:
-    building, beam = structure.superstructure, structure.cap_beam_mass > 0.0
-    floors = [] if building is None else building.masses.tolist()
-    total = (
-        "n * m_i" if len(set(floors)) == 1 else " + ".join(f"m_{i + 1}" for i in range(len(floors)))
-    )
-    by_eta = building is not None and "superstructure_mass_ratio" in podium
-    by_gamma = beam and "column_mass" not in podium
-    return {
-        "columns_mass": "m_b / gamma" if by_gamma else "N * m_column",
-        "cap_beam_mass": "M / eta"
-        if by_eta
-        else ""
-        if "cap_beam_mass" in podium
-        else "gamma * m_c",
-        "superstructure_mass": total or "0",
-        "gamma": "" if "cap_beam_mass_ratio" in podium else "m_b / (m_c)",
-        "eta": "" if by_eta else "M / m_b" if beam else "0",
-        "gamma_total": "gamma * (1 + eta)",
-    }
-
-
 def _critical(*, flat: bool, rolls: bool) -> str:
     if flat:
         return "atan(tan_alpha)"
@@ -433,37 +406,25 @@ def _critical(*, flat: bool, rolls: bool) -> str:
     return "atan(tan_alpha_w / (1 - 2 * rho * (1 - cos(beta))))"
 
 
+LETTERS = {
+    "R": "bearing.semi_diagonal", "radius": "bearing.radius", "N": "columns",
+    "alpha": "bearing.alpha", "tan_alpha": "bearing.slenderness", "alpha_w": "bearing.alpha_wedge",
+    "beta": "bearing.beta", "rho": "bearing.curvature_ratio", "I": "bearing.inertia_ratio",
+    "rho_cr": "bearing.critical_curvature_ratio", "m_c": "columns_mass", "m_b": "cap_beam_mass",
+    "M": "superstructure_mass", "gamma": "gamma", "eta": "eta", "gamma_t": "gamma_total",
+    "g": "gravity", "W": "weight", "K": "initial_stiffness", "f": "impact_law.factor",
+    "kappa": "impact_law.loss",
+}  # fmt: skip
+"""Where a structure has the letters of expressions."""
+
+
 def _letters(structure: PodiumStructure) -> dict[str, float]:
     """Numbers for the letters of all expressions, SI units."""
     b, law, building = structure.bearing, structure.impact_law, structure.superstructure
-    flat = b.is_flat
-    letters = {
-        "R": b.semi_diagonal,
-        "height": 2.0 * b.half_height,
-        "width": 2.0 * b.half_width,
-        "radius": b.radius,
-        "N": structure.columns,
-        "m_column": structure.columns_mass / structure.columns,
-        "alpha": b.alpha,
-        "alpha_w": b.alpha_wedge,
-        "tan_alpha": b.slenderness,
-        "tan_alpha_w": b.slenderness if flat else b.wedge_slenderness,
-        "beta": b.beta,
-        "rho": b.curvature_ratio,
-        "rho_cr": b.critical_curvature_ratio,
-        "I": b.inertia_ratio,
-        "m_c": structure.columns_mass,
-        "m_b": structure.cap_beam_mass,
-        "M": structure.superstructure_mass,
-        "gamma": structure.gamma,
-        "eta": structure.eta,
-        "gamma_t": structure.gamma_total,
-        "g": structure.gravity,
-        "W": structure.weight,
-        "K": structure.initial_stiffness,
-        "f": law.factor,
-        "kappa": law.loss,
-    }
+    letters: dict[str, float] = {name: attrgetter(of)(structure) for name, of in LETTERS.items()}
+    letters["height"], letters["width"] = 2.0 * b.half_height, 2.0 * b.half_width
+    letters["m_column"] = structure.columns_mass / structure.columns
+    letters["tan_alpha_w"] = b.slenderness if b.is_flat else b.wedge_slenderness
     if law.kind == "value":
         letters["e_given"] = structure.restitution / law.factor
     else:
@@ -483,15 +444,11 @@ def _letters(structure: PodiumStructure) -> dict[str, float]:
     if structure.column is not None:
         letters |= _column_at_rest(structure)
     if building is not None:
-        shape = first_shape(building)
-        letters["n"] = building.storeys
-        letters |= {f"m_{i + 1}": mass for i, mass in enumerate(building.masses.tolist())}
-        letters["m_i"] = letters["m_1"]
+        shape, k = first_shape(building), building.stiffnesses
+        letters |= {f"m_{i}": mass for i, mass in enumerate(building.masses.tolist(), 1)}
+        letters |= {"n": building.storeys, "m_i": letters["m_1"]}
         letters["sum_m"] = float(building.masses @ shape**2)
-        letters["sum_k"] = float(
-            building.stiffnesses[0] * shape[0] ** 2
-            + building.stiffnesses[1:] @ (shape[1:] - shape[:-1]) ** 2
-        )
+        letters["sum_k"] = float(k[0] * shape[0] ** 2 + k[1:] @ (shape[1:] - shape[:-1]) ** 2)
     return letters
 
 
@@ -522,9 +479,7 @@ def greek(text: str) -> str:
     return _printed(re.sub("alpha|beta|gamma|theta|rho|eta", lambda f: GREEK[f[0]], text))
 
 
-GREEK = {
-    "alpha": "α", "beta": "β", "gamma": "γ", "eta": "η", "rho": "ρ", "theta": "θ",
-}  # fmt: skip
+GREEK = {"alpha": "α", "beta": "β", "gamma": "γ", "eta": "η", "rho": "ρ", "theta": "θ"}
 
 
 def _printed(text: str) -> str:

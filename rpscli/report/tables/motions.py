@@ -53,22 +53,16 @@ def record_table(motion: GroundMotion, measures: IntensityMeasures) -> Table:
 def motion_columns(motion: GroundMotion) -> list[Column]:
     """`record.csv`: the motion and its integrals, one row a sample."""
     a, dt = motion.acceleration, motion.dt
-    return [
-        Column("time", "s", motion.time),
-        Column("acceleration", "m/s2", a),
-        Column("velocity", "m/s", velocity(a, dt)),
-        Column("displacement", "m", displacement(a, dt)),
-    ]
+    columns = [Column("time", "s", motion.time), Column("acceleration", "m/s2", a)]
+    columns.append(Column("velocity", "m/s", velocity(a, dt)))
+    return [*columns, Column("displacement", "m", displacement(a, dt))]
 
 
 def spectrum_columns(spectrum: ResponseSpectrum) -> list[Column]:
     """`spectrum.csv`: one row a period."""
-    return [
-        Column("period", "s", spectrum.periods),
-        Column("pseudo_acceleration", "m/s2", spectrum.pseudo_acceleration),
-        Column("total_acceleration", "m/s2", spectrum.total_acceleration),
-        Column("displacement", "m", spectrum.displacement),
-    ]
+    units = {"pseudo_acceleration": "m/s2", "total_acceleration": "m/s2", "displacement": "m"}
+    columns = [Column(name, unit, getattr(spectrum, name)) for name, unit in units.items()]
+    return [Column("period", "s", spectrum.periods), *columns]
 
 
 def two_column_text(motion: GroundMotion) -> str:
@@ -91,7 +85,7 @@ def selection_document(selection: Selection) -> dict[str, Any]:
     numbers = ("candidates", "refused", "clamped", "misfit", "least_ratio", "mean_pgv", "mean_pgd")
     rules = [{**rule._asdict(), "verdict": rule.word} for rule in selection.rules]
     return {
-        "target": {**{name: getattr(target, name) for name in of_target}, "component": target.of},
+        "target": {name: getattr(target, name) for name in of_target} | {"component": target.of},
         "component": selection.of,
         "periods": [float(selection.periods[0]), float(selection.periods[-1])],
         "common_factor": selection.common,
@@ -105,24 +99,26 @@ def selection_document(selection: Selection) -> dict[str, Any]:
 
 def selection_columns(selection: Selection) -> list[Column]:
     """`selection.csv`: one row a motion, its peaks scaled."""
-    chosen = selection.chosen
-    three = partial(shown, digits=3)
-    pgv, pgd = ([one.factor * getattr(one, name) for one in chosen] for name in ("pgv", "pgd"))
+    chosen, three = selection.chosen, partial(shown, digits=3)
+    seconds = [one.motions[1].source if len(one.motions) > 1 else None for one in chosen]
+
+    def column(name: str, *head: Any, unit: str = "-", scaled: bool = False) -> Column:
+        values = [getattr(one, name) for one in chosen]
+        if scaled:
+            values = [one.factor * value for one, value in zip(chosen, values, strict=True)]
+        return Column(name, unit, values, *head)
+
     return [
-        Column("name", "-", [one.name for one in chosen], "motion"),
+        column("name", "motion"),
         Column("source", "-", [one.motions[0].source for one in chosen]),
-        Column(
-            "second", "-", [(*one.motions, None)[1] and one.motions[1].source for one in chosen]
-        ),
-        Column("factor", "-", [one.factor for one in chosen], "factor", "{:.4g}".format),
-        Column(
-            "clamped", "-", [one.clamped for one in chosen], "at a bound", lambda held: "yes" * held
-        ),
+        Column("second", "-", seconds),
+        column("factor", "factor", "{:.4g}".format),
+        column("clamped", "at a bound", lambda held: "yes" * held),
         Column("event", "-", [one.event or one.name for one in chosen], "event"),
-        Column("pga", "m/s2", [one.factor * one.pga for one in chosen]),
-        Column("pgv", "m/s", pgv, "PGV [m/s]", three),
-        Column("pgd", "m", pgd, "PGD [m]", three),
-        Column("misfit", "-", [one.misfit for one in chosen], "misfit", "{:.3f}".format),
+        column("pga", unit="m/s2", scaled=True),
+        column("pgv", "PGV [m/s]", three, unit="m/s", scaled=True),
+        column("pgd", "PGD [m]", three, unit="m", scaled=True),
+        column("misfit", "misfit", "{:.3f}".format),
     ]
 
 

@@ -47,15 +47,20 @@ def timehistory_tables(
     yield f"outcome: {outcome_text(result)}"
     if (contact := contact_text(result.structure)) is not None:
         yield contact
+    yield from demand_tables(result)
+    yield from column_table(result)
+    if verdicts:
+        yield limits_table(verdicts)
+
+
+def demand_tables(result: TimeHistoryResult) -> Iterator[Table | str]:
+    """Largest demands; of storeys, of those that yield and of devices, if there are any."""
     yield outcome_table(result)
     if result.structure.storeys:
         yield storeys_table(result)
     yield from yielded_tables(result)
-    yield from column_table(result)
     if result.devices:
         yield devices_table(result)
-    if verdicts:
-        yield limits_table(verdicts)
 
 
 def outcome_text(result: TimeHistoryResult) -> str:
@@ -168,8 +173,7 @@ def outcome_table(result: TimeHistoryResult) -> Table:
     rows = [
         _row(result, "max_rotation", f"{shown(result.rotation_ratio)} theta_cr"),
         *_azimuth(result.max_rotation_azimuth),
-        _row(result, "max_rotation_time"),
-        *([] if result.critical_passage_time is None else [_row(result, "critical_passage_time")]),
+        *_known(result, "max_rotation_time", "critical_passage_time"),
         _row(result, "max_cap_beam_displacement", _ways(result, "max_cap_beam_displacement")),
         _row(result, "max_lift"),
     ]
@@ -178,46 +182,50 @@ def outcome_table(result: TimeHistoryResult) -> Table:
         rows.append(_row(result, "residual_rotation", residual))
         rows += _azimuth(result.residual_azimuth)
         rows.append(_row(result, "residual_displacement"))
-    rows += [
-        _row(result, name)
-        for name in ("max_damper_force", "max_stop_force", "lost_prestress")
-        if getattr(result, name) is not None
-    ]
-    if result.fixed_base is not None:
-        ratio, shear = f"{shown(result.base_shear_ratio)} V_st", result.fixed_base.base_shear
-        rows.append(_row(result, "max_base_shear", ratio, shear))
-        if result.both_components:
-            rows.append(("  in x, in y", _ways(result, "max_base_shear"), "", ""))
-        if result.uplift_shear_ratio is not None:
-            rows.append(_row(result, "uplift_shear_ratio"))
-        rows.append(_row(result, "fixed_base_ratio"))
-        fixed_acceleration = float(np.max(result.fixed_base.floor_accelerations))
-        rows.append(_row(result, "max_floor_acceleration", fixed=fixed_acceleration))
-        rows.append(_row(result, "floor_acceleration_over_fixed"))
-        rows += [_row(result, "max_roof_displacement"), _row(result, "max_floor_velocity")]
-    demands = fixed_base_demands(result)
-    if demands is not None and demands.storey_drift_ratios is not None:
-        rows.append(_row(result, "drift_ratio", fixed=float(max(demands.storey_drift_ratios))))
-    rows += _yielding(result)
+    rows += _known(result, "max_damper_force", "max_stop_force", "lost_prestress")
+    rows += _of_building(result)
     e = result.structure.restitution
     if not result.structure.bearing.is_spherical:
         rows.append(("restitution at impact e", shown(e), f"e2 = {shown(e * e)}", ""))
-    if result.both_components:
-        rows += _passes(result)
-    else:
-        rows.append(("uplifts, impacts", f"{result.uplifts}, {result.impacts}", "", ""))
+    rows += _passes(result)
     if result.structure.bed is not None:
-        rows += [
-            _row(result, name)
-            for name in ("full_contact_share", "max_impact_number", "edge_pressure_ratio")
-            if getattr(result, name) is not None
-        ]
-    rows += [*_friction(result), *_columns(result)]
-    rows += [_row(result, "duration"), *_energy(result)]
+        rows += _known(result, "full_contact_share", "max_impact_number", "edge_pressure_ratio")
+    ratio, axial = result.friction_ratio, result.axial
+    rows.append(_row(result, "friction_demand", "" if ratio is None else f"{shown(ratio)} of mu"))
+    if result.structure.upwards and axial is not None and axial.sliding_time > 0.0:
+        time = f"{shown(1e3 * axial.sliding_time)} ms"
+        rows.append((f"  above {AMPLE:g} tan(alpha) for", time, "", ""))
+    rows += [*_columns(result), _row(result, "duration"), *_energy(result)]
     heads = ["", "on bearings", "normalised", f"{_elastic(result)}fixed base"]
     if result.fixed_base is None:
         return Table.of_texts(heads[:3], [row[:3] for row in rows])
     return Table.of_texts(heads, rows)
+
+
+def _of_building(result: TimeHistoryResult) -> Iterator[Row]:
+    if result.fixed_base is not None:
+        ratio, shear = f"{shown(result.base_shear_ratio)} V_st", result.fixed_base.base_shear
+        yield _row(result, "max_base_shear", ratio, shear)
+        if result.both_components:
+            yield "  in x, in y", _ways(result, "max_base_shear"), "", ""
+        yield from _known(result, "uplift_shear_ratio")
+        yield _row(result, "fixed_base_ratio")
+        fixed_acceleration = float(np.max(result.fixed_base.floor_accelerations))
+        yield _row(result, "max_floor_acceleration", fixed=fixed_acceleration)
+        for name in (
+            "floor_acceleration_over_fixed",
+            "max_roof_displacement",
+            "max_floor_velocity",
+        ):
+            yield _row(result, name)
+    demands = fixed_base_demands(result)
+    if demands is not None and demands.storey_drift_ratios is not None:
+        yield _row(result, "drift_ratio", fixed=float(max(demands.storey_drift_ratios)))
+    if result.structure.yields:
+        residual = result.residual_drift_ratio
+        yield from _known(result, "ductility", "plastic_drift")
+        of_height = "" if residual is None else f"{shown(residual)} of the height"
+        yield _row(result, "residual_drift", of_height)
 
 
 def _row(
@@ -228,21 +236,8 @@ def _row(
     return label, measured(getattr(result, name), unit), normalised, beside
 
 
-def _friction(result: TimeHistoryResult) -> Iterator[Row]:
-    ratio, axial = result.friction_ratio, result.axial
-    yield _row(result, "friction_demand", "" if ratio is None else f"{shown(ratio)} of mu")
-    if result.structure.upwards and axial is not None and axial.sliding_time > 0.0:
-        time = f"{shown(1e3 * axial.sliding_time)} ms"
-        yield f"  above {AMPLE:g} tan(alpha) for", time, "", ""
-
-
-def _yielding(result: TimeHistoryResult) -> list[Row]:
-    if not result.structure.yields:
-        return []
-    ratio = result.residual_drift_ratio
-    of_height = "" if ratio is None else f"{shown(ratio)} of the height"
-    rows = [_row(result, "ductility"), _row(result, "plastic_drift")]
-    return [*rows, _row(result, "residual_drift", of_height)]
+def _known(result: TimeHistoryResult, *names: str) -> list[Row]:
+    return [_row(result, name) for name in names if getattr(result, name) is not None]
 
 
 def _elastic(result: TimeHistoryResult) -> str:
@@ -265,19 +260,19 @@ def _ways(result: TimeHistoryResult, name: str) -> str:
     return f"x {x}, y {y}"
 
 
-def _passes(result: TimeHistoryResult) -> list[Row]:
-    """Passes near upright: their number, the closest, and the shortest."""
-    if result.passes is None:
-        rows = [("uplifts, impacts", f"{result.uplifts}, {result.impacts}", "", "")]
+def _passes(result: TimeHistoryResult) -> Iterator[Row]:
+    """Uplifts and impacts, or passes near upright: their number, the closest, and the shortest."""
+    if result.both_components and result.passes is not None:
+        yield "uplifts, passes", f"{result.uplifts}, {result.passes:.0f}", "", ""
     else:
-        rows = [("uplifts, passes", f"{result.uplifts}, {result.passes:.0f}", "", "")]
-    if result.passes:
-        rows += [
-            (QUANTITIES["passes_as_impacts"].label, f"{result.passes_as_impacts:.0f}", "", ""),
-            (QUANTITIES["closest_pass"].label, f"{shown(result.closest_pass)} alpha", "", ""),
-            _row(result, "shortest_pass"),
-        ]
-    return [*rows, _row(result, "torsion_lever")]
+        yield "uplifts, impacts", f"{result.uplifts}, {result.impacts}", "", ""
+    if result.both_components and result.passes:
+        labels = [QUANTITIES[name].label for name in ("passes_as_impacts", "closest_pass")]
+        yield labels[0], f"{result.passes_as_impacts:.0f}", "", ""
+        yield labels[1], f"{shown(result.closest_pass)} alpha", "", ""
+        yield _row(result, "shortest_pass")
+    if result.both_components:
+        yield _row(result, "torsion_lever")
 
 
 ROUND = "columns are taken as round: square ones, which would wobble over corners, are not followed"
@@ -305,25 +300,21 @@ def passes_text(result: TimeHistoryResult) -> str | None:
     )
 
 
-def _columns(result: TimeHistoryResult) -> list[Row]:
+def _columns(result: TimeHistoryResult) -> Iterator[Row]:
     """Forces of one column, or of all where their number is not known."""
-    names = ("max_column_shear", "max_column_force", "min_column_force")
-    rows = [_row(result, name) for name in names]
+    rows = _known(result, "max_column_shear", "max_column_force", "min_column_force")
     labels = ("total column shear", "axial force, all columns", "minimum axial force, all columns")
     if result.overturning_ratio is not None:
         outer = "axial force of an outer column, times columns"
         labels = (labels[0], outer, f"minimum {outer}")
     if result.structure.columns == 1:
         rows = [(label, *row[1:]) for label, row in zip(labels, rows, strict=True)]
-    if result.overturning_ratio is not None:
-        rows.append(_row(result, "overturning_ratio"))
-    left_out = [
-        *result.left_out_of_columns,
-        *[WITHOUT_IMPULSE] * (result.column_demand is not None),
-    ]
+    yield from rows
     designed = ("column_moment", "contact_pressure_ratio", "crushed_width_ratio")
-    rows += [_row(result, name) for name in designed if getattr(result, name) is not None]
-    return [*rows, *((f"  without {what}", "", "", "") for what in left_out)]
+    yield from _known(result, "overturning_ratio", *designed)
+    impulse = [WITHOUT_IMPULSE] * (result.column_demand is not None)
+    for what in (*result.left_out_of_columns, *impulse):
+        yield f"  without {what}", "", "", ""
 
 
 LARGEST = {
@@ -357,20 +348,23 @@ def column_table(result: TimeHistoryResult) -> Iterator[Part]:
 
 
 def _energy(result: TimeHistoryResult) -> list[Row]:
-    energy = result.energy
-    upwards = {"damped vertically": energy.damped_vertical} if result.structure.upwards else {}
-    parts = {
-        "damped": energy.damped,
-        **upwards,
-        **({"in storeys that yield": energy.yielded} if result.structure.yields else {}),
-        **({"in devices": energy.devices} if result.structure.devices else {}),
-        **({"in the joints": energy.bed} if result.structure.bed else {}),
-        "lost at impacts": energy.impact,
-        "still stored": energy.stored,
-        "residual": energy.residual,
-    }
-    supplied = sum(parts.values())
-    rows = [(f"  {k}", measured(v, "J"), percent(v, supplied), "") for k, v in parts.items()]
+    energy, structure = result.energy, result.structure
+    parts = [
+        (name, value)
+        for name, value, there in (
+            ("damped", energy.damped, True),
+            ("damped vertically", energy.damped_vertical, structure.upwards),
+            ("in storeys that yield", energy.yielded, structure.yields),
+            ("in devices", energy.devices, structure.devices),
+            ("in the joints", energy.bed, structure.bed),
+            ("lost at impacts", energy.impact, True),
+            ("still stored", energy.stored, True),
+            ("residual", energy.residual, True),
+        )
+        if there
+    ]
+    supplied = sum(value for _, value in parts)
+    rows = [(f"  {name}", measured(of, "J"), percent(of, supplied), "") for name, of in parts]
     return [("energy input", measured(energy.input, "J"), "", ""), *rows]
 
 
@@ -388,27 +382,21 @@ def storeys_table(result: TimeHistoryResult) -> Table:
         [str(storey + 1), *(shown(float(column[storey])) for column in columns)]
         for storey in reversed(range(result.structure.storeys))
     ]
-    drift = "drift ratio" if ratio else "drift mm"
-    fixed = f"{_elastic(result)}fixed"
+    fixed, drift = f"{_elastic(result)}fixed", "drift ratio" if ratio else "drift mm"
     heads = ["storey", "shear kN", fixed, drift, fixed, "acceleration m/s2", fixed]
     return Table.of_texts(heads, rows)
 
 
 def devices_table(result: TimeHistoryResult) -> Table:
     """Largest demands of each device, and what its prestress is at the end."""
-    rows = [
-        [
-            f"{index} {demand.kind}",
-            measured(demand.force, "N"),
-            measured(demand.stroke, "m"),
-            measured(demand.velocity, "m/s"),
-            measured(demand.energy, "J"),
-            f"prestress {measured(left, 'N')} left" if left is not None else "",
-        ]
-        for index, demand in enumerate(result.devices)
-        for left in (demand.remaining_prestress,)
-    ]
-    return Table.of_texts(["device", "force", "stroke", "velocity", "energy", ""], rows)
+    units = {"force": "N", "stroke": "m", "velocity": "m/s", "energy": "J"}
+    rows = []
+    for index, demand in enumerate(result.devices):
+        texts = [measured(getattr(demand, name), unit) for name, unit in units.items()]
+        left = demand.remaining_prestress
+        prestress = "" if left is None else f"prestress {measured(left, 'N')} left"
+        rows.append([f"{index} {demand.kind}", *texts, prestress])
+    return Table.of_texts(["device", *units, ""], rows)
 
 
 Array = NDArray[np.float64]
