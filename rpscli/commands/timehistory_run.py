@@ -47,6 +47,7 @@ from rpscli.sweep.statistics.verdicts import Verdict, judged_records
 COMMAND = "timehistory"
 
 DIGITS = 4
+OF_ONE_COLUMN = ("max_column_force", "column_moment")
 A_TABLE = 4
 """Quantities side by side in a table that fits a page."""
 CODES = (
@@ -384,13 +385,15 @@ def set_tables(computed: Sequence[Computed]) -> Iterator[Part]:
             yield f"records scaled to {' or '.join(aims)}"
         (row,) = case.together.rows
         spreads = zip(case.together.quantities, row.spreads, strict=True)
-        main = [(quantity, spread) for quantity, spread in spreads if quantity.demand]
+        own = case.first.given.case
+        # Forces of single columns are known where their number is.
+        further = ("max_damper_force", *OF_ONE_COLUMN * (own.structure.columns > 1))
+        main = [pair for pair in spreads if pair[0].demand or pair[0].name in further]
         for first in range(0, len(main), A_TABLE):
             yield _records_table(case, dict(main[first : first + A_TABLE]))
         if len(case.histories) > 1:
             undefined = ", so the mean of maxima is not defined" * bool(row.overturned.number)
             yield f"overturned: {row.overturned}{undefined}; {CODES}"
-        own = case.first.given.case
         yield overturned_text(own.structure, own.analysis)
         yield restitution_text(own.structure)
     if any(case.verdicts for case in computed):

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from typing import Any
 
-from rpscli.analyses.result_quantities import HISTORY, YIELDING
+from rpscli.analyses.result_quantities import HISTORY, SAMPLED, YIELDING
 from rpscli.report.limits import limit_unit, requirement_text, verdict_text
 from rpscli.report.study.labels import key_columns, labels
 from rpscli.report.table import Column
@@ -64,7 +64,7 @@ def records_columns(labels: Sequence[str], histories: Sequence[Mapping[str, Any]
         Column("outcome", "-", [history["outcome"] for history in histories]),
         *(
             Column(quantity.name, quantity.unit, [history[quantity.name] for history in histories])
-            for quantity in (*HISTORY, *YIELDING)
+            for quantity in (*HISTORY, *YIELDING, *SAMPLED)
             if quantity.name in histories[0]
         ),
     ]
