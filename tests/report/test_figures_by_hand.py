@@ -194,7 +194,8 @@ def test_maxima_beside_observed_ones(compared: dict[str, Axes]) -> None:
     assert axes.get_xscale() == axes.get_yscale() == "log"
 
 
-def test_a_selection_beside_its_target() -> None:
+def a_selection() -> Selection:
+    """Two motions for a target, the second at the bound of its factor."""
     periods, wanted = np.array([0.1, 0.5, 2.0]), np.array([3.0, 6.0, 1.5])
     target = TargetSpectrum("EN 1998", "", lambda _: wanted, 0.5, 0.2, span=(0.1, 2.0))
     first, second = (GroundMotion(np.ones(2), 0.1, name) for name in ("first", "second"))
@@ -202,11 +203,16 @@ def test_a_selection_beside_its_target() -> None:
         Candidate((first,), "one", 1.0, 0.2, 0.03, np.array([1.0, 2.0, 0.5]), 2.0),
         Candidate((second,), "two", 1.0, 1.2, 0.5, np.array([8.0, 16.0, 4.0]), 0.5, clamped=True),
     )
-    scaled = [(2.0, 4.0, 1.0), (4.0, 8.0, 2.0)]
     mean = np.array([3.0, 6.0, 1.5]) * 1.01
-    selection = Selection(
+    return Selection(
         target, "component", periods, wanted, chosen, mean, 0.01, 9, 1, requirements=RULES["en1998"]
     )
+
+
+def test_a_selection_beside_its_target() -> None:
+    selection = a_selection()
+    periods, wanted, mean = selection.periods, selection.wanted, selection.mean
+    scaled = [(2.0, 4.0, 1.0), (4.0, 8.0, 2.0)]
     figure = drawn(selection_figure, selection)
     assert "2 of 9, single components; misfit of the mean 0.010" in figure.get_suptitle()
     assert "factors at a bound: 1" in figure.get_suptitle()
@@ -274,24 +280,27 @@ def answer_of(
     )
 
 
-def test_requirements_along_one_unknown() -> None:
+def of_one_unknown() -> Answer:
+    """Three designs; the one at 0.2 fails in one of two resamples."""
     uplift = Requirement(Condition("uplift", 0.0, "limits", share=0.5), 0)
     shear = Requirement(Condition("max_base_shear", 2e6, "limits"), 0, "PGA", 3.0)
     demands = [
         [[0.25, 1.0, 0.5], [0.0, 1.0, 0.5], [0.25, 1.0, 0.75]],
         [[1.5e6, INF, 1.8e6], [1.2e6, INF, 1.7e6], [1.6e6, 1e6, 1.9e6]],
     ]
-    answer = answer_of(
+    return answer_of(
         [ALPHA], [[0.3], [0.1], [0.2]], [[1, 0, 1], [1, 0, 0], [1, 0, 1]], [0.3, 0.1, 0.2],
         requirements=[uplift, shear], demands=demands,
     )  # fmt: skip
-    figure = drawn(requirements_figure, answer)
+
+
+def test_requirements_along_one_unknown() -> None:
+    figure = drawn(requirements_figure, of_one_unknown())
     assert "2 of 3 designs pass" in figure.get_suptitle()
     order = (0.1, 0.2, 0.3)
     above, below = figure.axes
     same(curve(above, "designs"), (order, (1.0, 0.5, 0.25)))
     same(curve(below, "designs"), (order, (NAN, 1.8e6, 1.5e6)))
-    # The one at 0.2 fails in one of two resamples.
     same(curve(above, "best design"), ([0.3], [0.25]))
     same(curve(below, "best design"), ([0.3], [1.5e6]))
     is_level(above, "admissible", 0.5)
@@ -314,14 +323,18 @@ def test_requirements_along_one_unknown() -> None:
     }  # fmt: skip
 
 
-def test_the_region_that_passes() -> None:
+def of_two_unknowns() -> Answer:
+    """Five designs, of which one is no valid case, and a third key that is linked."""
     corners = [(x, y, 2.0 * x) for x, y in ((0.1, 0.8), (0.1, 2), (0.3, 0.8), (0.3, 2), (0.2, 1.2))]
     passes = [[0, 0, 1, 1, 0], [0, 0, 1, 1, 0], [0, 0, 1, 0, 0]]
-    answer = answer_of(
+    return answer_of(
         [ALPHA, SIZE, "podium.bearing.wedge_slenderness"], corners, passes, [1, 1, 3, 2, 1],
         valid=[True, False, True, True, True], linked=1,
     )  # fmt: skip
-    figure = drawn(region_figure, answer)
+
+
+def test_the_region_that_passes() -> None:
+    figure = drawn(region_figure, of_two_unknowns())
     assert "2 of 5 designs pass" in figure.get_suptitle()
     axes, scale = figure.axes
     same(curve(axes, "best design"), ([0.3], [0.8]))

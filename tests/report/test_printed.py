@@ -10,6 +10,7 @@ from itertools import combinations
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -21,7 +22,9 @@ from paper_structures import needs_compiled_kernels
 import rpscli
 from report.made_up_pairs import turned
 from report.small_results import CURVED, history, structure, yielding
+from report.test_figures_by_hand import a_selection, of_one_unknown, of_two_unknowns
 from report.test_public_figures import PANELS, panel
+from rpscli.analyses.floor_spectra import PERIODS
 from rpscli.analyses.modal import modal
 from rpscli.analyses.pushover import pushover
 from rpscli.analyses.result_quantities import LIMITED
@@ -29,10 +32,13 @@ from rpscli.model.devices import FrictionDamper, Stop, Tendon, ViscousDamper
 from rpscli.records.spectrum import drawn_spectrum
 from rpscli.report import bundles
 from rpscli.report.budget import Budget, Row
+from rpscli.report.design import region_figure, requirements_figure
 from rpscli.report.figures import style
 from rpscli.report.figures.look import Look, figure_files, put_in_force
+from rpscli.report.figures.motions import selection_figure
 from rpscli.report.figures.structure import structure_figure
 from rpscli.report.files import Drawing
+from rpscli.report.study.heights import Floors, floor_spectra_figure
 
 TITLE = "Eighteen hospitals at the river, of which each is compared with all of the others"
 NAME = "The hospital at the river, block {} of the second phase"
@@ -131,7 +137,14 @@ def test_figures_of_analyses_can_be_read(columns: int) -> None:
     devices = ViscousDamper(2e5), Stop(0.02, 4e6), Tendon(2e4, 1e6), FrictionDamper(1e5)
     made, look = replace(structure(CURVED, 6), devices=devices), Look(columns=columns)
     result = history(made, PULSE)
-    draw = {"structure.png": lambda: structure_figure(made, TITLE)}
+    storeys = [Floors((NAME.format(n),), np.ones((3, 2, 2, 6, len(PERIODS)))) for n in range(9)]
+    draw = {
+        "structure.png": lambda: structure_figure(made, TITLE),
+        "selection.png": lambda: selection_figure(a_selection(), TITLE),
+        "requirements.png": lambda: requirements_figure(of_one_unknown(), TITLE),
+        "region.png": lambda: region_figure(of_two_unknowns(), TITLE),
+        "spectra.png": lambda: floor_spectra_figure(("title",), storeys, "")(TITLE),
+    }
     files = [
         *figure_files(draw, look).items(),
         *bundles.timehistory_files(result, TITLE, look),
@@ -163,6 +176,18 @@ def test_panels_fit_into_a_grid(*, of_rps: bool) -> None:
             else:
                 found += in_grid(names[first : first + 4])
     assert not found
+
+
+@pytest.mark.parametrize("name", ["rotation", "displacements", "moment_rotation", "storey_curve"])
+def test_legends_stay_in_axes_that_nothing_makes_room_around(name: str) -> None:
+    figure = Figure()
+    above, below = figure.subplots(2, 1)
+    panel(name, below)
+    figure.draw_without_rendering()
+    legend = below.get_legend()
+    assert legend is not None
+    assert not shared(legend.get_window_extent(), above.get_window_extent(), 0.0)
+    assert above.get_legend() is None
 
 
 def in_grid(names: list[str]) -> list[str]:

@@ -393,6 +393,9 @@ def legend_above(axes: Axes) -> None:
     room = _room(axes)
     if not (found := entries([axes])):
         return
+    if axes.get_figure(root=True).get_layout_engine() is None:  # type: ignore[union-attr]
+        axes.legend(fontsize=small(), loc="best")  # nothing would make room above
+        return
     axes.legend(
         **_arranged(found, room - 0.5, None),
         loc="lower right" if room < WIDTH else "lower left",
