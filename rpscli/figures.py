@@ -43,10 +43,6 @@ from rpscli.report.figures.look import FIGURES
 Panel = TypeVar("Panel", bound=Callable[..., None])
 
 
-BEFORE = {"moment": "moment_rotation"}
-"""Earlier names of panels."""
-
-
 def _examined(draw: Panel) -> Panel:
     """A panel that refuses other axes and another result than it is annotated with."""
     axes_name, drawn_name, *_ = (*draw.__annotations__.values(), "")
@@ -101,9 +97,7 @@ __all__ = [name for name, value in [*globals().items()] if hasattr(value, "__wra
 
 
 def __getattr__(name: str) -> Any:
-    """A panel that another package adds, or by the name that it had before."""
-    if name in BEFORE:
-        return globals()[BEFORE[name]]
+    """A panel that another package adds."""
     if not name.startswith("_") and name in FIGURES.names():
         return FIGURES[name]
     meant = hint(name, [*__all__, *FIGURES.names()], "help(rpscli.figures) lists all", 0.6)

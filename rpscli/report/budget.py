@@ -55,18 +55,15 @@ class Row(NamedTuple):
 
 
 class Effect(NamedTuple):
-    """Of one limit or result on all rows: values, infinitely bad where it overturned, NaN if none.
-
-    `spread` are the fractiles `SHARES` over the records, `beyond` the share beyond the limit.
-    """
+    """Of one limit or result on all rows."""
 
     name: str
     quantity: ResultQuantity | None
     limit: Condition | None
-    values: Array
+    values: Array  # infinitely bad where it overturned, NaN if none
     exceeded: NDArray[np.bool_]
-    spread: list[float]
-    beyond: Share
+    spread: list[float]  # fractiles `SHARES` over the records
+    beyond: Share  # the limit
 
     @property
     def turned(self) -> NDArray[np.bool_]:

@@ -201,11 +201,7 @@ def nothing_passes(answer: Answer) -> str:
 
 
 def design_columns(answer: Answer) -> list[Column]:
-    """One row a design: its keys, whether it passes, the objective, and values of requirements.
-
-    `passing_share` is the share of the resamples of the records in which it passes; a value that
-    overturned is ``inf``, and cells of designs that are not valid cases are empty.
-    """
+    """One row a design: its keys, whether it passes, the objective, and values of requirements."""
 
     def column(name: str, unit: str, values: Array) -> Column:
         return Column(name, unit, [reached(value) for value in values.tolist()])
@@ -256,7 +252,7 @@ def requirements_figure(answer: Answer, title: str) -> bytes:
         style.heading(figure, title, _counts(answer))
         grid = figure.subplots(len(requirements), 1, squeeze=False, sharex=True)[:, 0]
         for row, (axes, requirement) in enumerate(zip(grid, requirements, strict=True)):
-            values = answer.results[row, 0, order]
+            values, name = answer.results[row, 0, order], requirement.condition.name
             shown = np.where(np.isfinite(values), values, np.nan)
             if answer.resamples:
                 ends = 0.5 * (1.0 - CONFIDENCE), 0.5 * (1.0 + CONFIDENCE)
@@ -272,17 +268,16 @@ def requirements_figure(answer: Answer, title: str) -> bytes:
                     axes.axvspan(*answer.interval(0), ymax=0.03, color=style.ORANGE, lw=0.0,
                                  label="best of 95 % of resamples")  # fmt: skip
             top = np.nanmax([*np.nan_to_num(shown), 2.0 * requirement.bound, 1e-12])
-            name = requirement.condition.name
             most = max(10.0 * requirement.bound, 0.0 if name == RATE else 1.0)
             end = 1.05 * float(min(top, most))
             axes.set_ylim(0.0, end)
             if (off := np.nan_to_num(values, nan=0.0) > end).any():
                 axes.plot(key[off], np.full(off.sum(), end), "^", ms=4.0, color=style.RED,
                           clip_on=False, label="off the scale, or overturned")  # fmt: skip
-            words = LIMITS[name].label if name in LIMITS else name
-            others = {RATE: "overturned [1/year]"}
-            known = LIMITS[name].axis_label if name in LIMITS else "share of records"
-            axes.set_ylabel(others.get(name, known))
+            words, known = name, "overturned [1/year]" if name == RATE else "share of records"
+            if name in LIMITS:
+                words, known = LIMITS[name].label, LIMITS[name].axis_label
+            axes.set_ylabel(known)
             axes.set_title(style.typeset(requirement_label(requirement).replace(name, words, 1)))
         grid[-1].set_xlabel(axis_label(answer.task.keys[0]))
         style.legend_below(figure, grid)
@@ -291,11 +286,7 @@ def requirements_figure(answer: Answer, title: str) -> bytes:
 
 
 def region_figure(answer: Answer, title: str) -> bytes:
-    """Several unknowns: designs that pass and fail, for each pair of unknowns.
-
-    The colour of a design is the share of the resamples in which it passes; nothing is said of
-    those between.
-    """
+    """Designs that pass and fail for each pair of unknowns, in the colour of their resamples."""
     pairs = list(itertools.combinations(range(len(answer.task.unknowns)), 2))
     shown = pairs[:MOST_PAIRS]
     columns = 1 if style.narrow() else min(3, len(shown))

@@ -122,9 +122,9 @@ def read_json(path: Path, kinds: Any) -> Document:
     # Kinds are types, lists of one kind, tuples of one that may be missing, mappings of kinds.
     try:
         document = json.loads(path.read_text(encoding="utf-8"))
-    except FileNotFoundError:
-        raise
     except (OSError, RecursionError) as error:
+        if isinstance(error, FileNotFoundError):
+            raise
         raise ValueError(f"cannot be read: {error}") from None
     return dict(_checked(document, kinds, "the file"))
 

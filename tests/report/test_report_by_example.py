@@ -9,12 +9,8 @@ import pytest
 
 from rpscli.report import table
 from rpscli.report.figures import floors, history, style
-from rpscli.report.figures.animation import _pace
-from rpscli.report.figures.motions import _second_tick
-from rpscli.report.html.page import element
 from rpscli.report.study.fragility import LimitState
 from rpscli.report.study.labels import label, plain, symbol
-from rpscli.report.study.lines import _distinct, _staggered
 from rpscli.report.study.panels import over
 from rpscli.report.study.report import add_notes, with_band
 from rpscli.report.tables.derived import greek, numeric, symbolic
@@ -22,31 +18,18 @@ from rpscli.report.tables.derived import greek, numeric, symbolic
 RHO = "podium.bearing.curvature_ratio"
 STOP = {"kind": "stop", "gap": 0.2, "stiffness": 1e6}
 EXAMPLES: dict[str, list[tuple[Any, Any]]] = {
-    "pace": [
-        (_pace(2.13), "2.1 times faster than real"),
-        (_pace(1.0), "in real time"),
-        (_pace(0.5), "2 times slower than real"),
-    ],
     "floors": [
         ([floors.shown_floors(n) for n in (1, 2, 6)], [[1], [1, 2], [1, 4, 6]]),
         ([history.shown_floors(n) for n in (0, 2, 9)], [[], [2, 1], [9, 6, 3]]),
     ],
-    "ticks": [([_second_tick(at) for at in (0.2, 0.4, 50.0)], ["0.2", "", "50"])],
     "style": [
         ([style.percent(share) for share in (0.05, 0.975)], ["5 %", "97.5 %"]),
         (style.typeset("PGA [m/s2]"), "PGA [m/s²]"),
-        (style.in_rows("abcde", 3), ["a", "d", "b", "e", "c"]),
         (style.folded(r"$|\theta_{max}|$ [-], flat", 0.6, 8.0), "$|\\theta_{max}|$ [-],\nflat"),
         (style.folded("a_name_of_many_letters", 0.6, 8.0), "a_name_of\n_many_let\nters"),
         *((style.engineering(size), (1e-6, "M")) for size in (1e6, 3.2e6, 7e9)),
         *((style.engineering(size), (1e-3, "k")) for size in (1e3, 4e4, 5e5)),
         *((style.engineering(size), (1.0, "")) for size in (0.5, 15.0, 999.0)),
-    ],
-    "page": [
-        (
-            element("p", "a < b, ", element("b", "or not"), " & so on", class_="x"),
-            '<p class="x">a &lt; b, <b>or not</b> &amp; so on</p>',
-        )
     ],
     "limit states": [
         (LimitState("rotation_ratio", 0.5).label, "rotation_ratio > 0.5"),
@@ -63,11 +46,6 @@ EXAMPLES: dict[str, list[tuple[Any, Any]]] = {
         (label("superstructure.period", 0.3), "T₁ = 0.3 s"),
         (label("superstructure.period", "300 ms"), "T₁ = 300 ms"),
         ([plain(value) for value in (0.25, [], [STOP])], ["0.25", "none", "stop 0.2 m"]),
-    ],
-    "lines": [
-        (_distinct(("rolling.ratio.0", "rocking.ratio.0")), ["rolling", "rocking"]),
-        (_staggered(0, 1), "--"),
-        (_staggered(1, 3), (2, (2, 4))),
     ],
     "remarks": [
         (over(("3 intensities", "4 members")), "over 3 intensities and 4 members"),

@@ -18,7 +18,6 @@ from rpscli.report.figures.devices import SceneDevices
 from rpscli.report.figures.pushover import draw_force
 
 Array = NDArray[np.float64]
-At = tuple[float, float]  # a place in the axes
 
 ARC_POINTS = 12
 
@@ -180,7 +179,6 @@ def draw_bearing(axes: style.Axes, structure: PodiumStructure, rotation: float =
 def draw_end(axes: style.Axes, bearing: Bearing, bed: Bed | None = None) -> None:
     """The lower end of a column at rest, enlarged: its widths, the radius, the edge's height."""
     half, B = bearing.end_half_width, bearing.half_width
-    beside: dict[str, Any] = {"textcoords": "offset points", "fontsize": style.small()}
     x, y = leaning_outline(bearing, 0.0, 0.0, 0.0).T
     axes.axhline(0.0, color=style.BLACK, lw=1.2)
     axes.fill(x, y, fc=COLUMN, ec=style.BLACK, lw=1.0)
@@ -203,13 +201,13 @@ def draw_end(axes: style.Axes, bearing: Bearing, bed: Bed | None = None) -> None
             ha="center", va="center", fontsize=style.small(),
         )  # fmt: skip
         words = f"{1e3 * edge:.3g} mm"
-        axes.annotate(words, (1.06 * half, edge), (0.0, 3.0), va="bottom", **beside)
+        style.note(axes, words, (1.06 * half, edge), (0.0, 3.0), ha="left")
         title = "an end, enlarged"
     if bed is not None and bed.contact_share is not None:
         x, y = B * (1.0 - 2.0 * bed.contact_share), -3.2 * step
         axes.plot([x, B], [y, y], color=style.RED, lw=2.5, solid_capstyle="butt")
         words = f"{1e3 * (B - x):.3g} mm in contact at α/10"
-        axes.annotate(words, (B, y), (0.0, -4.0), va="top", ha="right", **beside)
+        style.note(axes, words, (B, y), (0.0, -4.0), ha="right")
     axes.set_title(title, fontsize=style.small())
 
 
@@ -237,11 +235,10 @@ def _draw_dimensions(axes: style.Axes, bearing: Bearing) -> None:
     axes.plot([0.0, B], [H, 0.0], color=style.RED, lw=1.0)
     axes.plot([0.0, 0.0], [0.0, H], color=style.RED, lw=0.6, ls=(0, (6, 3)))
     axes.plot(0.0, H, "o", color=style.RED, ms=3.0)
-    words: dict[str, Any] = {"fontsize": style.small(), "color": style.RED}
-    axes.annotate("$R$", (0.5 * B, 0.5 * H), (3.0, 0.0), textcoords="offset points", **words)
+    look: dict[str, Any] = {"ha": "left", "va": "baseline", "color": style.RED}
+    style.note(axes, "$R$", (0.5 * B, 0.5 * H), (3.0, 0.0), **look)
     if B > 0.0:
-        at = (0.0, 0.45 * H), (-9.0, 0.0)
-        axes.annotate("$\\alpha$", *at, textcoords="offset points", **words)
+        style.note(axes, "$\\alpha$", (0.0, 0.45 * H), (-9.0, 0.0), **look)
     start, end = axes.get_xlim()
     left = start + 0.14 * (end - start)
     measure(axes, (left, 0.0), (left, 2.0 * H), f"2H = {2.0 * H:.4g} m", turned=True)
@@ -266,7 +263,9 @@ def _frame(
     axes.set_box_aspect(aspect)
 
 
-def measure(axes: style.Axes, start: At, end: At, text: str, *, turned: bool = False) -> None:
+def measure(
+    axes: style.Axes, start: style.At, end: style.At, text: str, *, turned: bool = False
+) -> None:
     """A dimension line with arrows at both ends and its text beside: on its left or below."""
     offset = (-3.0, 0.0) if start[0] == end[0] else (0.0, -3.0)
     _arrow(axes, start, end, text, offset, turned=turned)
@@ -274,10 +273,10 @@ def measure(axes: style.Axes, start: At, end: At, text: str, *, turned: bool = F
 
 def _arrow(
     axes: style.Axes,
-    start: At,
-    end: At,
+    start: style.At,
+    end: style.At,
     text: str,
-    offset: At,
+    offset: style.At,
     *,
     turned: bool = False,
     at_end: bool = False,
@@ -286,9 +285,4 @@ def _arrow(
     line = {"arrowstyle": "<->", "lw": 0.6, "color": style.BLACK, "shrinkA": 0, "shrinkB": 0}
     axes.annotate("", end, start, arrowprops=line)
     at = start if at_end else (0.5 * (start[0] + end[0]), 0.5 * (start[1] + end[1]))
-    axes.annotate(
-        text, at, offset, textcoords="offset points", fontsize=style.small(),
-        ha="right" if offset[0] < 0.0 else "center",
-        va="center" if offset[1] == 0.0 else "top" if offset[1] < 0.0 else "bottom",
-        rotation=90.0 if turned else 0.0,
-    )  # fmt: skip
+    style.note(axes, text, at, offset, rotation=90.0 if turned else 0.0)

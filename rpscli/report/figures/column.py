@@ -63,10 +63,7 @@ def draw_end_forces(axes: style.Axes, structure: PodiumStructure, demand: Column
             f"${letter}_\\mathrm{{{name}}}$ = {1e-3 * abs(value):.4g} kN"
             for letter, value in (("N", N), ("F", F))
         )
-        axes.annotate(
-            words, place - 0.6 * force, (8.0, 0.0), textcoords="offset points",
-            va="center", color=style.RED, fontsize=style.small(),
-        )  # fmt: skip
+        style.note(axes, words, place - 0.6 * force, (8.0, 0.0), color=style.RED)
     room = 1.15 * LONGEST * height
     axes.set(aspect="equal", ylim=(-room, height + lift + room))
     axes.axis("off")
@@ -88,12 +85,8 @@ def draw_section_forces(
         axes.margins(x=0.1)
         for end, upwards in ((0, 5.0), (-1, -5.0)):
             left = shown[end] > 0.0
-            axes.annotate(
-                f"{shown[end]:.4g}".replace("-", "−"),
-                (shown[end], along[end]), (-7.0 if left else 7.0, upwards),
-                textcoords="offset points", fontsize=style.small(),
-                ha="right" if left else "left", va="top" if end else "bottom",
-            )  # fmt: skip
+            text, at = f"{shown[end]:.4g}".replace("-", "−"), (shown[end], along[end])
+            style.note(axes, text, at, (-7.0 if left else 7.0, upwards))
         axes.set(xlabel=name, ylim=(0.0, along[-1]))
         if axes is not panels[0]:
             axes.tick_params(labelleft=False)

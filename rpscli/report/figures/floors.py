@@ -35,9 +35,8 @@ def profile_figure(result: TimeHistoryResult, title: str) -> bytes:
         resultants = "largest resultants" if result.trace.y is not None else ""
         style.heading(figure, title, record_name(result), resultants)
         panels = figure.subplots(1, 3, sharey=True)
-        for axes, draw_one in zip(
-            panels, (draw_shears, draw_storey_drifts, draw_accelerations), strict=True
-        ):
+        draws = draw_shears, draw_storey_drifts, draw_accelerations
+        for axes, draw_one in zip(panels, draws, strict=True):
             draw_one(axes, result)
             axes.label_outer()
         style.legend_below(figure, (panels[-1], panels[0]))
@@ -78,8 +77,7 @@ def draw_accelerations(axes: style.Axes, result: TimeHistoryResult) -> None:
     # The samples of a vertical component would stand behind those of both.
     both = result.motion.samples[: 1 if result.motion.y is None else 2]
     pga = float(np.linalg.norm(both, axis=0).max())
-    label = f"PGA = {pga:.3g} m/s²"
-    axes.axvline(pga, color=style.GREY, lw=0.9, ls=":", label=label)
+    axes.axvline(pga, color=style.GREY, lw=0.9, ls=":", label=f"PGA = {pga:.3g} m/s²")
     axes.set_xlabel(FLOOR_ACCELERATIONS.axis_label)
     _levels(axes, result.structure.storeys)
 
@@ -97,11 +95,8 @@ def _stairs(axes: style.Axes, values: Array, look: dict[str, Any]) -> None:
 
 
 def _levels(axes: style.Axes, storeys: int) -> None:
-    step = max(1, storeys // 10)
-    axes.set_ylim(0.0, storeys + 0.15)
-    axes.set_yticks(range(0, storeys + 1, step))
-    axes.set_ylabel("level (0 = cap beam)")
-    axes.set_xlim(left=0.0)
+    axes.set(xlim=(0.0, None), ylim=(0.0, storeys + 0.15), ylabel="level (0 = cap beam)")
+    axes.set_yticks(range(0, storeys + 1, max(1, storeys // 10)))
 
 
 SPECTRA = {

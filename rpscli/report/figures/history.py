@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import fields, replace
 from functools import partial
+from itertools import cycle
 from typing import Any, Literal, get_args
 
 import numpy as np
@@ -312,10 +313,8 @@ def draw_moment(axes: style.Axes, result: TimeHistoryResult) -> None:
     factor, prefix = style.engineering(float(np.nanmax(np.abs(trace.driving_moment))))
     # Upright there is no tilt that the moment of a pair could be along.
     shown = np.where(one_sided & (trace.rotation == 0.0), np.nan, trace.driving_moment)
-    axes.plot(
-        trace.rotation, factor * shown, color=PALE, lw=0.5,
-        label="driving moment (ground and building)",
-    )  # fmt: skip
+    driving = "driving moment (ground and building)"
+    axes.plot(trace.rotation, factor * shown, color=PALE, lw=0.5, label=driving)
     _draw_longest(axes, result, factor)
     name: str | None = "restoring moment of the weight"
     for side in (1.0,) if one_sided else (-1.0, 1.0):
@@ -364,27 +363,25 @@ def energy_figure(result: TimeHistoryResult, title: str) -> bytes:
 
 def draw_energy(axes: style.Axes, result: TimeHistoryResult) -> None:
     """Input against what is stored and lost on the way, one on top of the other."""
-    trace = result.trace
-    factor, prefix = style.engineering(
-        float(np.nanmax(np.abs([trace.energy_input, trace.energy_stored])))
-    )
+    trace, made = result.trace, result.structure
+    largest = np.nanmax(np.abs([trace.energy_input, trace.energy_stored]))
+    factor, prefix = style.engineering(float(largest))
     passes = result.both_components and not result.structure.passes_smoothly
+    devices = [
+        (energy, f"device {index}: {device.kind.replace('_', ' ')}", colour)
+        for index, (device, energy, colour) in enumerate(
+            zip(made.devices, trace.devices.energy.T, cycle(DEVICE_COLOURS), strict=False)
+        )
+    ]
     parts = [
+        *[(trace.energy_damped, "damped in the building", style.SKY)] * bool(made.storeys),
+        *[(trace.energy_damped_vertical, "damped vertically", style.PINK)] * bool(made.upwards),
+        *[(trace.energy_bed, "dissipated in the joints", style.BLUE)] * bool(made.bed),
+        *[(trace.energy_yielded, "yielding of storeys", YIELDED)] * made.yields,
+        *devices,
         (trace.energy_impact, f"lost at {'passes' if passes else 'impacts'} (net)", style.ORANGE),
         (trace.energy_stored, "kinetic, elastic and gravitational", style.GREEN),
     ]
-    for index, device in enumerate(result.structure.devices):
-        energy = trace.devices.energy[:, index]
-        name = f"device {index}: {device.kind.replace('_', ' ')}"
-        parts.insert(index, (energy, name, DEVICE_COLOURS[index % len(DEVICE_COLOURS)]))
-    if result.structure.yields:
-        parts.insert(0, (trace.energy_yielded, "yielding of storeys", YIELDED))
-    if result.structure.bed is not None:
-        parts.insert(0, (trace.energy_bed, "dissipated in the joints", style.BLUE))
-    if result.structure.upwards is not None:
-        parts.insert(0, (trace.energy_damped_vertical, "damped vertically", style.PINK))
-    if result.structure.storeys:
-        parts.insert(0, (trace.energy_damped, "damped in the building", style.SKY))
     below = np.zeros_like(trace.time)
     for part, name, colour in parts:
         above = below + factor * part

@@ -73,30 +73,18 @@ Draw: TypeAlias = Callable[[], bytes]  # makes the file of a figure
 USUAL = Look()  # the look for a user who asks for nothing
 
 
-@dataclass(frozen=True)
-class InForce:
-    """The look that is in force, and the ending of the file to be drawn."""
-
-    look: Look = USUAL
-    ending: str = "png"
-
-
-_in_force: ContextVar[InForce] = ContextVar("look")
-
-
-def in_force() -> InForce:
-    """The look of a figure that is drawn now."""
-    return _in_force.get(InForce())
+IN_FORCE: ContextVar[tuple[Look, str]] = ContextVar("look", default=(USUAL, "png"))
+"""The look of a figure that is drawn now, and the ending of its file."""
 
 
 @contextmanager
 def put_in_force(look: Look, ending: str) -> Iterator[None]:
     """Figures are drawn with this look, in the format of this ending."""
-    token = _in_force.set(InForce(look, ending))
+    token = IN_FORCE.set((look, ending))
     try:
         yield
     finally:
-        _in_force.reset(token)
+        IN_FORCE.reset(token)
 
 
 def drawn_with(look: Look, ending: str, draw: Draw) -> bytes:

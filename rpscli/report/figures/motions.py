@@ -87,11 +87,9 @@ def draw_spectrum(axes: style.Axes, spectrum: ResponseSpectrum) -> None:
 
 
 def _frame(axes: style.Axes, spectrum: ResponseSpectrum) -> None:
-    axes.set_xlabel("period [s]")
     damping = style.percent(spectrum.damping)
     axes.set_ylabel(f"pseudo-acceleration, {damping} damping [m/s²]")
-    axes.set_xlim(0.0, spectrum.periods[-1])
-    axes.set_ylim(bottom=0.0)
+    axes.set(xlabel="period [s]", xlim=(0.0, spectrum.periods[-1]), ylim=(0.0, None))
 
 
 def spectra_figure(spectra: Sequence[ResponseSpectrum], title: str) -> bytes:
@@ -135,8 +133,6 @@ def selection_figure(selection: Selection, title: str) -> bytes:
 
 
 def _draw_spectra(axes: style.Axes, selection: Selection) -> None:
-    from matplotlib.ticker import FuncFormatter
-
     periods, wanted = selection.periods, selection.wanted
     for one, (line, colour) in zip(selection.chosen, cycle(LOOKS), strict=False):
         spectrum = one.factor * one.acceleration
@@ -151,28 +147,18 @@ def _draw_spectra(axes: style.Axes, selection: Selection) -> None:
         scatters = selection.deviation, selection.target.deviation(periods)
         for of, scatter, values in zip(drawn, scatters, (selection.mean, wanted), strict=True):
             for sign in (-1.0, 1.0):
-                look: dict[str, Any] = {
-                    "color": of.get_color(),
-                    "ls": of.get_linestyle(),
-                    "lw": 0.9,
-                }
-                axes.plot(periods, values * np.exp(sign * scatter), **look)
+                look: dict[str, Any] = {"color": of.get_color(), "ls": of.get_linestyle()}
+                axes.plot(periods, values * np.exp(sign * scatter), lw=0.9, **look)
     if (asked := selection.requirements) is not None and asked.least < 1.0:
         label = f"{style.percent(asked.least)} of it"
         axes.plot(periods, asked.least * wanted, color=style.RED, lw=1.2, ls=":", label=label)
-    axes.set(xscale="log", yscale="log", xlim=(periods[0], periods[-1]))
-    axes.set_xlabel("period [s]")
-    axes.set_ylabel(
-        f"pseudo-acceleration, {style.percent(selection.target.damping)} damping [m/s²]"
-    )
+    axes.set(xscale="log", yscale="log", xlim=(periods[0], periods[-1]), xlabel="period [s]")
+    damping = style.percent(selection.target.damping)
+    axes.set_ylabel(f"pseudo-acceleration, {damping} damping [m/s²]")
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_formatter("{x:g}")
-        axis.set_minor_formatter(FuncFormatter(lambda value, _: _second_tick(value)))
-
-
-def _second_tick(value: float) -> str:
-    """Labels between powers of ten, as many as there is room for."""
-    return f"{value:g}" if f"{value:e}"[0] in "235" else ""
+        # Between powers of ten as many labels as there is room for.
+        axis.set_minor_formatter(lambda at, _: f"{at:g}" if f"{at:e}"[0] in "235" else "")
 
 
 def _draw_peaks(axes: style.Axes, selection: Selection) -> None:
@@ -187,6 +173,5 @@ def _draw_peaks(axes: style.Axes, selection: Selection) -> None:
         axes.axhline(selection.target.pgd, **dashed)
     axes.set_xlim(0.0, 1.15 * max(*velocities, selection.target.pgv or 0.0))
     axes.set_ylim(0.0, 1.15 * max(*displacements, selection.target.pgd or 0.0))
-    axes.set_xlabel("PGV [m/s]")
-    axes.set_ylabel("PGD [m]")
+    axes.set(xlabel="PGV [m/s]", ylabel="PGD [m]")
     style.legend_above(axes)

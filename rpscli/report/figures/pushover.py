@@ -53,40 +53,31 @@ def draw_force(axes: style.Axes, result: PushoverResult) -> None:
     axes.set(xlim=(-0.02 * u[-1], 1.04 * u[-1]), ylim=(1.1 * low, 1.18 * F.max()))
     axes.set(xlabel=DISPLACEMENT, ylabel=f"force at the cap beam [{prefix}N]")
     if result.structure.uplift_force > 0.0:
-        ratio = axes.secondary_yaxis(
-            "right", functions=style.over(factor * result.structure.uplift_force)
-        )
+        of_uplift = style.over(factor * result.structure.uplift_force)
+        ratio = axes.secondary_yaxis("right", functions=of_uplift)
         ratio.set_ylabel("$F/(W \\tan\\alpha)$ [-]")
     style.legend_above(axes)
 
 
 def draw_lift(axes: style.Axes, result: PushoverResult) -> None:
     """Lift against displacement."""
+    u, lift = result.curve.displacement, 1e3 * result.curve.lift
     for inside, colour, _ in _phases(result):
-        axes.plot(
-            result.curve.displacement[inside], 1e3 * result.curve.lift[inside], color=colour, lw=2.0
-        )
+        axes.plot(u[inside], lift[inside], color=colour, lw=2.0)
     axes.set(ylim=(0.0, None), ylabel="lift [mm]", xlabel=DISPLACEMENT)
 
 
 def _phases(result: PushoverResult) -> Iterator[tuple[NDArray[np.bool_], str, str]]:
     """Points of the curve in each phase that there is, its colour and its name."""
     rotation, beta = result.curve.rotation, result.structure.bearing.beta
-    for inside, colour, name in (
-        (rotation <= beta, style.BLUE, "rolling"),
-        (rotation >= beta, style.RED, "rocking"),
-    ):
-        if np.count_nonzero(inside) > 1:
-            yield inside, colour, name
+    phases = (rotation <= beta, style.BLUE, "rolling"), (rotation >= beta, style.RED, "rocking")
+    yield from (phase for phase in phases if np.count_nonzero(phase[0]) > 1)
 
 
-def _mark(axes: style.Axes, x: float, y: float, text: str, offset: tuple[float, float]) -> None:
+def _mark(axes: style.Axes, x: float, y: float, text: str, offset: style.At) -> None:
     """A point with its name, offset [pt] to the side on which no curve runs."""
     axes.plot(x, y, "o", color=style.BLACK, ms=5.0, zorder=5, clip_on=False)
-    axes.annotate(
-        text, (x, y), offset, textcoords="offset points", fontsize=style.small(),
-        ha="left" if offset[0] > 0.0 else "right", va="bottom" if offset[1] > 0.0 else "top",
-    )  # fmt: skip
+    style.note(axes, text, (x, y), offset)
 
 
 LOOKS = ((style.SKY, "-"), (style.RED, "-"), (style.BLACK, "-"), (style.PINK, ":"))

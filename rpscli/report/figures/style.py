@@ -8,20 +8,12 @@ import warnings
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from contextvars import ContextVar
-from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar, cast
+from typing import TYPE_CHECKING, Any, TypeAlias, cast
 
 from rpscli.errors import UsageError
-from rpscli.report.figures.look import (
-    SMALL,
-    Look,
-    complaints,
-    drawn_with,
-    in_force,
-    quiet_matplotlib,
-    read_style,
-)
+from rpscli.report.figures import look
+from rpscli.report.figures.look import IN_FORCE, SMALL, Look
 
 if TYPE_CHECKING:
     from matplotlib import artist, axes, figure
@@ -66,11 +58,11 @@ STYLE: dict[str, Any] = {
     "svg.hashsalt": "rps",  # the same data give the same file
 }
 
-Entry = TypeVar("Entry")
 Artist: TypeAlias = "artist.Artist"
 Axes: TypeAlias = "axes.Axes"
 Figure: TypeAlias = "figure.Figure"
 Target: TypeAlias = "Figure | SubFigure"
+At = tuple[float, float]
 
 SAVED: dict[str, dict[str, Any]] = {
     "png": {"metadata": {"Software": None}, "pil_kwargs": {"compress_level": COMPRESSION}},
@@ -86,19 +78,22 @@ def picture(
     width: float = WIDTH,
 ) -> bytes:
     """The file of a figure (width, height) [in], with the look and in the format in force."""
-    if (kept := _kept.get()) is not None and kept.target is not None:
-        draw(cast("Figure", kept.target))
-        fit(_every(kept.target))
+    if (target := given()) is not None:
+        draw(cast("Figure", target))
+        fit(_every(target))
         return b""
-    now = in_force()
-    with in_style(), _no_noise():
+    in_use, ending = IN_FORCE.get()
+    with in_style(), warnings.catch_warnings():
+        # Letters that the font lacks show in the picture; matplotlib prints a line for each.
+        warnings.filterwarnings("ignore", message="Glyph .* missing from font")
+        warnings.filterwarnings("ignore", message="Matplotlib currently does not support")
         from matplotlib.figure import Figure
 
-        figure = Figure(figsize=(now.look.width(width), height), layout="constrained")
+        figure = Figure(figsize=(in_use.width(width), height), layout="constrained")
         draw(figure)
         fit(figure.axes)
-        if kept is not None:
-            kept.target = figure
+        if (kept := _kept.get()) is not None:
+            kept.append(figure)
             return b""
         engine = figure.get_layout_engine()
         assert engine is not None, "it was asked for"
@@ -107,8 +102,8 @@ def picture(
         engine.execute(figure)
         figure.set_layout_engine(None)
         buffer = io.BytesIO()
-        figure.savefig(buffer, format=now.ending, **SAVED[now.ending])
-    if now.ending == "svg":  # formulas name one font, and none to fall back on
+        figure.savefig(buffer, format=ending, **SAVED[ending])
+    if ending == "svg":  # formulas name one font, and none to fall back on
         return re.sub(rb"(font-family: '[^',]+')(?=[;\"])", rb"\1, sans-serif", buffer.getvalue())
     return buffer.getvalue()
 
@@ -122,7 +117,7 @@ def _every(target: Target) -> Iterator[Axes]:
 
 def drawable_style(path: Path) -> dict[str, Any]:
     """The settings of a style file, with which something small was drawn."""
-    settings = read_style(path)
+    settings = look.read_style(path)
 
     def draw(figure: Figure) -> None:
         axes = figure.subplots()
@@ -130,10 +125,10 @@ def drawable_style(path: Path) -> dict[str, Any]:
         axes.legend()
         heading(figure, "title", "remark")
 
-    with complaints() as texts:
+    with look.complaints() as texts:
         try:
             for ending in SAVED:
-                drawn_with(Look(style=settings), ending, lambda: picture(draw, 3.0))
+                look.drawn_with(Look(style=settings), ending, lambda: picture(draw, 3.0))
             reason = ""
         except Exception as error:  # noqa: BLE001 -- it may fail in any way
             reason = " ".join(str(error).split())[:160]
@@ -181,6 +176,16 @@ def stacked(
     return picture(fill, height, width)
 
 
+def note(axes: Axes, text: str, at: At, offset: At, **look: Any) -> None:
+    """A small text, offset [pt] from a place in the axes to the side on which it then stands."""
+    sides: dict[str, Any] = {
+        "ha": "left" if offset[0] > 0.0 else "right" if offset[0] else "center",
+        "va": "bottom" if offset[1] > 0.0 else "top" if offset[1] else "center",
+    }
+    of: dict[str, Any] = {"textcoords": "offset points", "fontsize": small()} | sides | look
+    axes.annotate(text, at, offset, **of)
+
+
 def blank(panels: Iterable[Axes]) -> None:
     """Leave places of a grid empty."""
     for axes in panels:
@@ -193,22 +198,21 @@ def cross(axes: Axes) -> None:
     axes.axvline(0.0, color=BLACK, lw=0.5)
 
 
-@dataclass
-class Kept:
-    """A figure that is to be kept, in place of becoming a file."""
-
-    target: Target | None
-
-
-_kept: ContextVar[Kept | None] = ContextVar("kept", default=None)
+_kept: ContextVar[list[Target] | None] = ContextVar("kept", default=None)
+"""A figure is kept in this, in place of becoming a file; drawn into what is in it already."""
 
 
 def kept_figure(draw: Callable[[], bytes], target: Target | Axes | None = None) -> Target:
     """The figure that `draw` would make a file of; drawn into the target if there is one."""
     from matplotlib.axes import Axes
 
-    kept = Kept(_in_place_of(target) if isinstance(target, Axes) else target)
-    whole = None if kept.target is None else kept.target.get_figure(root=True)
+    if isinstance(target, Axes):
+        if (place := target.get_subplotspec()) is None:
+            raise UsageError("the axes are no subplot: give a figure, or axes of plt.subplots()")
+        axes, target = target, target.figure.add_subfigure(place)
+        axes.remove()
+    kept: list[Target] = [] if target is None else [target]
+    whole = None if target is None else target.get_figure(root=True)
     if whole is not None and whole.get_layout_engine() is None:
         whole.set_layout_engine("constrained")
     token = _kept.set(kept)
@@ -216,29 +220,18 @@ def kept_figure(draw: Callable[[], bytes], target: Target | Axes | None = None) 
         draw()
     finally:
         _kept.reset(token)
-    assert kept.target is not None, "something was drawn"
-    return kept.target
-
-
-def _in_place_of(axes: Axes) -> SubFigure:
-    place = axes.get_subplotspec()
-    if place is None:
-        raise UsageError("the axes are no subplot: give a figure, or axes of plt.subplots()")
-    part: SubFigure = axes.figure.add_subfigure(place)
-    axes.remove()
-    return part
+    return kept[0]
 
 
 def given() -> Target | None:
     """Somebody's figure that is to be drawn into."""
-    kept = _kept.get()
-    return None if kept is None else kept.target
+    return next(iter(_kept.get() or ()), None)
 
 
 def room(usual: float) -> float:
     """Width that a figure will have [in]; its own one, where nothing else is said."""
     target = given()
-    return in_force().look.width(usual) if target is None else inches(target)[0]
+    return IN_FORCE.get()[0].width(usual) if target is None else inches(target)[0]
 
 
 def tight() -> bool:
@@ -255,20 +248,11 @@ def narrow() -> bool:
 @contextmanager
 def in_style() -> Iterator[None]:
     """Figures that are made inside look like those that the program writes."""
-    quiet_matplotlib()
+    look.quiet_matplotlib()
     import matplotlib.style
 
     # "default" first: a user's own matplotlibrc must not change what a report looks like.
-    with matplotlib.style.context(["default", STYLE, in_force().look.settings]):
-        yield
-
-
-@contextmanager
-def _no_noise() -> Iterator[None]:
-    """Letters that the font lacks show in the picture; matplotlib prints a line for each."""
-    with warnings.catch_warnings():
-        warnings.filterwarnings("ignore", message="Glyph .* missing from font")
-        warnings.filterwarnings("ignore", message="Matplotlib currently does not support")
+    with matplotlib.style.context(["default", STYLE, IN_FORCE.get()[0].settings]):
         yield
 
 
@@ -374,11 +358,6 @@ def typeset(text: str) -> str:
     return text.replace("m/s2", "m/s²")
 
 
-def in_rows(entries: Sequence[Entry], columns: int) -> list[Entry]:
-    """Entries in the order in which a legend that fills column by column reads row by row."""
-    return [entry for column in range(columns) for entry in entries[column::columns]]
-
-
 def entries(panels: Iterable[Axes]) -> dict[str, Any]:
     """Entries of the legends of several axes by name, each once."""
     found: dict[str, Any] = {}
@@ -442,9 +421,11 @@ def _arranged(found: dict[str, Any], room: float, most: int | None) -> dict[str,
         kept = most * columns - 1
         names = dict.fromkeys([f"and {len(found) - kept} more"], Line2D([], [], ls=""))
         found = dict(list(found.items())[:kept]) | names
+    # A legend fills column by column, and is read row by row.
+    order = [name for column in range(columns) for name in [*found][column::columns]]
     return {
-        "handles": in_rows([*found.values()], columns), "labels": in_rows([*found], columns),
-        "ncols": columns, "columnspacing": 1.4, "handlelength": 1.8, "fontsize": size,
+        "handles": [found[name] for name in order], "labels": order, "ncols": columns,
+        "columnspacing": 1.4, "handlelength": 1.8, "fontsize": size,
     }  # fmt: skip
 
 

@@ -43,11 +43,10 @@ def _inside(part: Content) -> str:
 
 def printable(text: str) -> str:
     """Text without the control characters that no page may hold; spaces of any width stay."""
-
-    def known(sign: str) -> bool:
-        return sign.isprintable() or sign in "\n\t" or category(sign) == "Zs"
-
-    return "".join(sign if known(sign) else "\ufffd" for sign in text)
+    return "".join(
+        sign if sign.isprintable() or sign in "\n\t" or category(sign) == "Zs" else "\ufffd"
+        for sign in text
+    )
 
 
 FORMATS = ("svg", "png")  # of the figures of a page: the second where the first takes too much room
@@ -142,18 +141,16 @@ MOST_BYTES = 1_000_000  # of a page that can be sent by mail and read on a telep
 FOR_FIGURES = 840_000  # letters for all figures of a page together
 
 
-@dataclass(frozen=True)
-class Code:
+class Code(str):
     """Text that is typed as it stands."""
 
-    text: str
+    __slots__ = ()
 
 
-@dataclass(frozen=True)
-class Notice:
+class Notice(str):
     """A warning to be read before the numbers are used."""
 
-    text: str
+    __slots__ = ()
 
 
 Block = str | Table | Picture | Code | Notice
@@ -174,10 +171,7 @@ def page(
     name: str,
     signed: Mapping[str, str | None] | None = None,
 ) -> bytes:
-    """The file of a page: sections that hold something; by `name` a later page knows its own.
-
-    `signed` says who answers for it; what is not known is left to be filled in on paper.
-    """
+    """The file of a page: sections that hold something; by `name` a later page knows its own."""
     kept = [section for section in sections if section.blocks]
     shown = [block for s in kept for block in s.blocks if isinstance(block, Picture)]
     drawn = iter(figures(shown, FOR_FIGURES))
@@ -216,15 +210,14 @@ def page(
 
 def _signatures(signed: Mapping[str, str | None]) -> Markup | None:
     """Who made and who checked the page, with room for dates and signatures; else on paper only."""
-    if not signed:
-        return None
     rows = []
     for name, text in signed.items():
-        cells = [element("td", text or ""), element("td", "date, signature:")]
-        if name == "project":
-            cells = [element("td", text or "", colspan="2")]
+        wide = {"colspan": "2"} if name == "project" else {}
+        cells = [element("td", text or "", **wide)]
+        cells += [] if wide else [element("td", "date, signature:")]
         rows.append(element("tr", element("th", name), cells))
-    return element("table", rows, class_="signed" if any(signed.values()) else "signed paper")
+    of = "signed" if any(signed.values()) else "signed paper"
+    return element("table", rows, class_=of) if rows else None
 
 
 def is_about(content: bytes, name: str) -> bool:
@@ -246,9 +239,9 @@ def _block(block: Block, drawn: Iterator[Markup]) -> Markup:
         case Picture():
             return next(drawn)
         case Code():
-            return element("pre", block.text)
+            return element("pre", block)
         case Notice():
-            return element("p", block.text, class_="notice")
+            return element("p", block, class_="notice")
         case str():
             return element("p", block)
 

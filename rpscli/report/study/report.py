@@ -149,16 +149,6 @@ def without_uplift(layout: StudyPoints, _: object) -> Iterable[str]:
         yield "it shows results over alpha, g tan(alpha) or V_st, which is 0 without a flat part"
 
 
-def preset(of: Report[Any], options: type[Options], **fixed: object) -> Report[Options]:
-    """A kind whose options are some of those of another one; the others are fixed."""
-    whole = of.options.model_construct
-
-    def make(study: StudyResults, chosen: Options) -> Found:
-        return of.make(study, whole(**{**dict(chosen), **fixed}))
-
-    return Report(options, make)
-
-
 def add_notes(notes: list[str], name: str, found: Iterable[str]) -> None:
     """Notes under the name of their report; what another report has said is not said again."""
     told = {note.partition(": ")[2] for note in notes}

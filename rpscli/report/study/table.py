@@ -14,7 +14,7 @@ from rpscli.report.figures import style
 from rpscli.report.figures.look import FONT_SIZE, SMALL
 from rpscli.report.study.labels import key_columns, label, plain
 from rpscli.report.study.panels import left_out, over
-from rpscli.report.study.report import DemandName, Found, Report, StatisticOrShare, preset
+from rpscli.report.study.report import DemandName, Found, Report, StatisticOrShare
 from rpscli.report.study.statistics import reached
 from rpscli.report.table import Column
 from rpscli.sweep.evaluation import SCALARS
@@ -48,15 +48,11 @@ class TableOptions(OverturningOptions):
 
 
 class Cell(NamedTuple):
-    """What a table has of some histories.
+    """What a table has of some histories."""
 
-    `numbers` are by what follows the name of their column, `texts` two lines in the picture, and
-    `shade` goes from 0 to 1.
-    """
-
-    numbers: Mapping[str, float | int | str | None]
-    texts: tuple[str, str]
-    shade: float
+    numbers: Mapping[str, float | int | str | None]  # by what follows the name of their column
+    texts: tuple[str, str]  # lines in the picture
+    shade: float  # from 0 to 1
 
 
 def _share(histories: Histories) -> Cell:
@@ -124,6 +120,13 @@ def table_report(study: StudyResults, options: TableOptions) -> Found:
     names = _names(rows.keys, [row.values for row in rows.groups])
     above = [over(rows.pooled), words, left_out(rows.failed)]
     return Found({"": written}, partial(_picture, names, heads, cells, above), rows.notes)
+
+
+def overturning(study: StudyResults, options: OverturningOptions) -> Found:
+    """Shares that overturned."""
+    return table_report(
+        study, TableOptions.model_construct(**dict(options), statistic="overturned")
+    )
 
 
 def _names(keys: Sequence[str], rows: Sequence[tuple[object, ...]]) -> list[str]:
@@ -204,4 +207,4 @@ def _picture(
 
 
 TABLE = Report(TableOptions, table_report, results=lambda options: [options.result])
-OVERTURNING = preset(TABLE, OverturningOptions, statistic="overturned")
+OVERTURNING = Report(OverturningOptions, overturning)
