@@ -51,15 +51,13 @@ def command(
     overrides: tuple[str, ...],
     records: tuple[str, ...],
     conditions: list[Condition],
-    project: str | None,
-    author: str | None,
-    checker: str | None,
     style_file: Path | None,
     terminal: Terminal,
     motion: inputs.MotionRequest,
     *,
     with_budget: bool,
     force: bool,
+    **people: str | None,
 ) -> None:
     """One page about a CASE, a STUDY, a DESIGN or a FOLDER of results.
 
@@ -114,11 +112,8 @@ def command(
     file = place or inputs.RESULTS / name / "report.html"
     _require_free(file, name, force=force)
     done = make()
-    signed = {
-        "project": project or done.signed.project,
-        "made by": author or done.signed.author,
-        "checked by": checker or done.signed.checker,
-    }
+    names = {"project": "project", "author": "made by", "checker": "checked by"}
+    signed = {name: people[key] or getattr(done.signed, key) for key, name in names.items()}
     _write(file, name, done, signed, terminal)
     leave(done.error)
 

@@ -26,7 +26,6 @@ from rpscli.records.selection import Selection
 from rpscli.records.spectrum import ResponseSpectrum
 from rpscli.report.figures import (
     bearing,
-    column,
     devices,
     floors,
     history,
@@ -96,7 +95,7 @@ def timehistory_files(result: TimeHistoryResult, title: str, look: Look = USUAL)
         **({"storey_shears": floors.profile_figure} if result.structure.storeys else {}),
         **({"storey_loops": floors.loops_figure} if result.structure.yields else {}),
         **({"devices": devices.devices_figure} if result.structure.devices else {}),
-        **({"column": column.column_figure} if result.column_demand is not None else {}),
+        **({"column": bearing.column_figure} if result.column_demand is not None else {}),
         **({"orbit": orbit.orbit_figure} if result.trace.y is not None else {}),
         "rotation": history.rotation_figure,
         "displacements": history.displacement_figure,

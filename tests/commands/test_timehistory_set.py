@@ -52,6 +52,21 @@ def test_a_folder_belongs_to_one_record(rps: Invoke) -> None:
     assert "replaces" in rps(*scaled).stderr
 
 
+def test_forces_of_columns_and_dampers_stand_in_the_table_where_the_case_has_them(
+    rps: Invoke,
+) -> None:
+    words = ("timehistory", "small.yaml", *asked(PULSES[1:]), "--figures", "none", "--force")
+    heads = ("damper", "axial")
+    plain = rps(*words).stdout
+    assert not any(head in plain for head in heads)
+    devices = "podium.devices=[{kind: friction, force: 10 kN}]"
+    more = rps(*words, "--set", devices, "--set", "podium.columns=4").stdout
+    assert all(head in more for head in heads)
+    (folder,) = Path("results/small/timehistory").glob("*_records_*")
+    rows = csv_rows("records.csv", folder)
+    assert float(rows[0]["max_column_force [N]"]) > 0.0
+
+
 def test_several_records_end_with_mean_and_largest(rps_json: InvokeJson) -> None:
     document = rps_json("timehistory", "small.yaml", *asked(PULSES))
     histories = document["histories"]

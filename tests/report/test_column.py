@@ -14,7 +14,7 @@ from rpscli.case.case import load_case
 from rpscli.records.ground_motion import MotionComponents
 from rpscli.records.loading import load_record
 from rpscli.report.documents import timehistory_document
-from rpscli.report.figures.column import column_figure
+from rpscli.report.figures.bearing import column_figure
 from rpscli.report.html.case_page import column_sections
 from rpscli.report.html.page import Picture
 from rpscli.report.table import Table

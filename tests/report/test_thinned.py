@@ -14,7 +14,6 @@ from rpscli.analyses.results import TimeHistoryResult
 from rpscli.report.bundles import timehistory_files
 from rpscli.report.figures import history
 from rpscli.report.files import Drawing
-from rpscli.report.table import Column, csv_lines, csv_text
 
 
 def test_extremes_of_every_stretch_stay(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -52,8 +51,3 @@ def test_every_figure_of_a_long_history_is_drawn(
     drawn = [each for _, each in timehistory_files(make(), "") if isinstance(each, Drawing)]
     assert len(drawn) >= 5
     assert all(each() for each in drawn), [each.fault for each in drawn]
-
-
-def test_lines_of_a_table_are_its_text() -> None:
-    columns = [Column("time", "s", np.arange(5000.0)), Column("kind", "-", ["a"] * 5000)]
-    assert "".join(csv_lines(columns)) == csv_text(columns)
