@@ -67,7 +67,13 @@ def modal_files(result: ModalResult, title: str, look: Look = USUAL) -> Files:
     """Files of a modal analysis."""
     yield "modes.csv", csv_text(mode_columns(result))
     yield "shapes.csv", csv_text(shape_columns(result))
-    yield "eigenvalues.csv", csv_text(eigenvalue_columns(result))
+    heads = {"state": "-", "mode": "-", "real": "1/s", "imaginary": "rad/s"}
+    rows = [
+        (name, index // 2, value.real, value.imag)  # two a mode, mode 0 is the storey's own
+        for name, modes in result.uplifted.items()
+        for index, value in enumerate(modes.eigenvalues.tolist())
+    ]
+    yield "eigenvalues.csv", csv_text(columns_of(heads, rows))
     figures: dict[str, Draw] = {"modes": partial(structure.modes_figure, result, title)}
     yield from figure_files(_with_added(figures, result, title, look), look).items()
 
@@ -176,17 +182,6 @@ def shape_columns(result: ModalResult) -> list[Column]:
         for mode, level in np.ndindex(*shapes.shape)
     ]
     return columns_of(dict.fromkeys(("state", "mode", "level", "horizontal", "elastic"), "-"), rows)
-
-
-def eigenvalue_columns(result: ModalResult) -> list[Column]:
-    """`eigenvalues.csv`: two rows a mode of each uplifted state, mode 0 the storey's own."""
-    heads = {"state": "-", "mode": "-", "real": "1/s", "imaginary": "rad/s"}
-    rows = [
-        (name, index // 2, value.real, value.imag)
-        for name, modes in result.uplifted.items()
-        for index, value in enumerate(modes.eigenvalues.tolist())
-    ]
-    return columns_of(heads, rows)
 
 
 def capacity_columns(curves: tuple[CapacityCurve, ...]) -> list[Column]:

@@ -122,7 +122,16 @@ def _frames(canvas: Any, motion: Motion, progress: Progress) -> Iterator[Image]:
 
 def _gif(frames: Iterator[Image], rate: int) -> bytes:
     """All frames in one palette, repeated for ever."""
-    palette = _palette()
+    import numpy as np
+    from matplotlib.colors import to_rgb
+    from PIL import Image as Pillow
+
+    # The inks of the pictures, each in steps towards white: what smooth edges need.
+    inks = np.array([to_rgb(each) for each in INKS])
+    steps = np.linspace(0.0, 1.0, 32)[:, None, None]
+    colours = np.rint(255.0 * (inks + steps * (1.0 - inks))).astype(int)
+    palette = Pillow.new("P", (1, 1))
+    palette.putpalette(colours.ravel().tolist())
     first, *others = (frame.quantize(palette=palette, dither=NO_DITHER) for frame in frames)
     buffer = io.BytesIO()
     first.save(
@@ -133,20 +142,6 @@ def _gif(frames: Iterator[Image], rate: int) -> bytes:
 
 
 INKS = (style.BLACK, style.BLUE, style.RED, style.GREEN, style.PINK)
-
-
-def _palette() -> Image:
-    """The inks of the pictures, each in steps towards white: what smooth edges need."""
-    import numpy as np
-    from matplotlib.colors import to_rgb
-    from PIL import Image as Pillow
-
-    inks = np.array([to_rgb(each) for each in INKS])
-    steps = np.linspace(0.0, 1.0, 32)[:, None, None]
-    colours = np.rint(255.0 * (inks + steps * (1.0 - inks))).astype(int)
-    image = Pillow.new("P", (1, 1))
-    image.putpalette(colours.ravel().tolist())
-    return image
 
 
 def _mp4(frames: Iterator[Image], rate: int) -> bytes:

@@ -219,7 +219,9 @@ def _draw(
         place = series.index(line.values)
         if len(series) == 1:
             place = results.index(line.result)
-        x, words_at = _abscissae(line.x)
+        x, words_at = list(map(float, range(len(line.x)))), [plain(value) for value in line.x]
+        if all(isinstance(value, int | float) for value in line.x):  # else each word has a place
+            x, words_at = [float(str(value)) for value in line.x], []
         pair = (line.y, x) if options.upright else (x, line.y)
         parts = (labels(series_keys, line.values), names[line.result])
         look: dict[str, Any] = {"ls": _staggered(place, among)}
@@ -243,13 +245,6 @@ def _distinct(results: tuple[str, ...]) -> list[str]:
         while all(parts) and len({names[end] for names in parts}) == 1:
             parts = [names[1:] if end == 0 else names[:-1] for names in parts]
     return [".".join(names) for names in parts]
-
-
-def _abscissae(values: tuple[object, ...]) -> tuple[list[float], list[str]]:
-    """Places along the axis; words take one place each."""
-    if all(isinstance(value, int | float) for value in values):
-        return [float(str(value)) for value in values], []
-    return [float(i) for i in range(len(values))], [plain(value) for value in values]
 
 
 def _staggered(place: int, among: int) -> str | tuple[int, tuple[int, int]]:

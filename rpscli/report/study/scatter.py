@@ -404,7 +404,7 @@ SCATTER = Report(
     scatter,
     check=unknown_axes,
     requires=measures_without_period,
-    results=lambda options: [n for n in (options.x, options.y) if n in SCALARS["timehistory"]],
+    results=lambda of: [name for name in (of.x, of.y) if name in SCALARS["timehistory"]],
 )
 DEMAND = Report(DemandOptions, demand)
 OVERTURNING_SPECTRUM = Report(

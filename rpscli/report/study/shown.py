@@ -114,10 +114,7 @@ def note_of_directions(layout: StudyPoints) -> str:
 
 
 def cut(parts: Iterable[Part], rows: int = MOST_ROWS, others: str = "") -> Iterator[Part]:
-    """The parts with so many rows of each table, and a remark on what is left out once.
-
-    Listings, which have no heads, stay whole.
-    """
+    """The parts with so many rows of each table, but listings, and a remark on what is left out."""
     longest = 0
     for part in parts:
         if isinstance(part, Table) and any(part.heads) and len(part) > rows:
