@@ -372,8 +372,9 @@ def legend_above(axes: Axes) -> None:
     room = _room(axes)
     if not (found := entries([axes])):
         return
-    if axes.get_figure(root=True).get_layout_engine() is None:  # type: ignore[union-attr]
-        axes.legend(fontsize=small(), loc="best")  # nothing would make room above
+    place, engine = axes.get_subplotspec(), axes.get_figure(root=True).get_layout_engine()  # type: ignore[union-attr]
+    if engine is None and place is not None and place.rowspan.start:
+        axes.legend(fontsize=small(), loc="best")  # nothing makes room below other axes
         return
     axes.legend(
         **_arranged(found, room - 0.5, None),
