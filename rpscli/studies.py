@@ -30,10 +30,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from weakref import finalize
 
 from rpscli.case.conditions import Condition
-from rpscli.case.overrides import apply_overrides
 from rpscli.case.rules.plausibility import doubts_of_many
 from rpscli.case.study.schema import StudyFile
-from rpscli.case.study.study import parse_study, shared_out, study_of
+from rpscli.case.study.study import overridden, parse_study, study_of
 from rpscli.case.text.document import Document, text_of_values
 from rpscli.case.text.files import opened
 from rpscli.constants import MOST_JOBS
@@ -128,8 +127,8 @@ def load_study(
     """
     if isinstance(source, Mapping):
         text = text_of_values(source, "<study>")
-        own, of_base = shared_out(overrides, StudyFile)
-        document = apply_overrides(Document("<study>", json.loads(text)), own, model=StudyFile)
+        document = Document("<study>", json.loads(text))
+        document, of_base = overridden(document, overrides, StudyFile)
         digest = sha256(text.encode()).hexdigest()
         checked = study_of(document, of_base, kinds=REPORTS, folder=Path(), digest=digest)
     else:

@@ -8,20 +8,18 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Annotated, NamedTuple, Self
+from typing import Annotated, Any, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import BeforeValidator, Field, PlainValidator, WithJsonSchema, model_validator
 
 from rpscli.analyses.result_quantities import DEMANDS, SAMPLED
-from rpscli.case.overrides import apply_overrides
 from rpscli.case.schema.check import checked
 from rpscli.case.schema.fields import Quantity, Section, Whole, must_be, refuse
 from rpscli.case.schema.keys import is_whole, unit
 from rpscli.case.schema.limits import Fractile
 from rpscli.case.study.axes import Axis, linked_value, sources_of
-from rpscli.case.study.rules import fixed_faults, record_rules, twice, unknown_keys, varied_paths
 from rpscli.case.study.schema import (
     PLUS,
     Linked,
@@ -31,7 +29,7 @@ from rpscli.case.study.schema import (
     is_number,
     with_keys,
 )
-from rpscli.case.study.study import Study, shared_out, study_of
+from rpscli.case.study.study import Study, key_faults, overridden, study_of, varying
 from rpscli.case.text.document import Document, Fault, is_case, is_design
 from rpscli.case.text.yaml_text import read_yaml
 from rpscli.errors import LARGEST, CaseError, hint, listed
@@ -263,13 +261,10 @@ def parse_design(
         for word, now in GONE.items()
         if word in document.content
     )
-    of_design, of_base = shared_out(overrides, DesignFile)
-    document = apply_overrides(document, of_design, model=DesignFile)
+    document, of_base = overridden(document, overrides, DesignFile)
     file = checked(DesignFile, document)
     unseen, faults = _unseen(document, folder)
-    faults += [*_fixed_properties(document), *unknown_keys(document), *twice(document)]
-    faults += [*record_rules(document), *fixed_faults(document, of_base), *_name_faults(file)]
-    document.refuse(faults)
+    document.refuse([*faults, *key_faults(document, of_base), *_name_faults(document, file)])
     shared = {k: v for k, v in document.content.items() if k in StudyParts.model_fields}
     study = study_of(
         replace(document, content=shared),
@@ -279,7 +274,21 @@ def parse_design(
         digest=hashlib.sha256(text.encode()).hexdigest(),
     )
     used, unseen = _used_and_unseen(document, file, study, unseen)
-    return DesignTask(replace(study, document=document, sources=used), file, unseen)
+    notes = (*study.notes, *_notes(file, study.base.content))
+    return DesignTask(replace(study, document=document, sources=used, notes=notes), file, unseen)
+
+
+def _notes(file: DesignFile, base: dict[str, Any]) -> Iterator[str]:
+    """What the design takes from its base, or not, in another way than may be meant."""
+    if file.limits and base.get("limits"):
+        yield f"the limits of the design replace all of the base: {', '.join(base['limits'])}"
+    own = {"slenderness", "semi_diagonal", "dimensions"}
+    sizes = [key for key in file.variables if {*key.split(".")[2:3]} & own]
+    if sizes and Document("", base).has(("superstructure", "yield", "ratio")):
+        yield (
+            f"superstructure.yield.ratio is a multiple of V_st, which changes with {sizes[0]}: the"
+            " storeys of each design have another strength; yield.shears keeps it"
+        )
 
 
 def _used_and_unseen(
@@ -300,24 +309,20 @@ def _used_and_unseen(
     names = max(numbers, default=-1) + 1  # of whole recordings or events
     drawn = np.random.default_rng(section.seed).permutation(names)
     held_out = set(drawn[: round(section.share * names)].tolist())
-    used = tuple(source for source, number in own.items() if number not in held_out)
     unseen = tuple(source for source, number in own.items() if number in held_out)
+    used = tuple(source for source in own if source not in unseen)
     if not (used and unseen):
         text = f"validate.share = {section.share} of {len(own)} records leaves none"
         document.refuse([Fault(("validate",), f"{text} on one side; give more records")])
     return used, unseen
 
 
-def _fixed_properties(document: Document) -> Iterator[Fault]:
-    """Keys that are no property of the structure."""
-    for key, place in varied_paths(document).items():
+def _name_faults(document: Document, file: DesignFile) -> Iterator[Fault]:
+    """Keys that are no property of the structure; names that are neither keys nor results."""
+    for key, place in varying(document):
         if key.split(".")[0] in {"limits", "analysis", "rps", "title", "record"}:
             text = f"{key} must not change in a design; it is not a property of the structure"
             yield Fault(place, text, at_key=True)
-
-
-def _name_faults(file: DesignFile) -> Iterator[Fault]:
-    """Names that are not keys that change, or in what is minimised not results either."""
     known, keys = [*file.variables, PLUS], [*file.variables, *file.linked]
     for key, sums in file.linked.items():
         for name in (name for name in sums if name not in known):
@@ -343,6 +348,8 @@ def _unseen(document: Document, folder: Path) -> tuple[tuple[str, ...], list[Fau
     if not isinstance(document.content.get("validate"), dict):
         return (), []
     sources, faults, _ = sources_of(document.part("validate"), folder)
+    inside = (("validate", *fault.path) for fault in faults)
     return sources, [
-        Fault(("validate", *fault.path), f"validate.{fault.text}", fault.at_key) for fault in faults
+        replace(fault, path=path, text=f"validate.{fault.text}")
+        for fault, path in zip(faults, inside, strict=True)
     ]

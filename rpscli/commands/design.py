@@ -77,6 +77,7 @@ def designed(
     search = Search(parse_design(**opened(design), overrides=overrides))
     first = Study(search.layout, overrides)
     first.require_results()
+    terminal.warn(first.warnings)
     if chosen.dry_run:
         terminal.note(f"the first of at most {search.most} designs:")
         show_dry_run(first, chosen, terminal)

@@ -121,23 +121,22 @@ class Point(NamedTuple):
 
 @dataclass(frozen=True)
 class Plan:
-    """Everything besides the points that a process needs to evaluate them."""
+    """Everything besides the points that a process needs to evaluate them.
+
+    `keys` are the dotted keys of the values of a point; `base` is the case at the base as plain
+    values, with its file and folder for messages and relative file names; `measure` is what the
+    records are scaled to, if not by factors; `whole` histories are followed with all their samples;
+    all results must come from one version of the `solver`.
+    """
 
     analysis: Analysis
-    """Analysis of every point."""
     keys: tuple[str, ...]
-    """Dotted keys of the values of a point."""
     base: dict[str, Any]
-    """The case at the base, as plain values."""
     base_name: str
     base_folder: str
-    """Its file and folder, for messages and relative file names."""
     measure: MeasureScale | None
-    """Measure that the records are scaled to, if not by factors."""
     whole: bool
-    """True if histories are followed with all their samples."""
     solver: str
-    """Version of the solver that all results must come from."""
 
     @property
     def of(self) -> Of:
@@ -172,14 +171,25 @@ class RecordCache:
 
     def __init__(self) -> None:
         self._motions: Recent[RecordRequest, MotionComponents | str] = Recent(
-            SAMPLES_KEPT, _samples
+            SAMPLES_KEPT,
+            # A reason takes hardly any room.
+            lambda of: 1.0 if isinstance(of, str) else sum(e.npts for e in of.named.values()),
         )
         self._digests: Recent[RecordRequest, bytes] = Recent(float("inf"))
         self._intensities: Recent[tuple[object, ...], float] = Recent(1e6)
 
     def motion(self, request: RecordRequest) -> MotionComponents:
         """The motion of a request."""
-        motion = self._motions.value(request, lambda: _load(request))
+
+        def load() -> MotionComponents | str:
+            source, folder, above, dt, units, _, y, rotation = request
+            how: dict[str, Any] = {"folder": Path(folder), "dt": dt, "units": units}
+            try:
+                return load_components(source, above, y, rotation, **how)
+            except (RecordError, OSError) as error:
+                return str(error)
+
+        motion = self._motions.value(request, load)
         if isinstance(motion, str):
             raise RecordError(motion)
         return motion
@@ -206,44 +216,27 @@ class RecordCache:
     ) -> float:
         """A measure of the unscaled horizontal motion or, if it has one, of its pair, SI units."""
         both = None if of == "component" else request.pair
+        # All directions of a pair share its measure, and both components together.
+        shared = request._replace(source="", vertical=None, y=None, rotation=0.0)
 
         def make() -> float:
             if both is None:
                 return measured(self.motion(request).horizontal, measure, period, damping)
-            alone = request._replace(vertical=None, pair=None, y=None, rotation=0.0)
-            parts = (alone._replace(source=source) for source in both)
+            parts = (shared._replace(source=source, pair=None) for source in both)
             one, other = (self.motion(part).horizontal for part in parts)
             return pair_measure(one, other, measure, of, period, damping)
 
-        # All directions of a pair share its measure, and both components together.
-        shared = request._replace(source="", vertical=None, y=None, rotation=0.0)
         whose = request if both is None else (shared, of)
         return self._intensities.value((whose, measure, period, damping), make)
 
 
-def _samples(motion: MotionComponents | str) -> float:
-    """Room that a motion takes, both components together; a reason hardly any."""
-    return 1.0 if isinstance(motion, str) else sum(each.npts for each in motion.named.values())
-
-
-def _load(request: RecordRequest) -> MotionComponents | str:
-    """The motion, or why there is none."""
-    source, folder, above, dt, units, _, y, rotation = request
-    try:
-        how: dict[str, Any] = {"folder": Path(folder), "dt": dt, "units": units}
-        return load_components(source, above, y, rotation, **how)
-    except (RecordError, OSError) as error:
-        return str(error)
-
-
 @dataclass(frozen=True, eq=False)
 class System:
-    """One structure of a study and the settings of its analysis."""
+    """One structure, settings of its analysis, digest of what in its case decides about results."""
 
     structure: PodiumStructure
     settings: TimeHistorySettings
     digest: bytes
-    """Of everything in its resolved case that decides about results."""
 
     @classmethod
     def of_case(cls, case: Case) -> System:
@@ -306,16 +299,10 @@ class StudyContext:
     def history(self, point: Point) -> Request:
         """The history of a point; its motion is shared, and scaled while it is used."""
         assert point.record is not None, "points of histories have a record"
-        system, motion = (
-            self.system(point.system, point.values),
-            self.records.motion(point.record),
-        )
-        return Request(
-            structure=system.perturbed(point.restitution_change),
-            motion=motion,
-            settings=system.settings,
-            scale=self.factor(point),
-        )
+        system = self.system(point.system, point.values)
+        structure = system.perturbed(point.restitution_change)
+        motion = self.records.motion(point.record)
+        return Request(structure, motion, system.settings, scale=self.factor(point))
 
     def intensities(self, points: Sequence[Point], factors: Array) -> dict[str, Array]:
         """Peaks of the scaled motions of some points, (points,)."""

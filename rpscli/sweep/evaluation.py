@@ -116,7 +116,7 @@ class PointResults(NamedTuple):
 
 
 def _up_to(shape: Sequence[int]) -> tuple[slice, ...]:
-    return tuple(slice(0, size) for size in shape)
+    return tuple(map(slice, shape))
 
 
 def stacked(values: Sequence[Any]) -> Array:

@@ -16,7 +16,7 @@ import signal
 import struct
 import threading
 import time
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, CancelledError, Executor, Future, wait
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, replace
@@ -39,14 +39,18 @@ from rpscli.sweep.store import Store
 def all_keys(layout: StudyPoints) -> list[bytes]:
     """Digests of resolved case, record content, scale, perturbation and solver of all points."""
     plan, keys, of_system = layout.plan, list[bytes](), layout.points_of_system
-    tails, before = list[bytes](), None
+    tails, before = [b""], None
     for system, properties in enumerate(layout.properties):
         begun = hashlib.sha256(plan.solver.encode() + plan.analysis.encode() + properties.digest)
         own = properties.record, properties.scale, layout.period_of_measure(properties)
-        if own != before:
-            first, before = system * of_system, own
-            points = (layout[number] for number in range(first, first + of_system))
-            tails = [_motion_digest(layout, point) for point in points]
+        if plan.analysis == "timehistory" and own != before:
+            tails, before = [], own
+            for number in range(system * of_system, (system + 1) * of_system):
+                point = layout[number]
+                assert point.record is not None, "points of histories have a record"
+                factor = layout.known_factor(point)
+                change = struct.pack("<2d?", factor, point.restitution_change, plan.whole)
+                tails.append(layout.context.records.digest(point.record) + change)
         for tail in tails:
             digest = begun.copy()
             digest.update(tail)
@@ -54,33 +58,22 @@ def all_keys(layout: StudyPoints) -> list[bytes]:
     return keys
 
 
-def _motion_digest(layout: StudyPoints, point: Point) -> bytes:
-    """Content of the record, or why it cannot be read; scale and perturbation."""
-    if layout.plan.analysis != "timehistory":
-        return b""
-    assert point.record is not None, "points of histories have a record"
-    factor = layout.known_factor(point)
-    change = struct.pack("<2d?", factor, point.restitution_change, layout.plan.whole)
-    return layout.context.records.digest(point.record) + change
-
-
 @dataclass(frozen=True, eq=False)
 class Start:
-    """State of a study at the beginning of a run."""
+    """State of a study at the beginning of a run.
+
+    `keys` are those of all points, `pending` the points to be computed, both in the order of the
+    study; equal points are computed once. `kept` are stored, `unused` are stored and no longer in
+    the study: they stay, for the case that it is changed back. `notes` tell what changed since the
+    last run, `facts` are those of the study for the store.
+    """
 
     keys: list[bytes]
-    """Of all points, in the order of the study."""
     pending: list[int]
-    """Points to be computed, in the order of the study; equal points are computed once."""
     kept: int
-    """Points that are stored."""
     unused: int
-    """Stored points that are no longer in the study. They stay in the file, for the case
-    that the study is changed back."""
     notes: tuple[str, ...]
-    """Changes since the last run, for the user."""
     facts: dict[str, str]
-    """Facts of the study for the store."""
 
 
 def start(layout: StudyPoints, store: Store, *, retry_failed: bool = False) -> Start:
@@ -111,8 +104,7 @@ def start(layout: StudyPoints, store: Store, *, retry_failed: bool = False) -> S
         if (solver := before["solver"]) != now["solver"]:
             text = f"the solver changed from {solver} to {now['solver']}: nothing of it applies"
             notes.append(text)
-        changed = list(_differences(json.loads(before["study"]), json.loads(now["study"])))
-        if changed:
+        if changed := _differences(json.loads(before["study"]), json.loads(now["study"])):
             more = "; ..." if changed[6:] else ""
             notes.append(f"the study changed: {'; '.join(changed[:6])}{more}")
         if changed or unused:
@@ -123,36 +115,24 @@ def start(layout: StudyPoints, store: Store, *, retry_failed: bool = False) -> S
     return Start(keys, pending, kept, unused, tuple(notes), now)
 
 
-def _differences(old: Any, new: Any, path: str = "") -> Iterator[str]:
+def _differences(old: Any, new: Any) -> list[str]:
     """Differences of two documents, in words."""
-    if isinstance(old, Mapping) and isinstance(new, Mapping):
-        for key in dict.fromkeys((*old, *new)):
-            inner = f"{path}.{key}" if path else str(key)
-            if key not in new:
-                yield f"{inner} dropped"
-            elif key not in old:
-                yield f"{inner} = {shown(new[key])} added"
-            else:
-                yield from _differences(old[key], new[key], inner)
-    elif isinstance(old, list) and isinstance(new, list):
-        yield from _list_differences(old, new, path)
-    elif old != new:
-        yield f"{path}: {shown(old)} -> {shown(new)}"
+    before, after = dict(_leaves(old)), dict(_leaves(new))
+    dropped = [f"{path} dropped" for path in before if path not in after]
+    added = [f"{path} = {shown(after[path])} added" for path in after if path not in before]
+    both = (path for path in after if path in before and before[path] != after[path])
+    return [*(f"{p}: {shown(before[p])} -> {shown(after[p])}" for p in both), *added, *dropped]
 
 
-def _list_differences(old: list[Any], new: list[Any], path: str) -> Iterator[str]:
-    if len(old) == len(new) and any(isinstance(item, dict | list) for item in (*old, *new)):
-        for index, (before, after) in enumerate(zip(old, new, strict=True)):
-            yield from _differences(before, after, f"{path}.{index}")
+def _leaves(value: Any, path: str = "") -> Iterator[tuple[str, Any]]:
+    """Values of a document by their dotted paths; lists of plain values are whole."""
+    if isinstance(value, list) and any(isinstance(item, dict | list) for item in value):
+        value = dict(enumerate(value))
+    if not isinstance(value, dict) or not value:
+        yield path, value
         return
-    dropped = [item for item in old if item not in new]
-    added = [item for item in new if item not in old]
-    if dropped:
-        yield f"{path} drops {shown(dropped)}"
-    if added:
-        yield f"{path} adds {shown(added)}"
-    if not dropped and not added and old != new:
-        yield f"{path}: another order"
+    for key, inner in value.items():
+        yield from _leaves(inner, f"{path}.{key}" if path else str(key))
 
 
 LARGEST_BATCH = 480
@@ -185,9 +165,6 @@ def batches(layout: StudyPoints, pending: Sequence[int], jobs: int) -> Iterator[
         for first in range(0, len(part), size):
             yield [layout[number] for number in part[first : first + size].tolist()]
 
-
-Computed = tuple[list[Point], PointResults]
-"""A batch of points with its results."""
 
 HEARING = 0.2
 """Seconds after which who waits for a batch looks up.
@@ -226,15 +203,6 @@ M_MMAP_THRESHOLD = -3
 """Of glibc's `mallopt`."""
 
 
-def _free_large_arrays() -> None:
-    """Have arrays that are freed go back to the system at once.
-
-    glibc keeps ever larger ones for later use, half of the memory of a study of 100,000 points.
-    """
-    with suppress(AttributeError, OSError, TypeError):  # no glibc
-        ctypes.CDLL(None).mallopt(M_MMAP_THRESHOLD, 1 << 17)
-
-
 class Engine:
     """Computes batches, several at a time: in threads of this process or on a Dask cluster.
 
@@ -251,8 +219,11 @@ class Engine:
         self._ahead = jobs
         if scheduler:
             self._connect(scheduler)
-        else:
-            _free_large_arrays()
+            return
+        # Arrays that are freed go back to the system at once. glibc keeps ever larger ones for
+        # later use, half of the memory of a study of 100,000 points.
+        with suppress(AttributeError, OSError, TypeError):  # no glibc
+            ctypes.CDLL(None).mallopt(M_MMAP_THRESHOLD, 1 << 17)
 
     def _connect(self, address: str) -> None:
         try:
@@ -280,10 +251,17 @@ class Engine:
     def _submit(self, points: list[Point]) -> Future[PointResults]:
         if not self._deadly:
             return self._executor.submit(run_batch, self._context, points)
-        seen = [_seen_everywhere(point) for point in points]
+        # Folders of records as every machine sees them.
+        seen = [
+            point._replace(record=of and of._replace(folder=str(Path(of.folder).absolute())))
+            for point in points
+            for of in [point.record]
+        ]
         return self._executor.submit(compute, self._digest, self._plan, seen)
 
-    def outcomes(self, batches: Iterable[list[Point]]) -> Iterator[Computed]:
+    def outcomes(
+        self, batches: Iterable[list[Point]]
+    ) -> Iterator[tuple[list[Point], PointResults]]:
         """The batches with their results, as they come; taken when there is room for them."""
         source, under_way = iter(batches), dict[Future[PointResults], list[Point]]()
 
@@ -318,14 +296,6 @@ class Engine:
         )
 
 
-def _seen_everywhere(point: Point) -> Point:
-    """The point with its record's folder as every machine sees it."""
-    if point.record is None:
-        return point
-    folder = str(Path(point.record.folder).absolute())
-    return point._replace(record=point.record._replace(folder=folder))
-
-
 _contexts: dict[str, StudyContext] = {}
 _lock = threading.Lock()
 
@@ -347,19 +317,19 @@ def compute(digest: str, plan: Plan, points: list[Point]) -> PointResults:
 
 @dataclass(frozen=True)
 class Progress:
-    """Progress of a study: points, and the time that they took."""
+    """Progress of a study: points in all, stored before, of this run, failed ones of this run.
+
+    `seconds` are those since the run began; `first` points were there after `first_seconds`, in
+    which kernels may have been compiled: they say nothing about the rate of the others.
+    """
 
     total: int
     kept: int
     computed: int
     failed: int
-    """Points of the study, stored before, of this run, and those of it that failed."""
     seconds: float
-    """Since the run began."""
     first: int = 0
     first_seconds: float = 0.0
-    """Points that the first batch brought, and when: kernels may have been compiled before,
-    which says nothing about the rate of the others."""
 
     @property
     def done(self) -> int:
@@ -435,31 +405,29 @@ LONGEST_PROBING = 3.0
 
 def estimated_seconds(layout: StudyPoints, jobs: int) -> float:
     """Compute points spread over the study, in batches, and take the rest to be like them."""
-    count = len(layout)
-    tried, spent, points = min(PROBES, count), 0.0, 0
-    numbers = sorted({count * (2 * i + 1) // (2 * tried) for i in range(tried)})
+    context, count = layout.context, len(layout)
+    spent, points = 0.0, 0
+    numbers = sorted({count * (2 * i + 1) // (2 * PROBES) for i in range(PROBES)})
     for batch in batches(layout, numbers, jobs=1):
-        if (most := _most_seconds(layout, batch[0])) > 10.0 * LONGEST_PROBING:  # not to be tried
-            return most * count / min(jobs, count)
-        alone = _seconds(layout.context, batch[:1])  # reads records, loads kernels
+        alone = _most_seconds(layout, batch[0])
+        if alone <= 10.0 * LONGEST_PROBING:  # else not to be tried
+            alone = _seconds(context, batch[:1])  # reads records, loads kernels
         if alone > 2.0 * LONGEST_PROBING:  # of which loading is little
             return alone * count / min(jobs, count)
-        affordable = batch[: 1 + int(LONGEST_PROBING / _seconds(layout.context, batch[:1]))]
-        spent, points = spent + _seconds(layout.context, affordable), points + len(affordable)
+        affordable = batch[: 1 + int(LONGEST_PROBING / _seconds(context, batch[:1]))]
+        spent, points = spent + _seconds(context, affordable), points + len(affordable)
         if spent > LONGEST_PROBING:
             break
     return spent / points * count / min(jobs, count)
 
 
 def _most_seconds(layout: StudyPoints, point: Point) -> float:
-    """About the longest that a history may take, of a point that has one [s]."""
-    if layout.plan.analysis != "timehistory":
-        return 0.0
-    try:
-        request = layout.context.history(point)
-    except RpsError:  # which the point tells when it is tried
-        return 0.0
-    return most_seconds(request.structure, request.settings, request.motion.duration)
+    """About the longest that the history of a point may take [s]."""
+    if layout.plan.analysis == "timehistory":
+        with suppress(RpsError):  # which the point tells when it is tried
+            request = layout.context.history(point)
+            return most_seconds(request.structure, request.settings, request.motion.duration)
+    return 0.0
 
 
 def _seconds(context: StudyContext, points: Sequence[Point]) -> float:

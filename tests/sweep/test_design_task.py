@@ -371,6 +371,15 @@ def test_the_constant_of_a_sum_may_have_a_unit() -> None:
     assert parse_design(text, "design.yaml").file.linked[SIZE] == {SLENDERNESS: 2, "plus": 1.4}
 
 
+def test_what_a_design_takes_from_its_base_is_said_first(design: Sweep, workplace: Path) -> None:
+    yielding = BASE.replace("  damping:", "  yield: {ratio: 1.2}\n  damping:")
+    (workplace / "base.yaml").write_text(f"{yielding}limits: {{drift_ratio: 0.01}}\n")
+    first, second, *_ = design(BUILDING, "--dry-run").stderr.splitlines()
+    assert "the limits of the design replace all of the base: drift_ratio" in first
+    assert f"a multiple of V_st, which changes with {SLENDERNESS}" in second
+    assert parse_design(FRAME, "design.yaml").study.notes == ()
+
+
 def test_cases_studies_and_designs_are_told_apart(design: Sweep, workplace: Path) -> None:
     assert "is a case without `variables`" in design(BASE).stderr
     assert "is a file without `variables`" in design("rps: 1").stderr

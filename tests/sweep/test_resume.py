@@ -34,8 +34,7 @@ def test_a_changed_study_keeps_what_applies_and_says_what_changed(sweep_json: Sw
     changed = sweep_json("study.yaml", study=text)
     assert changed["points"] == {"total": 24, "computed": 12, "kept": 12, "failed": 0, "unused": 24}
     notes = " ".join(changed["notes"])
-    assert "curvature_ratio drops [0.5, 0]" in notes
-    assert "adds [1.5]" in notes
+    assert "curvature_ratio: ['critical', 0.5, 0] -> ['critical', 1.5]" in notes
     assert "12 points still apply, 12 are to be computed" in notes
     assert "24 stored points are no longer in the study" in notes
     # Nothing was thrown away: the first study is whole again at once.

@@ -12,9 +12,8 @@ from rpscli.analyses.kernels.systems import most_steps
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.case.json_schema import json_schema_of
-from rpscli.case.study.rules import MOST_POINTS, MOST_SYSTEMS
 from rpscli.case.study.schema import MeasureScale, StudyFile
-from rpscli.case.study.study import parse_study
+from rpscli.case.study.study import MOST_POINTS, MOST_SYSTEMS, parse_study
 from rpscli.errors import CaseError
 from rpscli.model.superstructure import RayleighDamping
 from rpscli.report.study.registry import REPORTS

@@ -62,20 +62,17 @@ def unequal(document: Document, vary: Vary) -> list[Fault]:
 
 def axes_of(document: Document, vary: Vary) -> tuple[Axis, ...]:
     """Axes of a study whose columns are equally long."""
-
-    def places(path: Path, count: int) -> tuple[Place, ...]:
-        if isinstance(document.at(path), dict):
-            return (document.value_place(path),)
-        return tuple(document.value_place((*path, row)) for row in range(count))
-
-    return tuple(
-        Axis(
-            keys=tuple(columns),
-            rows=tuple(zip(*columns.values(), strict=True)),
-            places=tuple(places(("vary", i, key), len(of)) for key, of in columns.items()),
-        )
-        for i, columns in enumerate(vary)
-    )
+    axes = []
+    for index, columns in enumerate(vary):
+        places = []
+        for key, of in columns.items():
+            path: Path = ("vary", index, key)
+            inside = [path] if isinstance(document.at(path), dict) else []  # a range
+            inside = inside or [(*path, row) for row in range(len(of))]
+            places.append(tuple(map(document.value_place, inside)))
+        rows = tuple(zip(*columns.values(), strict=True))
+        axes.append(Axis(tuple(columns), rows, tuple(places)))
+    return tuple(axes)
 
 
 DIGITS = 6
@@ -98,20 +95,16 @@ def with_linked(
         path, names = ("linked", key), [name for name in terms if name != PLUS]
         axis = next((each for each in axes if names and {*names} <= {*each.keys}), None)
         if axis is None:
-            text = (
-                f"linked.{key} needs {listed(names or ['a key'], 'and')}, which no axis of vary has"
-            )
-            document.refuse([Fault(path, f"{text}; sums are of keys of one axis")])
+            text = f"linked.{key} needs {listed(names or ['a key'], 'and')}, which no axis of vary"
+            document.refuse([Fault(path, f"{text} has; sums are of keys of one axis")])
             continue
         columns = [(axis.keys.index(name), unit(name)) for name in names]
         rows: list[list[Any]] = [[in_si(row[at], si) for at, si in columns] for row in axis.rows]
         if not all(map(is_finite, itertools.chain(*rows))):
             document.refuse([Fault(path, f"linked.{key} is a sum of numbers; {names} are not")])
-        values = [
-            (*old, linked_value(key, terms, row)) for old, row in zip(axis.rows, rows, strict=True)
-        ]
-        places = (*axis.places, (document.value_place(path),))
-        longer = Axis((*axis.keys, key), tuple(values), places)
+        sums = (linked_value(key, terms, row) for row in rows)
+        values = tuple((*old, new) for old, new in zip(axis.rows, sums, strict=True))
+        longer = Axis((*axis.keys, key), values, (*axis.places, (document.value_place(path),)))
         axes = tuple(longer if each is axis else each for each in axes)
     return axes
 
@@ -158,6 +151,5 @@ def _product(pattern: RecordPattern, path: Path) -> list[str]:
 
 def _text(value: object) -> str:
     """A value as an option is written: whole numbers without a fraction."""
-    if isinstance(value, float) and value.is_integer() and abs(value) < 1e15:
-        return str(int(value))
-    return str(value)
+    whole = isinstance(value, float) and value.is_integer() and abs(value) < 1e15
+    return f"{value:.0f}" if whole else str(value)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from pathlib import Path as Folder
 from typing import NamedTuple
 
@@ -40,8 +39,7 @@ class Observation(NamedTuple):
     values: tuple[float, ...]
 
 
-@dataclass(frozen=True)
-class Observed:
+class Observed(NamedTuple):
     """The whole file."""
 
     name: str
@@ -55,10 +53,6 @@ class _Column(NamedTuple):
 
     name: str
     unit: str
-
-    @property
-    def si_unit(self) -> str:
-        return _UNITS.get(self.name) or key_unit(self.name)
 
     def value(self, cell: str) -> float:
         """The observed value, in SI units; NaN for an empty cell."""
@@ -76,7 +70,11 @@ class _Column(NamedTuple):
             raise ValueError(
                 "must be a number >= 0: the largest value without its sign; empty: not measured"
             )
-        return value * si_value(f"1 {self.unit}", self.si_unit) if self.unit else value
+        return value * si_value(f"1 {self.unit}", _si_unit(self.name)) if self.unit else value
+
+
+def _si_unit(name: str) -> str:
+    return _UNITS.get(name) or key_unit(name)
 
 
 def comparable(key: str, value: object) -> str:
@@ -103,11 +101,11 @@ def read_observed(
         text = f"observed: {name} must have a line of titles and more lines"
         document.refuse([Fault(PATH, text)])
     (first, heads), *rest = rows
-    matches = ((_TITLE.fullmatch(head), head.strip()) for head in heads)
-    columns = [
-        _Column(*((match[1], match[2] or "") if match else (head, ""))) for match, head in matches
-    ]
-    columns = [c._replace(unit="") if c.unit in {"-", "1"} else c for c in columns]
+    columns = []
+    for head in heads:
+        match = _TITLE.fullmatch(head)
+        unit = (match and match[2]) or ""
+        columns.append(_Column(match[1] if match else head.strip(), unit * (unit not in "-1")))
     known = [RECORD, "scale", *(key for axis in axes for key in axis.keys)]
     document.refuse(_fault(name, first, text) for text in _title_faults(columns, known))
     faults, seen = [], []
@@ -145,9 +143,9 @@ def _title_faults(columns: Sequence[_Column], known: Sequence[str]) -> Iterator[
             yield f"the column {shown(column.name)} {text}; {suggestion}"
         elif column.unit:
             try:
-                if column.si_unit not in KINDS:
+                if (si := _si_unit(column.name)) not in KINDS:
                     raise ValueError("must have no unit; remove it")  # noqa: TRY301
-                si_value(f"1 {column.unit}", column.si_unit)
+                si_value(f"1 {column.unit}", si)
             except ValueError as error:
                 yield f"{shown(column.name)} [{column.unit}] {error}"
 

@@ -69,7 +69,6 @@ class ReportRequest:
 Check = Callable[[Document, Sequence[Axis], ReportRequest], Iterable[Fault]]
 """Faults of a request in a study with these axes."""
 
-
 Options = TypeVar("Options", bound=ReportOptions)
 
 
@@ -89,7 +88,6 @@ class ReportKind(Generic[Options]):
 ReportKinds = Mapping[str, ReportKind[Any]]
 """The kinds by name."""
 
-
 OF_THE_STUDY = ("points", "failed", "statistics", "verdicts")
 """Stems of files that every study leaves."""
 
@@ -99,21 +97,13 @@ def format_with(kinds: ReportKinds) -> type[StudyFile]:
     return study_file(tuple((name, kind.options) for name, kind in kinds.items()))
 
 
-def kinds_in(document: Document, known: Registry[Any]) -> ReportKinds:
-    """The kinds by which a study is read: those of other packages only if it names others."""
-    return known.among(
-        name for each in _written(document) for name in (each if isinstance(each, dict) else [each])
-    )
-
-
-def _written(document: Document) -> list[Any]:
-    written = document.content.get("reports")
-    return written if isinstance(written, list) else []
-
-
-def written_out(document: Document, kinds: ReportKinds) -> Document:
-    """A study in which reports that are named alone, or with nothing behind them, have options."""
-    reports = _written(document)
+def written_out(document: Document, known: Registry[Any]) -> tuple[Document, ReportKinds]:
+    """A study whose reports all have options, if none by name; the kinds by which it is read."""
+    reports = document.content.get("reports")
+    if not isinstance(reports, list):
+        return document, dict(known)
+    named = (name for each in reports for name in (each if isinstance(each, dict) else [each]))
+    kinds = known.among(named)  # those of other packages only if it names others
 
     def whole(item: Any) -> Any:
         item = {item: None} if isinstance(item, str) and item in kinds else item
@@ -121,23 +111,19 @@ def written_out(document: Document, kinds: ReportKinds) -> Document:
             return {kind: {} for kind in item}
         return item
 
-    if not reports:
-        return document
-    return replace(document, content={**document.content, "reports": [*map(whole, reports)]})
+    content = {**document.content, "reports": [*map(whole, reports)]}
+    return replace(document, content=content), kinds
 
 
 def requests_of(document: Document, file: StudyFile) -> tuple[ReportRequest, ...]:
-    """Reports of a study that is written out."""
+    """Reports of a study that is written out; each has files of its own, as lines, lines_2."""
     requests: list[ReportRequest] = []
-    for index, (item, options) in enumerate(zip(_written(document), file.reports, strict=True)):
-        (kind,) = item
-        taken = {*OF_THE_STUDY, *(request.stem for request in requests)}
-        stem = _stem(options.name or kind, taken)
+    taken = {*OF_THE_STUDY}
+    for index, options in enumerate(file.reports):
+        (kind,) = document.content["reports"][index]
+        wanted = options.name or kind
+        numbered = (f"{wanted}_{number}" for number in range(2, len(taken) + 3))
+        stem = next(name for name in (wanted, *numbered) if name not in taken)
+        taken.add(stem)
         requests.append(ReportRequest(kind, stem, options, ("reports", index)))
     return tuple(requests)
-
-
-def _stem(wanted: str, taken: set[str]) -> str:
-    """`lines`, `lines_2`, `lines_3`: every report has files of its own."""
-    numbers = (f"{wanted}_{number}" for number in range(2, len(taken) + 3))
-    return wanted if wanted not in taken else next(n for n in numbers if n not in taken)

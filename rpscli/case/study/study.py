@@ -3,33 +3,56 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Sequence
+import math
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from pathlib import Path
+from pathlib import Path as Folder
 from typing import Any
 
 from pydantic import ValidationError
 
 from rpscli.case.overrides import apply_overrides
+from rpscli.case.schema.case_file import CaseFile
 from rpscli.case.schema.check import checked
-from rpscli.case.schema.keys import fields_of
+from rpscli.case.schema.keys import field_at, fields_of, unknown_key
 from rpscli.case.schema.scale_to import ScaleToSection
-from rpscli.case.study import rules
 from rpscli.case.study.axes import Axis, axes_of, sources_of, unequal, with_linked
 from rpscli.case.study.observed import Observed, read_observed
 from rpscli.case.study.reports import (
+    ReportKinds,
     ReportRequest,
     format_with,
-    kinds_in,
     requests_of,
+    varied_keys,
     written_out,
 )
 from rpscli.case.study.schema import MeasureScale, StudyFile, StudyParts
-from rpscli.case.text.document import Document, is_case, is_design, is_study, shown
+from rpscli.case.text.document import (
+    Document,
+    Fault,
+    Path,
+    dotted,
+    is_case,
+    is_design,
+    is_study,
+    shown,
+)
 from rpscli.case.text.files import read_text
 from rpscli.case.text.yaml_text import read_yaml
-from rpscli.errors import CaseError, stem_of
+from rpscli.errors import CaseError, listed, stem_of
 from rpscli.registry import Registry
+
+OF_HISTORIES = ("records", "scale", "perturb", "observed", "hazard")
+"""Keys of a study that only time histories have."""
+
+OF_POINTS = ("record", "scale")
+"""Axes of the product that are no case keys; reports may name them."""
+
+MOST_SYSTEMS = 200_000
+"""Each is checked as a case before anything runs, which takes a millisecond."""
+
+MOST_POINTS = 5_000_000
+"""Their results, some thirty numbers each, are in memory when reports are drawn."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,12 +61,12 @@ class Study:
 
     name: str
     source: str
-    folder: Path
+    folder: Folder
     document: Document
     file: StudyFile
     base: Document
-    base_file: Path | None
-    base_folder: Path
+    base_file: Folder | None
+    base_folder: Folder
     base_overrides: tuple[str, ...]
     axes: tuple[Axis, ...]
     sources: tuple[str, ...]
@@ -55,9 +78,17 @@ class Study:
     @property
     def scale(self) -> MeasureScale | tuple[float, ...] | None:
         """Factors or targets of the records, else the target of the case at the base."""
-        if self.file.scale is not None or self.file.analysis != "timehistory":
+        record = self.base.content.get("record")
+        target = record.get("scale_to") if isinstance(record, dict) else None
+        of_study = self.file.scale is not None or self.file.analysis != "timehistory"
+        if of_study or target is None:
             return self.file.scale
-        return _scale_of_base(self.base)
+        try:
+            section = ScaleToSection.model_validate(target)
+        except ValidationError:
+            return None  # told with the other faults of the systems
+        given = section.model_dump(exclude={"value"}, exclude_unset=True)
+        return MeasureScale.model_validate(given | {"values": target["value"]})
 
     @property
     def title(self) -> str:
@@ -65,26 +96,12 @@ class Study:
         return self.file.title or self.name
 
 
-def _scale_of_base(base: Document) -> MeasureScale | None:
-    """The target of the record of the case at the base, as a study says it."""
-    record = base.content.get("record")
-    target = record.get("scale_to") if isinstance(record, dict) else None
-    if target is None:
-        return None
-    try:
-        section = ScaleToSection.model_validate(target)
-    except ValidationError:
-        return None  # told with the other faults of the systems
-    given = section.model_dump(exclude={"value"}, exclude_unset=True)
-    return MeasureScale.model_validate(given | {"values": target["value"]})
-
-
 def parse_study(
     text: str,
     *,
     name: str,
     kinds: Registry[Any],
-    folder: Path | None = None,
+    folder: Folder | None = None,
     overrides: Sequence[str] = (),
 ) -> Study:
     """A study from its text."""
@@ -98,10 +115,22 @@ def parse_study(
         raise CaseError(
             f"{name}: this is a design, but a study is needed here; use `rps design {name}`"
         )
-    of_study, of_base = shared_out(overrides, StudyFile)
-    document = apply_overrides(document, of_study, model=StudyFile)
+    document, of_base = overridden(document, overrides, StudyFile)
     digest = hashlib.sha256(text.encode()).hexdigest()
-    return study_of(document, of_base, kinds=kinds, folder=folder or Path(), digest=digest)
+    return study_of(document, of_base, kinds=kinds, folder=folder or Folder(), digest=digest)
+
+
+def overridden(
+    document: Document, overrides: Sequence[str], model: type[StudyParts]
+) -> tuple[Document, list[str]]:
+    """A study or a design with its own overrides; those of its base, as `analysis.gravity`."""
+    own: list[str] = []
+    of_base: list[str] = []
+    for override in overrides:
+        key = override.partition("=")[0].strip()
+        known = key.split(".")[0] in fields_of(model) and not key.startswith("analysis.")
+        (own if known else of_base).append(override)
+    return apply_overrides(document, own, model=model), of_base
 
 
 def study_of(
@@ -109,29 +138,23 @@ def study_of(
     base_overrides: Sequence[str],
     *,
     kinds: Registry[Any],
-    folder: Path,
+    folder: Folder,
     digest: str,
 ) -> Study:
     """A study from its document, as `parse_study` says."""
-    asked = kinds_in(document, kinds)
-    whole = written_out(document, asked)
+    whole, asked = written_out(document, kinds)
     file = checked(format_with(asked), whole)
     reports = requests_of(whole, file)
     sources, faults, notes = sources_of(document, folder)
-    faults += [*unequal(document, file.vary), *rules.unknown_keys(document), *rules.twice(document)]
-    faults += [*rules.record_rules(document), *rules.reliability_rules(document)]
-    faults += [
-        *rules.analysis_rules(file, reports, asked),
-        *rules.fixed_faults(document, base_overrides),
-    ]
-    document.refuse(faults)
+    faults += [*unequal(document, file.vary), *key_faults(document, base_overrides)]
+    document.refuse([*faults, *_analysis_faults(document, file, reports, asked)])
     axes = with_linked(axes_of(document, file.vary), file.linked, document)
     observed = read_observed(file.observed, folder, axes, document)
-    document.refuse(rules.report_rules(document, file, axes, reports, asked))
-    document.refuse(rules.size_faults(file, axes, sources))
+    document.refuse(_report_faults(document, file, axes, reports, asked))
+    document.refuse(_size_faults(file, axes, sources))
     base, base_file = _base(document, folder)
     return Study(
-        name=stem_of(Path(document.name.strip("<>"))) or "study",
+        name=stem_of(Folder(document.name.strip("<>"))) or "study",
         source=document.name,
         folder=folder,
         document=document,
@@ -149,18 +172,7 @@ def study_of(
     )
 
 
-def shared_out(overrides: Sequence[str], model: type[StudyParts]) -> tuple[list[str], list[str]]:
-    """Overrides of a study or a design, and those of its base, as `analysis.gravity`."""
-    own: list[str] = []
-    of_base: list[str] = []
-    for override in overrides:
-        key = override.partition("=")[0].strip()
-        known = key.split(".")[0] in fields_of(model) and not key.startswith("analysis.")
-        (own if known else of_base).append(override)
-    return own, of_base
-
-
-def _base(document: Document, folder: Path) -> tuple[Document, Path | None]:
+def _base(document: Document, folder: Folder) -> tuple[Document, Folder | None]:
     """The case at the base, and its file."""
     written = document.content["base"]
     if isinstance(written, dict):
@@ -177,3 +189,112 @@ def _base(document: Document, folder: Path) -> tuple[Document, Path | None]:
     if "rps" not in base.content and not is_case(base):
         raise CaseError(f"{here} has neither `rps` nor `superstructure`; name a case")
     return base, path
+
+
+def varying(document: Document) -> list[tuple[str, Path]]:
+    """Every key that varies or is sampled, in studies and designs, and where it stands."""
+    vary = document.content.get("vary")
+    axes: list[Path] = [("vary", i) for i in range(len(vary) if isinstance(vary, list) else 0)]
+    owners = (*axes, ("sample", "ranges"), ("variables",), ("linked",))
+    written = ((owner, document.at(owner)) for owner in owners)
+    return [(key, (*owner, key)) for owner, of in written if isinstance(of, dict) for key in of]
+
+
+def key_faults(document: Document, overrides: Sequence[str]) -> Iterator[Fault]:
+    """Keys that cannot vary: unknown ones, said twice, fixed by an override or by the study."""
+    seen: dict[str, Path] = {}
+    for key, path in varying(document):
+        if key in seen:
+            axis = " in another axis" if path[0] == seen[key][0] == "vary" else ""
+            text = f"{key} varies already{axis}{document.where(seen[key])}; remove one of them"
+            yield Fault(path, text, at_key=True)
+        seen[key] = path
+    fixed = {text: text.partition("=")[0].strip() for text in overrides}
+    for key, path in seen.items():
+        inside: Path = tuple(part for part in key.split(".") if not part.isdecimal())
+        if not inside or field_at(CaseFile, inside) is None:
+            yield Fault(path, unknown_key(CaseFile, inside or (key,))[0].text, at_key=True)
+        if others := sorted(other for other in seen if other.startswith(f"{key}.")):
+            text = f"{key} varies as a whole; {listed(others, 'and')} inside it must not vary too"
+            yield Fault(path, text, at_key=True)
+        for text, name in fixed.items():
+            if f"{key}.".startswith(f"{name}.") or name.startswith(f"{key}."):
+                message = f"{key} varies in the study; --set {text} cannot fix it"
+                yield Fault(path, message, at_key=True)
+        # The record is said once: by the study's list, or by the case and its varied keys.
+        for owner, of in (("records", key.split(".")[0]), ("scale", key)):
+            if of in {"record", f"record.{owner}"} and document.has((owner,)):
+                where = document.where((owner,))
+                message = f"{key} must not vary beside {owner}{where}; remove one of them"
+                yield Fault(path, message, at_key=True)
+
+
+def _analysis_faults(
+    document: Document, file: StudyFile, requests: tuple[ReportRequest, ...], kinds: ReportKinds
+) -> Iterator[Fault]:
+    """A rate without a hazard; keys and reports without a meaning with a modal or pushover one."""
+    for key in ("annual_rate", "probability_in_50_years"):
+        if document.has(("limits", key)) and not document.has(("hazard",)):
+            text = f"limits.{key} needs a hazard curve; add `hazard: {{file: FILE, measure: PGV}}`"
+            yield Fault(("limits", key), text, at_key=True)
+    if file.analysis == "timehistory":
+        return
+    for key in OF_HISTORIES:
+        if key in file.model_fields_set:
+            text = f"{key} has no meaning with analysis: {file.analysis}; remove it"
+            yield Fault((key,), text, at_key=True)
+    suitable = listed(name for name, kind in kinds.items() if file.analysis in kind.analyses)
+    for request in requests:
+        if file.analysis not in (needed := kinds[request.kind].analyses):
+            text = f"the report {request.kind} needs analysis: {listed(needed)}"
+            yield Fault(request.path, f"{text}; {suitable} suits {file.analysis}")
+
+
+def _report_faults(
+    document: Document,
+    file: StudyFile,
+    axes: Sequence[Axis],
+    requests: tuple[ReportRequest, ...],
+    kinds: ReportKinds,
+) -> Iterator[Fault]:
+    """Keys that reports name must vary; each kind has rules of its own."""
+    known = [*(key for axis in axes for key in axis.keys), *OF_POINTS]
+    for request in requests:
+        faults = [
+            Fault(
+                path := (*request.path, request.kind, *option),
+                f"{dotted(path)} = {key} does not vary in this study; use {listed(known)}",
+            )
+            for option, key in varied_keys(request.options)
+            if key not in known
+        ]
+        kind = kinds[request.kind]
+        if not faults and file.analysis in kind.analyses:
+            faults.extend(kind.check(document, axes, request))
+        yield from faults
+
+
+def _size_faults(file: StudyFile, axes: Sequence[Axis], sources: Sequence[str]) -> Iterator[Fault]:
+    """A study that is too large, at its largest part."""
+    systems: dict[Path, int] = {("vary", i): len(axis.rows) for i, axis in enumerate(axes)}
+    if file.sample is not None:
+        systems["sample", "size"] = file.sample.size
+    others: dict[Path, int] = {("records",): max(len(sources), 1)}
+    if file.scale is not None:
+        values = file.scale.values if isinstance(file.scale, MeasureScale) else file.scale
+        others["scale",] = len(values)
+    if file.perturb is not None:
+        others["perturb", "members"] = file.perturb.members
+    for parts, most, name in (
+        (systems, MOST_SYSTEMS, "systems"),
+        (systems | others, MOST_POINTS, "points"),
+    ):
+        if (count := math.prod(parts.values())) > most:
+            product = " x ".join(str(part) for part in parts.values() if part > 1)
+            largest = max(parts, key=lambda path: parts[path])
+            yield Fault(
+                largest,
+                f"the study has {count} {name} ({product}), which must not be more than {most};"
+                " use fewer values, or several studies",
+            )
+            return
