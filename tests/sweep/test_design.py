@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import itertools
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from rpscli.case.study.schema import PerturbSection, RangeSection, SampleSection
-from rpscli.model.impact import ImpactLaw
 from rpscli.records.loading import load_record
 from rpscli.records.measures import intensity_measures
 from rpscli.records.spectrum import spectral_acceleration
@@ -21,8 +19,6 @@ from sweep.small_studies import STUDY, Make
 
 PERTURB = ("scale: [", "perturb: {members: 4, seed: 7}\nscale: [")
 SAMPLE = ("scale: [", "sample: {size: 8, ranges: {podium.cap_beam_mass_ratio: [5, 10]}}\nscale: [")
-
-CAP, LOSS = "podium.cap_beam_mass_ratio: [5, 10]", "podium.impact.loss: [0.2, 1.4]"
 
 
 def test_the_last_axis_runs_fastest(study_of: Make) -> None:
@@ -62,19 +58,6 @@ def test_samples_are_one_more_axis_and_repeat(study_of: Make) -> None:
     gamma = [first[i * first.points_of_system].values[-1] for i in range(8)]
     assert len(set(gamma)) == 8
     assert all(5.0 < value < 10.0 for value in gamma)
-
-
-def test_the_loss_at_impacts_can_be_varied_and_sampled(study_of: Make) -> None:
-    varied = lay_out(
-        study_of(STUDY, ("podium.bearing.curvature_ratio: [critical,", "podium.impact.loss: [1.2,"))
-    )
-    sampled = lay_out(study_of(STUDY, (SAMPLE[0], SAMPLE[1].replace(CAP, LOSS))))
-    for design in (varied, sampled):
-        key = design.plan.keys.index("podium.impact.loss")
-        for point in design:
-            structure, kappa = design.system(point.system).structure, point.values[key]
-            edge = replace(structure, impact_law=ImpactLaw()).restitution
-            assert 1.0 - structure.restitution == pytest.approx(kappa * (1.0 - edge), rel=1e-12)
 
 
 def test_distributions_have_the_moments_that_are_asked_for() -> None:
@@ -129,20 +112,6 @@ def test_sa_is_taken_at_the_first_period_of_each_system(study_of: Make) -> None:
         assert found == pytest.approx(2.0, rel=1e-9)
         periods.add(point.period)
     assert len(periods) == 2
-
-
-def test_the_record_of_the_case_serves_where_the_study_has_none(study_of: Make) -> None:
-    begin, end = STUDY.index("records:"), len(STUDY)
-    own = 'base: {record: {source: "pulse:sine?amplitude=1&period=1", scale: 3}, '
-    text = STUDY[:begin] + "".join(STUDY[end:])
-    base = "rps: 1, superstructure: {storeys: 0}, podium: {bearing: {semi_diagonal: 1.5}, "
-    frame = own + base + "cap_beam_mass: 1000, cap_beam_mass_ratio: 10}}"
-    design = lay_out(study_of(text, ("base: base.yaml", frame)))
-    assert len(design) == 6
-    point = design[0]
-    assert point.record is not None
-    assert point.record.source == "pulse:sine?amplitude=1&period=1"
-    assert point.scale == 3.0
 
 
 def test_keys_do_not_depend_on_how_a_study_arrives_at_a_point(study_of: Make) -> None:

@@ -23,7 +23,6 @@ from rpscli.sweep.fits.lognormal import (
     band,
     lognormal_fit,
     probit_fit,
-    separated,
 )
 from sweep.made_up import BROKEN, RHO, Place, Stored, cells, fallen, made, stored
 from sweep.small_studies import WITHOUT_RECORDS, Make
@@ -189,15 +188,6 @@ def test_the_penalised_fit_is_the_maximum_of_its_objective() -> None:
 
 
 @pytest.mark.parametrize(
-    ("flags", "apart"),
-    [([0, 0, 1, 1], True), ([1, 1, 0, 0], True), ([0, 1, 0, 1], False), ([0, 0, 0, 0], True)],
-)
-def test_separation_is_seen(flags: list[int], apart: bool) -> None:
-    x, y = np.arange(4.0), np.array(flags, dtype=bool)
-    assert separated(x, y, np.ones((1, 4))).tolist() == [apart]
-
-
-@pytest.mark.parametrize(
     ("flags", "note"),
     [
         ([0, 0, 0, 0], "larger intensities"),
@@ -212,17 +202,6 @@ def test_hopeless_data_get_no_curve_but_a_reason(flags: list[int], note: str) ->
     assert found.note is not None
     assert note in found.note
     assert math.isnan(found.median)
-
-
-def test_a_fit_that_does_not_converge_is_no_fit(monkeypatch: pytest.MonkeyPatch) -> None:
-    im, y = drawn(40)
-    assert fit(im, y, resamples=0).method == "maximum likelihood"
-    monkeypatch.setattr("rpscli.sweep.fits.lognormal.MOST_STEPS", 2)
-    found = fit(im, y, resamples=0)
-    assert found.method == "none"
-    assert found.note is not None
-    assert "did not converge" in found.note
-    assert np.isnan([found.median, found.beta, *found.curve]).all()
 
 
 def test_bands_leave_out_bootstrap_samples_without_a_fit() -> None:

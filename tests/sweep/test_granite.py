@@ -72,33 +72,6 @@ def observed_rows(granite: Path) -> list[dict[str, str]]:
     return csv_rows("outcomes_even.csv", granite)
 
 
-@pytest.mark.parametrize("test", [422, 434])
-def test_text_files_become_the_motions(granite: Path, convert: ModuleType, test: int) -> None:
-    motions = motions_of(granite)
-    quantum = float(motions[f"s{test}"])
-    expected = motions[f"t{test}"] * quantum
-    found = convert.motion(granite / "raw" / f"Test{test}.txt")
-    assert found.dt == 0.005
-    # The stored motions are whole multiples of the quantum.
-    np.testing.assert_allclose(found.acceleration, expected, rtol=0, atol=0.51 * quantum)
-
-
-def test_the_folder_is_converted_with_the_measured_outcomes(
-    granite: Path, convert: ModuleType, tmp_path: Path
-) -> None:
-    pytest.importorskip("openpyxl")
-    assert convert.convert(granite / "raw", tmp_path) == 2
-    rows = (tmp_path / "observed.csv").read_text(encoding="utf-8").splitlines()
-    seen = {row["test"]: row for row in observed_rows(granite)}
-    expected = [
-        f"Test{test},specimen {n},{seen[test][f'specimen_{n}_overturned']}"
-        for test in ("422", "434")
-        for n in (1, 2)
-    ]
-    assert rows == ["record,title,overturned", *expected]
-    assert len(list((tmp_path / "motions").glob("*.at2"))) == 2
-
-
 @pytest.mark.evidence("free-standing blocks", "measured")
 def test_the_model_tells_more_outcomes_than_thresholds(
     granite: Path, sweep_json: SweepJson, workplace: Path

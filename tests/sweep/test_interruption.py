@@ -9,7 +9,7 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import pytest
@@ -145,18 +145,6 @@ def test_a_ctrl_c_given_to_another_thread_is_heard(
     assert (finish.computed, len(begin.pending)) == (9, POINTS)
 
 
-def test_progress_counts_and_foresees(study_of: Make, workplace: Path) -> None:
-    layout = lay_out(study_of())
-    seen: list[Progress] = []
-    with Store(workplace) as store:
-        begin = start(layout, store)
-        finish = run(layout, begin, store, Engine(layout.context, 2), seen.append)
-    assert finish.computed == POINTS
-    assert [p.done for p in seen] == sorted(p.done for p in seen)
-    assert seen[-1].done == seen[-1].total == 36
-    assert seen[-1].seconds_left == 0.0
-
-
 def test_equal_points_are_computed_once(study_of: Make, workplace: Path) -> None:
     layout = lay_out(study_of(STUDY, ("[0.5, 1.0]", "[1.0, 1.0]")))
     with Store(workplace) as store:
@@ -168,14 +156,3 @@ def test_equal_points_are_computed_once(study_of: Make, workplace: Path) -> None
     assert rotation.shape == (36,)
     assert rotation[0] == rotation[1]
     assert MISSING not in found.outcomes
-
-
-def test_an_error_of_the_engine_is_not_swallowed(study_of: Make, workplace: Path) -> None:
-    layout = lay_out(study_of())
-
-    def broken() -> Iterator[object]:
-        yield object()
-
-    engine = Engine(layout.context, 2)
-    with pytest.raises(TypeError):
-        list(engine.outcomes(broken()))  # type: ignore[arg-type]

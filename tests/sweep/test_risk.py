@@ -13,7 +13,6 @@ from scipy.special import ndtr
 
 from rpscli.case.conditions import parse_condition
 from rpscli.errors import CaseError
-from rpscli.report.study.risk import probability
 from rpscli.report.study.statistics import verdict_lines
 from rpscli.sweep.fits.hazard import (
     Hazard,
@@ -135,10 +134,6 @@ def test_rates_of_the_motion_are_those_of_the_curve() -> None:
     assert found == pytest.approx(expected, rel=1e-12)
 
 
-def test_ten_percent_in_fifty_years_is_once_in_475() -> None:
-    assert probability(1.0 / 474.561, 50.0) == pytest.approx(0.1, rel=1e-5)
-
-
 @pytest.mark.parametrize("zeros", [0, 2])
 def test_units_comments_and_rates_of_zero_of_a_hazard_file(tmp_path: Path, zeros: int) -> None:
     path = tmp_path / "hazard.csv"
@@ -257,22 +252,6 @@ def test_margins_and_dispersions_are_those_of_fema_p695(
         assert words in " ".join(shown.split())
     refused = sweep("study.yaml", "-o", "out", study=text.replace("60 cm/s", "60 cm"))
     assert "at: is a length, but must be a velocity" in refused.stderr
-
-
-def test_values_that_are_lists_are_groups_too(workplace: Path, sweep_json: SweepJson) -> None:
-    """Devices are lists of mappings, which cannot be keys of a dictionary."""
-    devices = "vary: [podium.devices: [[], [{kind: friction, force: 1 kN}]]]\n"
-    text = MEASURED[: MEASURED.index("vary:")] + devices + MEASURED[MEASURED.index("records:") :]
-    options = "limits: {rotation_ratio: 0.2}"
-    risk = f"risk: {{hazard: {{file: hazard.csv, measure: PGV}}, {options}}}"
-    text += f"reports: [fragility: {{{options}}}, {risk}]\n"
-    (workplace / "hazard.csv").write_text(HEADER + "1,1\n10,0.1\n", encoding="utf-8")
-    found = sweep_json("study.yaml", study=text)
-    rows = found["reports"]["fragility"]["rows"]
-    assert [row["podium.devices"] for row in rows] == 2 * [
-        [],
-        [{"kind": "friction", "force": "1 kN"}],
-    ]
 
 
 @pytest.mark.parametrize(

@@ -6,8 +6,6 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from rpscli.report.study.against import RotationOptions, rotation
 from rpscli.report.study.heights import StoreyShearOptions, storey_shear, unlike_buildings
@@ -17,7 +15,6 @@ from rpscli.report.study.scatter import DemandOptions, ScatterOptions, demand, s
 from rpscli.report.study.table import OVERTURNING, TABLE, OverturningOptions, TableOptions
 from rpscli.sweep.fits.bilinear import bilinear_fit
 from rpscli.sweep.points import lay_out
-from rpscli.sweep.table import groups
 from sweep.made_up import (
     ALPHA,
     BROKEN,
@@ -28,43 +25,26 @@ from sweep.made_up import (
     fallen,
     fixed_base,
     made,
-    place,
     stored,
 )
 from sweep.small_studies import STUDY, WITHOUT_RECORDS, Make
 
 
-@settings(max_examples=30)
-@given(
-    start=st.floats(0.5, 2.0),
-    slope=st.floats(2.0, 40.0),
-    knee=st.floats(0.25, 0.75),
-    after=st.floats(-0.5, 1.0),
-    count=st.integers(30, 200),
-)
-def test_the_bilinear_fit_recovers_a_made_curve(
-    start: float, slope: float, knee: float, after: float, count: int
-) -> None:
-    x = np.random.default_rng(1).uniform(0.0, 1.0, count)
-    y = start + slope * np.minimum(x, knee) + after * np.maximum(x - knee, 0.0)
-    fit = bilinear_fit(x, y)
-    assert fit is not None
-    assert fit.break_x == pytest.approx(knee, abs=1e-7)
-    assert fit.break_y == pytest.approx(start + slope * knee, rel=1e-7)
-    assert fit.slope == pytest.approx(slope, rel=1e-7)
-    assert fit.slope_after == pytest.approx(after, abs=1e-6)
-    assert fit(np.array([0.0]))[0] == pytest.approx(start, rel=1e-7)
-
-
-def test_no_other_break_fits_noisy_data_better() -> None:
-    random = np.random.default_rng(3)
-    x = random.uniform(0.0, 1.0, 80)
-    y = 1.2 + 5.0 * np.minimum(x, 0.3) + 0.2 * random.normal(size=80)
+@pytest.mark.parametrize("seed", range(3))
+def test_no_other_break_fits_noisy_data_better(seed: int) -> None:
+    random = np.random.default_rng(seed)
+    x, (slope, knee, after) = random.uniform(0.0, 1.0, 80), random.uniform(0.2, 0.8, 3)
+    y = 1.2 + 9.0 * slope * np.minimum(x, knee) + after * np.maximum(x - knee, 0.0)
+    exact = bilinear_fit(x, y)
+    assert exact is not None
+    assert (exact.break_x, exact.break_y) == pytest.approx((knee, 1.2 + 9.0 * slope * knee))
+    assert (exact.slope, exact.slope_after) == pytest.approx((9.0 * slope, after))
+    y += 0.2 * random.normal(size=80)
     fit = bilinear_fit(x, y)
     assert fit is not None
     best = float(np.sum((y - fit(x)) ** 2))
-    for knee in np.linspace(np.sort(x)[3], np.sort(x)[-4], 300):
-        columns = np.column_stack([x**0, np.minimum(x, knee), np.maximum(x - knee, 0.0)])
+    for at in np.linspace(np.sort(x)[3], np.sort(x)[-4], 300):
+        columns = np.column_stack([x**0, np.minimum(x, at), np.maximum(x - at, 0.0)])
         squares = np.sum((y - columns @ np.linalg.lstsq(columns, y, rcond=None)[0]) ** 2)
         assert squares >= best * (1.0 - 1e-12)
 
@@ -72,21 +52,6 @@ def test_no_other_break_fits_noisy_data_better() -> None:
 def test_too_few_points_have_no_bilinear_fit() -> None:
     assert bilinear_fit(np.arange(7.0), np.arange(7.0)) is None
     assert bilinear_fit(np.repeat([1.0, 2.0, 3.0], 10), np.zeros(30)) is None
-
-
-def test_groups_cover_the_study_once_in_its_order(study_of: Make) -> None:
-    layout = lay_out(study_of())
-    by_scale = groups(layout, ["scale", RHO])
-    assert [group.values for group in by_scale] == [
-        (scale, rho) for scale in (0.5, 1.0) for rho in ("critical", 0.5, 0)
-    ]
-    joined = np.sort(np.concatenate([group.points for group in by_scale]))
-    assert joined.tolist() == list(range(36))
-    assert all(
-        place(layout, n)["scale"] == group.values[0] for group in by_scale for n in group.points
-    )
-    pair = groups(layout, [ALPHA, "podium.bearing.wedge_slenderness"])
-    assert [group.values for group in pair] == [(0.10, 0.20), (0.15, 0.30)]
 
 
 def test_an_overturning_table_over_lists_of_devices(study_of: Make) -> None:
@@ -236,19 +201,6 @@ def test_ida_fractiles_count_overturned_points_as_infinite(study_of: Make) -> No
     assert found["overturned"][:2] == [0, 2]
 
 
-def test_lines_join_the_means_of_what_stood(study_of: Make) -> None:
-    def answer(at: Place) -> Stored:
-        falls = at["record"] == 2
-        return fallen(falls, max_rotation=1e3 if falls else at["scale"])
-
-    options = LinesOptions(x="scale", result=("max_rotation",), panels=(ALPHA,))
-    found = cells(lines(made(study_of, answer), options))
-    assert len(found["value"]) == 2 * 3 * 2
-    assert (found[RHO][:2], found["scale"][:2], found["value"][:2]) == (
-        ["critical"] * 2, [0.5, 1.0], [0.5, 1.0]
-    )  # fmt: skip
-
-
 def test_lines_go_over_si_values_of_what_was_written_with_units(study_of: Make) -> None:
     sizes = (f"{RHO}: [critical, 0.5, 0]", "podium.bearing.semi_diagonal: [1500 mm, 2.0, 2.5 m]")
     options = LinesOptions(x="podium.bearing.semi_diagonal", result=("max_rotation",), series=())
@@ -266,11 +218,6 @@ def test_lines_draw_one_curve_for_each_point_where_results_are_lists(study_of: M
     found = cells(lines(results, options))
     assert found["value"][:6] == [2.0, 0.0, 2.0, 1.0, 2.0, 2.0]
     assert found["curve.displacement"][:2] == [0.0, 1.0]
-
-
-def test_missing_points_are_neither_counted_nor_forgotten(study_of: Make) -> None:
-    results = made(study_of, lambda at: stored() if at["number"] else None)
-    assert results.table.failed.tolist() == [True] + [False] * 35
 
 
 @pytest.mark.parametrize(
@@ -301,10 +248,3 @@ def test_lines_say_what_stands_for_the_records(
     # 1, 1, 1, 2, 2, 2 and three overturned; 1, 1, 2, 2 and five overturned
     assert (shown["counted"][:2], shown["overturned"][:2]) == ([6, 4], [3, 5])
     assert [float(value) for value in shown["value"][:2]] == values
-
-
-def test_lines_keep_intensities_apart(study_of: Make) -> None:
-    options = LinesOptions(x=ALPHA, result=("max_rotation",))
-    found = lines(made(study_of, lambda _: stored()), options)
-    assert {RHO, "scale"} <= set(cells(found))
-    assert not list(found.notes)

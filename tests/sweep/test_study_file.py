@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
 from paper_structures import building, podium, stillness
 
@@ -11,8 +9,7 @@ from rpscli.analyses.kernels.history import MOST_STEPS
 from rpscli.analyses.kernels.systems import most_steps
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
-from rpscli.case.json_schema import json_schema_of
-from rpscli.case.study.schema import MeasureScale, StudyFile
+from rpscli.case.study.schema import MeasureScale
 from rpscli.case.study.study import MOST_POINTS, MOST_SYSTEMS, parse_study
 from rpscli.errors import CaseError
 from rpscli.model.superstructure import RayleighDamping
@@ -26,20 +23,6 @@ def refusal(make: Make, *changes: tuple[str, str], overrides: tuple[str, ...] = 
     with pytest.raises(CaseError) as refused:
         lay_out(make(STUDY, *changes, overrides=overrides))
     return str(refused.value)
-
-
-def test_a_study_reads_its_case_axes_and_records(study_of: Make) -> None:
-    study = study_of()
-    assert study.title == "Test [study]"
-    assert [axis.keys for axis in study.axes] == [
-        ("podium.bearing.slenderness", "podium.bearing.wedge_slenderness"),
-        ("podium.bearing.curvature_ratio",),
-    ]
-    assert study.axes[0].rows == ((0.10, 0.20), (0.15, 0.30))
-    assert study.sources == tuple(
-        f"synthetic:?pga=0.5g&duration=4&dt=0.02&seed={seed}" for seed in (1, 2, 3)
-    )
-    assert study.base_file == Path("base.yaml")
 
 
 def test_all_faults_of_keys_are_told_together_then_those_between_keys(study_of: Make) -> None:
@@ -75,13 +58,6 @@ def test_what_is_asked_for_and_cannot_be_is_told(study_of: Make) -> None:
     assert "varies in the study" in text
     with pytest.raises(CaseError, match=r"did you mean study\.yaml"):
         study_file("stduy.yaml")
-
-
-def test_the_format_has_a_json_schema() -> None:
-    keys = json_schema_of(StudyFile)["properties"]
-    assert {"vary", "records", "scale", "sample", "perturb", "reports"} <= keys.keys()
-    for report in REPORTS.values():
-        assert json_schema_of(report.options)["additionalProperties"] is False
 
 
 SLENDERNESS = "podium.bearing.slenderness"

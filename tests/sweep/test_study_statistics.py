@@ -12,12 +12,9 @@ import pytest
 from scipy.stats import beta, binom
 
 from rpscli.case.conditions import Condition
-from rpscli.report.study.shown import summary_tables
 from rpscli.report.study.statistics import summary_columns, summary_document
-from rpscli.report.table import Table as ShownTable
 from rpscli.sweep.points import lay_out
 from rpscli.sweep.statistics.fractiles import fractiles, share
-from rpscli.sweep.statistics.grouping import own_keys, pooled
 from rpscli.sweep.statistics.summary import Summary, scale_notes, summary
 from rpscli.sweep.statistics.verdicts import Verdict, decisive, judge, judged
 from rpscli.sweep.table import Table
@@ -92,14 +89,6 @@ def test_an_overturned_history_is_larger_than_any_demand(study_of: Make) -> None
     assert spread_of(result, 3, "rotation_ratio") == pytest.approx((0.3, 0.5, 0.5))
 
 
-def test_tables_show_median_fractile_and_worst(study_of: Make) -> None:
-    _, result = judged_study(study_of)
-    tables = [part for part in summary_tables(result) if isinstance(part, ShownTable)]
-    cells = [cell for table in tables for row in table.rows for cell in row if "/" in cell]
-    assert "0.300 / - / - (0.100 to 0.300)" in cells  # three of five stand
-    assert {cell.count("/") for cell in cells} == {2}
-
-
 def test_an_overturned_history_is_less_than_any_least_force(study_of: Make) -> None:
     _, result = judged_study(study_of)
     # Overturned, overturned, 100, 200, 300 kN: the third of five is the median.
@@ -124,18 +113,6 @@ def test_the_reduction_is_against_the_fixed_base_at_the_same_scale(study_of: Mak
     name = "fixed_base_ratio"
     assert spread_of(result, 0, name) == pytest.approx((0.25, 0.25, 0.25))
     assert spread_of(result, 5, name)[0] == pytest.approx(0.25)
-
-
-def test_what_is_pooled_is_said(study_of: Make) -> None:
-    layout = lay_out(study_of(STUDY + "perturb: {members: 4}\n"))
-    assert own_keys(layout) == (ALPHA, RHO, "scale")
-    assert own_keys(layout, (RHO, "scale")) == (ALPHA,)
-    assert own_keys(layout, ("podium.bearing.wedge_slenderness",)) == (RHO, "scale")
-    assert pooled(layout, (RHO,)) == (f"2 values of {ALPHA}", "2 intensities", "4 members")
-    assert pooled(layout, (ALPHA, RHO, "scale")) == ("4 members",)
-    single = lay_out(study_of(STUDY, ("[0.5, 1.0]", "[1.0]")))
-    assert own_keys(single) == (ALPHA, RHO)
-    assert pooled(single, (ALPHA, RHO)) == ()
 
 
 @pytest.mark.evidence("statistics and fragilities", "exact")
