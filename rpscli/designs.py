@@ -20,7 +20,7 @@ from rpscli.report.files import OutputFolder
 from rpscli.report.limits import VERDICT, verdict_texts
 from rpscli.report.study.statistics import verdict_columns, verdict_document, verdict_lines
 from rpscli.report.table import Heading, Part, Table, csv_text
-from rpscli.studies import Collected, Study, StudyResult
+from rpscli.studies import Collected, Study, StudyResult, collected, error_of
 from rpscli.sweep.design import Answer, Search
 from rpscli.sweep.points import StudyPoints, lay_out
 from rpscli.sweep.store import Store
@@ -54,7 +54,7 @@ class Design:
     def error(self) -> RpsError | None:
         """Points that failed, no design that passes, or a validation that failed."""
         # Designs that exceed limits are what was looked for, not what went wrong.
-        if error := self.run.error(self.found, limits=False):
+        if error := error_of(self.run, self.found, limits=False):
             return error
         if self.answer.best is None:
             return LimitExceeded(nothing_passes(self.answer))
@@ -126,7 +126,7 @@ def find_design(
             validated = computed("validation of the best design", unseen)
         judged = computed("", lay_out(task.study_of(best)))
         run = computed("", lay_out(task.study_of(answer.values[answer.valid])))
-        found = run.collected(look)
+        found = collected(run, look)
         folder.add_all(found.files.items())
         folder.add("designs.csv", csv_text(design_columns(answer)))
         if validated is not None:

@@ -18,9 +18,9 @@ from __future__ import annotations
 import json
 import warnings
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from hashlib import sha256
 from pathlib import Path
@@ -84,9 +84,6 @@ if TYPE_CHECKING:
 BASE = "base.yaml"
 FAILURES_SHOWN = 10
 
-Watch = Callable[[Start], AbstractContextManager[Callable[[Progress], None]]]
-"""Is told where a run begins; what it gives is open during the run, and is told how far it is."""
-
 
 class StudyInterrupted(KeyboardInterrupt):
     """Somebody stopped a study; what is stored stays."""
@@ -147,10 +144,8 @@ class Study(Shown):
     ----------
     layout
         Its points, each made when it is asked for.
-    overrides
-        What was put over the file.
-    conditions
-        Limits besides those of study and case.
+    overrides, conditions
+        What was put over the file; limits besides those of study and case.
     """
 
     layout: StudyPoints
@@ -205,10 +200,8 @@ class Study(Shown):
 
         Parameters
         ----------
-        place
-            The folder.
-        command
-            That which writes there.
+        place, command
+            The folder, and that which writes there.
         force
             Replace results of another study, or of another command.
         """
@@ -230,37 +223,27 @@ class Study(Shown):
 
     def run(
         self,
-        folder: Path | str | Store | None = None,
+        folder: Path | str | None = None,
         *,
         jobs: int | None = None,
         scheduler: str | None = None,
         fresh: bool = False,
         retry_failed: bool = False,
         progress: Callable[[Progress], None] = lambda _: None,
-        watch: Watch | None = None,
-        announce: Callable[[], None] = lambda: None,
     ) -> StudyResult:
         """Compute what is not stored yet, and store each batch of points as it ends.
 
         Parameters
         ----------
         folder
-            Of the store, which `rps sweep` reads and continues, or the store; without one the
-            points are stored in a temporary folder that ends with the result.
-        jobs
-            Threads; all cores by default.
-        scheduler
-            Address of a Dask scheduler, in place of threads.
-        fresh
-            Discard stored results.
-        retry_failed
-            Recompute failed points.
+            Of the store, which `rps sweep` reads and continues; without one the points are stored
+            in a temporary folder that ends with the result.
+        jobs, scheduler
+            Threads, all cores by default; address of a Dask scheduler, in place of threads.
+        fresh, retry_failed
+            Discard stored results, or recompute failed points.
         progress
             Is told how far it is.
-        watch
-            Is told where it begins, before `progress`, in place of which it may give another.
-        announce
-            Says that points under way will end after a first Ctrl-C.
 
         Raises
         ------
@@ -269,36 +252,48 @@ class Study(Shown):
         KeyboardInterrupt
             After Ctrl-C; what is stored stays, and the same call goes on from there.
         """
-        if jobs is not None and not 0 < jobs <= MOST_JOBS:
-            raise UsageError(f"jobs = {jobs} must be a number of threads from 1 to {MOST_JOBS}")
-        keeper = None
-        if folder is None:
-            keeper = _Temporary()
-            folder = keeper.place
-        if isinstance(folder, Store):
-            store = folder
-        else:
-            self.output(Path(folder))
-            store = Store(Path(folder), fresh=fresh)
-        layout, jobs = self.layout, jobs or available_cores()
-        with store:
-            begin = start(layout, store, retry_failed=retry_failed)
-            done = Progress(len(self), begin.kept, 0, 0, 0.0)
-            with watch(begin) if watch else nullcontext(progress) as report:
-                store.note(**begin.facts)
-                try:
-                    if begin.pending:
-                        engine = Engine(layout.context, jobs, scheduler)
-                        done = run(layout, begin, store, engine, report, announce)
-                    if done.computed < len(begin.pending):
-                        raise KeyboardInterrupt  # noqa: TRY301 -- told below
-                except KeyboardInterrupt:
-                    known = store.outcomes()
-                    stored = sum(key in known for key in begin.keys)
-                    raise StudyInterrupted(stored, len(self), store.path) from None
-            table = Table.of(layout, partial(store.results, begin.keys))
-            results = StudyResults(table, begin.keys, store, jobs)
-        return StudyResult(self, results, begin, done, keeper)
+        keeper = _Temporary() if folder is None else None
+        place = Path(keeper.place if keeper else folder or "")
+        self.output(place)
+        how: dict[str, Any] = {"jobs": jobs, "scheduler": scheduler, "retry_failed": retry_failed}
+        result = run_in(Store(place, fresh=fresh), self, lambda _: nullcontext(progress), **how)
+        return replace(result, _keeper=keeper)
+
+
+def run_in(
+    store: Store,
+    study: Study,
+    watch: Callable[[Start], AbstractContextManager[Callable[[Progress], None]]],
+    announce: Callable[[], None] = lambda: None,
+    *,
+    jobs: int | None = None,
+    scheduler: str | None = None,
+    retry_failed: bool = False,
+) -> StudyResult:
+    """Run a study in a store. `watch` is told where it begins; what it gives is told how far it is.
+
+    `announce` says that points under way will end after a first Ctrl-C.
+    """
+    if jobs is not None and not 0 < jobs <= MOST_JOBS:
+        raise UsageError(f"jobs = {jobs} must be a number of threads from 1 to {MOST_JOBS}")
+    layout, jobs = study.layout, jobs or available_cores()
+    with store:
+        begin = start(layout, store, retry_failed=retry_failed)
+        done = Progress(len(study), begin.kept, 0, 0, 0.0)
+        with watch(begin) as report:
+            store.note(**begin.facts)
+            try:
+                if begin.pending:
+                    engine = Engine(layout.context, jobs, scheduler)
+                    done = run(layout, begin, store, engine, report, announce)
+                if done.computed < len(begin.pending):
+                    raise KeyboardInterrupt  # noqa: TRY301 -- told below
+            except KeyboardInterrupt:
+                known = store.outcomes()
+                stored = sum(key in known for key in begin.keys)
+                raise StudyInterrupted(stored, len(study), store.path) from None
+        table = Table.of(layout, partial(store.results, begin.keys))
+        return StudyResult(study, StudyResults(table, begin.keys, store, jobs), begin, done)
 
 
 class Failure(NamedTuple):
@@ -333,14 +328,10 @@ class StudyResult(Shown):
 
     Parameters
     ----------
-    study
-        What was run.
-    results
-        Its points as a table.
-    begin
-        What was stored before.
-    done
-        What was computed.
+    study, results
+        What was run, and its points as a table.
+    begin, done
+        What was stored before, and what was computed.
     """
 
     study: Study
@@ -452,14 +443,19 @@ class StudyResult(Shown):
     @property
     def notes(self) -> list[str]:
         """Warnings about statistics and reports: what was pooled or left out."""
-        return self.collected(Look(())).notes
+        return collected(self, Look(())).notes
 
     def report(self, name: str) -> Found:
         """Contents of a report that the study asks for, by the name of its files.
 
         Its `tables` are the columns of its CSV files, by what follows the name.
         """
-        return self._made(self._request(name))
+        known = self.study.reports
+        if name not in known:
+            have = f"it has {', '.join(known)}" if known else "it has none"
+            raise UsageError(f"{name} is not a report of the study; {have}")
+        with self.results.store:
+            return REPORTS[known[name].kind].make(self.results, known[name].options)
 
     def draw(self, name: str, target: Any = None) -> Target:
         """The figure of a report.
@@ -472,25 +468,10 @@ class StudyResult(Shown):
             A figure, a part of one or axes of matplotlib to be drawn into; axes give their place to
             a part of their figure. A figure of its own by default.
         """
-        request = self._request(name)
-        found = self._made(request)
+        found = self.report(name)
         if found.figure is None:
             raise UsageError(f"{name}: {'; '.join(found.notes) or 'nothing to draw'}")
-        return found.drawn(self._title(request), target)
-
-    def _request(self, name: str) -> ReportRequest:
-        known = self.study.reports
-        if name not in known:
-            have = f"it has {', '.join(known)}" if known else "it has none"
-            raise UsageError(f"{name} is not a report of the study; {have}")
-        return known[name]
-
-    def _made(self, request: ReportRequest) -> Found:
-        with self.results.store:
-            return REPORTS[request.kind].make(self.results, request.options)
-
-    def _title(self, request: ReportRequest) -> str:
-        return request.options.title or self.study.title
+        return found.drawn(self.study.reports[name].options.title or self.study.title, target)
 
     def write(
         self,
@@ -525,7 +506,7 @@ class StudyResult(Shown):
             raise UsageError("name a folder: that of the store ends with the result")
         look = Look(tuple(figures), columns, drawable_style(Path(style)) if style else {})
         made = self.study.output(Path(folder or self.folder), force=force)
-        found = self.collected(look, made.folder)
+        found = collected(self, look, made.folder)
         made.add_all(found.files.items())
         made.write()
         for fault in made.undrawn:
@@ -533,85 +514,6 @@ class StudyResult(Shown):
         if found.broken:
             raise found.broken[0]
         return made.files
-
-    def collected(self, look: Look, place: Path | None = None) -> Collected:
-        """All files for a folder. A report that fails does not take the others with it.
-
-        Parameters
-        ----------
-        look
-            Of the figures.
-        place
-            Where the files will stand, for the commands in them; by default that of the store.
-        """
-        found = Collected({"points.csv": points_csv(self.table)})
-        found.failures += self._failures(place or self.folder, found)
-        if found.failures:
-            found.files["failed.csv"] = csv_text(
-                columns_of(dict.fromkeys(Failure._fields, "-"), found.failures)
-            )
-        with self.results.store:
-            if self.summary is not None:
-                found.files["statistics.csv"] = csv_text(summary_columns(self.summary))
-                if self.judgements:
-                    columns = verdict_columns(self.summary.keys, self.judgements)
-                    found.files["verdicts.csv"] = csv_text(columns)
-                unjudged = not_judged(self.layout, self.study.conditions)
-                notes = [*self.summary.notes, *scale_notes(self.table), *unjudged]
-                notes += rate_notes(self.layout)
-                found.notes += [f"statistics: {note}" for note in notes]
-                found.notes += step_notes(self.table)
-            for request in self.layout.study.reports:
-                try:
-                    self._add_report(request, look, found)
-                except RpsError as error:
-                    found.broken.append(error)
-                except Exception as error:  # noqa: BLE001 -- the others must not be lost
-                    text = f"the report {request.stem}: {type(error).__name__}: {error}"
-                    own = request.kind in REPORTS
-                    whose = "rps: please report it" if own else "the package that adds it"
-                    found.broken.append(RpsError(f"{text}; this is a fault of {whose}"))
-        return found
-
-    def _add_report(self, request: ReportRequest, look: Look, found: Collected) -> None:
-        made = self._made(request)
-        found.files |= dict(made.files(request.stem, self._title(request), look))
-        add_notes(found.notes, request.stem, made.notes)
-        if document := made.document():
-            found.documents[request.stem] = document
-            found.parts += [Heading(request.stem), *made.parts()]
-
-    def _failures(self, place: Path, found: Collected) -> Iterator[Failure]:
-        base = self.layout.study.base_file
-        if base is None and self.failures:
-            # JSON is YAML too.
-            found.files[BASE] = json.dumps(self.layout.plan.base, indent=2) + "\n"
-            base = place / BASE
-        for number, message in self.failures.items():
-            command = reproduction(self.layout, self.layout[number], base or Path())
-            yield Failure(number + 1, message, command)
-
-    def error(self, found: Collected, *, limits: bool = True) -> RpsError | None:
-        """The gravest of what went wrong, whose exit code counts; its text tells of all.
-
-        Parameters
-        ----------
-        found
-            What was collected.
-        limits
-            Count limits that are exceeded.
-        """
-        errors: list[RpsError] = [*found.broken]
-        if failures := found.failures:
-            lines = [f"{len(failures)} of {len(self)} points failed; they enter no statistic"]
-            for failure in failures[:FAILURES_SHOWN]:
-                lines += [f"point {failure.point}: {failure.message}", f"  {failure.command}"]
-            lines += _and_more(failures, "failed.csv")
-            errors.append(StudyIncomplete("\n".join(lines)))
-        if limits and (lines := verdict_lines(self.keys, self.judgements)):
-            told = [*lines[:FAILURES_SHOWN], *_and_more(lines, "verdicts.csv")]
-            errors.append(LimitExceeded("\n".join(told)))
-        return type(errors[0])("\n".join(map(str, errors))) if errors else None
 
     def documents(self) -> dict[str, Any]:
         """Statistics and verdicts in JSON; nothing of analyses without histories."""
@@ -622,6 +524,65 @@ class StudyResult(Shown):
             "statistics": summary_document(self.summary),
             "verdicts": [verdict_document(self.summary.keys, each) for each in self.judgements],
         }
+
+
+def collected(result: StudyResult, look: Look, place: Path | None = None) -> Collected:
+    """All files, for commands in them those of a place; a report that fails takes no other."""
+    found = Collected({"points.csv": points_csv(result.table)})
+    base = result.layout.study.base_file
+    if base is None and result.failures:
+        # JSON is YAML too.
+        found.files[BASE] = json.dumps(result.layout.plan.base, indent=2) + "\n"
+        base = (place or result.folder) / BASE
+    for number, message in result.failures.items():
+        command = reproduction(result.layout, result.layout[number], base or Path())
+        found.failures.append(Failure(number + 1, message, command))
+    if found.failures:
+        heads = dict.fromkeys(Failure._fields, "-")
+        found.files["failed.csv"] = csv_text(columns_of(heads, found.failures))
+    with result.results.store:
+        if result.summary is not None:
+            found.files["statistics.csv"] = csv_text(summary_columns(result.summary))
+            if result.judgements:
+                columns = verdict_columns(result.summary.keys, result.judgements)
+                found.files["verdicts.csv"] = csv_text(columns)
+            unjudged = not_judged(result.layout, result.study.conditions)
+            notes = [*result.summary.notes, *scale_notes(result.table), *unjudged]
+            notes += rate_notes(result.layout)
+            found.notes += [f"statistics: {note}" for note in notes]
+            found.notes += step_notes(result.table)
+        for stem, request in result.study.reports.items():
+            try:
+                made = REPORTS[request.kind].make(result.results, request.options)
+                title = request.options.title or result.study.title
+                found.files |= dict(made.files(stem, title, look))
+                add_notes(found.notes, stem, made.notes)
+                if document := made.document():
+                    found.documents[stem] = document
+                    found.parts += [Heading(stem), *made.parts()]
+            except RpsError as error:
+                found.broken.append(error)
+            except Exception as error:  # noqa: BLE001 -- the others must not be lost
+                text = f"the report {stem}: {type(error).__name__}: {error}"
+                own = request.kind in REPORTS
+                whose = "rps: please report it" if own else "the package that adds it"
+                found.broken.append(RpsError(f"{text}; this is a fault of {whose}"))
+    return found
+
+
+def error_of(result: StudyResult, found: Collected, *, limits: bool = True) -> RpsError | None:
+    """The gravest of what went wrong, whose exit code counts; its text tells of all."""
+    errors: list[RpsError] = [*found.broken]
+    if failures := found.failures:
+        lines = [f"{len(failures)} of {len(result)} points failed; they enter no statistic"]
+        for failure in failures[:FAILURES_SHOWN]:
+            lines += [f"point {failure.point}: {failure.message}", f"  {failure.command}"]
+        lines += _and_more(failures, "failed.csv")
+        errors.append(StudyIncomplete("\n".join(lines)))
+    if limits and (lines := verdict_lines(result.keys, result.judgements)):
+        told = [*lines[:FAILURES_SHOWN], *_and_more(lines, "verdicts.csv")]
+        errors.append(LimitExceeded("\n".join(told)))
+    return type(errors[0])("\n".join(map(str, errors))) if errors else None
 
 
 def _and_more(items: Sequence[Any], file: str) -> list[str]:

@@ -23,7 +23,7 @@ from rpscli.report.limits import verdicts_in_short
 from rpscli.report.study.labels import labels
 from rpscli.report.study.shown import cut, of_first_system, summary_tables, verdict_table
 from rpscli.report.table import Heading, Table
-from rpscli.studies import Study, StudyResult
+from rpscli.studies import Study, StudyResult, collected, error_of
 from rpscli.sweep.context import resolved
 from rpscli.sweep.store import Store
 
@@ -40,9 +40,9 @@ def study_page(study: Study, place: Path | None, look: Look, terminal: Terminal)
     with Store(folder) as store:
         run = computed("report", study, store, SweepChoices(report_only=only), terminal)
         with passing_time("making reports", terminal):
-            found = run.collected(look)
+            found = collected(run, look)
     notes = [*study.warnings, *found.notes]
-    error = run.error(found)
+    error = error_of(run, found)
     document = {
         **heading(),
         "study": study_heading(layout),

@@ -66,7 +66,7 @@ def computed(
     command: str, study: Study, store: Store, choices: SweepChoices, terminal: Terminal
 ) -> StudyResult:
     """A study whose points are in a store; what goes on is said, and an interruption ends it."""
-    from rpscli.studies import StudyInterrupted
+    from rpscli.studies import StudyInterrupted, run_in
 
     layout = study.layout
 
@@ -90,15 +90,9 @@ def computed(
     def announce() -> None:
         terminal.note("\nstopping after the points under way; Ctrl-C again stops at once")
 
+    how: dict[str, Any] = {"jobs": choices.jobs, "scheduler": choices.scheduler}
     try:
-        result = study.run(
-            store,
-            jobs=choices.jobs,
-            scheduler=choices.scheduler,
-            retry_failed=choices.retry_failed,
-            watch=watch,
-            announce=announce,
-        )
+        result = run_in(store, study, watch, announce, retry_failed=choices.retry_failed, **how)
     except StudyInterrupted as interruption:
         text = str(interruption)
         terminal.note(text)

@@ -81,6 +81,7 @@ def command(
         show_dry_run(given, chosen, terminal)
         return
     from rpscli.report.limits import verdicts_in_short
+    from rpscli.studies import collected, error_of
     from rpscli.sweep.store import Store
 
     place = output.place or RESULTS / given.layout.study.name / "sweep"
@@ -88,8 +89,8 @@ def command(
     with Store(place, fresh=chosen.fresh) as store:
         result = computed("sweep", given, store, chosen, terminal)
         with passing_time("making reports", terminal):
-            found = result.collected(look)
-        error = result.error(found)
+            found = collected(result, look)
+        error = error_of(result, found)
         folder.add_all(found.files.items())
         store.require()
         write(folder, terminal)

@@ -39,22 +39,21 @@ from rpscli.units import as_written
 
 @dataclass(frozen=True, eq=False)
 class StudyPoints:
-    """Systems, records, scales and perturbations; the last of them runs fastest."""
+    """Systems, records, scales and perturbations; the last of them runs fastest.
+
+    `context` has the plan, systems and motions, `properties` are those of every system, in order;
+    `samples` systems have the same values along the axes. A record None stands for the one of each
+    system's own case, or for no record; `scales` are factors or values of the measure, None for the
+    factor of the case; `members` are changes of the perturbation.
+    """
 
     study: Study
-    """The study that is laid out."""
     context: StudyContext
-    """Its plan, its systems and its motions."""
     properties: tuple[SystemProperties, ...]
-    """Of every system, in order."""
     samples: int
-    """Systems with the same values along the axes."""
     records: tuple[RecordRequest | None, ...]
-    """The records; None stands for the one of each system's own case, or for no record."""
     scales: tuple[float | None, ...]
-    """Factors, or values of the measure; None stands for the factor of the case."""
     members: tuple[Change, ...]
-    """Changes of the perturbation."""
 
     def __len__(self) -> int:
         return math.prod(self.shape)
@@ -68,25 +67,24 @@ class StudyPoints:
         return self.context.plan
 
     @property
+    def _within(self) -> tuple[int, int, int]:
+        return len(self.records), len(self.scales), len(self.members)
+
+    @property
     def shape(self) -> tuple[int, ...]:
         """Lengths of the axes of the study, the sample, records, scales and members."""
         return (*(len(axis.rows) for axis in self.study.axes), self.samples, *self._within)
 
-    @cached_property
-    def _within(self) -> tuple[int, int, int]:
-        return len(self.records), len(self.scales), len(self.members)
-
-    @cached_property
+    @property
     def points_of_system(self) -> int:
         """Number of points of one system; they follow each other."""
         return math.prod(self._within)
 
     def __getitem__(self, index: int) -> Point:
         """The point at a place of the study's order."""
-        records, scales, members = self._within
-        rest, member = divmod(index, members)
-        rest, scale = divmod(rest, scales)
-        system, record = divmod(rest, records)
+        rest, member = divmod(index, len(self.members))
+        rest, scale = divmod(rest, len(self.scales))
+        system, record = divmod(rest, len(self.records))
         properties, change = self.properties[system], self.members[member]
         factor, request = self.scales[scale], self.records[record] or properties.record
         at = system if self.records == (None,) else record
@@ -212,7 +210,7 @@ class StudyPoints:
 
 def lay_out(study: Study, watched: Watched = iter) -> StudyPoints:
     """The points of a study, whose systems are all examined."""
-    file, scale = study.file, study.scale
+    file, scale, folder = study.file, study.scale, str(study.folder)
     drawn = sample(file.sample) if file.sample else np.empty((1, 0))
     varied = [key for axis in study.axes for key in axis.keys]
     plan = Plan(
@@ -228,56 +226,48 @@ def lay_out(study: Study, watched: Watched = iter) -> StudyPoints:
     context, members = StudyContext(plan), changes(file.perturb)
     properties = examined(study, context, drawn, members, watched)
     values = scale.values if isinstance(scale, MeasureScale) else scale
+    try:
+        measured = pairs(study.sources, plan.measure.of if plan.measure else None, study.folder)
+    except RecordError as error:
+        study.document.refuse([Fault(("scale", "of"), f"scale.of: {error}")])
+        raise
+    records = (
+        RecordRequest(source, folder, pair=pair)
+        for source, pair in zip(study.sources, measured, strict=True)
+    )
     return StudyPoints(
         study=study,
         context=context,
         properties=properties,
         samples=len(drawn),
-        records=_records(study, plan.measure) or (None,),
+        records=tuple(records) or (None,),
         scales=(None,) if values is None else tuple(values),
         members=members,
-    )
-
-
-def _records(study: Study, measure: MeasureScale | None) -> tuple[RecordRequest, ...]:
-    """The records of a study, and which of them are measured as pairs."""
-    try:
-        measured = pairs(study.sources, measure.of if measure else None, study.folder)
-    except RecordError as error:
-        study.document.refuse([Fault(("scale", "of"), f"scale.of: {error}")])
-        raise
-    folder = str(study.folder)
-    return tuple(
-        RecordRequest(source, folder, pair=pair)
-        for source, pair in zip(study.sources, measured, strict=True)
     )
 
 
 def reproduction(layout: StudyPoints, point: Point, base_file: Path) -> str:
     """One line for the shell that computes the point alone."""
     words = ["rps", layout.plan.analysis, str(base_file)]
-    for text in _overrides(layout, point):
-        words += ["--set", text]
-    if point.record is not None and layout.plan.analysis == "timehistory":
-        if point.record.y is None:
-            words += ["--record", _source(point.record)]
-        elif point.record.rotation:
-            words += ["--set", f"record.rotation={point.record.rotation!r}"]
-        if point.record.vertical and point.record.y is None:
-            words += ["--vertical", _source(point.record._replace(source=point.record.vertical))]
-        words += ["--scale", repr(layout.known_factor(point))]
-    return shlex.join(words)
-
-
-def _overrides(layout: StudyPoints, point: Point) -> Iterator[str]:
-    if layout.study.base_file is not None:  # otherwise they are in the file that was written
-        yield from layout.study.base_overrides
-    for key, value in zip(layout.plan.keys, point.values, strict=True):
-        yield f"{key}={yaml_scalar(value)}"
+    # Without a file of its own the base is written with them.
+    overrides = [*layout.study.base_overrides] if layout.study.base_file else []
+    named = zip(layout.plan.keys, point.values, strict=True)
+    overrides += [f"{key}={yaml_scalar(value)}" for key, value in named]
     if point.restitution_change != 1.0:
         law = dict(resolved(layout.plan, point.values).document["podium"]["impact"])
         law["factor"] *= point.restitution_change
-        yield f"podium.impact={json.dumps(law)}"
+        overrides.append(f"podium.impact={json.dumps(law)}")
+    if (record := point.record) and record.y and record.rotation:
+        overrides.append(f"record.rotation={record.rotation!r}")
+    for text in overrides:
+        words += ["--set", text]
+    if record is not None and layout.plan.analysis == "timehistory":
+        if record.y is None:
+            words += ["--record", _source(record)]
+            if record.vertical:
+                words += ["--vertical", _source(record._replace(source=record.vertical))]
+        words += ["--scale", repr(layout.known_factor(point))]
+    return shlex.join(words)
 
 
 def _source(request: RecordRequest) -> str:

@@ -38,6 +38,9 @@ from rpscli.sweep.context import (
 Watched: TypeAlias = Callable[[range], Iterator[int]]
 """Goes through numbers and may show how far it is."""
 
+KNOWN = (*HISTORY, *YIELDING, *SAMPLED)
+"""Results of histories, some of which need something."""
+
 MOST_FAULTY = 8
 """Inadmissible systems after which the search for more gives up."""
 
@@ -45,8 +48,7 @@ MOST_FAULTY = 8
 def sample(section: SampleSection) -> Array:
     """The sample, (size, keys): scrambled Sobol or Latin hypercube, fixed by the seed."""
     unit = unit_cube(section, len(section.ranges))
-    columns = [_values(unit[:, i], given) for i, given in enumerate(section.ranges.values())]
-    return np.column_stack(columns)
+    return np.column_stack([*map(_values, unit.T, section.ranges.values())])
 
 
 def unit_cube(section: SampleSection, dimensions: int) -> Array:
@@ -76,18 +78,17 @@ def _values(unit: Array, given: RangeSection) -> Array:
 
     if given.low is not None and given.high is not None:
         return given.low + (given.high - given.low) * unit
-    assert given.mean is not None, "the study's rules make sure that the moments are given"
-    assert given.cov is not None, "the study's rules make sure that the moments are given"
-    deviation = given.cov * abs(given.mean)
+    mean, cov = given.mean, given.cov
+    assert mean is not None and cov is not None, "a rule of the file"  # noqa: PT018
+    deviation = cov * abs(mean)
     if given.distribution == "uniform":
-        return given.mean + math.sqrt(3.0) * deviation * (2.0 * unit - 1.0)
+        return mean + math.sqrt(3.0) * deviation * (2.0 * unit - 1.0)
     # A scrambled sequence may hit zero, whose quantile is minus infinity.
     normal = np.asarray(ndtri(np.maximum(unit, 1e-16)))
     if given.distribution == "normal":
-        return given.mean + deviation * normal
-    spread = math.sqrt(math.log1p(given.cov**2))
-    median = given.mean / math.sqrt(1.0 + given.cov**2)
-    return np.asarray(median * np.exp(spread * normal))
+        return mean + deviation * normal
+    spread = math.sqrt(math.log1p(cov**2))
+    return np.asarray(mean / math.sqrt(1.0 + cov**2) * np.exp(spread * normal))
 
 
 class Change(NamedTuple):
@@ -153,6 +154,7 @@ def examined(
     that is no valid case, perhaps by an unknown key, is refused at the places of its values.
     """
     plan = context.plan
+    of = plan.measure.of if plan.measure else None
     properties: list[SystemProperties] = []
     requests: dict[RecordRequest, RecordRequest] = {}
     complaints: dict[str, None] = {}
@@ -165,17 +167,9 @@ def examined(
         try:
             case = resolved(plan, values)
             system = System.of_case(case)
-            both = (
-                pairs
-                if case.record is None or study.sources
-                else case.record.y is not None or case.record_source.both
-            )
-            request = (
-                None
-                if study.sources
-                else record_request(case, plan.measure.of if plan.measure else None)
-            )
-            request = request and requests.setdefault(request, request)
+            own = None if study.sources else _own_record(case, of)
+            request = own and requests.setdefault(own, own)
+            both = pairs if own is None else own.is_pair
             properties.append(_properties(study, values, case, system.digest, request, both=both))
             if number < SYSTEMS_KEPT:
                 context.system(number, values, system)
@@ -193,7 +187,7 @@ def examined(
     return tuple(properties)
 
 
-def record_request(case: Case, of: Of | None = None) -> RecordRequest | None:
+def _own_record(case: Case, of: Of | None) -> RecordRequest | None:
     """The case's own record, to be measured as a scale asks for."""
     if (record := case.record) is None:
         return None
@@ -242,10 +236,8 @@ def _properties(
 def _limits(study: Study, case: Case, *, both: bool) -> tuple[Condition, ...]:
     """Limits of the study or, where it has none of its own, of the case; friction where given."""
     own = study.file.limits
-    if own is not None:
-        limits = conditions_of(own, "limits of the study")
-    else:
-        limits = conditions_of(case.limits, "limits of the case")
+    given = (case.limits, "limits of the case") if own is None else (own, "limits of the study")
+    limits = conditions_of(*given)
     for limit in limits:
         if both and (why := no_bound(limit.name, case.structure)):
             raise CaseError(f"{limit.source}: {why}")
@@ -254,17 +246,13 @@ def _limits(study: Study, case: Case, *, both: bool) -> tuple[Condition, ...]:
 
 def lacking(study: Study, case: Case) -> frozenset[str]:
     """Names of the results that histories of this case will not have."""
-    sampled = () if study.file.whole_histories else SAMPLED
-    known = (*HISTORY, *YIELDING, *SAMPLED)
-    return frozenset(
-        [q.name for q in known if q.needs and not HAS[q.needs](case.structure)]
-        + [q.name for q in sampled]
-    )
+    without = {q.name for q in KNOWN if q.needs and not HAS[q.needs](case.structure)}
+    return frozenset(without | (set() if study.file.whole_histories else {q.name for q in SAMPLED}))
 
 
 def needs_of(name: str, which: str = "not every") -> str:
     """Needs of a result in a study, in words."""
-    needs = {q.name: NEEDS.get(q.needs, "") for q in (*HISTORY, *YIELDING, *SAMPLED)}[name]
+    needs = {q.name: NEEDS.get(q.needs, "") for q in KNOWN}[name]
     if name in {quantity.name for quantity in SAMPLED}:
         alike = f", and in all systems {needs}" if needs else ""
         return f"{name} needs `whole_histories: true`{alike}"
@@ -329,13 +317,11 @@ def _placed(
 
 def _refuse_restitution(study: Study, case: Case, members: Sequence[Change]) -> None:
     """A perturbed impact must not gain energy by itself."""
-    largest = max(change.restitution for change in members)
     e = case.structure.restitution
+    largest = max(change.restitution for change in members)
     if e * largest > 1.0 and not case.structure.bearing.is_spherical:
-        text = (
-            f"perturb.restitution raises the restitution {e:.4g} of a system above 1; use less"
-            f" than {1.0 / e - 1.0:.3g}"
-        )
+        text = f"perturb.restitution raises the restitution {e:.4g} of a system above 1; use less"
+        text += f" than {1.0 / e - 1.0:.3g}"
         study.document.refuse([Fault(("perturb", "restitution"), text)])
 
 

@@ -48,16 +48,16 @@ def unit_of(name: str) -> str:
 
 @dataclass(frozen=True, eq=False)
 class Outcomes(Frozen):
-    """Outcomes and scalar results of histories, which need not be independent."""
+    """Outcomes and scalar results of histories, which need not be independent.
+
+    `outcomes` are (points,) words, `columns` (points,) of each scalar result under its name, NaN
+    where there is none; `clusters` are (points,) numbers of what is `independent`.
+    """
 
     outcomes: NDArray[np.str_]
-    """(points,) words."""
     columns: dict[str, Array]
-    """(points,) of each scalar result under its name; NaN where there is none."""
     clusters: Indices
-    """(points,) numbers of what is independent."""
     independent: By
-    """Kind of what is independent."""
 
     def __len__(self) -> int:
         return len(self.outcomes)
@@ -95,16 +95,17 @@ class Intensity(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Table(Outcomes):
-    """Those of all points of a study."""
+    """Those of all points of a study, laid out.
+
+    `scale` (points,) are factors on the records, NaN where one is not known; `messages` are reasons
+    of failed points, by their number; `storey_shears` (points, most storeys) are the largest from
+    the bottom [N], NaN above the roof.
+    """
 
     layout: StudyPoints
-    """The study, laid out."""
     scale: Array
-    """(points,) factors on the records; NaN where it is not known."""
     messages: dict[int, str]
-    """Reasons of failed points, by their number."""
     storey_shears: Array
-    """(points, most storeys) largest storey shears from the bottom [N], NaN above the roof."""
 
     @classmethod
     def of(cls, layout: StudyPoints, read: Callable[[Sequence[str]], PointResults]) -> Table:
@@ -137,29 +138,27 @@ class Table(Outcomes):
     def intensity(
         self, measure: Measure | None = None, period: float | None = None, damping: float = 0.05
     ) -> Intensity:
-        """A measure of the ground motion at every point.
+        """A measure of the ground motion at every point, T1 of each system unless at a period.
 
-        By default the one that the study scales to, else PGV; at T1 of each system unless a period
-        is asked for.
+        By default it is the one that the study scales to, else PGV.
         """
-        layout, scaled = self.layout, self.layout.plan.measure
+        layout, scaled, context = self.layout, self.layout.plan.measure, self.layout.context
         if measure is None and scaled is not None:
             measure, period, damping = scaled.measure, scaled.period, scaled.damping
-        wanted = measure or "PGV", period, damping
-        target = scaled and (scaled.measure, scaled.period, scaled.damping) == wanted
-        measure, values = wanted[0], np.full(len(self), np.nan)
+        measure = measure or "PGV"
+        same = scaled and (scaled.measure, scaled.period, scaled.damping)
+        values = np.full(len(self), np.nan)
         for point in layout:
             assert point.record is not None, "points of histories have a record"
-            # Not by way of the factor, whose rounding would blur equal intensities.
-            unscaled, factor = point.scale, point.scale_change
-            if not target:
-                at = None
-                if needs_period(measure):
-                    at = period or layout.properties[point.system].period
-                    assert at is not None, "`measure_without_period` was asked before"
-                records, factor = layout.context.records, float(self.scale[point.number])
+            if same == (measure, period, damping):
+                # Not by way of the factor, whose rounding would blur equal intensities.
+                unscaled, factor = point.scale, point.scale_change
+            else:
+                own = period or layout.properties[point.system].period
+                what = measure, own if needs_period(measure) else None, damping
+                factor = float(self.scale[point.number])
                 try:
-                    unscaled = records.intensity(point.record, measure, at, damping, layout.plan.of)
+                    unscaled = context.records.intensity(point.record, *what, layout.plan.of)
                 except RecordError:
                     continue
             values[point.number] = unscaled * abs(factor) ** MEASURES[measure].power
@@ -207,11 +206,8 @@ def leading_keys(layout: StudyPoints) -> tuple[str, ...]:
 def _shown_results(layout: StudyPoints) -> dict[str, ResultQuantity]:
     """Scalar results by their paths, those of yielding only where a system yields."""
     elastic = all("ductility" in properties.lacking for properties in layout.properties)
-    return {
-        path: quantity
-        for path, quantity in SCALARS[layout.plan.analysis].items()
-        if not (elastic and quantity in YIELDING)
-    }
+    every = SCALARS[layout.plan.analysis].items()
+    return {path: quantity for path, quantity in every if not (elastic and quantity in YIELDING)}
 
 
 def units_of_columns(layout: StudyPoints) -> dict[str, str]:
@@ -299,32 +295,33 @@ def fixed_base_references(layout: StudyPoints, store: Store, jobs: int) -> Fixed
     bearings alone share it.
     """
     known, records = store.fixed_base(), layout.context.records
-    keys: dict[tuple[int, RecordRequest], bytes] = {}
+    found: dict[tuple[int, RecordRequest], bytes] = {}
     runs: dict[bytes, tuple[PodiumStructure, MotionComponents]] = {}
     structures: dict[bytes, PodiumStructure] = {}  # buildings of many systems are the same
     for system, properties in enumerate(layout.properties):
-        if not properties.building:
-            continue
-        for request in dict.fromkeys(request or properties.record for request in layout.records):
+        building = properties.building
+        for request in dict.fromkeys(
+            r or properties.record for r in layout.records * bool(building)
+        ):
             assert request is not None, "points of histories have a record"
-            what = layout.plan.solver.encode(), properties.building, records.digest(request)
+            what = layout.plan.solver.encode(), building, records.digest(request)
             key = hashlib.sha256(b"".join(what)).digest()
             try:
                 if key not in known and key not in runs:
                     motion = records.motion(request)
-                    if properties.building not in structures:
-                        structures[properties.building] = layout.system(system).structure
-                    runs[key] = structures[properties.building], motion
+                    if building not in structures:
+                        structures[building] = layout.system(system).structure
+                    runs[key] = structures[building], motion
             except RecordError:
                 continue
-            keys[system, request] = key
+            found[system, request] = key
     with ThreadPoolExecutor(jobs) as pool:
         shears = pool.map(lambda run: reference_shears(*run), runs.values())
         new = dict(zip(runs, shears, strict=True))
     if new:
         store.add_fixed_base(new)
     known |= new
-    return {place: known[key] for place, key in keys.items()}
+    return {place: known[key] for place, key in found.items()}
 
 
 @dataclass(frozen=True, eq=False)
