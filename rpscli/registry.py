@@ -90,14 +90,6 @@ class Registry(dict[str, Item]):
         """Ours, and what other packages add, as far as it can be used."""
         return {**self, **dict(self.theirs())}
 
-    def among(self, names: Iterable[object]) -> dict[str, Item]:
-        """Ours and, where others are named, what can be used; what is named must be usable."""
-        others = [name for name in names if isinstance(name, str) and name not in self]
-        if not others:
-            return dict(self)
-        named = {name: self[name] for name in others if name in self.names()}
-        return {**self.everything(), **named}
-
     def offers(self) -> Iterator[Offer]:
         """Items of other packages, usable or not."""
         for name, point in _points(self.kind).items():

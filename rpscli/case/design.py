@@ -264,7 +264,9 @@ def parse_design(
     document, of_base = overridden(document, overrides, DesignFile)
     file = checked(DesignFile, document)
     unseen, faults = _unseen(document, folder)
-    document.refuse([*faults, *key_faults(document, of_base), *_name_faults(document, file)])
+    document.refuse(
+        [*faults, *key_faults(document, of_base, folder), *_name_faults(document, file)]
+    )
     shared = {k: v for k, v in document.content.items() if k in StudyParts.model_fields}
     study = study_of(
         replace(document, content=shared),

@@ -205,16 +205,16 @@ Run = tuple[list[int], Histories | str, dict[str, Array]]
 """Numbers of histories, what was found or why nothing was, and what their samples tell."""
 
 
-def _together(requests: list[Request]) -> Iterator[Run]:
+def _together(requests: list[Request], numbers: Sequence[int] = ()) -> Iterator[Run]:
     """Histories side by side."""
     every = _attempt(lambda: list(histories(requests)))
     if not isinstance(every, str):
-        yield from ((members, ended, {}) for members, ended in every)
-        return
-    # One of them cannot be had: which one shows when each is tried alone.
-    for number, request in enumerate(requests):
-        alone = _attempt(lambda one: list(histories([one])), request)
-        yield [number], alone if isinstance(alone, str) else alone[0][1], {}
+        yield from (([*numbers] or members, ended, {}) for members, ended in every)
+    elif numbers:
+        yield [*numbers], every, {}
+    else:  # one of them cannot be had: which one shows when each is tried alone
+        for number, request in enumerate(requests):
+            yield from _together([request], [number])
 
 
 def _whole(requests: list[Request]) -> Iterator[Run]:
@@ -234,17 +234,16 @@ def _whole(requests: list[Request]) -> Iterator[Run]:
 def _static(context: StudyContext, points: Sequence[Point], results: PointResults) -> None:
     """Add the modes or the static curves of each point."""
     analysis = context.plan.analysis
-    of, known = {"modal": _modal, "pushover": _pushover}[analysis], KNOWN[analysis]
-    rows: list[dict[str, Any]] = []
+    of = {"modal": _modal, "pushover": _pushover}[analysis]
+    rows: list[dict[str, Any]] = [{}] * len(points)
     for row, point in enumerate(points):
         values = _attempt(lambda p: of(context.system(p.system, p.values).structure), point)
         if isinstance(values, str):
             results.messages[row] = values
         else:
-            results.outcomes[row] = DONE
+            rows[row], results.outcomes[row] = values, DONE
             del results.messages[row]
-        rows.append({} if isinstance(values, str) else values)
-    for name in known:
+    for name in KNOWN[analysis]:
         if any(name in row for row in rows):
             results.columns[name] = stacked([row.get(name) for row in rows])
 

@@ -16,7 +16,7 @@ import json
 import math
 import sqlite3
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import Any, Self
 
@@ -101,40 +101,36 @@ class Store:
         self._identity = self._file()
 
     def _connect(self) -> None:
-        self._db = sqlite3.connect(self.path, timeout=0.2, isolation_level=None)
-        try:
-            self._claim()
-        except BaseException:
-            self._db.close()
-            raise
-
-    def _claim(self) -> None:
         """Lock the file, which is made if there is none; refuse one that is not of this format."""
-        self._db.text_factory = bytes  # text when the digest says that it is what was written
-        # The lock is held from the first access on, until the connection ends.
-        self._db.execute("PRAGMA locking_mode = EXCLUSIVE")
-        self._db.execute("BEGIN EXCLUSIVE")
-        tables, version = (
-            self._db.execute(query).fetchone()[0]
-            for query in ("SELECT count(*) FROM sqlite_master", "PRAGMA user_version")
-        )
-        if tables and version != FORMAT and not self._fresh:
-            raise Refused(
-                f"{self.path} was written by another version of rps (format"
-                f" {version or 'before 4'}); use --fresh to start again, or another folder with -o"
+        with ExitStack() as undone:
+            self._db = sqlite3.connect(self.path, timeout=0.2, isolation_level=None)
+            undone.callback(self._db.close)
+            self._db.text_factory = bytes  # text when the digest says that it is what was written
+            # The lock is held from the first access on, until the connection ends.
+            self._db.execute("PRAGMA locking_mode = EXCLUSIVE")
+            self._db.execute("BEGIN EXCLUSIVE")
+            tables, version = (
+                self._db.execute(query).fetchone()[0]
+                for query in ("SELECT count(*) FROM sqlite_master", "PRAGMA user_version")
             )
-        self._db.execute(SCHEMA)
-        self._db.execute(f"PRAGMA application_id = {int.from_bytes(APPLICATION)}")
-        self._db.execute(f"PRAGMA user_version = {FORMAT}")
-        self._db.execute("COMMIT")
+            if tables and version != FORMAT and not self._fresh:
+                raise Refused(
+                    f"{self.path} was written by another version of rps (format"
+                    f" {version or 'before 4'}); use --fresh to start again, or another folder"
+                    " with -o"
+                )
+            self._db.execute(SCHEMA)
+            self._db.execute(f"PRAGMA application_id = {int.from_bytes(APPLICATION)}")
+            self._db.execute(f"PRAGMA user_version = {FORMAT}")
+            self._db.execute("COMMIT")
+            undone.pop_all()
 
     def _file(self) -> tuple[int, int] | None:
         """Identity of the file among others of its name; None if there is none."""
-        try:
+        with suppress(OSError):
             status = self.path.stat()
-        except OSError:
-            return None
-        return status.st_dev, status.st_ino
+            return status.st_dev, status.st_ino
+        return None
 
     def require(self) -> None:
         """Refuse to go on without the file, which SQLite would do unseen."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shlex
 import signal
 import subprocess
 import sys
@@ -13,14 +14,27 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import pytest
-from click.testing import Result
+from click.testing import CliRunner, Result
 
+from rpscli.cli import program
+from rpscli.records.formats.at2 import at2_text
+from rpscli.records.loading import load_record
 from rpscli.sweep.context import Point, StudyContext
 from rpscli.sweep.evaluation import MISSING, PointResults, run_batch
-from rpscli.sweep.points import lay_out
+from rpscli.sweep.points import lay_out, reproduction, yaml_scalar
 from rpscli.sweep.run import Engine, Progress, run, start
 from rpscli.sweep.store import Store
-from sweep.small_studies import ROOT, STUDY, Make
+from sweep.small_studies import (
+    BASE,
+    FOLDER,
+    ROOT,
+    STUDY,
+    Make,
+    Sweep,
+    SweepJson,
+    csv_rows,
+    study_file,
+)
 
 POINTS = 36
 """Of the study; one thread computes them in batches of nine."""
@@ -156,3 +170,142 @@ def test_equal_points_are_computed_once(study_of: Make, workplace: Path) -> None
     assert rotation.shape == (36,)
     assert rotation[0] == rotation[1]
     assert MISSING not in found.outcomes
+
+
+def test_a_second_run_computes_nothing(sweep_json: SweepJson, workplace: Path) -> None:
+    first = sweep_json("study.yaml")
+    csv = (workplace / FOLDER / "points.csv").read_bytes()
+    second = sweep_json("study.yaml")
+    assert (first["points"]["computed"], first["points"]["kept"]) == (36, 0)
+    assert (second["points"]["computed"], second["points"]["kept"]) == (0, 36)
+    assert (workplace / FOLDER / "points.csv").read_bytes() == csv
+    assert sweep_json("study.yaml", "--fresh")["points"]["computed"] == 36
+    assert (workplace / FOLDER / "points.csv").read_bytes() == csv
+
+
+def test_a_changed_study_keeps_what_applies_and_says_what_changed(sweep_json: SweepJson) -> None:
+    sweep_json("study.yaml")
+    text = STUDY.replace("critical, 0.5, 0]", "critical, 1.5]").replace("Test", "Renamed")
+    changed = sweep_json("study.yaml", study=text)
+    assert changed["points"] == {"total": 24, "computed": 12, "kept": 12, "failed": 0, "unused": 24}
+    notes = " ".join(changed["notes"])
+    assert "curvature_ratio: ['critical', 0.5, 0] -> ['critical', 1.5]" in notes
+    assert "12 points still apply, 12 are to be computed" in notes
+    assert "24 stored points are no longer in the study" in notes
+    # Nothing was thrown away: the first study is whole again at once.
+    assert sweep_json("study.yaml", study=STUDY)["points"]["computed"] == 0
+
+
+def test_a_changed_case_applies_to_nothing(sweep_json: SweepJson) -> None:
+    sweep_json("study.yaml")
+    changed = sweep_json("study.yaml", base=BASE.replace("ratio: 0.05", "ratio: 0.04"))
+    assert changed["points"]["computed"] == 36
+    assert "base.superstructure.damping.ratio: 0.05 -> 0.04" in " ".join(changed["notes"])
+
+
+def test_the_folder_of_another_study_is_refused(sweep: Sweep, workplace: Path) -> None:
+    assert sweep("study.yaml", "-o", "there").exit_code == 0
+    other = STUDY.replace("scale: [0.5, 1.0]", "scale: [2]")
+    (workplace / "other.yaml").write_text(other)
+    refused = sweep("other.yaml", "-o", "there")
+    assert refused.exit_code == 7
+    assert "another study (study)" in refused.stderr
+    assert sweep("other.yaml", "-o", "there", "--fresh").exit_code == 0
+
+
+def test_report_only_computes_nothing(sweep: Sweep, workplace: Path) -> None:
+    lacking = sweep("study.yaml", "--report-only")
+    assert lacking.exit_code == 7
+    assert "lacks 36 of 36 points" in lacking.stderr
+    assert sweep("study.yaml").exit_code == 0
+    text = STUDY.replace("scale:", "reports: [overturning]\nscale:")
+    assert sweep("study.yaml", "--report-only", study=text).exit_code == 0
+    for name in ("overturning.csv", "overturning.png"):
+        assert (workplace / FOLDER / name).exists()
+
+
+def test_options_that_contradict_each_other_are_refused(sweep: Sweep) -> None:
+    for options in (("--fresh",), ("--retry-failed",), ("--scheduler", "tcp://x:1")):
+        assert sweep("study.yaml", "--report-only", *options).exit_code == 2
+    assert sweep("study.yaml", "--jobs", "2", "--scheduler", "tcp://x:1").exit_code == 2
+
+
+@pytest.fixture
+def spoilt(workplace: Path) -> Path:
+    """A study of two record files, one of which cannot be read."""
+    motion = load_record("synthetic:?pga=0.4g&seed=1&duration=3&dt=0.02")
+    (workplace / "good.at2").write_text(at2_text(motion))
+    (workplace / "bad.at2").write_text("no record at all\n")
+    begin, end = STUDY.index("records:"), STUDY.index("scale:")
+    text = STUDY[:begin] + "records: [good.at2, bad.at2]\nreports: [overturning]\n" + STUDY[end:]
+    (workplace / "study.yaml").write_text(text)
+    return workplace
+
+
+def test_the_rest_goes_on(spoilt: Path, sweep_json: SweepJson) -> None:
+    document = sweep_json("study.yaml", exit_code=5)
+    assert document["status"] == "error"
+    assert document["points"]["failed"] == document["outcomes"]["failed"] == 12
+    points = csv_rows("points.csv")
+    failed = [p for p in points if p["outcome [-]"] == "failed"]
+    assert {p["record [-]"] for p in failed} == {"bad.at2"}
+    assert {p["record [-]"] for p in points if p not in failed} == {"good.at2"}
+    assert all(p["max_rotation [rad]"] == "" for p in failed)
+    assert {p["scale [-]"] for p in failed} == {"0.5", "1.0"}
+    shares = csv_rows("overturning.csv")  # at each scale
+    assert {(row["counted [-]"], row["failed [-]"]) for row in shares} == {("3", "3")}
+
+
+def test_each_failure_has_a_command_that_reproduces_it(spoilt: Path, sweep_json: SweepJson) -> None:
+    """A case inside the study is written for it."""
+    for inside in (False, True):
+        text = (spoilt / "study.yaml").read_text()
+        if inside:
+            inner = "base:\n" + "".join(f"  {line}\n" for line in BASE.splitlines())
+            text = text.replace("base: base.yaml\n", inner)
+        failure = sweep_json("study.yaml", exit_code=5, study=text)["failures"][0]
+        assert "bad.at2" in failure["message"]
+        words = shlex.split(failure["command"])
+        assert words[:3] == ["rps", "timehistory", f"{FOLDER}/base.yaml" if inside else "base.yaml"]
+        again = CliRunner().invoke(program, words[1:])
+        assert again.exit_code == 3
+        assert failure["message"] in again.stderr
+        assert csv_rows("failed.csv")[0]["command [-]"] == failure["command"]
+
+
+def test_the_command_of_a_good_point_gives_its_numbers(spoilt: Path) -> None:
+    layout = study_file("study.yaml", "perturb={members: 3}", "podium.cap_beam_mass_ratio=8").layout
+    point = layout[2]
+    row = run_batch(layout.context, [point]).columns
+    words = shlex.split(reproduction(layout, point, Path("base.yaml")))
+    single = CliRunner().invoke(program, [*words[1:], "--json"])
+    found = json.loads(single.stdout)
+    assert found["max_rotation"] == pytest.approx(row["max_rotation"][0], rel=1e-6)
+    assert found["record"]["scale"] == row["scale"][0]
+    assert [yaml_scalar(value) for value in (0.1, "word", "0.1")] == ["0.1", "word", '"0.1"']
+
+
+def test_failed_points_are_tried_again_when_asked_or_repaired(
+    spoilt: Path, sweep_json: SweepJson
+) -> None:
+    sweep_json("study.yaml", exit_code=5)
+    kept = sweep_json("study.yaml", exit_code=5)
+    assert (kept["points"]["computed"], kept["points"]["failed"]) == (0, 12)
+    retried = sweep_json("study.yaml", "--retry-failed", exit_code=5)
+    assert (retried["points"]["computed"], retried["points"]["kept"]) == (12, 12)
+    (spoilt / "bad.at2").write_text((spoilt / "good.at2").read_text().replace("0.4", "0.3"))
+    repaired = sweep_json("study.yaml")
+    assert repaired["points"]["failed"] == 0
+    assert not (spoilt / FOLDER / "failed.csv").exists()
+
+
+def test_components_of_two_time_steps_fail(sweep: Sweep) -> None:
+    vertical = "synthetic:?pga=0.3g&duration=4&dt=0.01&seed=2"
+    record = {"source": "synthetic:?pga=0.5g&duration=4&dt=0.02&seed=1", "vertical": vertical}
+    study = "rps: 1\nbase: base.yaml\nvary: [{podium.bearing.curvature_ratio: [0.5, 0]}]\n"
+    base = f"{BASE}record: {json.dumps(record)}\n"
+    refused = sweep("study.yaml", "--quiet", study=study, base=base)
+    assert refused.exit_code == 5
+    assert "2 of 2 points failed" in refused.stderr
+    assert "they must agree; resample one of them" in refused.stderr
+    assert f"--vertical '{vertical}'" in refused.stderr

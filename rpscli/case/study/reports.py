@@ -102,8 +102,11 @@ def written_out(document: Document, known: Registry[Any]) -> tuple[Document, Rep
     reports = document.content.get("reports")
     if not isinstance(reports, list):
         return document, dict(known)
-    named = (name for each in reports for name in (each if isinstance(each, dict) else [each]))
-    kinds = known.among(named)  # those of other packages only if it names others
+    named = [name for each in reports for name in (each if isinstance(each, dict) else [each])]
+    others = [name for name in named if isinstance(name, str) and name not in known]
+    # Those of other packages only if it names others; what is named must be usable.
+    kinds = known.everything() if others else dict(known)
+    kinds |= {name: known[name] for name in others if name in known.names()}
 
     def whole(item: Any) -> Any:
         item = {item: None} if isinstance(item, str) and item in kinds else item

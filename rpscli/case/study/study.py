@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import math
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path as Folder
 from typing import Any
@@ -39,7 +40,7 @@ from rpscli.case.text.document import (
 )
 from rpscli.case.text.files import read_text
 from rpscli.case.text.yaml_text import read_yaml
-from rpscli.errors import CaseError, listed, stem_of
+from rpscli.errors import CaseError, RpsError, listed, stem_of
 from rpscli.registry import Registry
 
 OF_HISTORIES = ("records", "scale", "perturb", "observed", "hazard")
@@ -146,7 +147,7 @@ def study_of(
     file = checked(format_with(asked), whole)
     reports = requests_of(whole, file)
     sources, faults, notes = sources_of(document, folder)
-    faults += [*unequal(document, file.vary), *key_faults(document, base_overrides)]
+    faults += [*unequal(document, file.vary), *key_faults(document, base_overrides, folder)]
     document.refuse([*faults, *_analysis_faults(document, file, reports, asked)])
     axes = with_linked(axes_of(document, file.vary), file.linked, document)
     observed = read_observed(file.observed, folder, axes, document)
@@ -200,8 +201,11 @@ def varying(document: Document) -> list[tuple[str, Path]]:
     return [(key, (*owner, key)) for owner, of in written if isinstance(of, dict) for key in of]
 
 
-def key_faults(document: Document, overrides: Sequence[str]) -> Iterator[Fault]:
+def key_faults(document: Document, overrides: Sequence[str], folder: Folder) -> Iterator[Fault]:
     """Keys that cannot vary: unknown ones, said twice, fixed by an override or by the study."""
+    with suppress(RpsError, ValidationError):  # told with the systems
+        # Constants of laws of other packages are keys once a case has named the law.
+        CaseFile.model_validate(_base(document, folder)[0].content)
     seen: dict[str, Path] = {}
     for key, path in varying(document):
         if key in seen:

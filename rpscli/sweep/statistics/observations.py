@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import PurePath
 from typing import NamedTuple
 
@@ -47,7 +46,14 @@ def observed_pairs(layout: StudyPoints, observed: Observed) -> Pairs:
     order = np.argsort(found, kind="stable")
     found, row = found[order], row[order]
     values = np.array([seen.values for seen in observed.rows]).T[:, row]
-    notes = _left_out(layout, observed, found, row)
+    notes = []
+    if unused := len(observed.rows) - len(np.unique(row)):
+        notes.append(
+            f"{unused} of {len(observed.rows)} observations in {observed.name} have no point in"
+            " the study: their record, or their system, is not in it"
+        )
+    if len(found) < len(layout):
+        notes.append(f"{len(layout) - len(found)} of {len(layout)} points have no observation")
     return Pairs(found, values, tuple(notes))
 
 
@@ -58,19 +64,6 @@ def _record_numbers(layout: StudyPoints) -> dict[str, int]:
     times = Counter(name for known in names for name in known)
     short = {name: n for n, known in enumerate(names) for name in known if times[name] == 1}
     return short | {source: number for number, source in enumerate(sources)}
-
-
-def _left_out(
-    layout: StudyPoints, observed: Observed, points: Indices, rows: Indices
-) -> Iterator[str]:
-    unused = len(observed.rows) - len(np.unique(rows))
-    if unused:
-        yield (
-            f"{unused} of {len(observed.rows)} observations in {observed.name} have no point in"
-            " the study: their record, or their system, is not in it"
-        )
-    if len(points) < len(layout):
-        yield f"{len(layout) - len(points)} of {len(layout)} points have no observation"
 
 
 def unpaired(layout: StudyPoints) -> Iterator[str]:
@@ -121,8 +114,7 @@ class Agreement(NamedTuple):
         return self.both + self.observed_only
 
 
-@dataclass(frozen=True)
-class Maxima:
+class Maxima(NamedTuple):
     """Computed over observed maxima of one quantity.
 
     `median` and `dispersion` (standard deviation of the logarithm) are those of the `counted`

@@ -60,11 +60,12 @@ class Verdict:
     @property
     def shown(self) -> bool:
         """True if it is met, and the records are enough to say so of the probability."""
+        if self.exceeded:
+            return False
         if self.interval is not None:
-            return not self.exceeded and self.interval[1] <= self.condition.limit
-        admissible, several = self.condition.admissible, self.beyond.of > 1
-        unsure = several and admissible > 0.0 and self.beyond.high > admissible
-        return not (self.exceeded or unsure)
+            return self.interval[1] <= self.condition.limit
+        admissible = self.condition.admissible
+        return self.beyond.of < 2 or admissible <= 0.0 or self.beyond.high <= admissible
 
     @property
     def shown_by(self) -> int | None:
@@ -125,9 +126,8 @@ def rate_verdict(
     """From the shares (levels,) that overturned, with the rates of these levels."""
     ends = np.array([(np.nan if s.fraction is None else s.fraction, s.low, s.high) for s in shares])
     rate, low, high = (rates @ ends).tolist()
-    exceeded = not rate <= condition.limit
-    common = condition, values, shares[-1], 0, rate, "", None
-    return Verdict(*common, exceeded=exceeded, interval=(low, high))
+    over, last = not rate <= condition.limit, shares[-1]
+    return Verdict(condition, values, last, 0, rate, "", None, over, interval=(low, high))
 
 
 class Judgement(NamedTuple):
@@ -254,20 +254,18 @@ def judged(table: Table, summary: Summary, conditions: Iterable[Condition] = ())
         return "" if record is None else record.source
 
     for row in summary.rows:
-        if len(row.points):
-            systems = np.unique(row.points // layout.points_of_system)
-            own = [layout.properties[system] for system in systems]
-            lacking = frozenset[str]().union(*(properties.lacking for properties in own))
-            limits = [
-                each
-                for each in (*own[0].limits, *further)
-                if each not in on_rates
-                and (
-                    each.name not in lacking
-                    or np.isfinite(table.columns[each.name][row.points]).any()
-                )
-            ]
-            found += verdicts(table, row.points, limits, record_of, row.values)
+        if not len(row.points):
+            continue
+        systems = np.unique(row.points // layout.points_of_system)
+        own = [layout.properties[system] for system in systems]
+        lacking = frozenset[str]().union(*(properties.lacking for properties in own))
+        limits = [each for each in (*own[0].limits, *further) if each not in on_rates]
+        known = [
+            each
+            for each in limits
+            if each.name not in lacking or np.isfinite(table.columns[each.name][row.points]).any()
+        ]
+        found += verdicts(table, row.points, known, record_of, row.values)
     for condition in on_rates:
         rates, _ = rates_of_levels(layout)
         shares = [row.overturned for row in summary.rows]
