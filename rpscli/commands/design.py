@@ -10,12 +10,7 @@ import click
 from rpscli.commands.inputs import RESULTS, write
 from rpscli.commands.shell import options
 from rpscli.commands.shell.terminal import Terminal, concluded, leave
-from rpscli.commands.study import (
-    SweepChoices,
-    computed,
-    show_dry_run,
-    study_heading,
-)
+from rpscli.commands.study import SweepChoices, computed, show_dry_run, study_heading
 from rpscli.report.documents import heading
 from rpscli.report.figures.look import Look
 from rpscli.report.table import Heading, Part, Table
@@ -112,12 +107,12 @@ def document_of(done: Design) -> dict[str, Any]:
 
 def tables_of(done: Design) -> Iterator[Part]:
     """The answer for readers."""
+    from rpscli.report.study.shown import note_of_directions, of_first_system
+
     layout, document = done.run.layout, done.document
     yield Heading(layout.study.title)
     counts = [(name.replace("_", " "), str(n)) for name, n in document["designs"].items()]
     yield Table.listing([*counts, ("records scaled to", layout.scaled_to)])
     yield from done.tables
-    from rpscli.report.study.shown import note_of_directions, of_first_system
-
     yield of_first_system(done.judged.layout)
     yield from filter(None, [note_of_directions(layout)])

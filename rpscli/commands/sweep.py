@@ -13,13 +13,7 @@ from rpscli.commands.inputs import RESULTS, write
 from rpscli.commands.shell import options
 from rpscli.commands.shell.terminal import Terminal, concluded, leave, rendered
 from rpscli.commands.shell.waiting import passing_time
-from rpscli.commands.study import (
-    SweepChoices,
-    computed,
-    read,
-    show_dry_run,
-    study_heading,
-)
+from rpscli.commands.study import SweepChoices, computed, read, show_dry_run, study_heading
 from rpscli.errors import LimitExceeded
 from rpscli.report.documents import heading
 from rpscli.report.figures.look import Look
@@ -81,6 +75,7 @@ def command(
         show_dry_run(given, chosen, terminal)
         return
     from rpscli.report.limits import verdicts_in_short
+    from rpscli.report.study.shown import note_of_directions
     from rpscli.studies import collected, error_of
     from rpscli.sweep.store import Store
 
@@ -101,7 +96,7 @@ def command(
     document = {
         **heading("sweep"),
         "study": study_heading(result.layout),
-        "note": _note(result) or None,
+        "note": (result.summary and note_of_directions(result.layout)) or None,
         "points": {
             "total": len(result),
             "computed": result.done.computed,
@@ -132,10 +127,8 @@ def _shown(result: StudyResult, found: Collected, *, whole: bool) -> list[Part]:
     judged, told = result.judgements, list(_told(result, found))
     if whole:
         return [*_head(result), *summary_tables(result.summary), *told]
-    head, statistics = (
-        list(_head(result)),
-        list(summary_tables(result.summary, asked(result.layout))),
-    )
+    head = list(_head(result))
+    statistics = list(summary_tables(result.summary, asked(result.layout)))
     few: list[Part] = []
     for rows, of_reports in [(n, FEWER[0]) for n in FEWER] + [(0, n) for n in FEWER]:
         some = cut(statistics, rows, ALL) if rows else [f"statistics are in statistics.csv{ALL}"]
@@ -158,7 +151,7 @@ def _head(result: StudyResult) -> Iterator[Part]:
 
 def _told(result: StudyResult, found: Collected) -> Iterator[Part]:
     """What counts as overturned, verdicts, reports; what several of them remark is said once."""
-    from rpscli.report.study.shown import of_first_system, verdict_table
+    from rpscli.report.study.shown import note_of_directions, of_first_system, verdict_table
 
     if result.summary is not None:
         yield of_first_system(result.layout)
@@ -169,11 +162,5 @@ def _told(result: StudyResult, found: Collected) -> Iterator[Part]:
         if isinstance(part, Table | Heading) or part not in told:
             yield part
         told |= set() if isinstance(part, Table) else {part}
-    if note := _note(result):
+    if result.summary and (note := note_of_directions(result.layout)):
         yield note
-
-
-def _note(result: StudyResult) -> str:
-    from rpscli.report.study.shown import note_of_directions
-
-    return note_of_directions(result.layout) if result.summary else ""

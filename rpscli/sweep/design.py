@@ -45,14 +45,16 @@ MOST_NEAR = 64
 
 
 class Requirement(NamedTuple):
-    """A condition at one intensity; `measure` and `level` name it where there are several."""
+    """A condition at one intensity; `measure` and `level` name it where there are several.
+
+    `rates` are annual rates of overturning for a share of one at each intensity [1/year].
+    """
 
     condition: Condition
     intensity: int
     measure: str = "scale"
     level: float | None = None
     rates: tuple[float, ...] | None = None
-    """Annual rate of overturning for a share of one at each intensity [1/year]."""
 
     @property
     def result(self) -> str:
@@ -96,20 +98,17 @@ def _share(demands: Array, weights: Array, event: Condition) -> Array:
 
 def requirements_of(task: DesignTask, layout: StudyPoints) -> tuple[Requirement, ...]:
     """Requirements in the order of verdicts; refuse a design that requires nothing."""
-    several = len(layout.scales) > 1
+    limits, several = layout.properties[0].limits, len(layout.scales) > 1
     (measure,) = shown_keys(layout, (INTENSITY,))
-    limits = layout.properties[0].limits
     found = [
         Requirement(limit, place, measure, level if several else None)
         for place, level in enumerate(layout.scales)
         for limit in limits
         if limit.name != RATE
     ]
-    found += (
-        Requirement(limit, 0, rates=tuple(rates_of_levels(layout)[0].tolist()))
-        for limit in limits
-        if limit.name == RATE
-    )
+    of_rate = [limit for limit in limits if limit.name == RATE]
+    rates = tuple(rates_of_levels(layout)[0].tolist()) if of_rate else ()
+    found += (Requirement(limit, 0, rates=rates) for limit in of_rate)
     if not found:
         text = "limits is missing: say what is required, here or in the case at the base"
         task.study.document.refuse([Fault((), f"{text}, as in `limits: {{overturning: 0.05}}`")])
@@ -142,25 +141,24 @@ def weights_of(clusters: Sequence[int], resamples: int, seed: int) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Answer:
-    """All designs that were looked at, and how each is judged."""
+    """All designs that were looked at, and how each is judged.
+
+    `places` (designs, unknowns) are in the unit cube, `values` (designs, keys) in SI units, `valid`
+    (designs,) those which are valid cases. `results`, see `Requirement.judged`, and `met` are
+    (requirements, weightings, designs); `excess` (requirements, designs) is the share of the
+    records that is beyond a limit and may not be; `objectives` (weightings, designs) is what is
+    minimised, infinite where so many overturned or none is known.
+    """
 
     task: DesignTask
     requirements: tuple[Requirement, ...]
     places: Array
-    """(designs, unknowns) in the unit cube."""
     values: Array
-    """(designs, keys) in SI units."""
     valid: Flags
-    """(designs,) which are valid cases."""
     results: Array
-    """(requirements, weightings, designs) values, see `Requirement.judged`."""
     met: Flags
-    """(requirements, weightings, designs)."""
     excess: Array
-    """(requirements, designs) share of the records that is beyond a limit and may not be."""
     objectives: Array
-    """(weightings, designs) what is minimised; infinite where so many overturned or none is known.
-    """
 
     def with_more(self, other: Answer) -> Answer:
         """With the designs of a further round."""
@@ -295,12 +293,11 @@ class Search:
     def valid_cases(self, values: Array) -> Flags:
         """(designs,) which values make valid cases; why others do not is kept in `faults`."""
         study, found = self.task.study, np.ones(len(values), dtype=bool)
+        where = study.base, study.base.name, study.base_folder
         for place, row in enumerate(self.task.rows(values)):
             given = dict(zip(self.task.keys, row, strict=True))
             try:
-                _ = case_from_mapping(
-                    study.base, study.base.name, study.base_folder, given, label="variables"
-                ).structure
+                _ = case_from_mapping(*where, given, label="variables").structure
             except CaseError as error:
                 found[place] = False
                 self.faults.setdefault(str(error).splitlines()[0])
@@ -384,7 +381,7 @@ def next_places(answer: Answer, count: int) -> Array:
 def _ordered(places: Array, worth: Array) -> list[Array]:
     """Places of some worth, the worthiest first."""
     order = np.argsort(-worth, kind="stable")
-    return [places[place] for place in order if worth[place] > 0.0]
+    return list(places[order[worth[order] > 0.0]])
 
 
 def neighbours(places: Array) -> tuple[Indices, Indices]:

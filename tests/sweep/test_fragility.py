@@ -89,12 +89,6 @@ def test_bootstrap_bands_cover_the_truth_about_as_often_as_they_say() -> None:
     assert 30 <= inside <= 40
 
 
-def test_the_seed_fixes_the_bands() -> None:
-    im, y = drawn(100)
-    bands = [fit(im, y, resamples=50, seed=seed).median_band for seed in (1, 1, 2)]
-    assert bands[0] == bands[1] != bands[2]
-
-
 def test_separated_data_get_a_warning_and_a_sane_beta() -> None:
     im = np.array([0.2, 0.3, 0.5, 0.6, 0.9, 1.2, 1.5, 2.0])
     y = im > 0.7

@@ -199,11 +199,6 @@ def sampled(distribution: str) -> tuple[str, str]:
         (*axis("- 3"), ("vary.1 = 3", "mapping")),
         ("[critical, 0.5, 0]", "[]", ("study.yaml:7:37", "must not be an empty list")),
         (
-            "[critical, 0.5, 0]",
-            "{low: 0, high: 1, count: 3, spacing: log}",
-            ("equal ratios", "spacing: linear"),
-        ),
-        (
             *axis("- podium.bearing: [{}]"),
             ("podium.bearing varies as a whole", "must not vary too"),
         ),
@@ -244,17 +239,15 @@ def sampled(distribution: str) -> tuple[str, str]:
             "scale: {measure: PGV, values: [one]}",
             ("study.yaml:10:32", "number in m/s", "one"),
         ),
-        (SCALE, "scale: {low: 1, high: 2, cnt: 3}", ("study.yaml:10", "cnt")),
         (SCALE, "scale: {low: 0, high: 2, count: 3, spacing: log}", ("equal ratios",)),
         # reports
         (*added("reports: demand"), ("study.yaml:10:10", "must be a list")),
-        (*added("reports: [3]"), ("reports.0 = 3", "must be a name")),
         *(
             (
                 *added(f"reports: [{{fragility: {{name: {name}}}}}]"),
                 ("study.yaml:10:30: reports.0.fragility.name", "must be the name of a file"),
             )
-            for name in ("../up", "/top", "'a:b'", ".hidden", "x" * 101, '"two\\nlines"')
+            for name in ("../up", ".hidden", "x" * 101, '"two\\nlines"')
         ),
         (*added("reports: [xyzzy]"), ("'xyzzy' is not a report", "known are", "fragility")),
         *(
@@ -285,7 +278,6 @@ def sampled(distribution: str) -> tuple[str, str]:
         (*added("reports: [demand: {panels: [3]}]"), ("a key or a list of keys",)),
         # sample
         (*sampled("7"), ("cap_beam_mass_ratio = 7 must be [low, high]", "distribution")),
-        (*sampled("[5]"), ("must be [low, high]",)),
         (*sampled("{low: 5, mean: 6, cov: 0.1}"), ("low and high alone",)),
         (*sampled("{distribution: lognormal, mean: -1, cov: 0.1}"), ("> 0 for a lognormal",)),
         (*sampled("{distribution: normal, mean: 0, cov: 0.1}"), ("mean = 0", "cov is relative")),
