@@ -130,14 +130,13 @@ def show_dry_run(study: Study, choices: SweepChoices, terminal: Terminal) -> Non
     terminal.warn(study.warnings)  # first: trying points may take long where the case is at fault
     layout, count = study.layout, len(study)
     jobs, histories = choices.jobs or available_cores(), layout.plan.analysis == "timehistory"
-    first = range(min(POINTS_SHOWN, count))
-    last = range(max(0, count - POINTS_SHOWN), count)
     points: dict[int, dict[str, Any]] = {}
-    for number in sorted({*first, *last}):
+    for number in sorted({*range(count)[:POINTS_SHOWN], *range(count)[-POINTS_SHOWN:]}):
         point = layout[number]
-        points[number] = {"point": number + 1, **layout.described(number)}
+        points[number + 1] = layout.described(number)
         if histories and layout.plan.measure is None:  # no measure decides about the factor
-            points[number]["scale"] = point.scale * point.scale_change
+            points[number + 1]["scale"] = point.scale * point.scale_change
+    listed = [{"point": number, **varied} for number, varied in points.items()]
     ways = 2 if any(record and record.is_pair for record in layout.records) else 1
     if histories and not is_ready(ways, LANES):
         seconds = GUESSED_POINT_SECONDS * count / jobs
@@ -156,15 +155,17 @@ def show_dry_run(study: Study, choices: SweepChoices, terminal: Terminal) -> Non
         "records": len(layout.records),
         "scales": len(layout.scales),
         "members": len(layout.members),
-        "first_points": [points[n] for n in first],
-        "last_points": [points[n] for n in last],
+        "first_points": listed[:POINTS_SHOWN],
+        "last_points": listed[-POINTS_SHOWN:],
         "estimate": {"seconds": seconds, "jobs": jobs, "source": source},
         "warnings": study.warnings,
     }
-    terminal.result(document, _dry_run_tables(document, points.values()))
+    terminal.result(document, _dry_run_tables(document, points.items()))
 
 
-def _dry_run_tables(document: dict[str, Any], points: Iterable[dict[str, Any]]) -> Iterator[Part]:
+def _dry_run_tables(
+    document: dict[str, Any], points: Iterable[tuple[int, dict[str, Any]]]
+) -> Iterator[Part]:
     from rpscli.report.study.labels import label
 
     yield Heading(document["study"]["title"])
@@ -173,8 +174,9 @@ def _dry_run_tables(document: dict[str, Any], points: Iterable[dict[str, Any]]) 
     text = f"about {waiting.duration(expected['seconds'])} on {expected['jobs']} cores"
     counts = [(name, str(document[name])) for name in names]
     yield Table.listing([*counts, ("time", f"{text}, by {expected['source']}")])
-    rows = []
-    for point in points:
-        varied = (label(key, value) for key, value in point.items() if key != "point")
-        rows.append((f"point {point['point']}", ", ".join(varied)))
-    yield Table.listing(rows)
+    yield Table.listing(
+        [
+            (f"point {number}", ", ".join(label(key, value) for key, value in varied.items()))
+            for number, varied in points
+        ]
+    )

@@ -252,8 +252,8 @@ class System:
         if restitution_change == 1.0 or self.structure.bearing.is_spherical:
             return self.structure
         law = self.structure.impact_law
-        changed = replace(law, factor=law.factor * restitution_change)
-        return replace(self.structure, impact_law=changed)
+        law = replace(law, factor=law.factor * restitution_change)
+        return replace(self.structure, impact_law=law)
 
 
 def unjudged(varied: Mapping[str, Any]) -> list[str]:
@@ -306,10 +306,12 @@ class StudyContext:
 
     def intensities(self, points: Sequence[Point], factors: Array) -> dict[str, Array]:
         """Peaks of the scaled motions of some points, (points,)."""
-        requests = [point.record for point in points]
-        of: dict[RecordRequest, Of] = {
-            r: self.plan.of if r.is_pair else "component" for r in set(requests) if r
-        }
-        peaks = {r: [self.records.intensity(r, m, of=of[r]) for m in PEAKS] for r in of}
-        unscaled = np.array([peaks[r] for r in requests if r]).reshape(-1, len(PEAKS))
-        return {m.lower(): np.abs(factors) * unscaled[:, i] for i, m in enumerate(PEAKS)}
+        requests = [point.record for point in points if point.record]
+        peaks = dict[str, Array]()
+        for measure in PEAKS:
+            of: dict[RecordRequest, float] = {
+                r: self.records.intensity(r, measure, of=self.plan.of if r.is_pair else "component")
+                for r in set(requests)
+            }
+            peaks[measure.lower()] = np.abs(factors) * np.array([of[r] for r in requests])
+        return peaks

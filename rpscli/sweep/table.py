@@ -6,6 +6,7 @@ import csv
 import hashlib
 import io
 import json
+import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -245,11 +246,8 @@ def points_csv(table: Table) -> Iterator[str]:
 
 
 def _numbers(values: Array, *, whole: bool = False) -> list[str]:
-    if not np.isfinite(values).any():
-        return [""] * len(values)
     text = (lambda value: str(int(value))) if whole else repr
-    finite = np.isfinite(values).tolist()
-    return [text(v) if known else "" for v, known in zip(values.tolist(), finite, strict=True)]
+    return [text(value) if math.isfinite(value) else "" for value in values.tolist()]
 
 
 def _cell(value: object, unit: str) -> str:

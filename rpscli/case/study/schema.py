@@ -55,18 +55,6 @@ Share = Annotated[
 PositiveNumber = Annotated[float, Quantity(above=0)]
 
 
-def _key(value: object) -> str:
-    if not isinstance(value, str) or not value.strip():
-        refuse("must be a key or a list of keys, as text")
-    return value
-
-
-def _option(value: object) -> object:
-    if not isinstance(value, int | float | str):
-        refuse("must be a value or a list of values")
-    return value
-
-
 def _ends_in_si(value: object, info: ValidationInfo) -> object:
     """Ends of a range with the unit of the measure that stands before it."""
     if not isinstance(value, dict):
@@ -75,8 +63,12 @@ def _ends_in_si(value: object, info: ValidationInfo) -> object:
     return value | {key: measured_value(end, info) for key, end in ends.items()}
 
 
-Option = Annotated[Any, PlainValidator(_option), WithJsonSchema({"type": ["number", "string"]})]
-Key = Annotated[str, PlainValidator(_key), WithJsonSchema({"type": "string"})]
+Option = Annotated[
+    Any,
+    must_be((int, float, str), "a value or a list of values"),
+    WithJsonSchema({"type": ["number", "string"]}),
+]
+Key = Annotated[str, must_be(str, "a key or a list of keys, as text", filled=True)]
 Keys = Annotated[tuple[str, ...], Several(Key, spaced=False)]
 """One key or several."""
 AnyKeys = Annotated[tuple[str, ...], Several(Key, spaced=False, least=0)]
@@ -156,14 +148,15 @@ class MeasureScale(Section):
     out: rotd50 at an angle, and where both are among the records; else component, its own"""
 
 
-def _kind_of_scale(value: object) -> str:
-    measured = isinstance(value, dict) and "measure" in value
-    return "to a measure" if measured or isinstance(value, MeasureScale) else "by factors"
-
-
 Scale = Annotated[
     Annotated[MeasureScale, Tag("to a measure")] | Annotated[Numbers, Tag("by factors")],
-    Discriminator(_kind_of_scale),
+    Discriminator(
+        lambda value: (
+            "to a measure"
+            if isinstance(value, MeasureScale) or (isinstance(value, dict) and "measure" in value)
+            else "by factors"
+        )
+    ),
 ]
 """Factors on the records, or what to scale them to."""
 
@@ -201,18 +194,15 @@ class RangeSection(Section):
 
     @model_validator(mode="after")
     def _complete(self) -> Self:
-        low, high = self.low, self.high
-        moments = (self.mean, self.cov)
-        if low is not None and high is not None and moments == (None, None):
-            if self.distribution != "uniform":
-                refuse("must have low and high alone (uniform), or distribution, mean and cov")
-            if low >= high:
-                refuse(f"has low = {shown(low)}, which must be < high = {shown(high)}")
-        elif None in moments or (low, high) != (None, None):
+        ends, moments = (self.low, self.high), (self.mean, self.cov)
+        uniform = None not in ends and moments == (None, None) and self.distribution == "uniform"
+        if not uniform and (None in moments or ends != (None, None)):
             refuse("must have low and high alone (uniform), or distribution, mean and cov")
-        elif self.distribution == "lognormal" and not (self.mean or 0.0) > 0.0:
+        if uniform and not self.low < self.high:  # type: ignore[operator]
+            refuse(f"has low = {shown(self.low)}, which must be < high = {shown(self.high)}")
+        if self.distribution == "lognormal" and not (self.mean or 0.0) > 0.0:
             refuse(f"has mean = {shown(self.mean)}, which must be > 0 for a lognormal distribution")
-        elif self.mean == 0.0:
+        if self.mean == 0.0:
             refuse("has mean = 0, and cov is relative to it")
         return self
 
