@@ -6,7 +6,6 @@ import csv
 import hashlib
 import io
 import json
-import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -247,7 +246,8 @@ def points_csv(table: Table) -> Iterator[str]:
 
 def _numbers(values: Array, *, whole: bool = False) -> list[str]:
     text = (lambda value: str(int(value))) if whole else repr
-    return [text(value) if math.isfinite(value) else "" for value in values.tolist()]
+    finite = np.isfinite(values).tolist()
+    return [text(v) if known else "" for v, known in zip(values.tolist(), finite, strict=True)]
 
 
 def _cell(value: object, unit: str) -> str:
