@@ -53,9 +53,7 @@ from rpscli.report.study.registry import REPORTS, lacking, not_judged, requireme
 from rpscli.report.study.report import Found, add_notes
 from rpscli.report.study.statistics import (
     summary_columns,
-    summary_document,
     verdict_columns,
-    verdict_document,
     verdict_lines,
 )
 from rpscli.report.table import Column, Heading, Part, columns_of, csv_text
@@ -510,16 +508,6 @@ class StudyResult(Shown):
         if found.broken:
             raise found.broken[0]
         return made.files
-
-    def documents(self) -> dict[str, Any]:
-        """Statistics and verdicts in JSON; nothing of analyses without histories."""
-        if self.summary is None:
-            return {}
-        return {
-            "pooled": self.summary.pooled,
-            "statistics": summary_document(self.summary),
-            "verdicts": [verdict_document(self.summary.keys, each) for each in self.judgements],
-        }
 
 
 def collected(result: StudyResult, look: Look, place: Path | None = None) -> Collected:

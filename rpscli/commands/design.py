@@ -2,23 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
-from rpscli.commands.inputs import RESULTS, write
+from rpscli.commands.inputs import write
 from rpscli.commands.shell import options
-from rpscli.commands.shell.terminal import Terminal, concluded, leave
-from rpscli.commands.study import SweepChoices, computed, show_dry_run, study_heading
-from rpscli.report.documents import heading
+from rpscli.commands.shell.terminal import Terminal, leave
 from rpscli.report.figures.look import Look
-from rpscli.report.table import Heading, Part, Table
-
-if TYPE_CHECKING:
-    from rpscli.designs import Design
-    from rpscli.studies import Study, StudyResult
-    from rpscli.sweep.store import Store
 
 
 @click.command("design")
@@ -44,75 +35,14 @@ def command(
     Every point is stored at once: after an interruption the same command continues. The exit
     code is 10 if no design passes, or if the best one fails the limits in its validation.
     """
+    from rpscli.commands.design_run import designed
+    from rpscli.commands.study import SweepChoices
+
     done = designed(design, overrides, SweepChoices(**choices), output, look, terminal)
     if done is None:
         return
     write(done.folder, terminal)
-    document = document_of(done)
+    document = done.document
     terminal.warn_first(document["warnings"], "with --json")
-    terminal.result(document, tables_of(done))
+    terminal.result(document, done.tables)
     leave(done.error)
-
-
-def designed(
-    design: str,
-    overrides: tuple[str, ...],
-    chosen: SweepChoices,
-    output: options.OutputRequest,
-    look: Look,
-    terminal: Terminal,
-) -> Design | None:
-    """Search, and collect the files; None after a dry run."""
-    from rpscli.case.design import parse_design
-    from rpscli.case.text.files import opened
-    from rpscli.designs import find_design
-    from rpscli.studies import Study
-    from rpscli.sweep.design import Search
-
-    search = Search(parse_design(**opened(design), overrides=overrides))
-    first = Study(search.layout, overrides)
-    first.require_results()
-    terminal.warn(first.warnings)
-    if chosen.dry_run:
-        terminal.note(f"the first of at most {search.most} designs:")
-        show_dry_run(first, chosen, terminal)
-        return None
-    place = output.place or RESULTS / first.layout.study.name / "design"
-    folder = first.output(place, "design", force=output.force)
-
-    def told(words: str, study: Study, store: Store) -> StudyResult:
-        if words:
-            terminal.note(words)
-        return computed("design", study, store, chosen, terminal)
-
-    return find_design(search, folder, look, told, overrides=overrides, fresh=chosen.fresh)
-
-
-def document_of(done: Design) -> dict[str, Any]:
-    """The answer in JSON."""
-    from rpscli.report.study.shown import note_of_directions
-
-    layout = done.run.layout
-    document = {
-        **heading("design"),
-        "study": study_heading(layout),
-        "note": note_of_directions(layout) or None,
-        "points": {"total": len(done.run.table), "failed": len(done.found.failures)},
-        **done.document,
-        "warnings": [*done.notes, *done.run.study.warnings],
-        "files": [str(done.run.results.store.path), *done.folder.files],
-    }
-    return concluded(document, done.error)
-
-
-def tables_of(done: Design) -> Iterator[Part]:
-    """The answer for readers."""
-    from rpscli.report.study.shown import note_of_directions, of_first_system
-
-    layout, document = done.run.layout, done.document
-    yield Heading(layout.study.title)
-    counts = [(name.replace("_", " "), str(n)) for name, n in document["designs"].items()]
-    yield Table.listing([*counts, ("records scaled to", layout.scaled_to)])
-    yield from done.tables
-    yield of_first_system(done.judged.layout)
-    yield from filter(None, [note_of_directions(layout)])

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from rpscli.case.case import Case
-from rpscli.commands.design import designed, document_of, tables_of
+from rpscli.commands.design_run import designed
 from rpscli.commands.inputs import RESULTS
 from rpscli.commands.report_case import Earlier, PageDone, ends, subject_words
 from rpscli.commands.shell.options import CaseRequest, OutputRequest
@@ -149,13 +149,13 @@ def design_page(
     output, look = OutputRequest(folder, force=folder is not None), page_look(look)
     done = designed(request.source, request.overrides, SweepChoices(), output, look, terminal)
     assert done is not None, "it is no dry run"
-    document, study = document_of(done), done.run.study
+    document, study = done.document, done.run.study
     terminal.warn(notes := document["warnings"])
     at = done.judged.layout
     case = resolved(at.plan, at[0].values)
     named = {path.name: content for path, content in done.folder.contents.items()}
     short = [
-        part for part in tables_of(done) if not (isinstance(part, Heading) and part == study.title)
+        part for part in done.tables if not (isinstance(part, Heading) and part == study.title)
     ]
     motions = case_page.motions_section(*motions_of(study), study.title, look)
     results = [motions, _figures(named, study)]

@@ -76,6 +76,7 @@ def command(
         return
     from rpscli.report.limits import verdicts_in_short
     from rpscli.report.study.shown import note_of_directions
+    from rpscli.report.study.statistics import summary_document, verdict_document
     from rpscli.studies import collected, error_of
     from rpscli.sweep.store import Store
 
@@ -93,6 +94,13 @@ def command(
     # Of each report: what one has to say takes no room from the next.
     for _, of_one in groupby(notes, lambda note: note.partition(": ")[0]):
         terminal.warn_first(list(of_one), "with --json", OF_A_REPORT)
+    statistics: dict[str, Any] = {}
+    if (rows := result.summary) is not None:
+        statistics = {
+            "pooled": rows.pooled,
+            "statistics": summary_document(rows),
+            "verdicts": [verdict_document(rows.keys, each) for each in result.judgements],
+        }
     document = {
         **heading("sweep"),
         "study": study_heading(result.layout),
@@ -105,7 +113,7 @@ def command(
             "unused": result.begin.unused,
         },
         "outcomes": result.outcomes,
-        **result.documents(),
+        **statistics,
         "reports": found.documents,
         "failures": [failure._asdict() for failure in found.failures],
         "notes": list(result.begin.notes),
