@@ -125,7 +125,7 @@ def designed(
     search, rounds, validated = Search(task), 0, None
     first = Study(search.layout, overrides)
     first.require_results()
-    terminal.warn(first.warnings)
+    terminal.warn(task.study.notes)  # doubts about systems come with those of all rounds
     if chosen.dry_run:
         terminal.note(f"the first of at most {search.most} designs:")
         show_dry_run(first, chosen, terminal)
