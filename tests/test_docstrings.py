@@ -1,7 +1,6 @@
 """Docstrings: their examples show what they say; arguments and fields of what is public are told.
 
-Public is what `import rpscli` offers, and the published formulae of the model; elsewhere a line
-with shapes and units is enough.
+Public is what `import rpscli` offers; elsewhere a line with shapes and units is enough.
 """
 
 from __future__ import annotations
@@ -125,19 +124,16 @@ def test_what_is_missing_is_found(source: str, missing: set[str]) -> None:
 
 
 def public_nodes() -> Iterator[tuple[str, ast.FunctionDef | ast.ClassDef, set[str]]]:
-    """What `import rpscli` offers, and the published formulae of the model, with their modules.
+    """What `import rpscli` offers, with its modules.
 
     Beside each stand the names that its class explains for all its methods.
     """
-    modules = {name: set(names) for name, names in rpscli._HOMES.items()}
-    for file in (PACKAGE / "model").rglob("*.py"):
-        modules.setdefault(".".join(file.relative_to(PACKAGE.parent).with_suffix("").parts), set())
-    for module, names in modules.items():
+    for module, names in rpscli._HOMES.items():
         file = PACKAGE.parent.joinpath(*module.split(".")).with_suffix(".py")
         for node in parsed(file).body:
             if not isinstance(node, ast.FunctionDef | ast.ClassDef) or node.name.startswith("_"):
                 continue
-            if node.name in names or ".model." in module:
+            if node.name in names:
                 # An answer to what a base class asks has no docstring; linters see to all others.
                 for each in filter(ast.get_docstring, public([node])):
                     yield module, each, described(ast.get_docstring(node)) & shared(node)

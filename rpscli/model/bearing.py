@@ -17,11 +17,6 @@ from rpscli.physics import geometry
 def first_order_critical_curvature_ratio(slenderness: float, wedge_slenderness: float) -> float:
     """rho_cr = (1 - tan(alpha)/tan(alpha'))/2 (paper, Eq. 1): sin(beta) taken as tan(beta).
 
-    Parameters
-    ----------
-    slenderness, wedge_slenderness
-        tan(alpha) and tan(alpha').
-
     Examples
     --------
     >>> first_order_critical_curvature_ratio(0.15, 0.30)
@@ -295,18 +290,7 @@ class UpliftedState(NamedTuple):
 
 
 def uplifted_state(bearing: Bearing, *, rolling: bool, exact: bool = True) -> UpliftedState:
-    """The state where it begins, or the paper's.
-
-    Parameters
-    ----------
-    bearing
-        Shape of every column.
-    rolling
-        On the arcs; else rocking on their ends.
-    exact
-        At the tilt where the state begins: 0 rolling, beta rocking. Else to first order in alpha,
-        and rocking continued to theta = 0.
-    """
+    """The state where it begins; else the paper's, to first order and rocking continued to 0."""
     if not exact:
         diameter = 2.0 * bearing.semi_diagonal
         a = bearing.alpha if rolling else bearing.alpha_wedge

@@ -271,13 +271,7 @@ def _storey_stiffness(structure: Standing, mass: float, omega: float) -> float:
 
 
 def bed_of(structure: Standing) -> Bed | None:
-    """Compliance of full contact of a structure; None on rigid ends.
-
-    Raises
-    ------
-    ValueError
-        If the structure's contact asks for what the model does not have.
-    """
+    """Compliance of full contact of a structure; None on rigid ends."""
     contact, b = structure.contact, structure.bearing
     if contact.kind == "rigid":
         return None

@@ -15,27 +15,9 @@ from rpscli.model.podium import Array, AtRest, Consequence, Device, Linear, Podi
 from rpscli.registry import Registry
 
 
-class Damper(Device):
-    """What resists motion alone, and holds nothing unless it says so."""
-
-    def at_rest(self, structure: PodiumStructure, rotation: Array, farthest: float) -> AtRest:
-        return AtRest()
-
-    def stiffness_after_uplift(self, structure: PodiumStructure) -> float:
-        return 0.0
-
-
 @dataclass(frozen=True)
-class ViscousDamper(Damper):
-    """P = -c |u_b'|^a sgn(u_b') on the cap beam, c the force at 1 m/s.
-
-    Parameters
-    ----------
-    coefficient
-        c [N s/m; for a != 1 N (s/m)^a].
-    exponent
-        a, from 0.2 to 2; 1 is linear.
-    """
+class ViscousDamper(Device):
+    """P = -c |u_b'|^a sgn(u_b') on the cap beam, c [N (s/m)^a] the force at 1 m/s, a 0.2 to 2."""
 
     coefficient: float
     exponent: float = 1.0
@@ -47,9 +29,6 @@ class ViscousDamper(Damper):
         _require_positive(coefficient=self.coefficient)
         if not 0.2 <= self.exponent <= 2.0:
             raise ValueError("exponent must be >= 0.2 and <= 2")
-
-    def constants(self, structure: PodiumStructure) -> tuple[float, ...]:
-        return self.coefficient, self.exponent
 
     def linear(self, structure: PodiumStructure, state: UpliftedState) -> Linear:
         if self.exponent != 1.0:
@@ -68,14 +47,8 @@ class ViscousDamper(Damper):
 
 
 @dataclass(frozen=True)
-class FrictionDamper(Damper):
-    """P = -F_d sgn(u_b'); at rest any |P| <= F_d.
-
-    Parameters
-    ----------
-    force
-        F_d [N].
-    """
+class FrictionDamper(Device):
+    """P = -F_d sgn(u_b'), F_d [N]; at rest any |P| <= F_d."""
 
     force: float
 
@@ -85,17 +58,11 @@ class FrictionDamper(Damper):
     def __post_init__(self) -> None:
         _require_positive(force=self.force)
 
-    def constants(self, structure: PodiumStructure) -> tuple[float, ...]:
-        return (self.force,)
-
     def at_rest(self, structure: PodiumStructure, rotation: Array, farthest: float) -> AtRest:
         return AtRest(held=self.force)
 
     def linear(self, structure: PodiumStructure, state: UpliftedState) -> Linear:
         return Linear(left_out="friction")
-
-    def bounds(self, structure: PodiumStructure) -> tuple[float, float]:
-        return 0.0, 0.0
 
     def consequences(self, structure: PodiumStructure) -> Iterator[Consequence]:
         if structure.bearing.is_spherical:
@@ -106,17 +73,7 @@ class FrictionDamper(Damper):
 
 @dataclass(frozen=True)
 class Stop(Device):
-    """s P = -(k_s (|u_b| - d) + c_s |u_b|') beyond the gap, where that pushes back.
-
-    Parameters
-    ----------
-    gap
-        d, alike on both sides [m].
-    stiffness
-        k_s [N/m].
-    damping
-        c_s [N s/m].
-    """
+    """s P = -(k_s (|u_b| - d) + c_s |u_b|') beyond the gap d [m] on both sides, where it pushes."""
 
     gap: float
     stiffness: float
@@ -128,9 +85,6 @@ class Stop(Device):
     def __post_init__(self) -> None:
         _require_none_below_zero(gap=self.gap, damping=self.damping)
         _require_positive(stiffness=self.stiffness)
-
-    def constants(self, structure: PodiumStructure) -> tuple[float, ...]:
-        return self.gap, self.stiffness, self.damping
 
     def at_rest(self, structure: PodiumStructure, rotation: Array, farthest: float) -> AtRest:
         beyond = np.maximum(self.stroke(structure, rotation) - self.gap, 0.0)
@@ -156,16 +110,8 @@ class Stop(Device):
 class Tendon(Device):
     """An unbonded tendon in the axis of each column, from the ground to the cap beam.
 
-    Elastic up to its yield force and perfectly plastic beyond; it never pushes.
-
-    Parameters
-    ----------
-    prestress
-        P_0 of one tendon while the structure stands [N].
-    stiffness
-        k_t of one [N/m].
-    yield_force
-        P_y of one [N]; infinite if it does not yield.
+    Elastic up to its yield force and perfectly plastic beyond; it never pushes. Prestress P_0 while
+    the structure stands [N], k_t [N/m] and P_y [N] are those of one.
     """
 
     prestress: float
@@ -185,9 +131,6 @@ class Tendon(Device):
     def results(self) -> tuple[str, ...]:
         return ("lost_prestress",) if self.prestress > 0.0 else ()
 
-    def constants(self, structure: PodiumStructure) -> tuple[float, ...]:
-        return self.prestress, self.stiffness, self.yield_force
-
     def at_rest(self, structure: PodiumStructure, rotation: Array, farthest: float) -> AtRest:
         stretch = self.stroke(structure, rotation) - self.permanent(structure, farthest)
         tension = np.clip(self.prestress + self.stiffness * stretch, 0.0, self.yield_force)
@@ -195,15 +138,7 @@ class Tendon(Device):
         return AtRest(structure.columns * tension * lever / arm)
 
     def permanent(self, structure: PodiumStructure, farthest: float) -> float:
-        """Elongation that it keeps after it was drawn to a rotation [m].
-
-        Parameters
-        ----------
-        structure
-            Podium with its bearings.
-        farthest
-            Rotation to which it was drawn [rad].
-        """
+        """Elongation that it keeps after it was drawn to a rotation [m]."""
         elastic = (self.yield_force - self.prestress) / self.stiffness
         drawn = self.stroke(structure, np.array([farthest]))
         return max(0.0, float(drawn[0]) - elastic)
@@ -251,13 +186,7 @@ class Tendon(Device):
 
 @dataclass(frozen=True)
 class RollingResistance(Device):
-    """The moment f (N_top + N_bot) against the tilt's rate, with the weight for normal forces.
-
-    Parameters
-    ----------
-    lever
-        f, by which the normal force runs ahead of the contact [m].
-    """
+    """The moment f (N_top + N_bot) against the tilt's rate, f [m], the weight for normal forces."""
 
     lever: float
 
@@ -279,9 +208,6 @@ class RollingResistance(Device):
     def linear(self, structure: PodiumStructure, state: UpliftedState) -> Linear:
         return Linear(left_out="rolling resistance")
 
-    def bounds(self, structure: PodiumStructure) -> tuple[float, float]:
-        return 0.0, 0.0
-
     def consequences(self, structure: PodiumStructure) -> Iterator[Consequence]:
         if structure.bearing.is_spherical:
             return
@@ -290,18 +216,8 @@ class RollingResistance(Device):
 
 
 @dataclass(frozen=True)
-class OwnDamper(Damper):
-    """A damper whose law another package adds.
-
-    Parameters
-    ----------
-    name
-        Its kind in a case.
-    law
-        What it does.
-    values
-        Of its constants, in their order.
-    """
+class OwnDamper(Device):
+    """A damper of the kind `name` whose law another package adds, and values of its constants."""
 
     name: str
     law: DamperLaw
@@ -331,9 +247,6 @@ class OwnDamper(Damper):
     def bounds(self, structure: PodiumStructure) -> tuple[float, float]:
         stiffness = 0.0 if self.law.stiffness is None else self.law.stiffness(*self.values)
         return stiffness, self.law.damping(*self.values)
-
-    def consequences(self, structure: PodiumStructure) -> Iterator[Consequence]:
-        return iter(())
 
 
 def own_laws(structure: PodiumStructure) -> dict[str, OwnLaw]:

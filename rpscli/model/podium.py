@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import astuple, dataclass, field, replace
 from functools import cached_property
 from numbers import Integral
 from typing import Any, ClassVar, NamedTuple, TypeAlias
@@ -355,13 +355,7 @@ class PodiumStructure(Shown):
         return math.sqrt(self.gravity / self.bearing.semi_diagonal * ratio)
 
     def path(self, rotation: Array) -> tuple[Array, ...]:
-        """Restoring force F, cap beam displacement u_b and lift v_b at |theta| [rad].
-
-        Returns
-        -------
-        Three arrays of the shape of `rotation`: F = W B/C [N], u_b [m], v_b [m]. On a bed the arm
-        of the weight stands in place of B.
-        """
+        """F = W B/C [N] (on a bed the weight's arm for B), u_b and v_b [m] at |theta| [rad]."""
         (arm, C, u, v), diameter = self._along(rotation), 2.0 * self.bearing.semi_diagonal
         return self.weight * arm / C, diameter * u, diameter * v
 
@@ -419,21 +413,8 @@ class Consequence(NamedTuple):
 class Device(ABC):
     """The law of a device between ground and cap beam, which it pushes unless a law says otherwise.
 
-    All that follows from a law is asked here, and a law that leaves a question open cannot be made.
+    All that follows from a law is asked here; what resists motion alone need not answer most of it.
     How it is drawn is told in `report.figures.devices`.
-
-    Parameters
-    ----------
-    structure
-        On which it acts.
-    rotation
-        |theta|, of any shape [rad].
-    farthest
-        Rotation to which it was drawn before [rad].
-    state
-        About which motions are small.
-    length
-        [m].
     """
 
     in_each_column: ClassVar[bool] = False
@@ -450,28 +431,33 @@ class Device(ABC):
         """Results of a history that exist with it: its largest force by a name, or a share lost."""
 
     @abstractmethod
-    def constants(self, structure: PodiumStructure) -> tuple[float, ...]:
-        """Numbers of its law, as the kernels read them."""
-
-    @abstractmethod
-    def at_rest(self, structure: PodiumStructure, rotation: Array, farthest: float) -> AtRest:
-        """Forces at rest."""
-
-    @abstractmethod
-    def stiffness_after_uplift(self, structure: PodiumStructure) -> float:
-        """Its part of dF/du_b at u_b = 0+, on the way out [N/m], exact."""
-
-    @abstractmethod
     def linear(self, structure: PodiumStructure, state: UpliftedState) -> Linear:
         """Its linear part, which modes hold."""
 
-    @abstractmethod
+    def constants(self, structure: PodiumStructure) -> tuple[float, ...]:
+        """Numbers of its law, as the kernels read them."""
+        del structure
+        return astuple(self)
+
+    def at_rest(self, structure: PodiumStructure, rotation: Array, farthest: float) -> AtRest:
+        """Forces at rest at |theta|, after it was drawn to the farthest rotation [rad]."""
+        del structure, rotation, farthest
+        return AtRest()
+
+    def stiffness_after_uplift(self, structure: PodiumStructure) -> float:
+        """Its part of dF/du_b at u_b = 0+, on the way out [N/m], exact."""
+        del structure
+        return 0.0
+
     def bounds(self, structure: PodiumStructure) -> tuple[float, float]:
         """Stiffness [N/m] and damping [N s/m] that it adds at most against u_b, for time steps."""
+        del structure
+        return 0.0, 0.0
 
-    @abstractmethod
     def consequences(self, structure: PodiumStructure) -> Iterator[Consequence]:
         """Numbers that follow from it before any analysis."""
+        del structure
+        return iter(())
 
     def stroke(self, structure: PodiumStructure, rotation: Array) -> Array:
         """Its displacement or elongation [m]."""

@@ -65,15 +65,6 @@ def restoring_force(structure: PodiumStructure, rotation: Array, farthest: float
     """Horizontal force at the cap beam that holds rotations > 0 at rest without friction [N].
 
     F = W B/C with what stops and tendons add.
-
-    Parameters
-    ----------
-    structure
-        Podium with its devices.
-    rotation
-        Rotations > 0, of any shape [rad].
-    farthest
-        Rotation up to which tendons were drawn before, perhaps beyond yielding [rad].
     """
     x = np.asarray(rotation, dtype=float)
     force = structure.path(x)[0]
@@ -86,13 +77,6 @@ def secant_period(structure: PodiumStructure, rotation: float) -> float:
     """Period of the rigid building on bearings whose secant stiffness is that at a rotation [s].
 
     T = 2 pi sqrt(M u_b/F), with M the mass that F = W B/C lifts, W/g, without friction.
-
-    Parameters
-    ----------
-    structure
-        Podium with its devices.
-    rotation
-        Above 0, below the critical one [rad].
     """
     force = float(restoring_force(structure, np.array(rotation)))
     displacement = float(structure.path(np.array([rotation]))[1][0])
@@ -100,15 +84,7 @@ def secant_period(structure: PodiumStructure, rotation: float) -> float:
 
 
 def friction_force(structure: PodiumStructure, rotation: Array) -> Array:
-    """Horizontal force at the cap beam that friction of all kinds can hold at rest [N].
-
-    Parameters
-    ----------
-    structure
-        Podium with its devices.
-    rotation
-        Any shape, |theta| [rad].
-    """
+    """Horizontal force at the cap beam that friction of all kinds can hold at rest [N]."""
     x = np.asarray(rotation, dtype=float)
     held = np.zeros_like(x)
     for device in structure.devices:
@@ -128,30 +104,13 @@ def uplift_acceleration(structure: PodiumStructure) -> float:
 
 
 def largest_recentring_friction(structure: PodiumStructure, rotation: float) -> float:
-    """The largest friction from which the structure still comes back from a rotation [N].
-
-    Parameters
-    ----------
-    structure
-        Podium with its devices; those with friction are left out.
-    rotation
-        Where it starts from rest [rad]; beyond the critical rotation the answer is negative unless
-        stops or tendons hold it.
-    """
+    """The largest friction from which the structure still comes back from a rotation [N]."""
     x = np.linspace(rotation / POINTS, rotation, POINTS)
     return float(np.min(restoring_force(structure, x, rotation)))
 
 
 def recentres(structure: PodiumStructure, rotation: float) -> bool:
-    """True if the structure comes back to full contact from rest, slowly.
-
-    Parameters
-    ----------
-    structure
-        Podium with its devices.
-    rotation
-        |theta| from which it starts [rad].
-    """
+    """True if the structure comes back to full contact from rest, slowly."""
     x = np.linspace(rotation / POINTS, rotation, POINTS)
     return bool(np.all(restoring_force(structure, x, rotation) > friction_force(structure, x)))
 

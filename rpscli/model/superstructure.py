@@ -118,15 +118,7 @@ def profile_stiffnesses(masses: ArrayLike, period: float, profile: Profile = "si
 
 
 def first_mode_strengths(masses: Array, stiffnesses: Array, first: float) -> Array:
-    """Storey strengths (n,) [N] in the proportions of the shears of the first mode.
-
-    Parameters
-    ----------
-    masses, stiffnesses
-        As those of `shear_modes`.
-    first
-        That of the first storey [N].
-    """
+    """Storey strengths (n,) [N] in the proportions of the shears of the first mode."""
     shears = np.cumsum((masses * shear_modes(masses, stiffnesses)[1][:, 0])[::-1])[::-1]
     return np.asarray(first * shears / shears[0])
 
@@ -142,13 +134,6 @@ def shear_modes(masses: Array, stiffnesses: Array) -> tuple[Array, Array]:
     """Frequencies (n,) [rad/s], ascending, and mass-normalised shapes (n, n), one a column.
 
     The sign of a shape is fixed by a positive roof.
-
-    Parameters
-    ----------
-    masses
-        (n,) floor masses from the bottom [kg].
-    stiffnesses
-        (n,) storey stiffnesses from the bottom [N/m].
     """
     root = 1.0 / np.sqrt(masses)
     squares, vectors = np.linalg.eigh(root[:, None] * stiffness_matrix(stiffnesses) * root)
