@@ -12,11 +12,7 @@ from rpscli.errors import CaseError, RpsError
 def csv_rows(
     text: str, name: str | Path, fault: type[RpsError] = CaseError
 ) -> list[tuple[int, list[str]]]:
-    r"""Rows that are not empty, each with the number of its line; blanks before cells go.
-
-    >>> csv_rows('a, "b"\r\r1,"2,3"\n', "x.csv")
-    [(1, ['a', 'b']), (3, ['1', '2,3'])]
-    """
+    """Rows that are not empty, each with the number of its line; blanks before cells go."""
     lines = csv.reader(io.StringIO(text, newline=""), skipinitialspace=True)
     try:
         return [(lines.line_num, row) for row in lines if any(cell.strip() for cell in row)]

@@ -93,11 +93,7 @@ def refused_by_system(
 
 
 def alike(word: str, known: Iterable[str], most: int, likeness: float = 0.0) -> list[str]:
-    """The known words that are nearest to one, of which `likeness` is the part of equal letters.
-
-    >>> alike("slendernes", ["semi_diagonal", "slenderness", "radius"], 2)
-    ['slenderness', 'semi_diagonal']
-    """
+    """The known words that are nearest to one, of which `likeness` is the part of equal letters."""
     import difflib  # needed by those who made a mistake only
 
     folded = {name.lower().replace("-", "_"): name for name in known}
@@ -106,20 +102,12 @@ def alike(word: str, known: Iterable[str], most: int, likeness: float = 0.0) -> 
 
 
 def nearest(word: str, known: Iterable[str], likeness: float = 0.7) -> str | None:
-    """The known word that was probably meant; None if `likeness` is less.
-
-    >>> nearest("colour", ["slenderness"]) is None
-    True
-    """
+    """The known word that was probably meant; None if `likeness` is less."""
     return next(iter(alike(word, known, 1, likeness)), None)
 
 
 def hint(word: str, known: Iterable[str], otherwise: str, likeness: float = 0.7) -> str:
-    """A remedy for a word that is not known: the nearest known one, or `otherwise`.
-
-    >>> hint("slendernes", ["slenderness"], "")
-    'did you mean slenderness?'
-    """
+    """A remedy for a word that is not known: the nearest known one, or `otherwise`."""
     meant = nearest(word, known, likeness)
     return f"did you mean {meant}?" if meant else otherwise
 
@@ -140,11 +128,7 @@ def all_made(
 
 
 def listed(words: Iterable[str], last: str = "or") -> str:
-    """Words as an enumeration.
-
-    >>> listed(["sine", "uniform", "linear"])
-    'sine, uniform or linear'
-    """
+    """Words as an enumeration."""
     *head, tail = words
     return f"{', '.join(head)} {last} {tail}" if head else tail
 
@@ -155,20 +139,12 @@ _UNSEEN = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u20
 
 
 def visible(text: str) -> str:
-    r"""A text that only shows on a terminal, whoever wrote it.
-
-    >>> visible("\x1b[31mred") == "\ufffd[31mred"
-    True
-    """
+    """A text that only shows on a terminal, whoever wrote it."""
     return _UNSEEN.sub("\ufffd", text)
 
 
 def beginning(line: str) -> str:
-    """The part of a line that may be shown: the file may be another one, and a secret.
-
-    >>> beginning("a line of a file that holds other things")
-    "'a line of a file tha'..."
-    """
+    """The part of a line that may be shown: the file may be another one, and a secret."""
     return repr(line) if len(line) <= 20 else f"{line[:20]!r}..."
 
 
@@ -179,20 +155,12 @@ def require_visible(name: str, fault: type[RpsError]) -> None:
 
 
 def stem_of(path: PurePath) -> str:
-    """The name of a file without its ending, as the name of a folder.
-
-    >>> stem_of(PurePath("a/b.at2")), stem_of(PurePath("...at2"))
-    ('b', '...at2')
-    """
+    """The name of a file without its ending, as the name of a folder."""
     return path.stem if path.stem.strip(". ") else path.name
 
 
 def is_number(value: object) -> bool:
-    """True of finite real numbers.
-
-    >>> is_number(0.5), is_number("x"), is_number(float("nan")), is_number(True), is_number(10**400)
-    (True, False, False, False, False)
-    """
+    """True of finite real numbers."""
     if not isinstance(value, Real) or isinstance(value, bool):
         return False
     with suppress(OverflowError):
@@ -205,11 +173,7 @@ SMALLEST, LARGEST = 1e-15, 1e15
 
 
 def is_size(value: object) -> bool:
-    """Whether a value is a number above zero that follows from what a building may have.
-
-    >>> is_size(0.5), is_size(1e-300), is_size(-1.0)
-    (True, False, False)
-    """
+    """Whether a value is a number above zero that follows from what a building may have."""
     return is_number(value) and SMALLEST**2 <= value <= LARGEST**2  # type: ignore[operator]
 
 

@@ -131,11 +131,7 @@ _WORDS |= {
 
 @cache
 def unit_of_text(written: str) -> Unit | None:
-    """The unit that a text such as ``kN s/m`` names, or None.
-
-    >>> unit_of_text("kN/mm"), unit_of_text("inches").factor, unit_of_text("zork")
-    (Unit(mantissa=1.0, tens=6, dimension=(0, 1, -2)), 0.0254, None)
-    """
+    """The unit that a text such as ``kN s/m`` names, or None."""
     if not UNIT_TEXT.match(written):
         return None
     mantissa, tens = 1.0, 0
@@ -168,11 +164,7 @@ def si_value(text: str, unit: str) -> float:
 
 
 def bare_or_si(text: str, unit: str) -> float:
-    """A number in the SI unit, or one with its own unit.
-
-    >>> bare_or_si("2e3", "N"), bare_or_si("2 kN", "N")
-    (2000.0, 2000.0)
-    """
+    """A number in the SI unit, or one with its own unit."""
     try:
         return float(text)
     except ValueError:
@@ -207,9 +199,6 @@ def in_si(value: object, unit: str) -> object:
     """A value that a file gives at a key of this unit: texts with a unit as SI numbers.
 
     What is no such text stays as it is, elements of lists too.
-
-    >>> in_si("50 t", "kg"), in_si(["1 m", 2.0], "m"), in_si("critical", "-"), in_si("auto", "s")
-    (50000.0, [1.0, 2.0], 'critical', 'auto')
     """
     if isinstance(value, list | tuple):
         return [in_si(item, unit) for item in value]
@@ -223,11 +212,7 @@ def in_si(value: object, unit: str) -> object:
 
 
 def as_written(value: float, unit: str) -> str:
-    """A number in SI as its file has it, with its unit.
-
-    >>> as_written(in_si("0.6 g", "m/s2"), "m/s2"), as_written(5.0, "m/s2"), as_written(2.0, "-")
-    ('0.6 g', '5 m/s2', '2')
-    """
+    """A number in SI as its file has it, with its unit."""
     return value.text if isinstance(value, Written) else f"{value:g} {unit}".removesuffix(" -")
 
 

@@ -26,44 +26,28 @@ WITHOUT_IMPULSE = "the impulse of beam and columns at impacts, infinite between 
 
 @dataclass(frozen=True)
 class ColumnInstant:
-    """One end of the most loaded column when something is largest; in the plane of tilt.
+    """One end of the most loaded column when something is largest; in the plane of tilt."""
 
-    Parameters
-    ----------
-    largest
-        Name of the result that is.
-    axial_force, shear
-        N, and F to the right on what is above [N].
-    eccentricity, moment
-        M/N [m], M [N m].
-    contact_pressure, crushed_depth
-        p_0 on an arc [Pa], b_c at an edge [m]; None elsewhere.
-    doubt
-        The reason why the pressure is another one; empty where its law is valid.
-    """
-
-    largest: str
+    largest: str  # name of the result that is
     end: str
-    time: float
-    rotation: float
-    axial_force: float
-    shear: float
-    eccentricity: float
-    moment: float
-    contact_pressure: float | None
-    crushed_depth: float | None
-    doubt: str
+    time: float  # [s]
+    rotation: float  # [rad]
+    axial_force: float  # N [N]
+    shear: float  # F to the right on what is above [N]
+    eccentricity: float  # M/N [m]
+    moment: float  # M [N m]
+    contact_pressure: float | None  # p_0 on an arc [Pa]; None elsewhere
+    crushed_depth: float | None  # b_c at an edge [m]; None elsewhere
+    doubt: str  # why the pressure is another one; empty where its law is valid
 
 
 @dataclass(frozen=True)
 class ColumnDemand:
     """What the most loaded column has to carry."""
 
-    instants: tuple[ColumnInstant, ...]
-    """At which each result is largest."""
+    instants: tuple[ColumnInstant, ...]  # At which each result is largest
     at_largest_moment: ColumnState
-    pressure_ratio: float | None
-    """Largest p_0/f on arcs; None where it is not known."""
+    pressure_ratio: float | None  # Largest p_0/f on arcs; None where it is not known
     crushed_ratio: float | None
     """Largest b_c over the width of an end; 0 where no column came onto an edge."""
 

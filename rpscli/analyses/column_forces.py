@@ -38,8 +38,7 @@ class AxialForces:
     overturning_ratio: float | None
     """Largest r: what the moment of the floors' inertia about the cap beam adds to an outer row,
     over its mean force; None without rows."""
-    lift_off: float | None
-    """Time at which an outer row would first lift off [s]; None if never."""
+    lift_off: float | None  # Time at which an outer row would first lift off [s]; None if never
     sliding_time: float
     """Time during which columns would slide with a friction of `AMPLE` tan(alpha) [s]."""
     heaviest: dict[str, Array]

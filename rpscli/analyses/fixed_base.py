@@ -25,18 +25,13 @@ Array = NDArray[np.float64]
 class FixedBaseResponse(Shown):
     """Exact linear response of the building on a fixed base."""
 
-    storey_shears: Array
-    """(n,) largest k_i d_i [N], from the bottom."""
-    floor_accelerations: Array
-    """(n,) largest absolute accelerations [m/s2]."""
+    storey_shears: Array  # (n,) largest k_i d_i [N], from the bottom
+    floor_accelerations: Array  # (n,) largest absolute accelerations [m/s2]
     floor_velocities: Array
     """(n,) largest absolute velocities [m/s], see `TimeHistoryResult.floor_velocities`."""
-    floor_displacements: Array
-    """(samples, n) relative to the ground [m]."""
-    drifts: Array
-    """(n,) largest storey drifts [m]."""
-    acceleration_histories: Array
-    """(samples, n) absolute accelerations of the floors [m/s2]."""
+    floor_displacements: Array  # (samples, n) relative to the ground [m]
+    drifts: Array  # (n,) largest storey drifts [m]
+    acceleration_histories: Array  # (samples, n) absolute accelerations of the floors [m/s2]
     y: FixedBaseResponse | None = None
     """In y, where both components act: largest values above are then resultants, histories in x."""
 

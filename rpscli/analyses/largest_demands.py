@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from rpscli.analyses.outcome import Outcome, failure_text, outcomes_of
 from rpscli.analyses.result_quantities import (
+    EVERY,
     HISTORY,
     KERNEL_FIELDS,
     PAIR,
@@ -177,13 +178,17 @@ class Histories:
 
 
 class _Result(Generic[T]):
-    """An attribute of `Demand`, and a column of `Histories`: a field of the kernel's, or made."""
+    """An attribute of `Demand`, and a column of `Histories`: a field of the kernel's, or made.
 
-    def __init__(self, doc: str, made: Callable[[Histories], Array] | None = None) -> None:
+    The table of results has its meaning and its unit.
+    """
+
+    def __init__(self, made: Callable[[Histories], Array] | None = None, doc: str = "") -> None:
         self.__doc__, self.made = doc, made
 
     def __set_name__(self, owner: type, name: str) -> None:
         self._name = name
+        self.__doc__ = EVERY[name].described if name in EVERY else self.__doc__
 
     @overload
     def __get__(self, demand: None, owner: type) -> _Result[T]: ...
@@ -307,211 +312,97 @@ class Demand(Shown):
         """True if friction holds the storey tilted at the end."""
         return self.outcome == "stays_tilted"
 
-    max_rotation = _Result[float]("Largest |theta|, turning points between samples included [rad].")
+    max_rotation = _Result[float]()
     max_rotation_time = _Optional(
-        "When |theta| was largest [s]; None if there was no rotation.",
-        lambda h: np.where(h.left["max_theta"] > 0.0, h.left["max_theta_time"], np.nan),
+        lambda h: np.where(h.left["max_theta"] > 0.0, h.left["max_theta_time"], np.nan)
     )
-    rotation_ratio = _Result[float](
-        "max |theta|/theta_cr.", lambda h: h.left["max_theta"] / h.critical_rotation
-    )
-    critical_rotation = _Result[float]("theta_cr [rad].", lambda h: h.critical_rotation)
+    rotation_ratio = _Result[float](lambda h: h.left["max_theta"] / h.critical_rotation)
+    critical_rotation = _Result[float](lambda h: h.critical_rotation)
     critical_passage_time = _Optional(
-        "When |theta| passed theta_cr for the first time [s]; None if never.",
-        lambda h: np.where(h.left["critical_time"] >= 0.0, h.left["critical_time"], np.nan),
+        lambda h: np.where(h.left["critical_time"] >= 0.0, h.left["critical_time"], np.nan)
     )
-    max_cap_beam_displacement = _Result[float](
-        "Largest |u_b| [m]; u_b grows with |theta|.", lambda h: h.path[0][0]
-    )
-    max_lift = _Result[float](
-        "Largest v_b, by which the building is lifted [m]; it grows up to theta_cr.",
-        lambda h: h.path[1][1],
-    )
-    residual_rotation = _Result[float](
-        "|theta| at the end of the history [rad].", lambda h: np.abs(h.left["rotation"])
-    )
-    residual_displacement = _Result[float](
-        "|u_b| at the end [m]; 0 in full contact.", lambda h: h.path[0][2]
-    )
-    max_damper_force = _Optional(
-        "Largest force of a viscous or friction damper [N]; None without one.",
-        lambda h: h.largest_force("max_damper_force"),
-    )
-    max_stop_force = _Optional(
-        "Largest force of a stop [N]; None without one.",
-        lambda h: h.largest_force("max_stop_force"),
-    )
-    lost_prestress = _Optional(
-        "Largest part of its prestress that a tendon has lost; None without prestress.",
-        lambda h: h.of_devices(_lost),
-    )
-    energy_devices = _Result[float](
-        "Energy dissipated in all devices [J].", lambda h: h.left["device_energy"].sum(axis=1)
-    )
-    storey_shears = _Result[Array](
-        "(n,) largest elastic shears k_i d_i [N], from the bottom, within steps too.",
-        lambda h: h.of_storeys("storey_shear"),
-    )
-    floor_accelerations = _Result[Array](
-        "(n,) largest absolute accelerations [m/s2], from the bottom, on both sides of impacts.",
-        lambda h: h.of_storeys("floor_acceleration"),
-    )
-    max_floor_acceleration = _Optional(
-        "Largest of `floor_accelerations` [m/s2]; None without a superstructure.",
-        lambda h: _largest(h.column("floor_accelerations")),
-    )
+    max_cap_beam_displacement = _Result[float](lambda h: h.path[0][0])
+    max_lift = _Result[float](lambda h: h.path[1][1])
+    residual_rotation = _Result[float](lambda h: np.abs(h.left["rotation"]))
+    residual_displacement = _Result[float](lambda h: h.path[0][2])
+    max_damper_force = _Optional(lambda h: h.largest_force("max_damper_force"))
+    max_stop_force = _Optional(lambda h: h.largest_force("max_stop_force"))
+    lost_prestress = _Optional(lambda h: h.of_devices(_lost))
+    energy_devices = _Result[float](lambda h: h.left["device_energy"].sum(axis=1))
+    storey_shears = _Result[Array](lambda h: h.of_storeys("storey_shear"))
+    floor_accelerations = _Result[Array](lambda h: h.of_storeys("floor_acceleration"))
+    max_floor_acceleration = _Optional(lambda h: _largest(h.column("floor_accelerations")))
     max_base_shear = _Result[float](
-        "Largest elastic shear of the first storey [N]; 0 without a superstructure.",
-        lambda h: h.column("storey_shears")[:, 0] if h.storeys else np.zeros(len(h.left)),
+        lambda h: h.column("storey_shears")[:, 0] if h.storeys else np.zeros(len(h.left))
     )
     base_shear_ratio = _Optional(
-        "max_base_shear over V_st = M_tot g tan(alpha); None without a superstructure.",
-        lambda h: h.column("max_base_shear") / h.each(lambda s: s.static_base_shear or None),
+        lambda h: h.column("max_base_shear") / h.each(lambda s: s.static_base_shear or None)
     )
-    uplift_shear_ratio = _Optional(
-        "max_base_shear over the base shear at quasi-static uplift against weight and devices; None"
-        " without either a superstructure or devices.",
-        lambda h: h.column("max_base_shear") / h.each(_uplift_shear),
-    )
+    uplift_shear_ratio = _Optional(lambda h: h.column("max_base_shear") / h.each(_uplift_shear))
     max_drifts = _Result[Array](
-        "(n,) largest storey drifts [m]; of both directions, the resultants.", _drifts
+        _drifts, "largest storey drifts [m]; of both directions, resultants"
     )
     drift_ratio = _Optional(
-        "Largest drift over storey height; None where no heights are given.",
-        lambda h: _largest(h.column("max_drifts") / h.of_building(lambda b: b.storey_heights)),
+        lambda h: _largest(h.column("max_drifts") / h.of_building(lambda b: b.storey_heights))
     )
-    ductilities = _Result[Array](
-        "(n,) largest |d_i| k_i/F_i from the bottom, of both directions; NaN of elastic storeys.",
-        lambda h: h.yielding("ductility").max(axis=1),
-    )
+    ductilities = _Result[Array](lambda h: h.yielding("ductility").max(axis=1))
     plastic_drifts = _Result[Array](
-        "(n,) ranges of the plastic drifts [m], the larger one of both directions.",
-        lambda h: (h.yielding("slip_most") - h.yielding("slip_least")).max(axis=1),
+        lambda h: (h.yielding("slip_most") - h.yielding("slip_least")).max(axis=1)
     )
-    residual_drifts = _Result[Array](
-        "(n,) plastic drifts at the end [m], of both directions the resultants.",
-        lambda h: np.linalg.norm(h.yielding("slip"), axis=1),
-    )
-    energies_yielded = _Result[Array](
-        "(n,) energies dissipated by yielding [J].", lambda h: h.yielding("yielded").sum(axis=1)
-    )
+    residual_drifts = _Result[Array](lambda h: np.linalg.norm(h.yielding("slip"), axis=1))
+    energies_yielded = _Result[Array](lambda h: h.yielding("yielded").sum(axis=1))
     first_yields = _Result[Array](
-        "(n,) times of first yield [s], infinite if never.",
-        lambda h: np.where((t := h.yielding("first_yield")) >= 0.0, t, np.inf).min(axis=1),
+        lambda h: np.where((t := h.yielding("first_yield")) >= 0.0, t, np.inf).min(axis=1)
     )
-    ductility = _Optional(
-        "Largest of `ductilities`; None of an elastic building, as are the next.",
-        lambda h: _largest(h.column("ductilities")),
-    )
-    plastic_drift = _Optional(
-        "Largest of `plastic_drifts` [m].", lambda h: _largest(h.column("plastic_drifts"))
-    )
-    residual_drift = _Optional(
-        "Largest of `residual_drifts` [m].", lambda h: _largest(h.column("residual_drifts"))
-    )
+    ductility = _Optional(lambda h: _largest(h.column("ductilities")))
+    plastic_drift = _Optional(lambda h: _largest(h.column("plastic_drifts")))
+    residual_drift = _Optional(lambda h: _largest(h.column("residual_drifts")))
     residual_drift_ratio = _Optional(
-        "Largest residual drift over storey height; None where no heights are given.",
-        lambda h: _largest(h.column("residual_drifts") / h.of_building(lambda b: b.storey_heights)),
+        lambda h: _largest(h.column("residual_drifts") / h.of_building(lambda b: b.storey_heights))
     )
-    energy_yielded = _Optional(
-        "Energy dissipated by yielding [J].", lambda h: h.column("energies_yielded").sum(axis=1)
-    )
+    energy_yielded = _Optional(lambda h: h.column("energies_yielded").sum(axis=1))
     friction_demand = _Result[float](
-        "Largest |F|/N at either end of the columns: the friction required to prevent sliding.",
-        lambda h: np.maximum(h.left["friction_top"], h.left["friction_bottom"]),
+        lambda h: np.maximum(h.left["friction_top"], h.left["friction_bottom"])
     )
     friction_ratio = _Unbounded(
-        "friction_demand over the coefficient of friction, infinite where contact is lost; None"
-        " where that is not given.",
-        lambda h: h.column("friction_demand") / h.each(lambda structure: structure.friction),
+        lambda h: h.column("friction_demand") / h.each(lambda structure: structure.friction)
     )
-    uplifts = _Result[int](
-        "Number of uplifts from full contact.", lambda h: h.left["events"][:, state.UPLIFT]
-    )
-    impacts = _Result[int](
-        "Number of impacts, those that end in re-contact included.",
-        lambda h: h.left["events"][:, state.IMPACT],
-    )
-    reentries = _Optional(
-        "Number of returns to compliant full contact; None on rigid ends.",
-        lambda h: h.on_bed(h.left["events"][:, state.IMPACT]),
-    )
-    full_contact_share = _Optional(
-        "Share of the history in compliant full contact; None on rigid ends.",
-        lambda h: h.on_bed(h.left["bedded_time"] / h.left["time"]),
-    )
-    max_impact_number = _Optional(
-        "chi of the strongest return to full contact; None on rigid ends (Theory, section 12).",
-        lambda h: h.on_bed(h.left["impact_number"]),
-    )
-    edge_pressure_ratio = _Optional(
-        "Largest edge pressure over the mean, of compliant plane flat ends; None without.",
-        _edge_pressure,
-    )
-    duration = _Result[float]("Length of the history with its free vibration [s].")
-    energy_impact = _Result[float]("Net energy lost at impacts and re-contacts [J].")
-    energy_created = _Result[float](
-        "Energy gained where the impact law sets floors in motion [J] (Theory (4.11))."
-    )
-    creating_impacts = _Result[int]("Number of impacts that gained energy.")
+    uplifts = _Result[int](lambda h: h.left["events"][:, state.UPLIFT])
+    impacts = _Result[int](lambda h: h.left["events"][:, state.IMPACT])
+    reentries = _Optional(lambda h: h.on_bed(h.left["events"][:, state.IMPACT]))
+    full_contact_share = _Optional(lambda h: h.on_bed(h.left["bedded_time"] / h.left["time"]))
+    max_impact_number = _Optional(lambda h: h.on_bed(h.left["impact_number"]))
+    edge_pressure_ratio = _Optional(_edge_pressure)
+    duration = _Result[float]()
+    energy_impact = _Result[float]()
+    energy_created = _Result[float]()
+    creating_impacts = _Result[int]()
 
     max_rotation_azimuth = _Optional(
-        "Towards which it leant furthest, from x towards y [rad]; None under one component.",
-        lambda h: np.where(h.left["max_theta"] > 0.0, h.known("max_azimuth"), np.nan),
+        lambda h: np.where(h.left["max_theta"] > 0.0, h.known("max_azimuth"), np.nan)
     )
     critical_azimuth = _Optional(
-        "Towards which it passed theta_cr for the first time [rad]; None if it did not.",
-        lambda h: np.where(h.left["critical_time"] >= 0.0, h.known("critical_azimuth"), np.nan),
+        lambda h: np.where(h.left["critical_time"] >= 0.0, h.known("critical_azimuth"), np.nan)
     )
     residual_azimuth = _Optional(
-        "Towards which it leans at the end [rad]; None if it does not.",
-        lambda h: np.where(h.left["rotation"] != 0.0, h.known("azimuth"), np.nan),
+        lambda h: np.where(h.left["rotation"] != 0.0, h.known("azimuth"), np.nan)
     )
-    max_cap_beam_displacement_x = _Optional(
-        "Largest |u_b| in x [m]; None under one component.", lambda h: h.known("max_x")
-    )
-    max_cap_beam_displacement_y = _Optional(
-        "Largest |u_b| in y [m]; None under one component.", lambda h: h.known("max_y")
-    )
-    max_base_shear_x = _Optional(
-        "Largest elastic shear of the first storey in x [N]; None under one component.",
-        lambda h: _first(h.of_storeys_in("x", "storey_shear")),
-    )
-    max_base_shear_y = _Optional(
-        "Largest elastic shear of the first storey in y [N]; None under one component.",
-        lambda h: _first(h.of_storeys_in("y", "storey_shear")),
-    )
+    max_cap_beam_displacement_x = _Optional(lambda h: h.known("max_x"))
+    max_cap_beam_displacement_y = _Optional(lambda h: h.known("max_y"))
+    max_base_shear_x = _Optional(lambda h: _first(h.of_storeys_in("x", "storey_shear")))
+    max_base_shear_y = _Optional(lambda h: _first(h.of_storeys_in("y", "storey_shear")))
     max_floor_acceleration_x = _Optional(
-        "Largest absolute floor acceleration in x [m/s2]; None under one component.",
-        lambda h: _largest(h.of_storeys_in("x", "floor_acceleration")),
+        lambda h: _largest(h.of_storeys_in("x", "floor_acceleration"))
     )
     max_floor_acceleration_y = _Optional(
-        "Largest absolute floor acceleration in y [m/s2]; None under one component.",
-        lambda h: _largest(h.of_storeys_in("y", "floor_acceleration")),
+        lambda h: _largest(h.of_storeys_in("y", "floor_acceleration"))
     )
-    passes = _Optional(
-        "Closest approaches to upright between swings, however wide; None where upright is nothing"
-        " special, and under one component.",
-        lambda h: h.of_passes("events")[:, state.PASS],
-    )
-    passes_as_impacts = _Optional(
-        "Passes that lost more than half of what an impact would; None as of `passes`.",
-        lambda h: h.of_passes("passes_as_impacts"),
-    )
-    closest_pass = _Optional(
-        "Least theta_min/alpha of a pass; None without passes.", lambda h: h.known("closest_pass")
-    )
-    shortest_pass = _Optional(
-        "Least time theta_min/|theta phi'| of a pass [s]; None without passes.",
-        lambda h: h.known("shortest_pass"),
-    )
-    energy_passes = _Optional(
-        "Energy lost in passes [J], part of `energy_impact`.", lambda h: h.known("energy_passes")
-    )
-    torsion_lever = _Optional(
-        "Largest torsion in a contact over the weight on it [m].",
-        lambda h: h.known("torsion_lever"),
-    )
+    passes = _Optional(lambda h: h.of_passes("events")[:, state.PASS])
+    passes_as_impacts = _Optional(lambda h: h.of_passes("passes_as_impacts"))
+    closest_pass = _Optional(lambda h: h.known("closest_pass"))
+    shortest_pass = _Optional(lambda h: h.known("shortest_pass"))
+    energy_passes = _Optional(lambda h: h.known("energy_passes"))
+    torsion_lever = _Optional(lambda h: h.known("torsion_lever"))
 
     @property
     def both_components(self) -> bool:

@@ -24,12 +24,9 @@ Complex: TypeAlias = NDArray[np.complex128]
 class FixedBaseModes(Shown):
     """Modes of the building in full contact, ascending in frequency."""
 
-    frequencies: Array
-    """(n,) [rad/s]."""
-    damping: Array
-    """(n,) critical damping ratios."""
-    shapes: Array
-    """(n, n), one a column, scaled to 1 at the largest component."""
+    frequencies: Array  # (n,) [rad/s]
+    damping: Array  # (n,) critical damping ratios
+    shapes: Array  # (n, n), one a column, scaled to 1 at the largest component
 
     @property
     def periods(self) -> Array:
@@ -45,19 +42,14 @@ class FixedBaseModes(Shown):
 class UpliftedModes(Shown):
     """Modes after uplift, linearised where the state begins; ascending in frequency."""
 
-    linearised_at: float
-    """|theta| where that is [rad]: 0, or beta rocking on curved ends."""
+    linearised_at: float  # |theta| where that is [rad]: 0, or beta rocking on curved ends
 
     eigenvalues: Complex
     """(2 n + 2,) the storey's own pair first, then the pairs of the vibration modes [1/s]."""
-    frequencies: Array
-    """(n,) omega_u = |lambda| of the vibration modes [rad/s]."""
-    damping: Array
-    """(n,) xi_u = -Re(lambda)/|lambda|."""
-    frequency_ratio: Array
-    """(n,) omega_u/omega_0, mode by mode."""
-    damping_ratio: Array
-    """(n,) xi_u/xi_0; not a number where the building is undamped."""
+    frequencies: Array  # (n,) omega_u = |lambda| of the vibration modes [rad/s]
+    damping: Array  # (n,) xi_u = -Re(lambda)/|lambda|
+    frequency_ratio: Array  # (n,) omega_u/omega_0, mode by mode
+    damping_ratio: Array  # (n,) xi_u/xi_0; not a number where the building is undamped
     frequency_parameter: float
     """p_ext of the storey's own mode [rad/s]; growth rate if the stiffness is negative."""
     frequency_parameter_rigid: float

@@ -13,7 +13,7 @@ from rpscli.analyses.result_quantities import PUSHOVER, STOREY_CURVE, values_of
 from rpscli.analyses.settings import require_structure
 from rpscli.errors import listed
 from rpscli.model.podium import PodiumStructure
-from rpscli.model.statics import friction_force, restoring_force
+from rpscli.model.statics import friction_force, restoring_force, storey_strengths
 from rpscli.model.superstructure import Superstructure
 from rpscli.shown import Shown, with_unit
 
@@ -27,14 +27,11 @@ PATTERNS: tuple[PatternName, ...] = ("uniform", "triangular", "first_mode")
 class StoreyCurve(Shown):
     """Restoring force of the storey against its motion, from 0+ to the end of the curve."""
 
-    rotation: Array
-    """(points,) |theta| [rad]."""
-    displacement: Array
-    """(points,) u_b [m]."""
+    rotation: Array  # (points,) |theta| [rad]
+    displacement: Array  # (points,) u_b [m]
     force: Array
     """(points,) that holds it on the way out: F = W B/C, stops, tendons and friction [N]."""
-    lift: Array
-    """(points,) v_b [m]."""
+    lift: Array  # (points,) v_b [m]
     unloading_force: Array
     """(points,) on the way back from the end, negative where it must be drawn back; without
     friction and yielding tendons the same as `force` [N]."""
@@ -47,18 +44,12 @@ class CapacityCurve(Shown):
     Where storeys yield without hardening it ends with the first of them, a mechanism.
     """
 
-    pattern: str
-    """Name of the pattern, or ``given``."""
-    forces: Array
-    """(n,) p, scaled to sum 1."""
-    roof_displacement: Array
-    """(points,) [m]."""
-    cap_beam_displacement: Array
-    """(points,) [m]."""
-    sum_of_floor_forces: Array
-    """(points,) lambda [N]."""
-    roof_displacement_at_uplift: float
-    """[m]; not a number where a mechanism comes first."""
+    pattern: str  # Name of the pattern, or ``given``
+    forces: Array  # (n,) p, scaled to sum 1
+    roof_displacement: Array  # (points,) [m]
+    cap_beam_displacement: Array  # (points,) [m]
+    sum_of_floor_forces: Array  # (points,) lambda [N]
+    roof_displacement_at_uplift: float  # [m]; not a number where a mechanism comes first
     yield_forces: Array | None = None
     """(n,) lambda at which each storey yields [N], infinite if never; None of elastic buildings."""
 
@@ -115,6 +106,7 @@ class PushoverResult(Shown):
     @property
     def warnings(self) -> tuple[str, ...]:
         """Storeys that yield before columns lift, by the patterns that do it."""
+        strengths = storey_strengths(self.structure)
         weak: dict[int, list[str]] = {}
         for curve in self.capacity:
             for storey, force in curve.yielding.items():
@@ -122,8 +114,10 @@ class PushoverResult(Shown):
                     weak.setdefault(storey, []).append(curve.pattern)
         return tuple(
             f"the podium does not protect storey {storey}: pushed by floor forces"
-            f" ({listed(patterns, 'and')}) it yields before columns lift"
+            f" ({listed(patterns, 'and')}) it yields before columns lift{slowly}"
             for storey, patterns in sorted(weak.items())
+            for first in [strengths[storey - 1].uplift_first]
+            for slowly in ["; under slow ground motion columns lift first" if first else ""]
         )
 
     def curve_ratios(self) -> dict[str, Array]:

@@ -34,21 +34,24 @@ class ResultQuantity(NamedTuple):
     kernel: str = ""  # the field of `physics.state.RESULT` that holds it; empty where computed
 
     @property
+    def described(self) -> str:
+        """Label, unit, what a ratio is made of, and what a structure without it lacks."""
+        meaning = f": {self.meaning}" if self.meaning else ""
+        none = f"; None without {NEEDS[self.needs]}" if self.needs else ""
+        return f"{self.label} [{self.unit}]{meaning}{none}"
+
+    @property
     def axis_label(self) -> str:
         """Symbol or words, with the unit, for the axis of a figure."""
         return self.in_unit(self.unit, self.symbol)
 
     def in_unit(self, unit: str, symbol: str = "") -> str:
-        """The label of an axis in another unit.
-
-        Examples
-        --------
-        >>> STOREY_SHEARS.in_unit("kN")
-        'storey shear [kN]'
-        """
+        """The label of an axis in another unit."""
         words = symbol or self.label
         return f"{words} [{unit.replace('/s2', '/s²')}]" if unit else words
 
+
+_Q = ResultQuantity
 
 _DESIGNED = "podium.column, podium.plan and superstructure.vertical_period in the case"
 
@@ -95,162 +98,101 @@ def plain(value: Any) -> Any:
 
 
 HISTORY = (
-    ResultQuantity(
-        "max_rotation", "rad", "largest rotation", r"$|\theta_{max}|$", limit="0.1",
-        kernel="max_theta",
-    ),
-    ResultQuantity("max_rotation_time", "s", "time of largest rotation"),
-    ResultQuantity(
-        "rotation_ratio", "-", "rotation ratio", r"$|\theta_{max}|/\theta_{cr}$", limit="0.5",
-        demand=True, meaning="largest rotation over critical rotation",
-    ),
-    ResultQuantity("critical_rotation", "rad", "critical rotation", r"$\theta_{cr}$"),
-    ResultQuantity("critical_passage_time", "s", "critical rotation passed at"),
-    ResultQuantity(
-        "max_cap_beam_displacement", "m", "cap beam displacement", limit="0.3", demand=True
-    ),
-    ResultQuantity("max_lift", "m", "lift of the building", "$v_b$", limit="0.03", demand=True),
-    ResultQuantity("max_base_shear", "N", "base shear", "$V_b$", limit="2e6", demand=True),
-    ResultQuantity(
-        "base_shear_ratio", "-", "base shear ratio", "$V_b/V_{st}$", limit="2", demand=True,
-        needs="superstructure, flat part", meaning="largest base shear over M_tot g tan(alpha)",
-    ),
-    ResultQuantity(
-        "uplift_shear_ratio", "-", "base shear over uplift with devices", limit="2",
+    _Q("max_rotation", "rad", "largest rotation", r"$|\theta_{max}|$", limit="0.1",
+        kernel="max_theta"),
+    _Q("max_rotation_time", "s", "time of largest rotation"),
+    _Q("rotation_ratio", "-", "rotation ratio", r"$|\theta_{max}|/\theta_{cr}$", limit="0.5",
+        demand=True, meaning="largest rotation over critical rotation"),
+    _Q("critical_rotation", "rad", "critical rotation", r"$\theta_{cr}$"),
+    _Q("critical_passage_time", "s", "critical rotation passed at"),
+    _Q("max_cap_beam_displacement", "m", "cap beam displacement", limit="0.3", demand=True),
+    _Q("max_lift", "m", "lift of the building", "$v_b$", limit="0.03", demand=True),
+    _Q("max_base_shear", "N", "base shear", "$V_b$", limit="2e6", demand=True),
+    _Q("base_shear_ratio", "-", "base shear ratio", "$V_b/V_{st}$", limit="2", demand=True,
+        needs="superstructure, flat part", meaning="largest base shear over M_tot g tan(alpha)"),
+    _Q("uplift_shear_ratio", "-", "base shear over uplift with devices", limit="2",
         needs="superstructure, devices",
-        meaning="largest base shear over that at uplift, V_st with what devices add",
-    ),
-    ResultQuantity(
-        "drift_ratio", "-", "drift ratio", limit="0.005", demand=True,
-        needs="superstructure.storey_height",
-        meaning="largest storey drift over storey height",
-    ),
-    ResultQuantity(
-        "max_floor_acceleration", "m/s2", "floor acceleration", limit="5", demand=True,
-        needs="superstructure",
-    ),
-    ResultQuantity("residual_rotation", "rad", "residual rotation", limit="0.001"),
-    ResultQuantity("residual_displacement", "m", "residual displacement", limit="0.01"),
-    ResultQuantity(
-        "max_damper_force", "N", "damper force", limit="4e5", needs="damper",
-    ),
-    ResultQuantity(
-        "max_stop_force", "N", "stop force", limit="1e6", needs="stop",
-    ),
-    ResultQuantity(
-        "lost_prestress", "-", "lost prestress", limit="0.1",
-        needs="tendon", meaning="share that a tendon has lost",
-    ),
-    ResultQuantity("uplifts", "-", "uplifts", limit="2", whole=True),
-    ResultQuantity("impacts", "-", "impacts", limit="50", whole=True),
-    ResultQuantity(
-        "reentries", "-", "returns to full contact", limit="50", whole=True, needs="contact",
-    ),
-    ResultQuantity(
-        "full_contact_share", "-", "share of time in full contact", limit="0.5", needs="contact",
-        from_below=True,
-    ),
-    ResultQuantity(
-        "max_impact_number", "-", "impact number", r"$\chi$", limit="8", needs="contact",
-        meaning="largest |theta'| sqrt(2 B/(g phi_u)) of returns to full contact",
-    ),
-    ResultQuantity(
-        "edge_pressure_ratio", "-", "edge pressure ratio", limit="10", needs="plane contact",
-        meaning="largest pressure at an edge over the mean under permanent load",
-    ),
-    ResultQuantity("duration", "s", "duration", kernel="time"),
-    ResultQuantity("friction_demand", "-", "friction demand |F|/N", limit="0.3", demand=True),
-    ResultQuantity(
-        "friction_ratio", "-", "friction ratio", limit="1", needs="podium.friction",
-        meaning="friction demand over podium.friction; columns slide above 1",
-    ),
+        meaning="largest base shear over that at uplift, V_st with what devices add"),
+    _Q("drift_ratio", "-", "drift ratio", limit="0.005", demand=True,
+        needs="superstructure.storey_height", meaning="largest storey drift over storey height"),
+    _Q("max_floor_acceleration", "m/s2", "floor acceleration", limit="5", demand=True,
+        needs="superstructure"),
+    _Q("residual_rotation", "rad", "residual rotation", limit="0.001"),
+    _Q("residual_displacement", "m", "residual displacement", limit="0.01"),
+    _Q("max_damper_force", "N", "damper force", limit="4e5", needs="damper"),
+    _Q("max_stop_force", "N", "stop force", limit="1e6", needs="stop"),
+    _Q("lost_prestress", "-", "lost prestress", limit="0.1", needs="tendon",
+        meaning="share that a tendon has lost"),
+    _Q("uplifts", "-", "uplifts", limit="2", whole=True),
+    _Q("impacts", "-", "impacts", limit="50", whole=True),
+    _Q("reentries", "-", "returns to full contact", limit="50", whole=True, needs="contact"),
+    _Q("full_contact_share", "-", "share of time in full contact", limit="0.5", needs="contact",
+        from_below=True),
+    _Q("max_impact_number", "-", "impact number", r"$\chi$", limit="8", needs="contact",
+        meaning="largest |theta'| sqrt(2 B/(g phi_u)) of returns to full contact"),
+    _Q("edge_pressure_ratio", "-", "edge pressure ratio", limit="10", needs="plane contact",
+        meaning="largest pressure at an edge over the mean under permanent load"),
+    _Q("duration", "s", "duration", kernel="time"),
+    _Q("friction_demand", "-", "friction demand |F|/N", limit="0.3", demand=True),
+    _Q("friction_ratio", "-", "friction ratio", limit="1", needs="podium.friction",
+        meaning="friction demand over podium.friction; columns slide above 1"),
 )  # fmt: skip
 """Scalars of a time history."""
 
 YIELDING = (
-    ResultQuantity(
-        "ductility", "-", "ductility", limit="3", demand=True, needs="superstructure.yield",
-        meaning="largest drift of a storey over its drift at yield",
-    ),
-    ResultQuantity(
-        "plastic_drift", "m", "plastic drift", limit="0.01", needs="superstructure.yield",
-        meaning="largest range of the plastic drift of a storey",
-    ),
-    ResultQuantity(
-        "residual_drift", "m", "residual drift", limit="0.005", needs="superstructure.yield",
-        meaning="largest plastic drift at the end",
-    ),
-    ResultQuantity(
-        "residual_drift_ratio", "-", "residual drift ratio", limit="0.005", demand=True,
-        needs="superstructure.yield, storey_height", meaning="residual drift over storey height",
-    ),
-    ResultQuantity("energy_yielded", "J", "energy yielded", needs="superstructure.yield"),
+    _Q("ductility", "-", "ductility", limit="3", demand=True, needs="superstructure.yield",
+        meaning="largest drift of a storey over its drift at yield"),
+    _Q("plastic_drift", "m", "plastic drift", limit="0.01", needs="superstructure.yield",
+        meaning="largest range of the plastic drift of a storey"),
+    _Q("residual_drift", "m", "residual drift", limit="0.005", needs="superstructure.yield",
+        meaning="largest plastic drift at the end"),
+    _Q("residual_drift_ratio", "-", "residual drift ratio", limit="0.005", demand=True,
+        needs="superstructure.yield, storey_height", meaning="residual drift over storey height"),
+    _Q("energy_yielded", "J", "energy yielded", needs="superstructure.yield"),
 )  # fmt: skip
 """Scalars of a time history of storeys that yield; elastic buildings do not list them."""
 
 SAMPLED = (
-    ResultQuantity(
-        "max_roof_displacement", "m", "roof displacement", limit="0.5", needs="superstructure"
-    ),
-    ResultQuantity(
-        "max_floor_velocity", "m/s", "floor velocity", limit="1", needs="superstructure"
-    ),
-    ResultQuantity(
-        "fixed_base_ratio", "-", "base shear over fixed base", r"$V_b/V_{b,fixed}$", limit="0.5",
+    _Q("max_roof_displacement", "m", "roof displacement", limit="0.5", needs="superstructure"),
+    _Q("max_floor_velocity", "m/s", "floor velocity", limit="1", needs="superstructure"),
+    _Q("fixed_base_ratio", "-", "base shear over fixed base", r"$V_b/V_{b,fixed}$", limit="0.5",
         demand=True, needs="superstructure",
-        meaning="largest base shear over that of the fixed base",
-    ),
-    ResultQuantity(
-        "floor_acceleration_over_fixed", "-", "floor acceleration over fixed base", limit="1",
+        meaning="largest base shear over that of the fixed base"),
+    _Q("floor_acceleration_over_fixed", "-", "floor acceleration over fixed base", limit="1",
         demand=True, needs="superstructure",
-        meaning="largest floor acceleration over that of the fixed base",
-    ),
-    ResultQuantity("max_column_shear", "N", "shear of a column", limit="2e5"),
-    ResultQuantity(
-        "max_column_force", "N", "axial force of a column", limit="2e6", needs="columns"
-    ),
-    ResultQuantity(
-        "min_column_force", "N", "minimum axial force of a column", limit="1e4", from_below=True,
-        needs="columns",
-    ),
-    ResultQuantity("overturning_ratio", "-", "overturning ratio of an outer row"),
-    ResultQuantity(
-        "column_moment", "N m", "moment at an end of a column", "$M_{end}$", limit="2e5",
-        needs="designed columns",
-    ),
-    ResultQuantity(
-        "contact_pressure_ratio", "-", "contact pressure ratio", "$p_0/f$", limit="1",
+        meaning="largest floor acceleration over that of the fixed base"),
+    _Q("max_column_shear", "N", "shear of a column", limit="2e5"),
+    _Q("max_column_force", "N", "axial force of a column", limit="2e6", needs="columns"),
+    _Q("min_column_force", "N", "minimum axial force of a column", limit="1e4", from_below=True,
+        needs="columns"),
+    _Q("overturning_ratio", "-", "overturning ratio of an outer row"),
+    _Q("column_moment", "N m", "moment at an end of a column", "$M_{end}$", limit="2e5",
+        needs="designed columns"),
+    _Q("contact_pressure_ratio", "-", "contact pressure ratio", "$p_0/f$", limit="1",
         needs="columns on arcs",
-        meaning="largest elastic pressure on arcs over podium.column.contact_strength",
-    ),
-    ResultQuantity(
-        "crushed_width_ratio", "-", "crushed width ratio", limit="0.15", needs="designed columns",
-        meaning="largest depth of a plastic edge over the width of the end",
-    ),
-    ResultQuantity("sliding_time", "s", "columns slide at", needs="podium.friction"),
+        meaning="largest elastic pressure on arcs over podium.column.contact_strength"),
+    _Q("crushed_width_ratio", "-", "crushed width ratio", limit="0.15", needs="designed columns",
+        meaning="largest depth of a plastic edge over the width of the end"),
+    _Q("sliding_time", "s", "columns slide at", needs="podium.friction"),
 )  # fmt: skip
 """Scalars of a history that is followed with all its samples: a single one, or those of a study
 with `whole_histories: true`."""
 
 IMPACTS = (
-    ResultQuantity("energy_devices", "J", "energy dissipated in devices"),
-    ResultQuantity("energy_impact", "J", "energy lost at impacts", kernel="energy_lost"),
-    ResultQuantity(
-        "energy_created", "J", "energy created at impacts", kernel="energy_created"
-    ),
-    ResultQuantity(
-        "creating_impacts", "-", "impacts that created energy", whole=True,
-        kernel="creating_impacts",
-    ),
+    _Q("energy_devices", "J", "energy dissipated in devices"),
+    _Q("energy_impact", "J", "energy lost at impacts", kernel="energy_lost"),
+    _Q("energy_created", "J", "energy created at impacts", kernel="energy_created"),
+    _Q("creating_impacts", "-", "impacts that created energy", whole=True,
+        kernel="creating_impacts"),
 )  # fmt: skip
 """Effects of the impacts of a history, in the table of a study."""
 
 PAIR = (
-    ResultQuantity("max_rotation_azimuth", "rad", "azimuth of the largest rotation"),
-    ResultQuantity("critical_azimuth", "rad", "azimuth where the critical rotation was passed"),
-    ResultQuantity("residual_azimuth", "rad", "azimuth of the residual rotation"),
+    _Q("max_rotation_azimuth", "rad", "azimuth of the largest rotation"),
+    _Q("critical_azimuth", "rad", "azimuth where the critical rotation was passed"),
+    _Q("residual_azimuth", "rad", "azimuth of the residual rotation"),
     *(
-        ResultQuantity(f"{name}_{way}", unit, f"{label} in {way}")
+        _Q(f"{name}_{way}", unit, f"{label} in {way}")
         for name, unit, label in (
             ("max_cap_beam_displacement", "m", "cap beam displacement"),
             ("max_base_shear", "N", "base shear"),
@@ -258,45 +200,37 @@ PAIR = (
         )
         for way in "xy"
     ),
-    ResultQuantity("passes", "-", "passes near upright", whole=True),
-    ResultQuantity(
-        "passes_as_impacts", "-", "passes that lose like an impact", whole=True,
-        kernel="passes_as_impacts", meaning="more than half of what an impact would lose",
-    ),
-    ResultQuantity("closest_pass", "-", "closest pass", meaning="least theta_min over alpha"),
-    ResultQuantity("shortest_pass", "s", "shortest pass", meaning="least theta_min/|theta phi'|"),
-    ResultQuantity("energy_passes", "J", "energy lost in passes", kernel="energy_passes"),
-    ResultQuantity(
-        "torsion_lever", "m", "torsion in a contact over its weight", kernel="torsion_lever",
-        meaning="which friction in the contacts must resist to keep columns in place",
-    ),
+    _Q("passes", "-", "passes near upright", whole=True),
+    _Q("passes_as_impacts", "-", "passes that lose like an impact", whole=True,
+        kernel="passes_as_impacts", meaning="more than half of what an impact would lose"),
+    _Q("closest_pass", "-", "closest pass", meaning="least theta_min over alpha"),
+    _Q("shortest_pass", "s", "shortest pass", meaning="least theta_min/|theta phi'|"),
+    _Q("energy_passes", "J", "energy lost in passes", kernel="energy_passes"),
+    _Q("torsion_lever", "m", "torsion in a contact over its weight", kernel="torsion_lever",
+        meaning="which friction in the contacts must resist to keep columns in place"),
 )  # fmt: skip
 """Results of a history under both horizontal components; its other results are those of
 resultants, largest sqrt(x^2 + y^2)."""
 
 KERNEL_FIELDS = {q.name: q.kernel for q in (*HISTORY, *IMPACTS, *PAIR) if q.kernel}
 
-INTENSITIES = (ResultQuantity("pga", "m/s2", "PGA"), ResultQuantity("pgv", "m/s", "PGV"))
+INTENSITIES = (_Q("pga", "m/s2", "PGA"), _Q("pgv", "m/s", "PGV"))
 """Peaks of the scaled motion of a history, in the table of a study."""
 
-STOREY_SHEARS = ResultQuantity("storey_shears", "N", "storey shear", "$V_i$", column="max_shear")
-STOREY_DRIFTS = ResultQuantity("storey_drifts", "m", "storey drift", column="max_drift")
-STOREY_DRIFT_RATIOS = ResultQuantity(
-    "storey_drift_ratios", "-", "storey drift ratio", column="drift_ratio"
-)
-FLOOR_ACCELERATIONS = ResultQuantity(
+STOREY_SHEARS = _Q("storey_shears", "N", "storey shear", "$V_i$", column="max_shear")
+STOREY_DRIFTS = _Q("storey_drifts", "m", "storey drift", column="max_drift")
+STOREY_DRIFT_RATIOS = _Q("storey_drift_ratios", "-", "storey drift ratio", column="drift_ratio")
+FLOOR_ACCELERATIONS = _Q(
     "floor_accelerations", "m/s2", "floor acceleration", column="floor_acceleration"
 )
-FLOOR_VELOCITIES = ResultQuantity(
-    "floor_velocities", "m/s", "floor velocity", column="floor_velocity"
-)
+FLOOR_VELOCITIES = _Q("floor_velocities", "m/s", "floor velocity", column="floor_velocity")
 
 STOREYS_YIELDING = (
-    ResultQuantity("ductilities", "-", "ductility", column="ductility"),
-    ResultQuantity("plastic_drifts", "m", "range of the plastic drift", column="plastic_drift"),
-    ResultQuantity("residual_drifts", "m", "residual drift", column="residual_drift"),
-    ResultQuantity("energies_yielded", "J", "energy yielded", column="energy_yielded"),
-    ResultQuantity("first_yields", "s", "first yields at", column="first_yield"),
+    _Q("ductilities", "-", "ductility", column="ductility"),
+    _Q("plastic_drifts", "m", "range of the plastic drift", column="plastic_drift"),
+    _Q("residual_drifts", "m", "residual drift", column="residual_drift"),
+    _Q("energies_yielded", "J", "energy yielded", column="energy_yielded"),
+    _Q("first_yields", "s", "first yields at", column="first_yield"),
 )
 """What yielding does to each storey from the bottom."""
 
@@ -309,11 +243,11 @@ LIMITED = tuple(quantity for quantity in (*HISTORY, *YIELDING, *SAMPLED) if quan
 DEMANDS = tuple(quantity for quantity in LIMITED if not quantity.from_below)
 """Those that are the worse the larger they are, as an axis of demands needs them."""
 
-_FREQUENCIES = ResultQuantity("frequencies", "rad/s", "frequency", r"$\omega$")
-_DAMPING = ResultQuantity("damping", "-", "damping", r"$\xi$")
-_SHAPES = ResultQuantity("shapes", "-", "mode shape")
+_FREQUENCIES = _Q("frequencies", "rad/s", "frequency", r"$\omega$")
+_DAMPING = _Q("damping", "-", "damping", r"$\xi$")
+_SHAPES = _Q("shapes", "-", "mode shape")
 
-FIXED_BASE_MODES = (_FREQUENCIES, ResultQuantity("periods", "s", "period", "$T$"), _DAMPING)
+FIXED_BASE_MODES = (_FREQUENCIES, _Q("periods", "s", "period", "$T$"), _DAMPING)
 """Lists by mode in full contact."""
 
 ORDER = "exact where the state begins; under first_order the paper's, for small alpha"
@@ -322,20 +256,14 @@ UPLIFTED_MODES = (_FREQUENCIES, _DAMPING)
 """Lists by vibration mode of a linearised uplifted state."""
 
 UPLIFTED_RATIOS = (
-    ResultQuantity(
-        "frequency_ratio", "-", "frequency ratio", r"$\omega_u/\omega_0$", meaning=ORDER
-    ),
-    ResultQuantity("damping_ratio", "-", "damping ratio", r"$\xi_u/\xi_0$", meaning=ORDER),
+    _Q("frequency_ratio", "-", "frequency ratio", r"$\omega_u/\omega_0$", meaning=ORDER),
+    _Q("damping_ratio", "-", "damping ratio", r"$\xi_u/\xi_0$", meaning=ORDER),
 )
 """Lists by vibration mode, over those of the fixed base."""
 
 FREQUENCY_PARAMETERS = (
-    ResultQuantity(
-        "frequency_parameter", "rad/s", "frequency parameter", "$p_{ext}$", meaning=ORDER
-    ),
-    ResultQuantity(
-        "frequency_parameter_rigid", "rad/s", "rigid estimate", r"$\hat{p}_{ext}$", meaning=ORDER
-    ),
+    _Q("frequency_parameter", "rad/s", "frequency parameter", "$p_{ext}$", meaning=ORDER),
+    _Q("frequency_parameter_rigid", "rad/s", "rigid estimate", r"$\hat{p}_{ext}$", meaning=ORDER),
 )
 """Of the storey's own mode."""
 
@@ -343,47 +271,47 @@ LINEAR = (*UPLIFTED_MODES, *UPLIFTED_RATIOS, *FREQUENCY_PARAMETERS)
 """Results of both orders, the exact one and the paper's."""
 
 OWN_MOTION = (
-    ResultQuantity("own_motion", "", "the storey's own mode"),
-    ResultQuantity("own_period", "s", "its period, if it oscillates", "$T$"),
-    ResultQuantity("own_growth_time", "s", "time of e-fold growth, if it diverges"),
+    _Q("own_motion", "", "the storey's own mode"),
+    _Q("own_period", "s", "its period, if it oscillates", "$T$"),
+    _Q("own_growth_time", "s", "time of e-fold growth, if it diverges"),
 )
 """The storey's own mode in words and times."""
 
-EIGENVALUES = ResultQuantity("eigenvalues", "1/s", "eigenvalue", r"$\lambda$")
+EIGENVALUES = _Q("eigenvalues", "1/s", "eigenvalue", r"$\lambda$")
 
 UPLIFTED = (
     *LINEAR,
-    ResultQuantity("linearised_at", "rad", "rotation about which modes are linearised"),
+    _Q("linearised_at", "rad", "rotation about which modes are linearised"),
     *OWN_MOTION,
     EIGENVALUES,
 )
 """All results of an uplifted state besides its shapes."""
 
 FIXED_BASE_SHAPES = (_SHAPES,)
-UPLIFTED_SHAPES = (_SHAPES, ResultQuantity("elastic_shapes", "-", "elastic mode shape"))
-LEVEL = ResultQuantity("floor", "", "level (0 = cap beam)")
+UPLIFTED_SHAPES = (_SHAPES, _Q("elastic_shapes", "-", "elastic mode shape"))
+LEVEL = _Q("floor", "", "level (0 = cap beam)")
 """Levels over which shapes are drawn."""
 
 PUSHOVER = (
-    ResultQuantity("uplift_force", "N", "uplift force"),
-    ResultQuantity("critical_rotation", "rad", "critical rotation", r"$\theta_{cr}$"),
-    ResultQuantity("critical_displacement", "m", "critical displacement"),
-    ResultQuantity("initial_stiffness", "N/m", "stiffness after uplift"),
+    _Q("uplift_force", "N", "uplift force"),
+    _Q("critical_rotation", "rad", "critical rotation", r"$\theta_{cr}$"),
+    _Q("critical_displacement", "m", "critical displacement"),
+    _Q("initial_stiffness", "N/m", "stiffness after uplift"),
 )
 """Scalars of the static curves."""
 
 STOREY_CURVE = (
-    ResultQuantity("rotation", "rad", "rotation", r"$\theta$"),
-    ResultQuantity("displacement", "m", "cap beam displacement", "$u_b$"),
-    ResultQuantity("force", "N", "force at the cap beam"),
-    ResultQuantity("lift", "m", "lift", "$v_b$"),
-    ResultQuantity("unloading_force", "N", "force on the way back"),
+    _Q("rotation", "rad", "rotation", r"$\theta$"),
+    _Q("displacement", "m", "cap beam displacement", "$u_b$"),
+    _Q("force", "N", "force at the cap beam"),
+    _Q("lift", "m", "lift", "$v_b$"),
+    _Q("unloading_force", "N", "force on the way back"),
 )
 """Lists along the storey's curve."""
 
 STOREY_CURVE_RATIOS = (
-    ResultQuantity("rotation_ratio", "-", "rotation ratio", r"$\theta/\theta_{cr}$"),
-    ResultQuantity("force_over_weight", "-", "force over weight", "$F/W$"),
+    _Q("rotation_ratio", "-", "rotation ratio", r"$\theta/\theta_{cr}$"),
+    _Q("force_over_weight", "-", "force over weight", "$F/W$"),
 )
 """The storey's curve without units."""
 

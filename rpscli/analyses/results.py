@@ -50,53 +50,27 @@ RESTING = (state.FULL_CONTACT, state.STUCK, state.BEDDED)
 
 @dataclass(frozen=True)
 class Energy:
-    """Balance of the energy [J]: the input is damped, dissipated, lost, stored, or the residual.
+    """Balance of the energy [J]: the input is damped, dissipated, lost, stored, or the residual."""
 
-    Parameters
-    ----------
-    input
-        By the ground.
-    damped, damped_vertical, devices, bed
-        Dissipated in the building, in its vertical dampers, in devices, and in what the ends bear
-        on in full contact.
-    impact, created
-        Net loss at impacts and re-contacts; and the part of it that was gained where the rigid
-        impact law sets floors in motion (Theory (4.11)).
-    stored
-        At the end.
-    residual
-        Error of the integration.
-    yielded
-        Dissipated in storeys that yield.
-    """
-
-    input: float
-    damped: float
-    impact: float
-    stored: float
-    residual: float
-    created: float
+    input: float  # by the ground
+    damped: float  # in the building
+    impact: float  # net loss at impacts and re-contacts
+    stored: float  # at the end
+    residual: float  # error of the integration
+    created: float  # of impact, gained where floors are set in motion (Theory (4.11))
     devices: float
-    bed: float
-    damped_vertical: float
-    yielded: float
+    bed: float  # in what the ends bear on in full contact
+    damped_vertical: float  # in vertical dampers of the building
+    yielded: float  # in storeys that yield
 
 
 @dataclass(frozen=True)
 class ColumnForces:
-    """Envelope of the forces at one end of a column [N]; compression is positive.
+    """Envelope of the forces at one end of a column [N]; compression is positive."""
 
-    Parameters
-    ----------
-    shear
-        Largest |F|.
-    largest_normal, least_normal
-        Of N; the least is negative where the contact would pull.
-    """
-
-    shear: float
+    shear: float  # largest |F|
     largest_normal: float
-    least_normal: float
+    least_normal: float  # negative where the contact would pull
 
 
 @dataclass(frozen=True, eq=False, repr=False)

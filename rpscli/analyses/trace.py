@@ -51,25 +51,18 @@ EVENT_NAMES: tuple[EventKind, ...] = get_args(EventKind)
 class Event:
     """One event of a history."""
 
-    time: float
-    """Since the start of the record [s]."""
-    kind: EventKind
-    """Name of the event."""
-    rotation: float
-    """theta [rad]."""
+    time: float  # Since the start of the record [s]
+    kind: EventKind  # Name of the event
+    rotation: float  # theta [rad]
     rotation_rate_before: float
-    rotation_rate_after: float
-    """theta' [rad/s]."""
-    energy_lost: float
-    """[J], negative where an impact created energy."""
+    rotation_rate_after: float  # theta' [rad/s]
+    energy_lost: float  # [J], negative where an impact created energy
     azimuth: float | None = None
     """Of the tilt, from x towards y [rad]; None where one component acts."""
-    least_tilt: float | None = None
-    """Of a pass near upright: theta_min [rad]; of others 0."""
+    least_tilt: float | None = None  # Of a pass near upright: theta_min [rad]; of others 0
     nearness: float | None = None
     """Of a pass: s, the time it takes over that of an impact; infinite if that takes none."""
-    loss_share: float | None = None
-    """Of a pass: l, how much of what an impact would lose."""
+    loss_share: float | None = None  # Of a pass: l, how much of what an impact would lose
 
 
 def event_list(log: Record, *, both: bool) -> tuple[Event, ...]:
@@ -86,19 +79,14 @@ class DeviceDemand:
     Looked at within steps and on both sides of events: the samples of a `DeviceTrace` may be less.
     """
 
-    kind: str
-    """Name of its law."""
+    kind: str  # Name of its law
     force: float
     """At the cap beam [N]: of a tendon the tension of one, of rolling resistance the horizontal
     force that does the same."""
-    stroke: float
-    """|u_b| [m]; of a tendon its elongation."""
-    velocity: float
-    """Rate of the stroke [m/s]."""
-    energy: float
-    """Dissipated, by all tendons together [J]."""
-    remaining_prestress: float | None
-    """Of a tendon at the end, upright [N]; None of others."""
+    stroke: float  # |u_b| [m]; of a tendon its elongation
+    velocity: float  # Rate of the stroke [m/s]
+    energy: float  # Dissipated, by all tendons together [J]
+    remaining_prestress: float | None  # Of a tendon at the end, upright [N]; None of others
 
 
 def device_demands(structure: PodiumStructure, history: Record) -> tuple[DeviceDemand, ...]:
@@ -136,8 +124,7 @@ class DeviceTrace(_Sampled, Frozen):
 
     force: Array
     """On the cap beam, positive to the right, of pairs outwards [N]; of a tendon the tension."""
-    displacement: Array
-    """u_b [m], under both components |u_b|; of a tendon the elongation of one."""
+    displacement: Array  # u_b [m], under both components |u_b|; of a tendon the elongation of one
     energy: Array
     """Dissipated so far [J]. A damped stop that has let go dissipates what its spring still holds
     as the cap beam moves back to the gap, not at once: sums over an excursion are exact."""

@@ -195,7 +195,7 @@ def case_from_mapping(
         folder or Path(),
         file,
         structure,
-        tuple(doubts_of_text(file.superstructure, document)),
+        tuple(doubts_of_text(file.superstructure)),
         written=document.content,
     )
 

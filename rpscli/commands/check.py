@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from itertools import chain
 from typing import TYPE_CHECKING, Any
 
@@ -77,14 +77,20 @@ def command(
     for way, seen in structure.ways.items():
         if strengths := storey_strengths(seen):
             derived[f"storey_strengths{way}"] = [each._asdict() for each in strengths]
+    doubts: tuple[str, ...] = ()
+    if structure.yields:
+        from rpscli.analyses.pushover import pushover  # one that most cases do without
+
+        doubts = pushover(structure).warnings
     record, error = _record(given.case)
+    doubts += tuple((record or {}).get("warnings", ()))
     document = {
         **heading("check"),
         "case": inputs.case_heading(given),
         **derived,
         "record": record,
         "limits": given.case.limits.model_dump(exclude_none=True),
-        "warnings": [*given.case.warnings, *(record or {}).get("warnings", ())],
+        "warnings": [*given.case.warnings, *doubts],
     }
     if draw:
         from rpscli.report.bundles import bearing_files
@@ -93,10 +99,10 @@ def command(
         folder.add_all(bearing_files(structure, given.case.title, look))
         inputs.write(folder, terminal)
         document["files"] = folder.files
-    terminal.warn((record or {}).get("warnings", ()))
+    terminal.warn(doubts)
     limits = conditions_of(given.case.limits, "limits of the case")
     others = device_tables(structure), strength_tables(structure)
-    tables = chain(check_tables(document, limits), *others)
+    tables = chain(check_tables(document, limits, _unknown(structure, record)), *others)
     terminal.result(concluded(document, error), tables)
     leave(error)
 
@@ -122,7 +128,17 @@ def _record(case: Case) -> tuple[dict[str, Any] | None, RpsError | None]:
     return {**known, "y": across, "scale": motion.scale, "warnings": [*warnings, *doubts]}, None
 
 
-def check_tables(document: Mapping[str, Any], limits: Sequence[Condition]) -> Iterator[Part]:
+def _unknown(structure: PodiumStructure, record: dict[str, Any] | None) -> Collection[str]:
+    """Derived quantities that a history under the record of the case will not give."""
+    from rpscli.analyses.column_design import no_line  # numpy is slow
+
+    both = record is not None and record["y"] is not None
+    return ("contact_rest_pressure", "crushed_rest_ratio") if no_line(structure, both=both) else ()
+
+
+def check_tables(
+    document: Mapping[str, Any], limits: Sequence[Condition], unknown: Collection[str] = ()
+) -> Iterator[Part]:
     """What leads; geometry; masses, statics and periods; the record; the limits."""
     heads = ("", "symbol", "value", "unit")
     yield Heading(document["case"]["title"])
@@ -130,7 +146,7 @@ def check_tables(document: Mapping[str, Any], limits: Sequence[Condition]) -> It
     dynamics = (*DYNAMICS, FIRST_PERIOD, *UPWARDS, *CONTACT)
     for rows in (LEADING, GEOMETRY, dynamics, COLUMN, BOTH if pair else ()):
         texts = []
-        for row in (each for each in rows if each.name in document):
+        for row in (each for each in rows if each.name in document and each.name not in unknown):
             if row.name.endswith("_paper") or (row in LEADING and rows is not LEADING):
                 continue
             of_some = row in (*CONTACT, *COLUMN, *BOTH) or row.name == "rolling_period"

@@ -10,6 +10,7 @@ import shutil
 import sys
 from importlib import metadata
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -17,6 +18,7 @@ from rpscli.commands.shell.options import terminal_options
 from rpscli.commands.shell.terminal import Terminal, concluded, leave
 from rpscli.errors import VerificationMismatch
 from rpscli.machine import available_cores
+from rpscli.registry import Registry
 from rpscli.report.documents import heading, installed
 from rpscli.report.figures.film import ENCODER
 from rpscli.report.figures.look import font_file
@@ -32,6 +34,9 @@ EXTRAS = {
 }
 """Uses of packages that users may do without."""
 
+KINDS = ("formats", "measures", "targets", "reports", "figures", "dampers", "impact_laws")
+"""Groups of entry points."""
+
 
 @click.command("doctor")
 @terminal_options
@@ -39,7 +44,7 @@ def command(terminal: Terminal) -> None:
     """Show what is installed, what is missing, and the remedy; exit code 6 if it cannot run."""
     needed = _packages(None)
     optional = [row for extra in EXTRAS for row in _packages(extra)]
-    rows = [*_surroundings(), *needed, *optional]
+    rows = [*_surroundings(), *needed, *optional, *_plugins()]
     table = Table.of_texts(("subject", "found", "remedy, or what it adds"), rows, words=3)
     findings = [dict(zip(("subject", "found", "remedy"), row, strict=True)) for row in rows]
     lacking = "\n".join(f"{name}: {found}; {remedy}" for name, found, remedy in needed if remedy)
@@ -77,6 +82,12 @@ def _packages(extra: str | None) -> list[tuple[str, str, str]]:
             remedy = adds or f'pip install "{said[1]}>={said[2]}"'
             rows.append((said[1], version, remedy if lacks else ""))
     return rows
+
+
+def _plugins() -> list[tuple[str, str, str]]:
+    """Entry points of other packages: group and name, package, and why it does not load."""
+    offers = (offer for kind in KINDS for offer in Registry(kind, {}, Any).offers())
+    return [(f"rpscli.{each.kind}: {each.name}", each.package, each.fault) for each in offers]
 
 
 def _numbers(version: str) -> list[int]:

@@ -162,8 +162,12 @@ def _keys(word: str) -> Iterator[Entry]:
         more = f" and {len(others) - 2} more" if len(others) > 2 else ""
         likewise = [f"likewise {also}{more}"] if others else []
         drawing = [BEARING] if key.key.startswith("podium.bearing") else []
-        yield Entry("keys", key._asdict(), (Heading(key.key), *likewise, _lines(key), *drawing))
-        yield from (Entry("keys", other._asdict()) for other in others)
+        yield Entry("keys", _said(key), (Heading(key.key), *likewise, _lines(key), *drawing))
+        yield from (Entry("keys", _said(other)) for other in others)
+
+
+def _said(key: KeyReference) -> dict[str, Any]:
+    return {**key._asdict(), "keys": dict(key.keys)}
 
 
 def _lines(key: KeyReference) -> Table:
@@ -179,11 +183,11 @@ def _lines(key: KeyReference) -> Table:
         "must be": key.bounds,
         "words": ", ".join(key.words),
         "names": names if key.key.split(".")[-1] == "reports" else "",
-        "keys": ", ".join(key.keys),
         "default": needed if key.default is None else str(key.default),
         "enters": f"THEORY.md, section {key.sections}" if key.sections else "",
     }
-    return Table.listing(rows.items())
+    keys = zip(["keys", *[""] * len(key.keys)], map(": ".join, key.keys), strict=False)
+    return Table.listing([*rows.items(), *keys])
 
 
 def _report(word: str, *, everything: bool) -> Iterator[Entry]:
@@ -200,7 +204,7 @@ def _report(word: str, *, everything: bool) -> Iterator[Entry]:
     for key in key_references(report.options):
         # Ranges of values of each limit are told at the limits of studies.
         if not key.key.startswith("limits."):
-            yield Entry("options", key._asdict(), (Heading(f"option {key.key}"), _lines(key)))
+            yield Entry("options", _said(key), (Heading(f"option {key.key}"), _lines(key)))
 
 
 def _options(word: str) -> Iterator[Entry]:
@@ -215,7 +219,7 @@ def _options(word: str) -> Iterator[Entry]:
                 named.setdefault(key, []).append(report)
     for key, reports in named.items():
         title = f"option {key.key} of the report{'s' * (len(reports) > 1)} {', '.join(reports)}"
-        yield Entry("options", key._asdict(), (Heading(title), _lines(key)))
+        yield Entry("options", _said(key), (Heading(title), _lines(key)))
 
 
 def _offers(word: str) -> Iterator[Offer]:

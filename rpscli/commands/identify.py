@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from pathlib import Path
+import shlex
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -12,15 +12,14 @@ from rpscli.commands.inputs import case_heading, read_case
 from rpscli.commands.shell import options
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.commands.shell.waiting import announce_compilation, passing_time
-from rpscli.errors import AnalysisError, RecordError, Refused, UsageError, listed
+from rpscli.errors import AnalysisError, RecordError, UsageError, listed
 from rpscli.report.documents import heading
-from rpscli.report.files import encoded, write_whole
 from rpscli.report.table import Heading, Part, Table, shown
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from rpscli.analyses.identification.estimate import Identified
+    from rpscli.analyses.identification import Identified
 
     Columns = dict[str, NDArray[Any]]
 
@@ -45,9 +44,6 @@ LARGEST = 1e15
 @click.option(
     "--to", "last", type=options.FiniteRange(), metavar="S", help="Ignore samples after this time."
 )
-@click.option("-o", "--output", "place", type=click.Path(path_type=Path), metavar="FILE.yaml",
-              help="A copy of CASE with the identified values; comments are kept.")  # fmt: skip
-@click.option("--force", is_flag=True, help="Overwrite that file.")
 @options.terminal_options
 def command(
     request: options.CaseRequest,
@@ -55,10 +51,7 @@ def command(
     test: str,
     first: float | None,
     last: float | None,
-    place: Path | None,
     terminal: Terminal,
-    *,
-    force: bool,
 ) -> None:
     """Identify properties of CASE from DATA.csv, measured on the structure, with 90 % intervals.
 
@@ -68,10 +61,8 @@ def command(
     a `floor_acceleration`: ambient vibration, the release of a pull, or an earthquake with
     `ground_acceleration` as well.
     """
-    if place is not None and place.exists() and not force:
-        raise Refused(f"{place} exists; name another file with -o, or overwrite it with --force")
     given = read_case(request, terminal)
-    from rpscli.analyses.identification.estimate import LEVEL
+    from rpscli.analyses.identification import LEVEL
     from rpscli.analyses.identification.identify import identified
 
     columns = measured(data, test, first, last)
@@ -81,10 +72,6 @@ def command(
             found = identified(given.case.structure, test, columns)
         except AnalysisError as error:
             raise AnalysisError(f"{data}: {error}") from None
-    files = []
-    if place is not None:
-        write_copy(place, request, found.keys, terminal)
-        files.append(str(place))
     estimates = [
         {"name": name, "unit": unit, **value._asdict()}
         for (name, unit), value in found.estimates.items()
@@ -100,25 +87,9 @@ def command(
         "residuals": found.residuals,
         "keys": found.keys,
         "warnings": given.case.warnings,
-        "files": files,
+        "files": [],
     }
     terminal.result(document, [Heading(given.case.title), *_tables(found), found.remarks])
-
-
-def write_copy(
-    place: Path, request: options.CaseRequest, keys: Mapping[str, str], terminal: Terminal
-) -> None:
-    """A copy of the case with values of keys, which is valid."""
-    from rpscli.case.text.files import read_text
-    from rpscli.case.text.yaml_text import edited
-
-    if not keys:
-        raise UsageError(f"-o {place}: nothing was identified that has a key in a case")
-    changes = (f"{key}={value}" for key, value in keys.items())
-    read_case(options.CaseRequest(request.source, (*request.overrides, *changes)), terminal)
-    text = edited(read_text(request.source), request.source, keys)
-    write_whole({place: encoded(text)})
-    terminal.note(f"written to {place}")
 
 
 def _tables(found: Identified) -> Iterator[Part]:
@@ -136,6 +107,9 @@ def _tables(found: Identified) -> Iterator[Part]:
     heads = ("swing at s", "of the model", "rotation mrad", "of the model", "over its error")
     if swings:
         yield Table.of_texts(heads, swings, words=0)
+    if found.keys:
+        sets = (word for key, value in found.keys.items() for word in ("--set", f"{key}={value}"))
+        yield f"in the case, or behind it: {shlex.join(sets)}"
 
 
 def measured(source: str, test: str, first: float | None, last: float | None) -> Columns:

@@ -103,10 +103,6 @@ def _write(files: Mapping[Path, bytes], terminal: Terminal, *, force: bool) -> N
 
 
 FORMATS = ("case", "study", "design")
-RESULTS_GONE = (
-    "schema results is gone: names, units and meanings of results stay as the section Compatibility"
-    " of GUIDE.md says; use `rps explain NAME` for one of them"
-)
 
 
 @click.command("schema")
@@ -116,21 +112,16 @@ RESULTS_GONE = (
     default="case",
     **completing(lambda: FORMATS),
 )
-@click.option("--study", "also", flag_value="study", help="The same as `rps schema study`.")
-@click.option("--design", "also", flag_value="design", help="The same as `rps schema design`.")
 @terminal_options
-def schema(*, what: str, also: str | None, terminal: Terminal) -> None:
+def schema(*, what: str, terminal: Terminal) -> None:
     """Print the JSON schema of a case file, a study (with the options of all reports) or a design.
 
     Editors that know YAML check and complete a file by it: `rps init --editor`.
     """
     del terminal
     if what not in FORMATS:
-        others = f"schema {what}: the schemas are those of {', '.join(FORMATS)}"
-        raise UsageError(RESULTS_GONE if what == "results" else others)
-    if also and what not in {"case", also}:
-        raise UsageError(f"{what} and --{also} are two formats; take one of them")
-    emit(json_text(schema_of(also or what)), sys.stdout)
+        raise UsageError(f"schema {what}: the schemas are those of {', '.join(FORMATS)}")
+    emit(json_text(schema_of(what)), sys.stdout)
 
 
 def schema_of(what: str) -> dict[str, Any]:

@@ -275,18 +275,12 @@ class UpliftedState(NamedTuple):
     Lengths of the columns are over R, derivatives by the tilt.
     """
 
-    rotation: float
-    """x [rad]."""
-    arm: float
-    """B."""
-    height: float
-    """C, so that u_b' = 2 R C x'."""
-    kappa: float
-    """B', the storey's dimensionless stiffness."""
-    squared_distance: float
-    """S = B^2 + C^2; 1 to first order."""
-    elongation: tuple[float, float, float]
-    """e, e' and e'' of a tendon in the axis [m]."""
+    rotation: float  # x [rad]
+    arm: float  # B
+    height: float  # C, so that u_b' = 2 R C x'
+    kappa: float  # B', the storey's dimensionless stiffness
+    squared_distance: float  # S = B^2 + C^2; 1 to first order
+    elongation: tuple[float, float, float]  # e, e' and e'' of a tendon in the axis [m]
 
 
 def uplifted_state(bearing: Bearing, *, rolling: bool, exact: bool = True) -> UpliftedState:

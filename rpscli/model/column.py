@@ -23,30 +23,15 @@ LARGEST_EDGE = 1.0 / 3.0
 
 
 class ColumnState(NamedTuple):
-    """One column at an instant, and its forces.
+    """One column at an instant, and its forces."""
 
-    Parameters
-    ----------
-    side
-        1 where the lower contact lies right of the axis, or -1.
-    rotation, rate
-        |theta| [rad], theta' [rad/s].
-    lever, rise
-        Of the lower contact from the middle of its end, along it and along the axis [m]; the upper
-        end is its image.
-    shear_bottom, normal_bottom, shear_top, normal_top
-        F to the right and N upwards on what is above [N].
-    bearing, mass, along
-        Shape and mass of the column [kg]; places from its foot [m].
-    """
-
-    side: float
-    rotation: float
-    rate: float
-    lever: float
-    rise: float
-    shear_bottom: float
-    normal_bottom: float
+    side: float  # 1 where the lower contact lies right of the axis, or -1
+    rotation: float  # |theta| [rad]
+    rate: float  # theta' [rad/s]
+    lever: float  # of the lower contact from the middle of its end [m]; the upper end is its image
+    rise: float  # the same along the axis [m]
+    shear_bottom: float  # F to the right on what is above [N]
+    normal_bottom: float  # N upwards on what is above [N]
     shear_top: float
     normal_top: float
 
@@ -77,30 +62,14 @@ class ColumnState(NamedTuple):
 
 @dataclass(frozen=True)
 class ColumnDesign:
-    """Cross-section and material of a column, and of the plate it stands on.
+    """Cross-section and material of a column, and of the plate it stands on."""
 
-    Parameters
-    ----------
-    section
-        Square columns bear on lines, round ones on points.
-    modulus, poisson
-        E [Pa] and nu of the column.
-    contact_strength
-        f: pressure that column or plate can bear [Pa].
-    edge_length
-        L of the line on which square columns bear [m]; None of round ones.
-    plate_modulus, plate_poisson
-        Of the plate; None: those of the column.
-    bearing, rotation, force
-        Shape of the column, |theta| > 0 [rad] and N on it [N].
-    """
-
-    section: Literal["square", "round"]
-    modulus: float
-    poisson: float
-    contact_strength: float
-    edge_length: float | None = None
-    plate_modulus: float | None = None
+    section: Literal["square", "round"]  # square columns bear on lines, round ones on points
+    modulus: float  # E of the column [Pa]
+    poisson: float  # nu of the column
+    contact_strength: float  # f: pressure that column or plate can bear [Pa]
+    edge_length: float | None = None  # L of the line of square columns [m]
+    plate_modulus: float | None = None  # of the plate; None: that of the column
     plate_poisson: float | None = None
 
     def __post_init__(self) -> None:

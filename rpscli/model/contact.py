@@ -23,39 +23,13 @@ USUAL_LOSS = {"rigid": 1.0, "plane": 0.3, "edges": 1.0}
 
 @dataclass(frozen=True)
 class Contact:
-    """Support of the columns' ends in full contact and as they lift.
+    """Support of the ends in full contact and as they lift, rigid or of one size (Theory, 12)."""
 
-    Parameters
-    ----------
-    kind
-        ``rigid``: nothing moves until the columns lift. ``plane``: a compliant plane joint
-        evenly and cannot pull; it lifts gradually. ``edges``: the same at the edges of the flat
-        part alone, a hinge that begins to move at once and lifts at once.
-    period_ratio
-        r, first period in full contact over that on a fixed base; above 1.
-    stiffness
-        K_s = dF/du_b of the storey at u_b = 0 [N/m].
-    settlement
-        D_0, compression of one joint under the permanent load [m]; of flat ends only.
-    damping
-        zeta, damping ratio of the storey's own vibration in full contact, A theta'' + c theta' +
-        k theta = 0 with c = 2 zeta sqrt(k A).
-
-    Raises
-    ------
-    ValueError
-        For another kind, a damping < 0, or, unless it is rigid, not exactly one of the three.
-
-    Notes
-    -----
-    Theory, section 12; its period ratio is that of Theory (12.9).
-    """
-
-    kind: ContactKind = "rigid"
-    period_ratio: float | None = None
-    stiffness: float | None = None
-    settlement: float | None = None
-    damping: float = 0.03
+    kind: ContactKind = "rigid"  # plane: an even joint, lifts gradually; edges: lift at once
+    period_ratio: float | None = None  # r, in full contact over a fixed base, above 1
+    stiffness: float | None = None  # K_s = dF/du_b of the storey at u_b = 0 [N/m]
+    settlement: float | None = None  # D_0 of one joint of flat ends under the weight [m]
+    damping: float = 0.03  # zeta of the storey in full contact: c = 2 zeta sqrt(k A)
 
     def __post_init__(self) -> None:
         """Refuse what does not say how soft it is."""
@@ -88,67 +62,35 @@ Standing: TypeAlias = Any
 
 
 class BedPath(NamedTuple):
-    """Arms, height, displacements and potential along |theta|, arrays of its shape.
+    """Arms, height, displacements and potential along |theta|, arrays of its shape."""
 
-    Parameters
-    ----------
-    arm
-        Of the weight, over R: the restoring moment is 2 W R times it.
-    lift_arm, lift_bend
-        B_v, v_b' = 2 R B_v theta', and dB_v/dx.
-    height
-        C.
-    displacement, lift, potential
-        u_b/2R, v_b/2R, and that of weight and bed over 2 W R.
-    """
-
-    arm: Array
-    lift_arm: Array
-    lift_bend: Array
-    height: Array
-    displacement: Array
-    lift: Array
-    potential: Array
+    arm: Array  # of the weight, over R: the restoring moment is 2 W R times it
+    lift_arm: Array  # B_v: v_b' = 2 R B_v theta'
+    lift_bend: Array  # dB_v/dx
+    height: Array  # C
+    displacement: Array  # u_b/2R
+    lift: Array  # v_b/2R
+    potential: Array  # of weight and bed, over 2 W R
 
 
 class Bed(NamedTuple):
-    """Compliant full contact, of a structure (Theory (12.5) to (12.9)).
-
-    Parameters
-    ----------
-    structure
-        The `PodiumStructure` that stands on it.
-    uplift_rotation, full_rotation, fade
-        phi_u, at which an edge lifts, x_full of curved ends or 0 [rad]; 1/(x_full - phi_u) or 0.
-    height, lift_arm
-        C and B at phi_u.
-    inertia, spring, damper
-        A_u; k, the secant of the moment [1/s2]; c [1/s], all over N m_c R^2.
-    stiffness, mass
-        K_s [N/m] and m_0 [kg] at the cap beam.
-    sink, root
-        What w takes from the arms of the weight and of the lift; 0 on edges.
-    kept
-        j, theta' after uplift over that before: below 1 on edges.
-    shift
-        What u_b/2R lacks at phi_u for being continuous, C_u being constant below it.
-    """
+    """Compliant full contact, of a structure (Theory (12.5) to (12.9))."""
 
     structure: Standing
-    uplift_rotation: float
-    height: float
-    lift_arm: float
-    inertia: float
-    spring: float
-    damper: float
-    stiffness: float
-    mass: float
-    sink: float
-    root: float
-    kept: float
-    shift: float
-    full_rotation: float
-    fade: float
+    uplift_rotation: float  # phi_u, at which an edge lifts [rad]
+    height: float  # C at phi_u
+    lift_arm: float  # B at phi_u
+    inertia: float  # A_u, over N m_c R^2 as the next two
+    spring: float  # k, the secant of the moment [1/s2]
+    damper: float  # c [1/s]
+    stiffness: float  # K_s at the cap beam [N/m]
+    mass: float  # m_0 at the cap beam [kg]
+    sink: float  # what w takes from the arm of the weight; 0 on edges
+    root: float  # and from that of the lift
+    kept: float  # j, theta' after uplift over that before: below 1 on edges
+    shift: float  # what u_b/2R lacks at phi_u for being continuous, C_u being constant below it
+    full_rotation: float  # x_full of curved ends or 0 [rad]
+    fade: float  # 1/(x_full - phi_u) or 0
 
     @property
     def settlement(self) -> float | None:

@@ -379,34 +379,25 @@ class PodiumStructure(Shown):
 class AtRest(NamedTuple):
     """Horizontal forces of a device on the cap beam at rest, at the rotations asked for [N]."""
 
-    restoring: Array | float = 0.0
-    """Needed in addition to hold a rotation > 0."""
-    held: Array | float = 0.0
-    """Friction, which holds as much either way."""
+    restoring: Array | float = 0.0  # Needed in addition to hold a rotation > 0
+    held: Array | float = 0.0  # Friction, which holds as much either way
 
 
 class Linear(NamedTuple):
     """Terms that a device adds to small motions 2 R theta on one side (Theory, sections 6, 11)."""
 
-    stiffness: float = 0.0
-    """[N/m]."""
-    damping: float = 0.0
-    """[N s/m]."""
-    left_out: str = ""
-    """In words, what of it is not linear; empty if nothing."""
+    stiffness: float = 0.0  # [N/m]
+    damping: float = 0.0  # [N s/m]
+    left_out: str = ""  # In words, what of it is not linear; empty if nothing
 
 
 class Consequence(NamedTuple):
     """A number that follows from one device: its name in JSON, and the words of a table."""
 
-    name: str
-    """In JSON."""
-    label: str
-    """In tables."""
-    unit: str
-    """SI; ``-`` for plain numbers."""
-    value: float | None
-    """None if it is never reached."""
+    name: str  # In JSON
+    label: str  # In tables
+    unit: str  # SI; ``-`` for plain numbers
+    value: float | None  # None if it is never reached
 
 
 @dataclass(frozen=True)

@@ -19,31 +19,23 @@ POINTS = 400
 class Return(NamedTuple):
     """Return of the storey from rest at a rotation, and the friction against it."""
 
-    rotation: float
-    """From which it starts at rest [rad]."""
-    displacement: float
-    """u_b there [m]."""
+    rotation: float  # From which it starts at rest [rad]
+    displacement: float  # u_b there [m]
     largest_friction: float
     """Largest friction against which it comes back, a force at the cap beam [N]."""
-    friction: float
-    """Largest friction on the way [N]."""
-    recentres: bool
-    """True if it comes back to full contact."""
+    friction: float  # Largest friction on the way [N]
+    recentres: bool  # True if it comes back to full contact
 
 
 class StoreyStrength(NamedTuple):
     """Strength of a storey beside its shear where columns lift under slow ground motion."""
 
-    strength: float
-    """F_i [N]."""
-    strength_ratio: float | None
-    """F_i/V_st; None on spherical ends."""
+    strength: float  # F_i [N]
+    strength_ratio: float | None  # F_i/V_st; None on spherical ends
     shear_at_uplift: float
     """Mass above times the ground acceleration that uplifts rigid ends, with devices [N]."""
-    uplift_first: bool
-    """True if columns lift before it yields."""
-    yield_drift: float
-    """F_i/k_i [m]."""
+    uplift_first: bool  # True if columns lift before it yields
+    yield_drift: float  # F_i/k_i [m]
 
 
 def storey_strengths(structure: PodiumStructure) -> list[StoreyStrength]:

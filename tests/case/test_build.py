@@ -107,8 +107,6 @@ def test_strengths_follow_a_ratio_or_are_given() -> None:
     assert given.strengths.tolist() == [3e6, 2e6, 1e6]
     assert given.hardening == 0.05
     assert floors().strengths is None
-    (mixed,) = case_of("superstructure.yield={shears: [3 MN, 2e6, 1 MN]}").warnings
-    assert "superstructure.yield.shears mixes numbers with and without a unit" in mixed
 
 
 def test_spherical_ends_have_no_ratio_of_strengths() -> None:

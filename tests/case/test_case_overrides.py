@@ -106,6 +106,7 @@ def test_a_fault_of_a_value_is_placed_at_its_override() -> None:
         ("superstructure.damping.modes.2=1", ["modes has 2 values", "there is no 2"]),
         ("superstructure.damping.modes.0=null", ["cannot be taken out"]),
         ("superstructure.damping.modes.0.1=3", ["= 1 is a single value"]),
+        ("podium.devices[0].force=1", ["devices[0] is not a key", "mean podium.devices.0?"]),
         ("podium.0=1", ["podium is not a list"]),
         ("0=1", ["an index alone"]),
         ("podium..columns=1", ["is not a key"]),

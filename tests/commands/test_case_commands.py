@@ -86,7 +86,13 @@ def test_check_compares_strengths_with_the_shears_at_uplift(
     assert "upper storeys yield most" in shown
     weak = rps("check", "small.yaml", "--set", "superstructure.yield={ratio: 0.9}")
     assert "before columns lift, at 0.9 of their shear at uplift (storey 1)" in weak.stderr
-    assert "BEFORE uplift" in weak.stdout
+    assert "yields BEFORE uplift" in weak.stdout
+    for F in ("0.9", "1.1"):  # pushed slowly storeys may yield that ground motion spares
+        of = "--set", f"superstructure.yield={{ratio: {F}}}"
+        pushed = rps_json("pushover", "small.yaml", *of, "--force")["warnings"]
+        assert set(pushed) <= set(rps_json("check", "small.yaml", *of)["warnings"])
+        (first,) = (text for text in pushed if "protect storey 1" in text)
+        assert first.endswith("columns lift first") == (F == "1.1")
     assert "storey_strengths" not in rps_json("check", "small.yaml")
 
 
@@ -114,6 +120,8 @@ def test_limits_that_pairs_refuse_are_told_before_anything_is_computed(
     document = rps_json("check", case, "--set", both)
     told = [text.split(" under both")[0] for text in document["warnings"]]
     assert {"max_column_force", "column_moment", "contact_pressure_ratio"} <= set(told)
+    assert "p_0" in rps("check", case).stdout
+    assert "p_0" not in rps("check", case, "--set", both).stdout  # square columns on a corner
     refused = rps("timehistory", case, "--set", both)
     assert refused.exit_code == 2
     assert "max_column_force under both components" in refused.stderr

@@ -1,4 +1,4 @@
-"""`rps identify`: from a file of measurements to a copy of the case."""
+"""`rps identify`: from a file of measurements to values of the case."""
 
 from __future__ import annotations
 
@@ -48,10 +48,10 @@ def measured(workplace: Path, rps: Invoke) -> Path:
     return file
 
 
-def test_a_release_gives_the_loss_and_a_copy_of_the_case(
+def test_a_release_gives_the_loss(
     measured: Path, rps_json: Callable[..., Any], rps: Invoke
 ) -> None:
-    found = rps_json("identify", "frame.yaml", "release.csv", "rocking", "-o", "new.yaml")
+    found = rps_json("identify", "frame.yaml", "release.csv", "rocking")
     by_name = {each["name"]: each for each in found["estimates"]}
     # hundredths of a millimetre are rounded, of 180
     assert by_name["loss"]["value"] == pytest.approx(0.6, rel=2e-3)
@@ -59,12 +59,9 @@ def test_a_release_gives_the_loss_and_a_copy_of_the_case(
     e = rps_json("check", "frame.yaml", "--set", "podium.impact.loss=0.6")["restitution"]
     assert by_name["restitution"]["low"] < e < by_name["restitution"]["high"]
     assert len(found["residuals"]) == 12
-    changed = (measured.parent / "new.yaml").read_text(encoding="utf-8")
-    loss = found["keys"]["podium.impact.loss"]
-    assert changed == FRAME.replace("loss: 1}", f"loss: {loss}}}")
-    assert rps("identify", "frame.yaml", "release.csv", "rocking", "-o", "new.yaml").exit_code == 7
     shown = rps("identify", "frame.yaml", "release.csv", "rocking", "--from", "0.001").stdout
     assert "residuals are" in shown
+    assert "--set podium.impact.loss=0.6" in shown
 
 
 def test_the_period_of_a_pull(workplace: Path, rps: Invoke, rps_json: Callable[..., Any]) -> None:
@@ -96,8 +93,9 @@ def test_a_longer_period_tells_how_the_columns_bear(
     lines = [f"{t:.3f},{a:.6f}" for t, a in zip(times, floor, strict=True)]
     text = "\n".join(["time [s],floor_acceleration [g]", *lines])
     (workplace / "floor.csv").write_text(text, encoding="utf-8")
-    found = rps_json("identify", "paper.yaml", "floor.csv", "release", "-o", "soft.yaml")
-    assert "  contact: {kind: plane, period_ratio: 1.2}\n" in Path("soft.yaml").read_text("utf-8")
+    found = rps_json("identify", "paper.yaml", "floor.csv", "release")
+    contact = {"podium.contact.kind": "plane", "podium.contact.period_ratio": "1.2"}
+    assert found["keys"] == contact
     by_name = {each["name"]: each["value"] for each in found["estimates"]}
     assert by_name["period_ratio"] == pytest.approx(1.2, rel=1e-4)
     assert by_name["stiffness"] == pytest.approx(63.4e6, rel=2e-3)
@@ -127,7 +125,6 @@ def test_refusals_say_what_to_do(
     if text.count("\n") == 1:
         text += "".join(f"{0.1 * i:.1f},{i % 3}\n" for i in range(40))
     (workplace / "data.csv").write_text(text, encoding="utf-8")
-    result = rps("identify", "frame.yaml", "data.csv", *words, "-o", "new.yaml")
+    result = rps("identify", "frame.yaml", "data.csv", *words)
     assert result.exit_code == code, result.stderr
     assert reason in result.stderr
-    assert not (workplace / "new.yaml").exists()

@@ -156,6 +156,11 @@ def test_what_is_installed_is_listed(example: None, rps_json: InvokeJson) -> Non
     assert {each["package"] for each in found.values()} == {"rps-example 1.0"}
     assert found["ASI"]["meaning"].startswith("ASI [m/s]: the integral of Sa")
     assert not any(each["fault"] for each in found.values())
+    looked_at = {row["subject"]: row for row in rps_json("doctor")["findings"]}
+    assert (
+        looked_at["rpscli.dampers: oil"] | {"found": "rps-example 1.0", "remedy": ""}
+        == (looked_at["rpscli.dampers: oil"])
+    )
     report = rps_json("explain", "worst")
     assert [option["key"] for option in report["options"]] == ["name", "title", "count"]
     schema = rps_json_schema()
@@ -252,6 +257,7 @@ def test_what_is_broken_is_named_and_breaks_nothing_else(
     listed = rps("explain", "plugins").stdout
     assert "rps has one of this name" in listed.replace("\n", " ")
     assert listed.count("broken-plugins") >= 6
+    assert "ModuleNotFoundError" in rps("doctor").stdout.replace("\n", "")
 
 
 LIARS = """\

@@ -320,6 +320,12 @@ def test_a_dry_run_computes_nothing(design_json: SweepJson, workplace: Path) -> 
         ("0.35]", "0.02]", "12:31", "must rise from the least value to the largest"),
         ("[0.05, 0.35]", "[0.05]", "12:31", "must be two numbers, [least, largest]"),
         ("[0.05, 0.35]", "[low, high]", "12:31", "must be two numbers"),
+        (
+            "podium.bearing.slenderness: [0.05, 0.35]",
+            "podium.devices[0].force: [1 kN, 2 kN]",
+            "12:3",
+            "did you mean podium.devices.0.force?",
+        ),
         (f"{SLENDERNESS}: [0.05", "podium.bearing.slendernes: [0.05", "12:3", "did you mean"),
         (f"{WEDGE}: {{{SLENDERNESS}: 2, plus: 0.1}}", f"{WEDGE}: 2", "14:", "must be a linear sum"),
         ("[0.05, 0.35]", "", "12:3", "has no value; write one"),

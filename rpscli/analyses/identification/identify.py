@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from rpscli.analyses.identification.estimate import Estimate, Identified
+from rpscli.analyses.identification import Estimate, Identified
 from rpscli.analyses.identification.rocking import rocking
 from rpscli.analyses.identification.vibration import vibration
 from rpscli.errors import AnalysisError, UsageError
@@ -26,13 +26,7 @@ TESTS = {
 
 
 def identified(structure: PodiumStructure, test: str, columns: Mapping[str, Array]) -> Identified:
-    """What one of the `TESTS` says of a structure, from columns (n,) in SI units by name.
-
-    Raises
-    ------
-    AnalysisError
-        If the measurements do not determine it, or no structure of this kind moves like that.
-    """
+    """What one of the `TESTS` says of a structure, from columns (n,) in SI units by name."""
     found = (_rocking if test == "rocking" else _vibration)(structure, test, columns)
     for (name, _), value in found.estimates.items():
         if not value.determined:

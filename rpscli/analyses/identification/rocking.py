@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rpscli.analyses.identification.estimate import Estimate, Identified, estimate
+from rpscli.analyses.identification import Estimate, Identified, estimate
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.errors import AnalysisError
@@ -99,21 +99,7 @@ class _Release:
 
 
 def rocking(structure: PodiumStructure, time: Array, rotation: Array) -> Identified:
-    """Restitution and lever from free rocking after a release from rest, the building unstrained.
-
-    Parameters
-    ----------
-    structure
-        As it is designed; its impact law and rolling resistance are what is looked for.
-    time, rotation
-        (n,) uniform samples [s] and theta [rad], from the release on.
-
-    Raises
-    ------
-    AnalysisError
-        If fewer than four swings stand out of the noise, or no such structure rocks like this: it
-        is far from it, or has a value at the end of its range.
-    """
+    """Restitution and lever from rotations (n,) [rad] after a release of the unstrained case."""
     if (largest := float(np.abs(rotation).max())) >= structure.critical_rotation:
         raise AnalysisError(
             f"the rotation of {largest:.4g} rad is beyond the critical one of"

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.analyses.identification.estimate import Estimate, estimate
+from rpscli.analyses.identification import Estimate, estimate
 from rpscli.errors import AnalysisError
 
 Array = NDArray[np.float64]
@@ -39,23 +39,10 @@ class Vibration(NamedTuple):
 def vibration(
     expected: float, dt: float, floor: Array, ground: Array | None = None, *, free: bool = False
 ) -> Vibration:
-    """First period and damping before uplift from a floor's acceleration.
+    """First period and damping before uplift from a floor's acceleration, in any unit.
 
-    Parameters
-    ----------
-    expected
-        First period on a fixed base [s]; the measured one is looked for from 0.85 to 3 times it.
-    dt
-        Sampling interval [s].
-    floor, ground
-        (n,) accelerations, in any unit but the same one. With the ground's the floor's answer to it
-        is fitted (an earthquake); else a free decay if `free`, else the spectrum (ambient).
-
-    Raises
-    ------
-    AnalysisError
-        If the record holds fewer than ten periods, or no peak is found; if the motion determines
-        neither period nor damping, or a period that is not looked for.
+    With the ground's in the same unit the floor's answer to it is fitted; else a free decay if
+    `free`, else the spectrum. `expected` is the first period on a fixed base [s].
 
     Notes
     -----

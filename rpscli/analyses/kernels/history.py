@@ -126,19 +126,14 @@ def follow(run: Run, lanes: int, *, interruptible: bool = False) -> None:
 class SampledHistory:
     """A history with its samples and events, records of `physics.state`."""
 
-    history: Record
-    """A `state.RESULT`: what is left behind at the end."""
-    motion: MotionComponents
-    """Of the ground, as dense as the samples."""
-    samples: Record
-    """(intervals + 1,)."""
+    history: Record  # A `state.RESULT`: what is left behind at the end
+    motion: MotionComponents  # Of the ground, as dense as the samples
+    samples: Record  # (intervals + 1,)
     floors: NDArray[np.float64]
     """(intervals + 1, 3, n) displacements [m] and velocities [m/s] relative to the ground, absolute
     accelerations [m/s2]; behind those in x come those in y of pairs, and upwards on springs."""
-    log: Record
-    """(events,)."""
-    devices: NDArray[np.float64]
-    """(intervals + 1, 4, devices), see `physics.run.Output`."""
+    log: Record  # (events,)
+    devices: NDArray[np.float64]  # (intervals + 1, 4, devices), see `physics.run.Output`
 
 
 def longest_history(

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from rpscli.case.build import each_storey
 from rpscli.case.schema.case_file import SuperstructureSection
-from rpscli.case.text.document import Document, path_of
 from rpscli.errors import listed
 from rpscli.model.statics import storey_strengths
 
@@ -95,8 +94,6 @@ STRONGEST = 0.4
 LARGEST_DRIFT = 0.02
 """Hardly a building carries a larger drift over its storey height without damage."""
 
-PER_STOREY = ("storey_mass", "storey_height", "stiffness", "yield.shears")
-
 
 def doubts_of_structure(structure: PodiumStructure) -> Iterator[Doubt]:
     """Sizes, masses, period, restitution and friction; storey shears at uplift."""
@@ -156,9 +153,10 @@ def doubts_of_strengths(structure: PodiumStructure) -> Iterator[Doubt]:
         weak = {i: s for i, s in enumerate(storey_strengths(seen), 1) if not s.uplift_first}
         if weak:
             yield Doubt(
-                f"superstructure.yield: storeys yield{way.replace('_', ' in ')} before columns"
-                " lift, at {0} of their shear at uplift{1}: the podium does not protect them; give"
-                " them more strength, or the podium more slender columns",
+                "superstructure.yield: under slow ground motion storeys"
+                f" yield{way.replace('_', ' in ')} before columns lift, at {{0}} of their shear at"
+                " uplift{1}: the podium does not protect them; give them more strength, or the"
+                " podium more slender columns",
                 min(s.strength / s.shear_at_uplift for s in weak.values()),
                 f" (storey {listed(map(str, weak), 'and')})",
             )
@@ -207,37 +205,22 @@ def doubts_of_directions(structure: PodiumStructure, *, both: bool) -> Iterator[
         )
 
 
-def doubts_of_text(section: SuperstructureSection, document: Document) -> Iterator[Doubt]:
-    """Keys without effect, lists in which some numbers lack a unit, unequal neighbours."""
+def doubts_of_text(section: SuperstructureSection) -> Iterator[Doubt]:
+    """Keys without effect, unequal neighbours."""
     fields = type(section).model_fields.items()
     ignored = [each.alias or name for name, each in fields if name in section.model_fields_set]
     if section.storeys == 0 and len(ignored) > 1:
         keys = listed((f"superstructure.{name}" for name in ignored[1:]), "and")
         yield Doubt(f"superstructure.storeys = 0: there is no building, so {keys} had no effect")
-    for name in PER_STOREY:
-        written = document.at(path_of(f"superstructure.{name}"))
-        if isinstance(written, list):
-            bare = [value for value in written if not isinstance(value, str)]
-            if bare and len(bare) < len(written):
-                with_unit = next(value for value in written if isinstance(value, str))
-                yield Doubt(
-                    f"superstructure.{name} mixes numbers with and without a unit{{1}}: a bare"
-                    " number is in SI units; write the unit everywhere",
-                    detail=f" ({with_unit} and {bare[0]})",
-                )
     for name, unit in (("storey_mass", "kg"), ("stiffness", "N/m")):
-        given = getattr(section, name)
-        if section.storeys and given is not None:
-            yield from _neighbours(name, unit, each_storey(given, section.storeys))
-
-
-def _neighbours(name: str, unit: str, values: Sequence[float]) -> Iterator[Doubt]:
-    for storey, (below, above) in enumerate(pairwise(values), start=1):
-        if max(below, above) > NEIGHBOURS * min(below, above):
-            yield Doubt(
-                f"superstructure.{name}: a storey has {{0}} times as much as its neighbour{{1}};"
-                f" less than {NEIGHBOURS:g} times is usual; check the units",
-                max(below, above) / min(below, above),
-                f" (storey {storey} has {below:.4g} {unit},"
-                f" storey {storey + 1} {above:.4g} {unit})",
-            )
+        given = getattr(section, name) if section.storeys else None
+        values = each_storey(given, section.storeys) if given else ()
+        for storey, (below, above) in enumerate(pairwise(values), start=1):
+            if max(below, above) > NEIGHBOURS * min(below, above):
+                yield Doubt(
+                    f"superstructure.{name}: a storey has {{0}} times as much as its neighbour{{1}}"
+                    f"; less than {NEIGHBOURS:g} times is usual; check the units",
+                    max(below, above) / min(below, above),
+                    f" (storey {storey} has {below:.4g} {unit},"
+                    f" storey {storey + 1} {above:.4g} {unit})",
+                )

@@ -37,25 +37,8 @@ DEVICE_KEYS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
 """Keys that a device of each kind must have, and may have: the fields of its law."""
 
 
-def _device_schema(schema: dict[str, Any]) -> None:
-    """Say which keys go with which kind, for editors."""
-    names = set(schema["properties"]) - {"kind"}
-    schema["allOf"] = [
-        {
-            "if": {"properties": {"kind": {"const": kind}}},
-            "then": {
-                "required": list(needed),
-                "properties": dict.fromkeys(sorted(names - {*needed, *optional}), False),
-            },
-        }
-        for kind, (needed, optional) in DEVICE_KEYS.items()
-    ]
-
-
 class DeviceSection(Section):
     """A device between ground and cap beam; its kind says which keys it has."""
-
-    model_config = ConfigDict(json_schema_extra=_device_schema)
 
     kind: Annotated[str, NameOf(DAMPERS)] = Field(
         description="viscous or friction damper, elastic stop, unbonded tendon in the axis of each"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from functools import cache, lru_cache
 from typing import Any, Literal, NamedTuple, get_args, get_origin
@@ -12,7 +13,7 @@ from pydantic.fields import FieldInfo
 from rpscli.case.schema.case_file import CaseFile
 from rpscli.case.schema.fields import PLAIN, NameOf, OneOf, Quantity, Several, ValueRange, Whole
 from rpscli.case.schema.own import OwnLaws
-from rpscli.case.text.document import Fault, Path, dotted
+from rpscli.case.text.document import Fault, Path, dotted, path_of
 from rpscli.errors import listed, nearest
 
 
@@ -127,9 +128,18 @@ REMOVED = {
 """Keys of earlier versions, and what to do without them."""
 
 
+ELEMENT = re.compile(r"\[(\d+)\]")
+"""How some write an element of a list, which is ``.0`` here."""
+
+
 def unknown_key(model: type[BaseModel], path: Path) -> tuple[Fault, Path | None]:
     """The fault of an unknown key, and the known key it was taken for."""
     named = dotted(tuple(part for part in path if isinstance(part, str)))
+    if ELEMENT.search(named):
+        plain = ELEMENT.sub(r".\1", dotted(path))
+        elements = "elements of lists are counted from 0"
+        text = f"{dotted(path)} is not a key of the format; did you mean {plain}? {elements}"
+        return Fault(path, text, at_key=True), path_of(plain)
     if now := REMOVED.get(named):
         return Fault(path, f"{dotted(path)} is gone: {now}", at_key=True), None
     suggestion = suggestion_for(model, path)
@@ -167,8 +177,8 @@ def is_whole(key: str) -> bool:
 
 
 def _marks_of(key: str) -> list[object]:
-    path = tuple(part for part in key.split(".") if not part.isdecimal())
-    field = field_at(CaseFile, path)
+    path = path_of(ELEMENT.sub(r".\1", key))
+    field = field_at(CaseFile, tuple(part for part in path if isinstance(part, str)))
     return list(inside(field))
 
 
@@ -197,7 +207,7 @@ class KeyReference(NamedTuple):
     words: tuple[str, ...]
     default: Any
     required: bool
-    keys: tuple[str, ...]
+    keys: tuple[tuple[str, str], ...]
     sections: str
 
 
@@ -219,6 +229,7 @@ def _reference(key: str, field: FieldInfo) -> KeyReference:
     words = (word for each in (*literals, *listed_names) for word in each if isinstance(word, str))
     section = section_of(field.annotation)
     single = quantity is not None and not (section and "at_most" not in section.model_fields)
+    keys = {} if section is None else fields_of(section)
     default = field.get_default()
     return KeyReference(
         key=key,
@@ -229,6 +240,6 @@ def _reference(key: str, field: FieldInfo) -> KeyReference:
         words=tuple(dict.fromkeys([*(quantity.words if quantity else ()), *words])),
         default=default if isinstance(default, str | int | float) else None,
         required=field.is_required(),
-        keys=tuple(fields_of(section)) if section else (),
+        keys=tuple((name, each.description or "") for name, each in keys.items()),
         sections=next((SECTIONS[parent] for parent in parents if parent in SECTIONS), ""),
     )

@@ -1,20 +1,16 @@
-"""Strict YAML: text -> Document with positions, core-schema scalars and no duplicate keys.
-
-`edited` puts values into a text and leaves the rest of it as it is.
-"""
+"""Strict YAML: text -> Document with positions, core-schema scalars and no duplicate keys."""
 
 from __future__ import annotations
 
-import itertools
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
 import yaml
 from yaml.nodes import MappingNode, Node, ScalarNode, SequenceNode
 
-from rpscli.case.text.document import Document, Fault, Path, Place, dotted, path_of, shown
+from rpscli.case.text.document import Document, Fault, Path, Place, dotted, shown
 from rpscli.errors import CaseError
 
 REMEDIES = {
@@ -119,7 +115,7 @@ def read_yaml(text: str, name: str) -> Document:
     root = _root(text, name)
     if root is None or (isinstance(root, ScalarNode) and not root.value):
         raise CaseError(f"{name}: the file is empty; `rps init` writes a case to start from")
-    reader = _Reader(name)
+    reader = _Reader(name, text)
     content = reader.value(root, ())
     if not isinstance(content, dict):
         place = reader.place(root)
@@ -135,7 +131,7 @@ def read_value(text: str, name: str) -> Any:
     root = _root(text, name)
     if root is None:
         raise CaseError(f"{name}: no value; write null to remove the key")
-    reader = _Reader(name)
+    reader = _Reader(name, text)
     value = reader.value(root, ())
     if reader.faults:
         raise CaseError("\n".join(f"{name}: {fault.text}" for fault in reader.faults))
@@ -162,6 +158,7 @@ class _Reader:
     """Nodes -> values, gathering positions and faults on the way."""
 
     name: str
+    text: str
     keys: dict[Path, Place] = field(default_factory=dict)
     values: dict[Path, Place] = field(default_factory=dict)
     faults: list[Fault] = field(default_factory=list)
@@ -183,10 +180,12 @@ class _Reader:
         tag = node.tag.removeprefix(TAG)
         if isinstance(node, MappingNode) and tag == "map":
             value = {key: self.value(item, (*path, key)) for key, item in self.pairs(node, path)}
-        elif isinstance(node, SequenceNode) and tag == "seq" and (text := _comma_in_list(node)):
-            self.fault(path, node, f"{dotted(path)}: {text}" if path else text)
         elif isinstance(node, SequenceNode) and tag == "seq":
-            value = [self.value(item, (*path, i)) for i, item in enumerate(node.value)]
+            written = self.text[node.start_mark.index : node.end_mark.index]
+            if node.flow_style and (text := _comma_in_list(written)):
+                self.fault(path, node, f"{dotted(path)}: {text}" if path else text)
+            else:
+                value = [self.value(item, (*path, i)) for i, item in enumerate(node.value)]
         elif isinstance(node, ScalarNode) and tag in SCALARS:
             try:
                 value = _scalar(tag, node.value)
@@ -199,10 +198,8 @@ class _Reader:
 
     def pairs(self, node: MappingNode, path: Path) -> Iterator[tuple[str, Node]]:
         """Keys with their nodes, each key once."""
-        commas = _decimal_commas(node)
-        for key_node, value_node in node.value:
-            if any(key_node is fraction for fraction in commas.values()):
-                continue
+        pairs = iter(node.value)
+        for key_node, value_node in pairs:
             if text := _no_key(key_node):
                 self.fault(path, key_node, text)
                 continue
@@ -214,11 +211,13 @@ class _Reader:
                 self.fault(here, key_node, text)
                 continue
             self.keys[here] = self.place(key_node)
-            if fraction := commas.get(id(value_node)):
-                text = f"{value_node.value},{fraction.value}"
+            fraction = _FRACTION.match(self.text, value_node.end_mark.index)
+            if node.flow_style and value_node.tag == TAG + "int" and fraction:
+                text = f"{value_node.value}{fraction[0]}"
                 text += f" has a decimal comma; write {text.replace(',', '.')}"
                 self.fault(here, value_node, f"{dotted(here)} = {text}")
                 value_node = ScalarNode(TAG + "null", "", value_node.start_mark)  # noqa: PLW2901
+                next(pairs)  # the fraction
             yield key, value_node
 
     def fault(self, path: Path, node: Node, text: str) -> None:
@@ -236,39 +235,20 @@ def _no_key(node: Node) -> str:
     return ""
 
 
-def _decimal_commas(node: MappingNode) -> dict[int, ScalarNode]:
-    """Fractions behind a decimal comma, as in ``{period: 0,3}``, by the id of the whole part."""
-    # YAML reads such a fraction as one more key, without a value.
-    if not node.flow_style:
-        return {}
-    return {
-        id(value): fraction
-        for (_, value), (fraction, nothing) in itertools.pairwise(node.value)
-        if isinstance(fraction, ScalarNode)
-        and isinstance(value, ScalarNode)
-        and value.tag == fraction.tag == TAG + "int"
-        and nothing.tag == TAG + "null"
-        and fraction.start_mark.index == value.end_mark.index + 1
-    }
+_FRACTION = re.compile(r",(\d+)(?=\s*[,}])")
+"""What stands behind a decimal comma in braces, where YAML reads a key without a value."""
 
 
-def _comma_in_list(node: SequenceNode) -> str:
+def _comma_in_list(text: str) -> str:
     """The first decimal comma, as in ``[0,15, 0,2]``, in words; empty where blanks tell of none."""
-    pairs = list(itertools.pairwise(node.value)) if node.flow_style else []
-    close = [(a, b) for a, b in pairs if b.start_mark.index == a.end_mark.index + 1]
-    lone = all(a is not b for (_, a), (b, _) in itertools.pairwise(close))
-    if not close or len(close) == len(pairs) or not lone or not all(map(_is_fraction, close)):
+    items = re.split(r",\s+", text[1:-1].strip())
+    close = [re.fullmatch(r"(\d+),(\d[^,]*)", item) for item in items if "," in item]
+    if len(items) == 1 or not close or not all(close) or (first := close[0]) is None:
         return ""
-    whole, fraction = (part.value for part in close[0])
     return (
-        f"{whole},{fraction} has a decimal comma; write {whole}.{fraction}, or for two numbers a"
-        " blank behind the comma"
+        f"{first[0]} has a decimal comma; write {first[1]}.{first[2]}, or for two numbers a blank"
+        " behind the comma"
     )
-
-
-def _is_fraction(parts: tuple[Node, Node]) -> bool:
-    whole, fraction = parts
-    return whole.tag == TAG + "int" and str(fraction.value)[:1].isdigit()
 
 
 def _scalar(tag: str, text: str) -> bool | int | float | str | None:
@@ -288,49 +268,3 @@ def _scalar(tag: str, text: str) -> bool | int | float | str | None:
     if len(text) > 400:  # far outside every quantity, and slow to convert
         raise ValueError(f"a whole number of {len(text)} digits is too long")
     return int(text, {"0o": 8, "0x": 16}.get(text[:2], 10))
-
-
-_PLAIN = re.compile(r"""'[^']*'|"[^"]*"|[^\s,}\]#][^,}\]#]*?(?=\s*(?:[,}\]]|\s#|$))""")
-"""A scalar on one line."""
-
-
-def edited(text: str, name: str, values: Mapping[str, str]) -> str:
-    """The text of a file with values at dotted keys, as YAML would say them on one line.
-
-    Comments, order and units of everything else stay as they are.
-
-    Raises
-    ------
-    CaseError
-        Where a key stands in a way that is not understood, such as over several lines.
-    """
-    for key, value in values.items():
-        path, document = path_of(key), read_yaml(text, name)
-        lines = text.splitlines(keepends=True)
-        place = document.values.get(path)
-        if place is None or isinstance(document.at(path), dict | list):
-            _insert(lines, document, path, value)
-        else:
-            line, at = lines[place.line - 1], place.column - 1
-            old = _PLAIN.search(line, at)
-            lines[place.line - 1] = line[:at] + value + line[old.end() if old else at :]
-        text = "".join(lines)
-        if read_yaml(text, name).at(path) != read_value(value, name):
-            raise CaseError(f"{name}: {key} cannot be written there; enter it by hand: {value}")
-    return text
-
-
-def _insert(lines: list[str], document: Document, path: Path, value: str) -> None:
-    """Put a key that is not there into the nearest mapping that is."""
-    depth = next(d for d in range(len(path), -1, -1) if d == 0 or document.has(path[:d]))
-    parent = document.at(path[:depth])
-    if not isinstance(parent, dict) or depth == len(path) or not parent:
-        raise CaseError(
-            f"{document.name}: {dotted(path)} cannot be written; put in {value} by hand"
-        )
-    for key in reversed(path[depth + 1 :]):
-        value = f"{{{key}: {value}}}"
-    first = document.keys[(*path[:depth], next(iter(parent)))]
-    line, at = lines[first.line - 1], first.column - 1
-    after = ", " if "{" in line[:at] else f"\n{line[:at]}"
-    lines[first.line - 1] = f"{line[:at]}{path[depth]}: {value}{after}{line[at:]}"

@@ -173,11 +173,7 @@ def _pace(progress: Progress) -> Iterator[str]:
 
 
 def duration(seconds: float) -> str:
-    """A time as people say it.
-
-    >>> duration(7.4), duration(83.0), duration(7260.0)
-    ('7 s', '1 min 23 s', '2 h 1 min')
-    """
+    """A time as people say it."""
     whole = round(seconds)
     if whole < 60:
         return f"{whole} s"

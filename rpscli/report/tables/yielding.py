@@ -28,14 +28,15 @@ def strength_tables(structure: PodiumStructure) -> Iterator[Part]:
                 shown(1e-3 * each.strength),
                 "" if each.strength_ratio is None else shown(each.strength_ratio),
                 shown(1e-3 * each.shear_at_uplift),
-                f"{'after' if each.uplift_first else 'BEFORE'} uplift",
+                f"yields {'after' if each.uplift_first else 'BEFORE'} uplift",
                 shown(1e3 * each.yield_drift),
             )
             for storey, each in reversed([*enumerate(storey_strengths(seen), 1)])
         ]
         if rows:
-            heads = "strength kN", "of V_st", "shear at uplift kN", "yields", "at a drift of mm"
-            yield Table.of_texts((f"storey{way.replace('_', ', in ')}", *heads), rows)
+            heads = "strength kN", "of V_st", "shear at uplift kN", "under slow ground motion"
+            storey = f"storey{way.replace('_', ', in ')}"
+            yield Table.of_texts((storey, *heads, "at a drift of mm"), rows)
     building = structure.superstructure
     if building is not None and building.yields_by_first_mode:
         yield f"{UPPER} (one history of six storeys: ductility 1.8 of the first, 6.7 of the last)"
