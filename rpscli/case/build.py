@@ -59,10 +59,10 @@ def shape_of(bearing: BearingSection) -> Shape:
     return Shape(R, slenderness, wedge, rho)
 
 
-def bearing_of(section: BearingSection, shape: Shape) -> Bearing:
+def bearing_of(section: BearingSection) -> Bearing:
     """The column of a shape."""
     given = {"inertia_ratio", "inertia_ratio_axial"}
-    return Bearing(*shape, **section.model_dump(include=given, exclude_none=True))
+    return Bearing(*shape_of(section), **section.model_dump(include=given, exclude_none=True))
 
 
 def impact_law_of(section: PodiumSection) -> ImpactLaw:

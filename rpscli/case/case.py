@@ -13,13 +13,13 @@ from typing import Any
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.case import build
 from rpscli.case.overrides import Overrides, apply_overrides
-from rpscli.case.rules.consistency import Consistency
+from rpscli.case.rules.consistency import Consistency, refused_by_model
 from rpscli.case.rules.plausibility import Doubt, doubts_of_structure, doubts_of_text
 from rpscli.case.schema.case_file import CaseFile, RecordSection
 from rpscli.case.schema.check import checked
 from rpscli.case.schema.fields import Section
 from rpscli.case.schema.limits import LimitsSection
-from rpscli.case.text.document import Document, dotted, is_design, is_study, text_of_values
+from rpscli.case.text.document import Document, is_design, is_study, text_of_values
 from rpscli.case.text.files import opened
 from rpscli.case.text.yaml_text import read_yaml
 from rpscli.errors import CaseError, RecordError, require_kind, stem_of
@@ -204,20 +204,13 @@ def _structure(file: CaseFile, document: Document) -> PodiumStructure:
     """The structure of valid sections, if they are consistent and the model takes it."""
     rules = Consistency(file, document)
     document.refuse(rules.faults())
-    shape = build.shape_of(file.podium.bearing)
-    document.refuse(rules.faults_of_shape(shape))
     try:
-        bearing, law = (
-            build.bearing_of(file.podium.bearing, shape),
-            build.impact_law_of(file.podium),
-        )
-        masses = build.masses_of(file)
-        document.refuse(rules.faults_of_motion(bearing, law, masses))
+        bearing = build.bearing_of(file.podium.bearing)
+        document.refuse(rules.faults_of_bearing(bearing))
+        law, masses = build.impact_law_of(file.podium), build.masses_of(file)
         structure = build.structure_of(bearing, law, masses, file)
         if structure.bed is not None:
             structure.bed.refuse_start(file.analysis.initial_rotation)
     except ValueError as error:
-        contact = ("podium", "contact")
-        owner = contact if document.has(contact) else ("podium",)
-        raise CaseError(f"{document.key_place(owner)}: {dotted(owner)}: {error}") from None
+        raise document.refusal([refused_by_model(error, document)]) from None
     return structure

@@ -82,20 +82,21 @@ class Bearing:
             )
         if self.is_spherical and not (self.curvature_ratio > 0.5 and self.wedge_slenderness > 0.0):
             raise ValueError(
-                f"without a flat part (slenderness = 0) curvature_ratio = {self.curvature_ratio}"
-                f" must be > 0.5 and wedge_slenderness = {self.wedge_slenderness} > 0: an arc whose"
-                " radius is not above half the height does not hold the column upright"
+                f"curvature_ratio = {self.curvature_ratio:g} must be > 0.5 with slenderness: 0, and"
+                f" wedge_slenderness = {self.wedge_slenderness:g} > 0: without a flat part an arc"
+                " whose radius is not above half the height does not hold the column upright"
             )
         if not self.is_flat and not self.slenderness <= self.wedge_slenderness < math.inf:
             raise ValueError(
-                f"wedge_slenderness = {self.wedge_slenderness} must be >= slenderness"
-                f" = {self.slenderness}: the arcs lie outside the flat part"
+                f"wedge_slenderness = {self.wedge_slenderness:g} must be >= slenderness ="
+                f" {self.slenderness:g}: the arcs lie outside the flat part; both are tangents"
             )
         if not self.is_flat and self._sin_beta > 1.0:
             raise ValueError(
-                f"curvature_ratio = {self.curvature_ratio} must be >="
+                f"curvature_ratio = {self.curvature_ratio:.6g} must be >="
                 f" {0.5 * (self.wedge_slenderness - self.slenderness):.6g} ="
-                " (tan alpha' - tan alpha)/2: a smaller arc does not reach the wedge's edge"
+                " (tan alpha' - tan alpha)/2: a smaller arc does not reach the wedge's edge; use a"
+                " larger one, or a smaller wedge_slenderness"
             )
         axial: float | None = vars(self)["inertia_ratio_axial"]
         if axial is None:

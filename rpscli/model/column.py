@@ -75,7 +75,7 @@ class ColumnDesign:
     def __post_init__(self) -> None:
         """Refuse a line without a length, and what cannot be a material."""
         if (self.section == "square") != (self.edge_length is not None):
-            raise ValueError("square columns, and they alone, have an edge_length")
+            raise ValueError("edge_length belongs to square columns, all of them, as in 0.45 m")
         sizes = self.modulus, self.contact_strength, self.edge_length, self.plate_modulus
         if not all(0.0 < size < math.inf for size in sizes if size is not None):
             raise ValueError("moduli, contact_strength and edge_length must be > 0 and finite")

@@ -74,7 +74,7 @@ class ImpactLaw:
         if (self.kind in get_args(ImpactKind)) == (self.own is not None):
             raise ValueError(f"impact law {self.kind!r} must be flexible, rigid or value")
         if (self.kind == "value") != (self.restitution is not None):
-            raise ValueError("a restitution is needed with the impact law `value`, only there")
+            raise ValueError("law `value`, and it alone, needs a restitution, as in 0.92")
         if not 0.0 <= self.contact_time <= LONGEST_CONTACT:
             raise ValueError(
                 f"contact_time = {self.contact_time} s must be within 0 and {LONGEST_CONTACT:g} s"

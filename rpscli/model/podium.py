@@ -111,27 +111,27 @@ class PodiumStructure(Shown):
             raise ValueError(f"friction = {told(self.friction)} must be a number >= 0, or None")
         self._refuse_buildings()
         if self.rows and (len(self.rows) < 2 or not is_size(max(self.rows) - min(self.rows))):
-            raise ValueError("rows must be at least two positions that differ")
+            raise ValueError("rows must be at least two positions that differ, as in [0, 4, 8]")
         if not (isinstance(self.columns, Integral) and 1 <= self.columns <= MOST_COLUMNS):
             raise ValueError(f"columns = {told(self.columns)} must be a whole number from 1 on")
         if len(self.devices) > MOST_DEVICES:
             raise ValueError(
-                f"{len(self.devices)} devices must be at most {MOST_DEVICES}; write equal ones as"
+                f"devices: {len(self.devices)} must be at most {MOST_DEVICES}; write equal ones as"
                 " one, with the sum of their forces and stiffnesses"
             )
         if self.bearing.is_spherical and self.restitution != 1.0:
             raise ValueError(
                 f"restitution e = {self.restitution:.4g} must be 1: columns without a flat part"
-                " roll through the upright position without an impact"
+                " roll through upright without an impact; remove restitution and factor"
             )
         if self.bearing.is_spherical and any(device.kind == "tendon" for device in self.devices):
-            raise ValueError("tendons are not followed in columns without a flat part")
+            raise ValueError("devices: tendons are not followed in columns without a flat part")
         if not 0.0 < self.restitution <= 1.0:
             raise ValueError(
-                f"restitution e = {self.restitution:.4g} must be in (0, 1]: with e <= 0 the"
-                " columns would not pass to their other edge; use more slender columns"
-                " (a smaller tan alpha), with the law `flexible` a lighter building over the cap"
-                " beam, a smaller loss (0.5), or give a measured value"
+                f"restitution e = {self.restitution:.4g} (law {self.impact_law.kind}) must be in"
+                " (0, 1]: with e <= 0 the columns would not pass to their other edge; use more"
+                " slender columns (a smaller tan alpha), with the law `flexible` a lighter building"
+                " over the cap beam, a smaller loss (0.5) or factor, or give a measured value"
             )
         object.__setattr__(self, "bed", bed_of(self))  # raises what it does not have
 

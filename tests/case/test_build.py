@@ -321,7 +321,7 @@ def test_a_rotation_beyond_the_overturning_limit_is_refused() -> None:
     case = load_case(RIGID_FRAME)
     limit = case.analysis.overturning_limit * case.structure.critical_rotation
     load_case(RIGID_FRAME, [f"analysis.initial_rotation={limit * (1 - 1e-9)!r}"])
-    with pytest.raises(CaseError, match=r"initial_rotation = .* must stay below .* use less than"):
+    with pytest.raises(CaseError, match=r"initial_rotation = .* must stay below .* use a smaller"):
         load_case(RIGID_FRAME, [f"analysis.initial_rotation={limit!r}"])
 
 

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from rpscli.case.rules.consistency import above, largest_slenderness
 from rpscli.case.rules.plausibility import Doubt, doubts_of_many
 from rpscli.case.schema.fields import ValueRange
 from rpscli.case.schema.scale_to import scale_to_of
 from rpscli.case.study.observed import comparable
-from rpscli.model.impact import ImpactLaw
 
 
 def test_doubts_of_many_systems() -> None:
@@ -15,11 +13,6 @@ def test_doubts_of_many_systems() -> None:
     assert doubts_of_many(
         [[wide], [], [wide._replace(value=7.5)], [Doubt("it is odd{1}", None, "!")]]
     ) == ["2 of 4 systems: the width 7.5 to 9 is unusual", "1 of 4 systems: it is odd"]
-
-
-def test_what_rules_propose() -> None:
-    assert (above(0.0750123), above(0.075)) == ("0.07502", "0.075")
-    assert round(largest_slenderness(ImpactLaw("rigid"), 4 / 3, 0.0, 0.0) ** 2, 12) == 2.0
 
 
 def test_values_at_equal_spaces() -> None:

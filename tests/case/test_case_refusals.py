@@ -35,7 +35,7 @@ OF_A_BUILDING: list[Row] = [
     ("200 t", "1,500", "4:16", "; digits are not grouped, write 1500"),
     ("200 t", "1 000", "4:16", "; digits are not grouped, write 1000"),
     ("  impact", "  plan: {rows: 200}\n  impact", "17:16", "podium.plan.rows = 200", "[0, 4 m"),
-    ("  impact", "  plan: {rows: [0 m]}\n  impact", "17:16", "rows = ['0 m']", "positions"),
+    ("  impact", "  plan: {rows: [0 m]}\n  impact", "17:16: podium.plan.rows must be", "positions"),
     ("  impact", "  plan: {rows: [4, 4 m]}\n  impact", "17:16", "podium.plan.rows", "as in [0, "),
     ("  impact", "  plan: {}\n  impact", "17:9: podium.plan: give length", "not neither"),
     ("  impact", "  plan: {length: 1, rows: [0, 4]}\n  impact", "17:9", "not both"),
@@ -100,10 +100,11 @@ OF_A_BUILDING: list[Row] = [
     ("  impact", "  column_mass: 1\n  columns: 2\n  impact", "17:3", "(line 15) both fix"),
     ("cap_beam_mass_ratio: 10", "column_mass: 1", "9:1: podium.columns is missing"),
     ("cap_beam_mass_ratio: 10", "cap_beam_mass_ratio: 0", "15:24", "> 0", "(line 3) stands"),
-    ("{law: rigid}", "{law: value}", "17:3: podium.impact.restitution is missing", "0.92"),
-    ("{law: rigid}", "value", "17:3: podium.impact.restitution is missing", "0.92"),
+    ("{law: rigid}", "{law: value}", "17:3: podium.impact.restitution: law `value`", "0.92"),
+    ("{law: rigid}", "value", "17:3: podium.impact.restitution: law `value`", "0.92"),
+    ("law: rigid", "law: rigid, factor: 1.2", "17:3: podium.impact: restitution e = 1.1", "law ri"),
     ("law: rigid", "law: value, restitution: 0.9, loss: 0.5", "17:42", "loss", "law value"),
-    ("law: rigid", "restitution: 0.9", "17:12", "law flexible, which gives its own"),
+    ("law: rigid", "restitution: 0.9", "17:12", "law `value`, and it alone"),
     ("source: motion.at2", "scale: 2", "18:1: record.source is missing", "file"),
     ("  storey_height: 3.0\n", "  storey_height: 3.0\n  storey_height: 4\n", "6:3", "twice"),
     ("  period: 0.3", "  period:", "6:3: superstructure.period has no value", "remove the key"),
@@ -124,10 +125,10 @@ OF_A_BUILDING: list[Row] = [
     ("analysis: {", "analysis: {foo: , ", "19:12", "known here: free_vibration, recontact"),
     ("analysis: {", "analysis: {foo: {bar: }, ", "19:12", "analysis.foo is not a key"),
     # an arc that does not fit
-    ("slenderness: 0.30", "slenderness: 0.10", "13:24", "= 0.1 must be >=", "0.15 (line 12)"),
-    ("ratio: 0.5\n  c", "ratio: 0.05\n  c", "14:22", "at least 0.075", "at most 0.25"),
-    ("slenderness: 0.30", "slenderness: 1.60", "14:22", "at least 0.725", "at most 1.15"),
-    ("slenderness: 0.15", "slenderness: 8.5", "13:24", "of 8.5 degrees 0.1495"),
+    ("slenderness: 0.30", "slenderness: 0.10", "13:24", "= 0.1 must be >= slenderness = 0.15"),
+    ("ratio: 0.5\n  c", "ratio: 0.05\n  c", "14:22", "must be >= 0.075", "a smaller wedge"),
+    ("slenderness: 0.30", "slenderness: 1.60", "14:22", "must be >= 0.725", "use a larger"),
+    ("slenderness: 0.15", "slenderness: 8.5", "13:24", "both are tangents"),
     # two components
     ("{source: motion.at2}", "{x: a.at2}", "18:1: record.y is missing"),
     ("{source: motion.at2}", "{x: 0.9, y: b}", "18:13: record.x = 0.9 must be text"),
@@ -151,11 +152,11 @@ OF_A_BUILDING: list[Row] = [
      "without the overturning moment and the shock of impacts", "podium.plan and superstructure.v"),
 ]  # fmt: skip
 OF_A_FRAME: list[Row] = [
-    ("radius: 1.2", "radius: 200 mm", "5:79", "0.2 m", "at least 0.25 m", "at most 0.8 m"),
-    ("wedge_width: 900 mm", "wedge_width: 300 mm", "5:63", ">= width = 400 mm (line 5)"),
+    ("radius: 1.2", "radius: 200 mm", "5:5", "curvature_ratio = 0.0666667 must be >="),
+    ("wedge_width: 900 mm", "wedge_width: 300 mm", "5:5: podium.bearing.dimensions", ">= slender"),
     (", wedge_width: 900 mm", "", "5:5", "dimensions.wedge_width is missing", "flat ends"),
     (", radius: 1.2", "", "5:5", "dimensions.radius is missing", "0 = flat ends"),
-    ("width: 400 mm", "width: 0", "5:74", "radius = 1.2 m must be > 1.5 m, half the height"),
+    ("width: 400 mm", "width: 0", "5:5", "curvature_ratio = 0.4 must be > 0.5 with"),
     ("dimensions:", "slenderness: 1\n    dimensions:", "5:5", "(line 6)", "both describe"),
     ("    dimensions", "    inertia_ratio: 0.3\n    dimensions", "5:20", "4/3 is a rect"),
     ("dimensions: {", "#", "4:3: podium.bearing has no value"),
@@ -181,7 +182,7 @@ OF_DEVICES: list[Row] = [
     ("force: 4", "forse: 4", "21:24", "is not a key of the format; did you mean"),
     ("yield_force: 300 kN", "yield_force: 90 kN", "23:75", "> prestress = 100 kN (line 23)"),
     (COLUMNS, "  cap_beam_mass_ratio: 10\n", "22:7: podium.devices.3 is in each column, but"),
-    ("    - {kind: fr", f"{FRICTION * 4}    - {{kind: fr", "19:3", "has 9 devices, at most 8"),
+    ("    - {kind: fr", f"{FRICTION * 4}    - {{kind: fr", "20:5", "devices: 9 must be at most 8"),
 ]  # fmt: skip
 
 
@@ -239,11 +240,11 @@ TENDON = "[{kind: tendon, prestress: 1 kN, stiffness: 1 kN/mm}]"
 @pytest.mark.parametrize(
     ("overrides", "reason"),
     [
-        ((WEDGE.format(1.3), RHO.format("critical")), "<= 1 with curvature_ratio: critical"),
+        ((WEDGE.format(1.3), RHO.format("critical")), "= 0.442308 must be >= 0.575"),
         ((TAN.format(0),), "curvature_ratio = 0.5 must be > 0.5 with slenderness: 0"),
         ((TAN.format(0), RHO.format("critical")), "curvature_ratio = 0.5 must be > 0.5"),
         ((TAN.format(0), RHO.format(0)), "curvature_ratio = 0 must be > 0.5"),
-        ((*SPHERE, "podium.impact.factor=0.9"), "have no impact; remove restitution and factor"),
+        ((*SPHERE, "podium.impact.factor=0.9"), "without an impact; remove restitution and fac"),
         ((*SPHERE, f"podium.devices={TENDON}", "podium.columns=4"), "tendons are not followed"),
         (("podium.bearing={inertia_ratio: 1.3}",), "podium.bearing has no shape: give semi_diag"),
         (("superstructure.y={profile: sine}",), "superstructure.y has no stiffness"),
@@ -277,8 +278,9 @@ TENDON = "[{kind: tendon, prestress: 1 kN, stiffness: 1 kN/mm}]"
         ((ROUND, "limits={column_moment: 1 kN m}"), "overturning moment and the shock of impacts"),
         ((ROUND, *CARRIES, *FLAT, "limits={contact_pressure_ratio: 1}"), "flat ones stand on edg"),
         ((ROUND,), "podium.columns is missing: podium.column asks for the force of one"),
-        ((ROUND, "podium.column.edge_length=1 m"), "edge_length does not go with section: round"),
-        ((ROUND, "podium.column.section=square"), "edge_length is missing: a square column bears"),
+        ((ROUND, "podium.columns=4", "podium.column.edge_length=1 m"), "belongs to square columns"),
+        ((ROUND, "podium.columns=4", "podium.column.section=square"), "column.edge_length belongs"),
+        ((*FLAT, TAN.format(1.2), "podium.superstructure_mass_ratio=50"), "(law flexible) must be"),
         ((ROUND, "podium.column.modulus=35 kN"), "is a force, but must be a pressure"),
         ((ROUND, "podium.column.on.poisson=0.6"), "poisson = 0.6 must be >= 0 and <= 0.5 (nu)"),
         ((ROUND, "podium.column.section=oval"), "square or round"),
@@ -293,64 +295,6 @@ def test_overrides_that_are_refused(
 @pytest.mark.parametrize("overrides", [FLAT, SPHERE, PLANE, EDGES, PLAIN_FRAME])
 def test_what_they_are_put_over_is_valid(overrides: tuple[str, ...]) -> None:
     assert parse_case(BUILDING, name="c.yaml", overrides=overrides).structure.restitution > 0.0
-
-
-def test_what_is_proposed_for_an_arc_fits() -> None:
-    for override in (RHO.format(0.075), WEDGE.format(0.25)):
-        base = [RHO.format(0.05), override]
-        shape = parse_case(BUILDING, name="c.yaml", overrides=base).structure.bearing
-        # sin(beta) = 1 exactly, but asin steepens there: half the digits are left.
-        assert shape.beta == pytest.approx(1.5707963, abs=1e-7)
-
-
-@pytest.mark.parametrize(
-    ("law", "loss", "widest"),
-    [
-        ("rigid", 1, 1.0377),
-        ("flexible", 1, 0.6202),
-        ("rigid", 1.5, 0.7268),
-        ("flexible", 1.5, 0.4344),
-    ],
-)
-def test_no_restitution(faults: Faults, law: str, loss: float, widest: float) -> None:
-    bearing = "podium.bearing={semi_diagonal: 1.5, slenderness: %s, curvature_ratio: 0}"
-    masses = ["podium.cap_beam_mass_ratio=0.5", f"podium.impact.law={law}"]
-    masses.append(f"podium.impact.loss={loss}")
-    message = faults(BUILDING, overrides=[bearing % 2, *masses])
-    assert "restitution" in message
-    assert f"law {law}" in message
-    proposed = float(message.split("use less than ")[1].split(",")[0])
-    # sin^2(alpha) = (4/3 + 8)/18 kappa and (4/3 + 2)/(18 kappa - 6) by hand, to four digits.
-    assert proposed == pytest.approx(widest, abs=1e-3)
-    case = parse_case(BUILDING, name="c.yaml", overrides=[bearing % proposed, *masses])
-    # Four digits of the slenderness leave a restitution of the order of 1e-3 at most.
-    assert 0.0 < case.structure.restitution < 2e-3
-    assert "must be > 0" in faults(BUILDING, overrides=[bearing % (proposed + 1e-3), *masses])
-
-
-def test_a_heavy_building_has_no_restitution(faults: Faults) -> None:
-    """The ratio of building to cap beam, a gentler loss and a measured value are remedies too."""
-    bearing = "podium.bearing={semi_diagonal: 1.5, slenderness: 0.15, curvature_ratio: 0}"
-    masses = ["podium.cap_beam_mass_ratio=10", "podium.impact.law=flexible"]
-    heavy = "podium.superstructure_mass_ratio={}".format
-    message = faults(BUILDING, overrides=[bearing, *masses, heavy(50)])
-    assert "under a building of 50 times the cap beam's mass gives the restitution -0.05" in message
-    proposed = float(message.split("a building of less than ")[1].split(" ")[0])
-    # 2 (1 + 40 + 40 eta) - 40 eta = (4/3 + 40)/sin^2(alpha) by hand
-    assert proposed == pytest.approx(((4 / 3 + 40) * (1 + 0.15**-2) - 82) / 40, abs=0.1)
-    for remedy in (heavy(proposed), "podium.impact.loss=0.5"):
-        case = parse_case(BUILDING, name="c", overrides=[bearing, *masses, heavy(50), remedy])
-        assert 0.0 < case.structure.restitution < 0.5
-    more = faults(BUILDING, overrides=[bearing, *masses, heavy(1.01 * proposed)])
-    assert "must be > 0" in more
-
-
-def test_a_factor_must_not_create_energy(faults: Faults) -> None:
-    message = faults(BUILDING, "law: rigid", "law: rigid, factor: 1.2")
-    assert message.startswith("c.yaml:17:32: podium.impact.factor = 1.2")
-    proposed = float(message.split("at most ")[1])
-    case = parse_case(BUILDING, name="c", overrides=[f"podium.impact.factor={proposed}"])
-    assert case.structure.restitution == pytest.approx(1.0, abs=1e-3)  # four digits proposed
 
 
 def test_faults_of_keys_together_in_order_then_those_between_keys(faults: Faults) -> None:

@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from rpscli.analyses.result_quantities import LIMITED, YIELDING
-from rpscli.case.build import Masses, Shape, overturning_limit
+from rpscli.case.build import overturning_limit
 from rpscli.case.schema import case_file
 from rpscli.case.text.document import Document, Fault, path_of, shown
 from rpscli.errors import RecordError, listed
 from rpscli.model.bearing import Bearing
 from rpscli.model.devices import DEVICES
-from rpscli.model.impact import ImpactLaw
-from rpscli.model.podium import MOST_DEVICES
 from rpscli.records.source import Source
 
 STOREYS = "superstructure.storeys"
@@ -71,9 +69,6 @@ class Consistency:
 
     def _where(self, key: str) -> str:
         return self.document.where(path_of(key))
-
-    def _written(self, key: str) -> str:
-        return shown(self.document.at(path_of(key)))
 
     def _building(self, building: case_file.SuperstructureSection) -> Iterator[Fault]:
         """A building needs masses, stiffness and damping, each given once."""
@@ -211,16 +206,8 @@ class Consistency:
             yield _at_key(f"{DIMENSIONS}.wedge_width", f" is missing: {meaning}")
 
     def _impact(self) -> Iterator[Fault]:
-        """The law `value` has a restitution; the other laws give one, of which `loss` is a part."""
-        impact, key = self.file.podium.impact, "podium.impact.restitution"
-        if impact.law != "value" and impact.restitution is not None:
-            yield _at_key(
-                key,
-                f" does not go with law {impact.law}{self._where('podium.impact.law')}, which gives"
-                " its own; remove it, write law: value, or change the law by loss or factor",
-            )
-        if impact.law == "value" and impact.restitution is None:
-            yield _at_key(key, " is missing: law value needs one, as in 0.92")
+        """The other laws than `value` give a restitution, of which `loss` is a part."""
+        impact = self.file.podium.impact
         if impact.law == "value" and impact.loss not in (None, 1.0):
             yield _at_key(
                 "podium.impact.loss",
@@ -242,14 +229,8 @@ class Consistency:
                 yield _at_key(f"{owner}.{name}", f" has no effect {ends}; remove it")
 
     def _devices(self) -> Iterator[Fault]:
-        """Each device has the keys of its kind, and there are not too many."""
+        """Each device has the keys of its kind."""
         devices = self.file.podium.devices
-        if len(devices) > MOST_DEVICES:
-            yield _at_key(
-                "podium.devices",
-                f" has {len(devices)} devices, at most {MOST_DEVICES} are followed; write equal"
-                " ones as one, with the sum of their forces and stiffnesses",
-            )
         for index, device in enumerate(devices):
             yield from self._device(f"podium.devices.{index}", device)
         kinds = [DEVICES.get(each.kind) for each in devices]
@@ -355,187 +336,64 @@ class Consistency:
         if len(given) != 1:
             text = ": give length, between two rows of columns, or the places of all rows; not"
             yield _of_value("podium.plan", f"{text} {'both' if given else 'neither'}")
-        if plan.rows is not None and len(set(plan.rows)) < 2:
-            text = f" = {self._written('podium.plan.rows')} must be two or more different positions"
-            yield _of_value("podium.plan.rows", f"{text}, as in [0, 4 m, 8 m]")
         if building.storeys and building.storey_height is None:
             text = " needs superstructure.storey_height: the moment has lever arms"
             yield _at_key("podium.plan", text)
 
     def _column(self) -> Iterator[Fault]:
-        """Square columns bear on lines, which have a length."""
-        column, key = self.file.podium.column, f"{COLUMN_KEY}.edge_length"
-        if column is None:
-            return
-        if self.file.podium.columns is None:
+        """The force of one column asks for their number."""
+        if self.file.podium.column is not None and self.file.podium.columns is None:
             yield _at_key("podium.columns", f" is missing: {COLUMN_KEY} asks for the force of one")
-        if column.section == "square" and column.edge_length is None:
-            text = " is missing: a square column bears on a line, whose length it is, as in 0.45 m"
-            yield _at_key(key, text)
-        if column.section == "round" and column.edge_length is not None:
-            section = self._where(f"{COLUMN_KEY}.section")
-            text = f" does not go with section: round{section}, which bears on a point; remove it"
-            yield _at_key(key, text)
 
-    def faults_of_shape(self, shape: Shape) -> Iterator[Fault]:
-        """Columns whose ends do not fit together, or do not hold them upright."""
-        if not shape.curvature_ratio or shape.wedge_slenderness == shape.slenderness:
-            for name in _given(self.file.limits, "contact_pressure_ratio"):
-                text = " needs curved ends: flat ones stand on edges; limit crushed_width_ratio"
-                yield _at_key(f"limits.{name}", text)
-        if shape.slenderness > 0.0:
-            if shape.curvature_ratio:
-                yield from self._faults_of_arc(shape)
-            return
-        if shape.curvature_ratio <= 0.5:
-            key, flat = f"{BEARING}.curvature_ratio", "slenderness"
-            value, least = f"{shape.curvature_ratio:g}", "0.5"
-            if sizes := self.file.podium.bearing.dimensions:
-                key, value, flat = f"{DIMENSIONS}.radius", f"{sizes.radius:g} m", "width"
-                least = f"{0.5 * sizes.height:g} m, half the height,"
-            yield _of_value(
-                key,
-                f" = {value} must be > {least} with {flat}: 0: without a flat part a smaller arc"
-                f" does not hold the columns upright; use a larger one, or a {flat} above 0",
-            )
-        if (yields := self.file.superstructure.yields) is not None and yields.ratio is not None:
+    def faults_of_bearing(self, bearing: Bearing) -> Iterator[Fault]:
+        """Limits and strengths that its ends do not have, and rotations beyond the model."""
+        file, analysis, critical = self.file, self.file.analysis, bearing.critical_rotation
+        if bearing.is_flat and file.limits.contact_pressure_ratio is not None:
+            text = " needs curved ends: flat ones stand on edges; limit crushed_width_ratio"
+            yield _at_key("limits.contact_pressure_ratio", text)
+        yields = file.superstructure.yields
+        if bearing.is_spherical and yields is not None and yields.ratio is not None:
             text = ": columns without a flat part have no V_st; give the shears in place of a ratio"
             yield _at_key(f"{YIELD}.ratio", text)
-        for index, device in enumerate(self.file.podium.devices):
-            if device.kind == "tendon":
-                yield _at_key(
-                    f"podium.devices.{index}",
-                    ": tendons are not followed in columns without a flat part; leave it out, or"
-                    " give the columns a flat part above 0",
-                )
-
-    def _faults_of_arc(self, shape: Shape) -> Iterator[Fault]:
-        """0 <= sin(beta) = (tan alpha' - tan alpha)/(2 rho) <= 1 (Theory (1.1))."""
-        _, flat, wedge, rho = shape
-        rise, bearing = wedge - flat, self.file.podium.bearing
-        sizes = bearing.dimensions
-        if rise < 0.0 and sizes:
-            width, limit = (
-                self.document.at(path_of(f"{DIMENSIONS}.{n}")) for n in ("wedge_width", "width")
-            )
-            text = f" = {width} must be >= width = {limit}{self._where(f'{DIMENSIONS}.width')}"
-            yield _of_value(
-                f"{DIMENSIONS}.wedge_width", f"{text}: the arcs lie outside the flat part"
-            )
-        elif rise < 0.0:
-            text = (
-                f" = {wedge} must be >= slenderness = {flat}{self._where(f'{BEARING}.slenderness')}"
-            )
-            text += ": the arcs lie outside the flat part"
-            if 1.0 < flat < 45.0:
-                angle = math.tan(math.radians(flat))
-                text += f"; slenderness is tan(alpha), of {flat:g} degrees {angle:.4f}"
-            yield _of_value(f"{BEARING}.wedge_slenderness", text)
-        elif rise <= 2.0 * rho:
-            return
-        elif sizes:
-            yield _of_value(
-                f"{DIMENSIONS}.radius",
-                f" = {sizes.radius:g} m is too small an arc to reach the wedge's edge; use a radius"
-                f" of at least {above(0.5 * rise * sizes.height)} m or a wedge_width of at most"
-                f" {below(sizes.width + 2.0 * sizes.radius)} m",
-            )
-        elif bearing.curvature_ratio == "critical":
-            yield _of_value(
-                f"{BEARING}.wedge_slenderness",
-                f" = {wedge:g} must be <= 1 with curvature_ratio: critical: the arc would turn by"
-                " more than 90 degrees",
-            )
-        else:
-            yield _of_value(
-                f"{BEARING}.curvature_ratio",
-                f" = {rho:g} is too small an arc to reach the wedge's edge (sin(beta) ="
-                f" {0.5 * rise / rho:.3g} must be <= 1); use a curvature_ratio of at least"
-                f" {above(0.5 * rise)} or a wedge_slenderness of at most {below(flat + 2.0 * rho)}",
-            )
-
-    def faults_of_motion(self, bearing: Bearing, law: ImpactLaw, masses: Masses) -> Iterator[Fault]:
-        """Columns that would not pass upright, or overturn before or after the model holds."""
-        yield from self._restitution(bearing, law, masses)
-        analysis, critical = self.file.analysis, bearing.critical_rotation
-        if analysis.overturning_limit * critical > bearing.largest_rotation:
+        most = bearing.largest_rotation / critical
+        if analysis.overturning_limit > most:
             yield _of_value(
                 "analysis.overturning_limit",
                 f" = {analysis.overturning_limit:g} times theta_cr = {critical:.6g} rad must not"
                 f" exceed {bearing.largest_rotation:.6g} rad, where the columns lie down and the"
-                f" model ends; use at most {below(bearing.largest_rotation / critical)}",
+                f" model ends; use at most {math.floor(1e3 * most) / 1e3:g}",
             )
         limit = overturning_limit(analysis, bearing) * critical
         if abs(analysis.initial_rotation) >= limit:
             yield _of_value(
                 "analysis.initial_rotation",
                 f" = {analysis.initial_rotation:g} rad must stay below the overturning limit,"
-                f" {limit:.6g} rad (overturning_limit * theta_cr, or less); use less than"
-                f" {below(limit)}",
-            )
-
-    def _restitution(self, bearing: Bearing, law: ImpactLaw, masses: Masses) -> Iterator[Fault]:
-        """The impact law sends the columns to their other edge: 0 < e <= 1 (Theory, section 4)."""
-        gamma, eta = masses.gamma, masses.eta
-        if self.file.superstructure.vertical_period is not None:
-            eta = 0.0  # floors on springs take no part
-        e = law.ratio(bearing, gamma, eta)
-        if bearing.is_spherical:
-            if e != 1.0:
-                text = ": columns without a flat part roll through the upright position and have"
-                yield _at_key("podium.impact", f"{text} no impact; remove restitution and factor")
-        elif e > 1.0:
-            yield _of_value(
-                "podium.impact.factor",
-                f" = {law.factor:g} gives the restitution {e:.4g}, which must be <= 1; use a factor"
-                f" of at most {below(law.factor / e)}",
-            )
-        elif e <= 0.0:
-            widest = largest_slenderness(law, bearing.inertia_ratio, gamma, eta)
-            lost = "" if law.loss == 1.0 else f", loss {law.loss:g}"
-            under, lighter = "", ""
-            if law.kind == "flexible" and eta > 0.0:
-                beam, sin2 = 4.0 * gamma, math.sin(bearing.alpha) ** 2
-                most = (bearing.inertia_ratio + beam) / sin2 - 2.0 * law.loss * (1.0 + beam)
-                most /= (2.0 * law.loss - 1.0) * beam
-                under = f" under a building of {eta:g} times the cap beam's mass"
-                if most > 0.0:
-                    lighter = f", a building of less than {below(most)} times that mass"
-            name = "dimensions" if self.file.podium.bearing.dimensions else "slenderness"
-            yield Fault(
-                path_of(f"{BEARING}.{name}"),
-                f"{BEARING}: the slenderness tan(alpha) = {bearing.slenderness:g}{under} gives the"
-                f" restitution {e:.4g} (impact law {law.kind}{lost}), which must be > 0 for the"
-                f" columns to pass to their other edge; use less than {below(widest)}{lighter}, a"
-                " part of the loss with impact: {loss: 0.5}, or a measured value with"
-                " impact: {law: value, restitution: ...}",
+                f" {limit:.6g} rad (overturning_limit * theta_cr, or less); use a smaller one",
             )
 
 
-def above(x: float, digits: int = 4) -> str:
-    """A number not below x, of few digits, to be proposed as a lower bound."""
-    return f"{_rounded(x, digits, math.ceil):g}"
+OF_THE_MODEL = {
+    "slenderness": f"{BEARING}.slenderness",
+    "wedge_slenderness": f"{BEARING}.wedge_slenderness",
+    "curvature_ratio": f"{BEARING}.curvature_ratio",
+    "restitution": "podium.impact",
+    "law": "podium.impact.restitution",
+    "devices": "podium.devices",
+    "edge_length": f"{COLUMN_KEY}.edge_length",
+    "rows": "podium.plan.rows",
+    "contact": "podium.contact",
+    "initial_rotation": "analysis.initial_rotation",
+}
+"""Keys of a case by the word with which the model begins a refusal."""
 
 
-def below(x: float, digits: int = 4) -> str:
-    """A number not above x, of few digits, to be proposed as an upper bound."""
-    return f"{_rounded(x, digits, math.floor):g}"
-
-
-def _rounded(x: float, digits: int, direction: Callable[[float], int]) -> float:
-    decimals = digits - 1 - math.floor(math.log10(x))
-    nearest = round(x, decimals)  # keeps 0.075 from becoming 0.07501 by rounding noise
-    if math.isclose(nearest, x, rel_tol=1e-12):
-        return nearest
-    return direction(x * 10.0**decimals) / 10.0**decimals
-
-
-def largest_slenderness(law: ImpactLaw, inertia_ratio: float, gamma: float, eta: float) -> float:
-    """tan(alpha) at which a law's restitution is 0 (Theory (4.6), (4.8)); Housner: sin^2 = 2/3."""
-    beam, floors = 4.0 * gamma, 4.0 * gamma * eta
-    # kappa (1 - e_edge) = 1 with 1 - e_edge = 2 sin^2 (1 + beam + floors)/(Io + ...)
-    if law.kind == "rigid":
-        sin2 = (inertia_ratio + beam + floors) / (2.0 * law.loss * (1.0 + beam + floors))
-    else:
-        sin2 = (inertia_ratio + beam) / (2.0 * law.loss * (1.0 + beam + floors) - floors)
-    return math.sqrt(sin2 / (1.0 - sin2)) if sin2 < 1.0 else math.inf
+def refused_by_model(error: ValueError, document: Document) -> Fault:
+    """What the model refuses, at the key that it is about."""
+    text = str(error)
+    key = OF_THE_MODEL.get(text.split(maxsplit=1)[0].strip(":,"), "podium")
+    if document.has(path_of(DIMENSIONS)) and key.startswith(BEARING):
+        key = DIMENSIONS
+    parent, _, last = key.rpartition(".")
+    named = text.startswith((f"{last} ", f"{last}:"))
+    whole = f"{parent}.{text}" if named else f"{key}: {text}"
+    return Fault(path_of(key), whole, at_key=not named)

@@ -132,19 +132,21 @@ class Document:
         return Document(self.name, self.at(path), below(self.keys), below(self.values), faults)
 
     def refuse(self, faults: Iterable[Fault]) -> None:
-        """Raise all faults together, one a line, in the order of their places."""
+        """Raise all faults together, if there are any."""
+        if found := list(faults):
+            raise self.refusal(found)
+
+    def refusal(self, faults: Iterable[Fault]) -> CaseError:
+        """All faults, one a line, in the order of their places."""
         placed = [
             (f.place or (self.key_place if f.at_key else self.value_place)(f.path), f.text)
             for f in faults
         ]
         placed.sort(key=lambda item: (item[0].rank, item[0].line, item[0].column))
-        if placed:
-            lines = list(dict.fromkeys(f"{place}: {text}" for place, text in placed))
-            more = len(lines) - MOST_FAULTS
-            if more > 0:
-                lines = lines[:MOST_FAULTS]
-                lines.append(f"{self.name}: {more} more faults; correct these first")
-            raise CaseError("\n".join(lines))
+        lines = list(dict.fromkeys(f"{place}: {text}" for place, text in placed))
+        if (more := len(lines) - MOST_FAULTS) > 0:
+            lines[MOST_FAULTS:] = [f"{self.name}: {more} more faults; correct these first"]
+        return CaseError("\n".join(lines))
 
 
 def is_study(document: Document) -> bool:
