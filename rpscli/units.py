@@ -221,12 +221,7 @@ def _kind(dimension: tuple[int, ...]) -> str:
     for unit, kind in ({unit: kind for unit, (kind, _) in KINDS.items()} | OTHER_KINDS).items():
         if (known := unit_of_text(unit)) and known.dimension == dimension:
             return kind
-    named = list(zip(("[length]", "[mass]", "[time]"), dimension, strict=True))
-    powers = {
-        sign: [f"{name} ** {abs(p)}" if abs(p) > 1 else name for name, p in named if p * sign > 0]
-        for sign in (1, -1)
-    }
-    return "of dimension " + " / ".join([" * ".join(powers[1]) or "1", *powers[-1]])
+    return "another quantity"
 
 
 def _grouped(text: str) -> str:

@@ -76,9 +76,7 @@ def command(word: str, terminal: Terminal) -> None:
     ]
     entries = [*_keys(word), *results, *words]
     offers = [] if entries else list(_offers(word))
-    entries += _report(word, everything=bool(offers))
-    if not (entries or offers):
-        entries = list(_options(word))
+    entries += _reports(word, everything=bool(offers), options=not (entries or offers))
     if not (entries or offers or word == PLUGINS):
         if now := _gone().get(word):
             raise UsageError(f"explain {word}: {word} is gone: {now}")
@@ -190,36 +188,29 @@ def _lines(key: KeyReference) -> Table:
     return Table.listing([*rows.items(), *keys])
 
 
-def _report(word: str, *, everything: bool) -> Iterator[Entry]:
-    """The report of this name and its options, of other packages only where all are wanted."""
-    from rpscli.case.schema.keys import key_references
-    from rpscli.report.study.registry import REPORTS
+def _reports(word: str, *, everything: bool, options: bool) -> Iterator[Entry]:
+    """The report of this name with its options, of other packages only where all are wanted.
 
-    report = (REPORTS.everything() if everything else REPORTS).get(word)
-    if report is None:
-        return
-    meaning = (report.options.__doc__ or "").split("\n")[0]
-    text = Heading(f"{word}, a report of studies"), meaning
-    yield Entry("reports", {"report": word, "meaning": meaning}, text)
-    for key in key_references(report.options):
-        # Ranges of values of each limit are told at the limits of studies.
-        if not key.key.startswith("limits."):
-            yield Entry("options", _said(key), (Heading(f"option {key.key}"), _lines(key)))
-
-
-def _options(word: str) -> Iterator[Entry]:
-    """Options of reports that are called so, each once, with the reports that have it."""
+    Else the options of reports that are called so, each once, with the reports that have it.
+    """
     from rpscli.case.schema.keys import key_references
     from rpscli.report.study.registry import REPORTS
 
     named: dict[KeyReference, list[str]] = {}
-    for report in REPORTS:
-        for key in key_references(REPORTS[report].options):
+    if report := (REPORTS.everything() if everything else REPORTS).get(word):
+        meaning = (report.options.__doc__ or "").split("\n")[0]
+        text = Heading(f"{word}, a report of studies"), meaning
+        yield Entry("reports", {"report": word, "meaning": meaning}, text)
+        # Ranges of values of each limit are told at the limits of studies.
+        keys = key_references(report.options)
+        named = {key: [] for key in keys if not key.key.startswith("limits.")}
+    for name in REPORTS if options and not report else ():
+        for key in key_references(REPORTS[name].options):
             if f".{key.key}".endswith(f".{word}"):
-                named.setdefault(key, []).append(report)
+                named.setdefault(key, []).append(name)
     for key, reports in named.items():
-        title = f"option {key.key} of the report{'s' * (len(reports) > 1)} {', '.join(reports)}"
-        yield Entry("options", _said(key), (Heading(title), _lines(key)))
+        of = f" of the report{'s' * (len(reports) > 1)} {', '.join(reports)}" if reports else ""
+        yield Entry("options", _said(key), (Heading(f"option {key.key}{of}"), _lines(key)))
 
 
 def _offers(word: str) -> Iterator[Offer]:

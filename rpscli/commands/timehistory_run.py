@@ -95,7 +95,9 @@ def history_requests(
     case_labels = unique([given.case.name for given in cases])
     for given, case_label in zip(cases, case_labels, strict=True):
         grounds = all_made(partial(inputs.load_motion, given.case), motions, RecordError)
-        labels = unique([_label(ground) for ground in grounds])
+        scaled = ["" if each.scale == 1.0 else f"_x{each.scale:.4g}" for each in grounds]
+        names = [each.horizontal.name for each in grounds]
+        labels = unique([f"{name}{by}" for name, by in zip(names, scaled, strict=True)])
         for motion, ground, label in zip(motions, grounds, labels, strict=True):
             place = inputs.RESULTS / case_label / COMMAND / label
             if output.place is not None:
@@ -110,11 +112,6 @@ def history_requests(
             )
             requests.append(HistoryRequest(given, case_label, ground, label, folder, floor_spectra))
     return requests
-
-
-def _label(ground: MotionComponents) -> str:
-    scaled = "" if ground.scale == 1.0 else f"_x{ground.scale:.4g}"
-    return f"{ground.horizontal.name}{scaled}"
 
 
 def unique(names: Sequence[str]) -> list[str]:
@@ -396,8 +393,13 @@ def set_tables(computed: Sequence[Computed]) -> Iterator[Part]:
             yield f"overturned: {row.overturned}{undefined}; {CODES}"
         yield overturned_text(own.structure, own.analysis)
         yield restitution_text(own.structure)
-    if any(case.verdicts for case in computed):
-        yield _verdict_table(computed)
+    rows = [
+        [case.first.case_label, *verdict_texts(verdict)[:-1], worst_text(verdict)]
+        for case in computed
+        for verdict in case.verdicts
+    ]
+    if rows:
+        yield Table.of_texts(["case", *VERDICT], rows, words=5, keys=2)
     if note := _note(computed):
         yield note
 
@@ -424,12 +426,3 @@ def _records_table(case: Computed, quantities: dict[ResultQuantity, Spread]) -> 
             rows.append([label, "", *(standing(value, DIGITS) for value in values)])
     heads = [headed(q.label, q.unit) for q in quantities]
     return Table.of_texts(["record", "", *heads], rows, words=2)
-
-
-def _verdict_table(computed: Sequence[Computed]) -> Table:
-    rows = []
-    for case in computed:
-        for verdict in case.verdicts:
-            *texts, _ = verdict_texts(verdict)
-            rows.append([case.first.case_label, *texts, worst_text(verdict)])
-    return Table.of_texts(["case", *VERDICT], rows, words=5, keys=2)
