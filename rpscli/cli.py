@@ -44,12 +44,6 @@ COMMANDS = {
     for section, commands in SECTIONS.items()
     for name, summary in commands.items()
 }
-GONE = {
-    "clean": "rps doctor names the folder of the cache; it can be deleted, rps makes it anew",
-    "compare": "rps report CASE says what differs from the results that are stored; of two runs"
-    " compare summary.json, or points.csv of two studies",
-}
-"""Commands of earlier versions, and what does the same."""
 
 
 class Program(LazyGroup):
@@ -79,7 +73,6 @@ class Program(LazyGroup):
 @click.command(
     cls=Program,
     members=COMMANDS,
-    gone=GONE,
     context_settings={"help_option_names": ["-h", "--help"]},
     epilog="Exit codes: 0 done, 1 internal error or nothing could be written, 2 usage, 3 case or"
     " record invalid, 4 analysis failed, 5 study with failed points, 6 verification mismatch,"

@@ -68,10 +68,6 @@ def parse_condition(text: str) -> Condition:
     if (name in EVENTS or name == NOT_SHOWN) and not sign:
         return Condition(name, 0.0, "--fail-on")
     if name not in LIMITS and name not in EVENTS:
-        from rpscli.case.schema.keys import REMOVED  # pydantic is slow
-
-        if now := REMOVED.get(f"analysis.{name}"):
-            raise UsageError(f"--fail-on {text}: {name} is gone: {now}")
         some = ", ".join(alike(name, known := [*EVENTS, *LIMITS, NOT_SHOWN], 3))
         meant = hint(name, known, f"near are {some}; `rps explain limits` lists all", 0.6)
         raise UsageError(f"--fail-on {text}: {name or 'the name'} is not known; {meant}")

@@ -78,8 +78,6 @@ def command(word: str, terminal: Terminal) -> None:
     offers = [] if entries else list(_offers(word))
     entries += _reports(word, everything=bool(offers), options=not (entries or offers))
     if not (entries or offers or word == PLUGINS):
-        if now := _gone().get(word):
-            raise UsageError(f"explain {word}: {word} is gone: {now}")
         instead = hint(word, _known(), "`rps explain podium` and the like list a section's keys")
         raise UsageError(f"explain {word}: there is no such name; {instead}")
     parts = [part for entry in entries for part in entry.parts]
@@ -94,15 +92,6 @@ def command(word: str, terminal: Terminal) -> None:
     entries += [Entry("plugins", offer._asdict()) for offer in offers]
     said = {kind: [entry.said for entry in entries if entry.kind == kind] for kind in KINDS}
     terminal.result({**heading("explain"), "word": word, **said}, parts)
-
-
-def _gone() -> dict[str, str]:
-    """Words of earlier versions, and what to use in their place."""
-    from rpscli.case.design import GONE as OF_DESIGNS
-    from rpscli.case.schema.keys import REMOVED
-    from rpscli.case.study.schema import GONE as REPORTS
-
-    return {**OF_DESIGNS, **REPORTS, **{key.split(".")[-1]: now for key, now in REMOVED.items()}}
 
 
 def glossary() -> list[tuple[str, str]]:

@@ -125,7 +125,10 @@ class Tendon(Device):
         _require_none_below_zero(prestress=self.prestress)
         _require_positive(stiffness=self.stiffness)
         if not self.yield_force > self.prestress:
-            raise ValueError("yield_force must be > prestress")
+            raise ValueError(
+                f"yield_force = {self.yield_force:g} N must be > prestress = {self.prestress:g} N;"
+                " use a lower prestress, or leave yield_force out for a tendon that never yields"
+            )
 
     @property
     def results(self) -> tuple[str, ...]:

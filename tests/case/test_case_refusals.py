@@ -180,7 +180,7 @@ OF_DEVICES: list[Row] = [
     ("kind: friction", "kind: fiction", "21:14", "did you mean friction?"),
     ("kind: friction, ", "", "21:7: podium.devices.1.kind is missing: viscous or friction damper"),
     ("force: 4", "forse: 4", "21:24", "is not a key of the format; did you mean"),
-    ("yield_force: 300 kN", "yield_force: 90 kN", "23:75", "> prestress = 100 kN (line 23)"),
+    ("yield_force: 300 kN", "yield_force: 90 kN", "19:3", "= 90000 N must be > prestress = "),
     (COLUMNS, "  cap_beam_mass_ratio: 10\n", "22:7: podium.devices.3 is in each column, but"),
     ("    - {kind: fr", f"{FRICTION * 4}    - {{kind: fr", "20:5", "devices: 9 must be at most 8"),
 ]  # fmt: skip

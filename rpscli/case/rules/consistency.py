@@ -65,7 +65,6 @@ class Consistency:
         yield from self._record()
         yield from self._limits()
         yield from self._plan()
-        yield from self._column()
 
     def _where(self, key: str) -> str:
         return self.document.where(path_of(key))
@@ -242,7 +241,7 @@ class Consistency:
             )
 
     def _device(self, owner: str, device: case_file.DeviceSection) -> Iterator[Fault]:
-        """The keys that a kind needs, and none of another kind; a tendon carries its prestress."""
+        """The keys that a kind needs, and none of another kind."""
         fields = type(device).model_fields
         own = tuple(key for key, field in fields.items() if field.is_required())
         needed, optional = case_file.DEVICE_KEYS.get(device.kind, (own, ()))
@@ -256,16 +255,6 @@ class Consistency:
                 known = listed((*needed, *optional), "and")
                 text = f" is not a key of kind: {device.kind}, which has {known}; remove it"
                 yield _at_key(f"{owner}.{key}", text)
-        least, most = device.prestress or 0.0, device.yield_force or math.inf
-        if device.kind == "tendon" and most <= least:
-            force, prestress = (
-                self.document.at(path_of(f"{owner}.{key}")) for key in ("yield_force", "prestress")
-            )
-            yield _of_value(
-                f"{owner}.yield_force",
-                f" = {force} must be > prestress = {prestress}{self._where(f'{owner}.prestress')};"
-                " use a lower prestress, or leave yield_force out for a tendon that never yields",
-            )
 
     def _record(self) -> Iterator[Fault]:
         """A record has a factor, or a measure that fixes it; a pair is said in one way."""
@@ -328,8 +317,10 @@ class Consistency:
             )
 
     def _plan(self) -> Iterator[Fault]:
-        """Rows of columns are complete, and have heights for the moment of the building."""
+        """Rows have heights for the moment of the building; the force of one column a number."""
         plan, building = self.file.podium.plan, self.file.superstructure
+        if self.file.podium.column is not None and self.file.podium.columns is None:
+            yield _at_key("podium.columns", f" is missing: {COLUMN_KEY} asks for the force of one")
         if plan is None:
             return
         given = _given(plan, "length", "rows")
@@ -339,11 +330,6 @@ class Consistency:
         if building.storeys and building.storey_height is None:
             text = " needs superstructure.storey_height: the moment has lever arms"
             yield _at_key("podium.plan", text)
-
-    def _column(self) -> Iterator[Fault]:
-        """The force of one column asks for their number."""
-        if self.file.podium.column is not None and self.file.podium.columns is None:
-            yield _at_key("podium.columns", f" is missing: {COLUMN_KEY} asks for the force of one")
 
     def faults_of_bearing(self, bearing: Bearing) -> Iterator[Fault]:
         """Limits and strengths that its ends do not have, and rotations beyond the model."""
@@ -379,6 +365,7 @@ OF_THE_MODEL = {
     "restitution": "podium.impact",
     "law": "podium.impact.restitution",
     "devices": "podium.devices",
+    "yield_force": "podium.devices",
     "edge_length": f"{COLUMN_KEY}.edge_length",
     "rows": "podium.plan.rows",
     "contact": "podium.contact",

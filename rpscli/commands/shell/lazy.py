@@ -24,15 +24,9 @@ class Member(NamedTuple):
 class LazyGroup(click.Group):
     """A group that knows its members by name; listing them imports none of them."""
 
-    def __init__(
-        self,
-        *args: Any,
-        members: Mapping[str, Member],
-        gone: Mapping[str, str] | None = None,
-        **options: Any,
-    ) -> None:
+    def __init__(self, *args: Any, members: Mapping[str, Member], **options: Any) -> None:
         super().__init__(*args, **options)
-        self.members, self.gone = members, gone or {}
+        self.members = members
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Names in the order in which they were given."""
@@ -53,8 +47,6 @@ class LazyGroup(click.Group):
     ) -> tuple[str | None, click.Command | None, list[str]]:
         """The member that is called; an unknown one gets the nearest name in its message."""
         if args and args[0] not in self.members and not args[0].startswith("-"):
-            if now := self.gone.get(args[0]):
-                ctx.fail(f"{args[0]} is gone: {now}")
             there_are = f"there are {', '.join(self.members)}"
             meant = hint(args[0], self.members, there_are, 0.6)
             ctx.fail(f"no such command: {args[0]}; {meant}")
