@@ -223,11 +223,6 @@ def _largest(values: Array) -> Array:
     return np.asarray(values.max(axis=1)) if values.shape[1] else np.full(len(values), np.nan)
 
 
-def _first(values: Array) -> Array:
-    """The first of each row; NaN of empty ones."""
-    return _largest(values[:, :1])
-
-
 def _drifts(h: Histories) -> Array:
     """Of elastic storeys from their shears, of those that yield from their ductility."""
     if not h.yields:
@@ -389,8 +384,8 @@ class Demand(Shown):
     )
     max_cap_beam_displacement_x = _Optional(lambda h: h.known("max_x"))
     max_cap_beam_displacement_y = _Optional(lambda h: h.known("max_y"))
-    max_base_shear_x = _Optional(lambda h: _first(h.of_storeys_in("x", "storey_shear")))
-    max_base_shear_y = _Optional(lambda h: _first(h.of_storeys_in("y", "storey_shear")))
+    max_base_shear_x = _Optional(lambda h: _largest(h.of_storeys_in("x", "storey_shear")[:, :1]))
+    max_base_shear_y = _Optional(lambda h: _largest(h.of_storeys_in("y", "storey_shear")[:, :1]))
     max_floor_acceleration_x = _Optional(
         lambda h: _largest(h.of_storeys_in("x", "floor_acceleration"))
     )

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 
@@ -12,7 +11,6 @@ from rpscli.case.schema.case_file import (
     AnalysisSection,
     BearingSection,
     CaseFile,
-    ColumnSection,
     DeviceSection,
     PodiumSection,
     SuperstructureSection,
@@ -36,33 +34,21 @@ from rpscli.model.superstructure import (
 COMPLETE = "the rules of the case make sure that the value is given"
 
 
-class Shape(NamedTuple):
-    """Ratios of a column; `wedge_slenderness` equals `slenderness` where flat ends leave it out."""
-
-    semi_diagonal: float
-    slenderness: float
-    wedge_slenderness: float
-    curvature_ratio: float
-
-
-def shape_of(bearing: BearingSection) -> Shape:
-    """Ratios of the column, from its sizes where these are given."""
-    if (sizes := bearing.dimensions) is not None:
+def bearing_of(section: BearingSection) -> Bearing:
+    """The column, from ratios or sizes; flat ends may leave out their wedge."""
+    kept = {"inertia_ratio", "inertia_ratio_axial"}
+    given = section.model_dump(include=kept, exclude_none=True)
+    if (sizes := section.dimensions) is not None:
         h, width = sizes.height, sizes.width
         wedge = width if sizes.wedge_width is None else sizes.wedge_width
-        return Shape(0.5 * math.hypot(h, width), width / h, wedge / h, sizes.radius / h)
-    R, slenderness, rho = bearing.semi_diagonal, bearing.slenderness, bearing.curvature_ratio
+        shape = 0.5 * math.hypot(h, width), width / h, wedge / h, sizes.radius / h
+        return Bearing(*shape, **given)
+    R, slenderness, rho = section.semi_diagonal, section.slenderness, section.curvature_ratio
     assert R is not None and slenderness is not None and rho is not None, COMPLETE  # noqa: PT018
-    wedge = slenderness if bearing.wedge_slenderness is None else bearing.wedge_slenderness
+    wedge = slenderness if section.wedge_slenderness is None else section.wedge_slenderness
     if isinstance(rho, str):
         rho = first_order_critical_curvature_ratio(slenderness, wedge)
-    return Shape(R, slenderness, wedge, rho)
-
-
-def bearing_of(section: BearingSection) -> Bearing:
-    """The column of a shape."""
-    given = {"inertia_ratio", "inertia_ratio_axial"}
-    return Bearing(*shape_of(section), **section.model_dump(include=given, exclude_none=True))
+    return Bearing(R, slenderness, wedge, rho, **given)
 
 
 def impact_law_of(section: PodiumSection) -> ImpactLaw:
@@ -76,26 +62,8 @@ def impact_law_of(section: PodiumSection) -> ImpactLaw:
     return ImpactLaw(name, loss=loss, **given)
 
 
-class Masses(NamedTuple):
-    """N m_c, m_b and M_tot [kg]."""
-
-    columns: float
-    cap_beam: float
-    building: float
-
-    @property
-    def gamma(self) -> float:
-        """m_b/(N m_c)."""
-        return self.cap_beam / self.columns
-
-    @property
-    def eta(self) -> float:
-        """M_tot/m_b; 0 without a cap beam."""
-        return self.building / self.cap_beam if self.cap_beam else 0.0
-
-
-def masses_of(file: CaseFile) -> Masses:
-    """All masses from those and the ratios that are given (Theory, section 2)."""
+def masses_of(file: CaseFile) -> tuple[float, float, float]:
+    """N m_c, m_b and M_tot [kg], from those and the ratios that are given (Theory, section 2)."""
     podium, floors = file.podium, file.superstructure
     building = sum(each_storey(floors.storey_mass, floors.storeys)) if floors.storeys else 0.0
     gamma, eta = podium.cap_beam_mass_ratio, podium.superstructure_mass_ratio
@@ -112,22 +80,25 @@ def masses_of(file: CaseFile) -> Masses:
         columns = beam / gamma
     assert columns is not None, COMPLETE
     assert beam is not None, COMPLETE
-    return Masses(columns, beam, building)
+    return columns, beam, building
 
 
-def structure_of(
-    bearing: Bearing, law: ImpactLaw, masses: Masses, file: CaseFile
-) -> PodiumStructure:
+def structure_of(bearing: Bearing, file: CaseFile) -> PodiumStructure:
     """The whole structure: columns and cap beam with the building on them."""
     podium, floors, plan = file.podium, file.superstructure, file.podium.plan
+    column = None
+    if (of := podium.column) is not None:
+        own, plate = of.model_dump(exclude={"on"}), of.on
+        column = ColumnDesign(**own, plate_modulus=plate.modulus, plate_poisson=plate.poisson)
     across = None if floors.y is None else floors.model_copy(update=floors.y.model_dump())
-    at_uplift = masses.building * file.analysis.gravity * bearing.slenderness
+    columns, beam, floors_mass = masses_of(file)
+    at_uplift = floors_mass * file.analysis.gravity * bearing.slenderness
     return PodiumStructure(
         bearing=bearing,
-        columns_mass=masses.columns,
-        cap_beam_mass=masses.cap_beam,
+        columns_mass=columns,
+        cap_beam_mass=beam,
         superstructure=building(floors, at_uplift),
-        impact_law=law,
+        impact_law=impact_law_of(podium),
         gravity=file.analysis.gravity,
         devices=tuple(map(device_of, podium.devices)),
         columns=podium.columns or 1,
@@ -135,17 +106,7 @@ def structure_of(
         rows=() if plan is None else plan.rows or (0.0, plan.length or 0.0),
         superstructure_y=None if across is None else building(across, at_uplift),
         contact=Contact(**podium.contact.model_dump()),
-        column=None if podium.column is None else column_of(podium.column),
-    )
-
-
-def column_of(section: ColumnSection) -> ColumnDesign:
-    """What a column and the plates under it are made of."""
-    plate = section.on
-    return ColumnDesign(
-        **section.model_dump(exclude={"on"}),
-        plate_modulus=plate.modulus,
-        plate_poisson=plate.poisson,
+        column=column,
     )
 
 

@@ -207,8 +207,7 @@ def _structure(file: CaseFile, document: Document) -> PodiumStructure:
     try:
         bearing = build.bearing_of(file.podium.bearing)
         document.refuse(rules.faults_of_bearing(bearing))
-        law, masses = build.impact_law_of(file.podium), build.masses_of(file)
-        structure = build.structure_of(bearing, law, masses, file)
+        structure = build.structure_of(bearing, file)
         if structure.bed is not None:
             structure.bed.refuse_start(file.analysis.initial_rotation)
     except ValueError as error:
