@@ -35,24 +35,12 @@ resonance it is shaken most some three of them later."""
 
 @dataclass(frozen=True, eq=False, repr=False)
 class FloorSpectra(Shown):
-    """Spectra of light equipment on each floor, which does not act back.
+    """Spectra of light equipment on each floor, which does not act back."""
 
-    Attributes
-    ----------
-    periods : array, shape (p,) [s]
-        Natural periods.
-    damping : float
-        Share of critical damping.
-    pseudo_acceleration : array, shape (n, p) [m/s2]
-        By floors from the bottom.
-    displacement : array, shape (n, p) [m]
-        Relative to the floor.
-    """
-
-    periods: Array
-    damping: float
-    pseudo_acceleration: Array
-    displacement: Array
+    periods: Array  # (p,) natural periods [s]
+    damping: float  # share of critical damping
+    pseudo_acceleration: Array  # (n, p) [m/s2], by floors from the bottom
+    displacement: Array  # (n, p) relative to the floor [m]
 
 
 def isolated_floor_spectra(

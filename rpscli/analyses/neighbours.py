@@ -23,20 +23,15 @@ MOST_STEPS_BESIDE = 100_000
 
 
 class Neighbour(NamedTuple):
-    """One of them: factor on its motion, its restitution, and what came of it, SI units.
+    """One of them, and what came of it, SI units."""
 
-    A pair may be `turned` [deg].
-
-    `demands` has all results of a history that may be limited, by name.
-    """
-
-    factor: float
-    restitution: float
+    factor: float  # on its motion
+    restitution: float  # of its law
     outcome: str
     rotation_ratio: float
     max_base_shear: float
-    demands: dict[str, float | None]
-    turned: float = 0.0
+    demands: dict[str, float | None]  # results that may be limited, by name
+    turned: float = 0.0  # of a pair [deg]
 
 
 def neighbours(result: TimeHistoryResult) -> list[Neighbour]:

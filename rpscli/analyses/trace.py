@@ -136,17 +136,17 @@ class DeviceTrace(_Sampled, Frozen):
 class Direction(_Sampled, Shown):
     """Part of a trace in one horizontal direction: arrays (samples, ...)."""
 
-    ground_acceleration: Array
-    cap_beam_displacement: Array
-    floor_displacements: Array
-    floor_velocities: Array
-    floor_accelerations: Array
-    drifts: Array
-    plastic_drifts: Array | None
-    storey_shears: Array
-    driving_moment: Array
-    shear_top: Array
-    shear_bottom: Array
+    ground_acceleration: Array  # a_g [m/s2]
+    cap_beam_displacement: Array  # u_b [m]
+    floor_displacements: Array  # relative to the ground [m]
+    floor_velocities: Array  # likewise [m/s]
+    floor_accelerations: Array  # absolute [m/s2]
+    drifts: Array  # d_i [m]
+    plastic_drifts: Array | None  # delta_i [m]; None of elastic storeys
+    storey_shears: Array  # k_i (d_i - delta_i) [N]
+    driving_moment: Array  # 2 R C (V - (N m_c/2 + m_b) a_g) [N m]; in slow motion 2 R W s B(x)
+    shear_top: Array  # of all columns together [N], to the right on what is above (Theory (8.4))
+    shear_bottom: Array  # [N]
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -22,19 +22,14 @@ class Estimate(NamedTuple):
 
 
 class Identified(NamedTuple):
-    """Estimates by name and unit; values of keys of the case, as they are written.
+    """Estimates, and what they are in a case."""
 
-    `misfit` is the distance of the model over the errors, `ensembles` whether means of many motions
-    were fitted. `residuals` are, of each swing, time and amplitude, their errors, and those of the
-    model.
-    """
-
-    estimates: dict[tuple[str, str], Estimate]
-    keys: dict[str, str]
-    misfit: float
+    estimates: dict[tuple[str, str], Estimate]  # by name and unit
+    keys: dict[str, str]  # values of keys, as written
+    misfit: float  # distance of the model over the errors
     remarks: str
-    ensembles: bool = False
-    residuals: tuple[dict[str, float], ...] = ()
+    ensembles: bool = False  # true if means of many motions were fitted
+    residuals: tuple[dict[str, float], ...] = ()  # of each swing
 
 
 def estimate(value: float, error: float, freedoms: int) -> Estimate:

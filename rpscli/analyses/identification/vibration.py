@@ -25,15 +25,11 @@ UNKNOWN = 3.0
 
 
 class Vibration(NamedTuple):
-    """First period [s] and damping ratio.
-
-    `misfit` is the scatter of the periodogram over its spectrum, 1 where the model holds; or the
-    part of the motion in the band that is not fitted.
-    """
+    """First period [s] and damping ratio."""
 
     period: Estimate
     damping: Estimate
-    misfit: float
+    misfit: float  # scatter about the spectrum, 1 where it holds; or the part that is not fitted
 
 
 def vibration(
