@@ -153,55 +153,20 @@ class Direction(_Sampled, Shown):
 class Trace(Direction):
     """Histories at the record's samples and on through the free vibration, SI units.
 
-    What was largest between samples, and on both sides of impacts, is in the largest demands, not
-    here.
-
-    Arrays are (samples,), those of floors and storeys (samples, n) from the bottom. Displacements
-    and velocities are relative to the ground.
-
-    Parameters
-    ----------
-    time, ground_acceleration
-        Since the start of the record [s]; a_g [m/s2].
-    rotation, rotation_rate
-        theta [rad], theta' [rad/s].
-    phase
-        0 in full contact, 1 rolling, 2 rocking, 3 held by friction, 4 in compliant
-        full contact.
-    cap_beam_displacement, lift
-        u_b and v_b [m].
-    floor_displacements, floor_velocities, floor_accelerations
-        [m], [m/s], and absolute [m/s2].
-    drifts, plastic_drifts, storey_shears
-        d_i [m]; delta_i [m], None of elastic storeys; k_i (d_i - delta_i) [N].
-    driving_moment
-        What the ground and the building do about the contact points, 2 R C (V - (N m_c/2 + m_b)
-        a_g) [N m]; in slow motion without devices it equals the restoring moment 2 R W s B(x).
-    shear_top, shear_bottom, normal_top, normal_bottom
-        Forces at the ends of all columns together [N]: F to the right on what is above, N upwards
-        on it (Theory (8.4), (8.5)).
-    energy_input, energy_damped, energy_damped_vertical, energy_impact, energy_bed, energy_yielded,
-    energy_stored
-        [J] (Theory, sections 8 and 12).
-    vertical_accelerations
-        Absolute ones of floors on vertical springs [m/s2]; None of floors that ride on the beam.
-    devices
-        What each device does.
-    azimuth, azimuth_rate, y
-        Where both horizontal components act: phi [rad], from x towards y, and phi' [rad/s] of the
-        tilt, whose size `rotation` then is; and what the history has in y. All else that has a
-        direction is in x. Forces of the columns are those of the smooth motion, which in a pass
-        near upright that is shorter than an impact may be large for an instant.
+    Arrays are (samples,), those of floors and storeys (samples, n) from the bottom. What was
+    largest between samples, and on both sides of impacts, is in the largest demands. Forces of
+    columns are those of the smooth motion, which in a pass near upright that is shorter than an
+    impact may be large for an instant.
     """
 
-    time: Array
-    rotation: Array
-    rotation_rate: Array
-    phase: NDArray[np.int8]
-    lift: Array
-    normal_top: Array
-    normal_bottom: Array
-    energy_input: Array
+    time: Array  # since the start of the record [s]
+    rotation: Array  # theta [rad]
+    rotation_rate: Array  # theta' [rad/s]
+    phase: NDArray[np.int8]  # 0 in full contact, 1 rolling, 2 rocking, 3 held, 4 on a bed
+    lift: Array  # v_b [m]
+    normal_top: Array  # of all columns together [N], upwards on what is above (Theory (8.5))
+    normal_bottom: Array  # [N]
+    energy_input: Array  # [J], as all energies (Theory, sections 8 and 12)
     energy_damped: Array
     energy_damped_vertical: Array
     energy_impact: Array
@@ -209,10 +174,10 @@ class Trace(Direction):
     energy_yielded: Array
     energy_stored: Array
     devices: DeviceTrace
-    azimuth: Array | None = None
-    azimuth_rate: Array | None = None
-    y: Direction | None = None
-    vertical_accelerations: Array | None = None
+    azimuth: Array | None = None  # of the tilt of both components, from x towards y [rad]
+    azimuth_rate: Array | None = None  # [rad/s]
+    y: Direction | None = None  # what a history of both components has in y; the rest is in x
+    vertical_accelerations: Array | None = None  # absolute, of floors on springs [m/s2]
 
     def size(self, name: str) -> Array:
         """Of what has a direction: its absolute value, or sqrt(x^2 + y^2)."""

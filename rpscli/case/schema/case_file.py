@@ -40,11 +40,10 @@ DEVICE_KEYS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
 class DeviceSection(Section):
     """A device between ground and cap beam; its kind says which keys it has."""
 
-    kind: Annotated[str, NameOf(DAMPERS)] = Field(
-        description="viscous or friction damper, elastic stop, unbonded tendon in the axis of each"
-        " column, or the resistance of the columns to rolling; friction and rolling_resistance"
-        " not under both components"
-    )
+    kind: Annotated[str, NameOf(DAMPERS)]
+    """viscous or friction damper, elastic stop, unbonded tendon in the axis of each column, or the
+    resistance of the columns to rolling; friction and rolling_resistance not under both
+    components"""
     coefficient: Annotated[float | None, Quantity("N s/m", symbol="c", above=0)] = None
     """viscous: c, the force at a velocity of 1 m/s, P = c |u_b'|^a"""
     exponent: Annotated[
@@ -91,11 +90,9 @@ class DampingSection(Section):
 
     ratio: DampingRatio
     """critical damping ratio"""
-    modes: ModePair | None = Field(
-        None,
-        description="the two modes of Rayleigh damping, counted from 1; left out: the same ratio"
-        " in every mode. One storey, or one mode named twice: stiffness-proportional",
-    )
+    modes: ModePair | None = None
+    """the two modes of Rayleigh damping, counted from 1; left out: the same ratio in every mode.
+    One storey, or one mode named twice: stiffness-proportional"""
 
 
 class YieldSection(Section):
@@ -132,11 +129,9 @@ class SuperstructureSection(Section):
     """storey height, for drift ratios and pictures: one value, or a list"""
     period: Time | None = None
     """first period on a fixed base; scales the profile"""
-    profile: Profile | None = Field(
-        None,
-        description="distribution of the stiffness: a sine, linear or flexural first mode, or"
-        " uniform stiffness; sine if a period is given without it",
-    )
+    profile: Profile | None = None
+    """distribution of the stiffness: a sine, linear or flexural first mode, or uniform stiffness;
+    sine if a period is given without it"""
     stiffness: Stiffnesses | None = None
     """storey stiffness in place of period and profile: one value, or a list"""
     damping: DampingSection | None = None
@@ -205,11 +200,9 @@ class BearingSection(Section):
 class ImpactSection(Section):
     """What happens when the columns fall back on their flat ends."""
 
-    law: Annotated[str, NameOf(IMPACT_LAWS)] = Field(
-        "flexible",
-        description="flexible: floors keep their velocity; rigid: floors jump with the cap beam;"
-        " value: restitution is given",
-    )
+    law: Annotated[str, NameOf(IMPACT_LAWS)] = "flexible"
+    """flexible: floors keep their velocity; rigid: floors jump with the cap beam; value:
+    restitution is given"""
     restitution: Annotated[
         float | None, Quantity(symbol="velocity after over before", above=0, at_most=1)
     ] = None
@@ -217,21 +210,17 @@ class ImpactSection(Section):
     loss: Annotated[
         float | None,
         Quantity(symbol="kappa = (1 - e)/(1 - e of the law)", at_least=0, at_most=1.5),
-    ] = Field(
-        None,
-        description="kappa: part of the law's loss at an impact, 1 - e = kappa (1 - e of the law);"
-        " 1 = impulse at the edges, 0.3 to 0.5 = spread over plane ends on a damped bed; left out:"
-        " 0.3 with contact plane, else 1",
-    )
+    ] = None
+    """kappa: part of the law's loss at an impact, 1 - e = kappa (1 - e of the law); 1 = impulse at
+    the edges, 0.3 to 0.5 = spread over plane ends on a damped bed; left out: 0.3 with contact
+    plane, else 1"""
     factor: PositiveRatio = 1.0
     """multiplies the restitution of the law"""
     contact_time: Annotated[
         float, Quantity("s", symbol="t_c", at_least=0, at_most=LONGEST_CONTACT)
-    ] = Field(
-        CONTACT_TIME,
-        description="t_c, how long an impact takes, where both horizontal components act: the"
-        " nearer a pass to upright, the more of an impact's loss it has; 0 = passes lose nothing",
-    )
+    ] = CONTACT_TIME
+    """t_c, how long an impact takes, where both horizontal components act: the nearer a pass to
+    upright, the more of an impact's loss it has; 0 = passes lose nothing"""
 
 
 OWN_IMPACTS = OwnLaws("law", IMPACT_LAWS, ImpactSection)
@@ -244,11 +233,9 @@ def _law_alone(value: object) -> object:
 class ContactSection(Section):
     """What the ends of the columns bear on; other kinds than rigid take one of three sizes."""
 
-    kind: Literal["rigid", "plane", "edges"] = Field(
-        "rigid",
-        description="rigid: nothing moves before uplift; plane: a compliant joint that lifts"
-        " gradually; edges: two compliant edges that lift at once",
-    )
+    kind: Literal["rigid", "plane", "edges"] = "rigid"
+    """rigid: nothing moves before uplift; plane: a compliant joint that lifts gradually; edges: two
+    compliant edges that lift at once"""
     period_ratio: Annotated[float | None, Quantity(symbol="r = T/T_1", above=1)] = None
     """first period in full contact over that on a fixed base, as measured"""
     stiffness: Annotated[float | None, Quantity("N/m", symbol="K_s", above=0)] = None
