@@ -21,18 +21,22 @@ program(sys.argv[1:])
 """
 
 
-def imported(folder: Path, *arguments: str) -> set[str]:
-    """Modules that a command has imported when it ends."""
-    root = str(Path(__file__).parents[2])
+def ran(code: str, *arguments: str, folder: Path | None = None) -> tuple[str, str]:
+    """Both streams of a program in a process of its own."""
     result = subprocess.run(
-        [sys.executable, "-c", SCRIPT, *arguments],
+        [sys.executable, "-c", code, *arguments],
         cwd=folder,
-        env={**os.environ, "PYTHONPATH": root},
+        env={**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])},
         capture_output=True,
         text=True,
         check=True,
     )
-    return set(json.loads(result.stderr.splitlines()[-1]))
+    return result.stdout, result.stderr
+
+
+def imported(folder: Path, *arguments: str) -> set[str]:
+    """Modules that a command has imported when it ends."""
+    return set(json.loads(ran(SCRIPT, *arguments, folder=folder)[1].splitlines()[-1]))
 
 
 @pytest.mark.parametrize("command", [["--help"], ["--version"]], ids=" ".join)
@@ -56,24 +60,14 @@ def test_check_with_common_units_needs_no_library_of_units(workplace: Path) -> N
     assert not found & {"numba", "scipy", "matplotlib", "rpscli.records.formats"}
 
 
-def test_a_document_of_an_error_needs_no_numpy(workplace: Path) -> None:
-    code = "import sys, rpscli.commands.shell.terminal; sys.exit('numpy' in sys.modules)"
-    root = str(Path(__file__).parents[2])
-    subprocess.run([sys.executable, "-c", code], env={**os.environ, "PYTHONPATH": root}, check=True)
+def test_a_document_of_an_error_needs_no_numpy() -> None:
+    ran("import sys, rpscli.commands.shell.terminal; sys.exit('numpy' in sys.modules)")
 
 
 def test_modal_without_its_picture_is_plain_numpy(workplace: Path) -> None:
     assert not imported(workplace, "modal", "small.yaml") & {"numba", "scipy"}
 
 
-def test_the_package_itself_imports_nothing(workplace: Path) -> None:
+def test_the_package_itself_imports_nothing() -> None:
     code = "import sys, rpscli; print(sorted(m for m in sys.modules if m.startswith('rpscli')))"
-    root = str(Path(__file__).parents[2])
-    result = subprocess.run(
-        [sys.executable, "-c", code],
-        env={**os.environ, "PYTHONPATH": root},
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    assert result.stdout.strip() == "['rpscli']"
+    assert ran(code)[0].strip() == "['rpscli']"
