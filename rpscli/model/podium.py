@@ -71,12 +71,8 @@ class PodiumStructure(Shown):
     Raises
     ------
     ValueError
-        If a mass is not admissible, the floors in y are others than in x, or the restitution is
-        not in (0, 1]: with e <= 0 the columns would not go over to the other edge (Theory,
-        section 4), or there are too many devices; of spherical ends, if the restitution is not 1
-        or there is a tendon.
-        Of a compliant contact, if it is too soft to hold the weight, or with what it is not
-        followed with.
+        For masses, floors in y, devices, or a contact that are not followed, and a restitution
+        that is not in (0, 1], of spherical ends not 1 (Theory, section 4).
 
     Notes
     -----
