@@ -27,7 +27,7 @@ GALLERY = "tests/test_readme.py::test_the_gallery_shows_what_its_commands_give"
 GRANITE = "tests/sweep/test_granite.py::test_the_readme_shows_what_its_commands_give"
 PLUGINS = "tests/commands/test_plugins.py::test_the_example_is_installed_by_pip"
 PIPELINE = "tests/test_readme.py::test_the_job_for_a_pipeline_runs"
-BENCHMARKS = "tests/benchmarks/test_installed.py::test_a_little_of_each_benchmark_runs"
+BENCHMARKS = "tests/benchmarks/test_installed.py::test_a_little_of_the_benchmark_runs"
 ENGINE = "tests/oracles/test_multibody.py::test_blocks_of_the_table_of_the_verification"
 CHANGES_OF_LAW = "tests/report/test_studies.py::test_changes_of_the_impact_law_are_mapped"
 SET_UP = "tests/test_readme.py::test_set_up_commands_run"
@@ -71,7 +71,7 @@ OTHERS = {
     r"venv/bin/activate": SET_UP,
     r"granite/(convert|judged)\.py": GRANITE,
     r"impact_law/changes\.py": CHANGES_OF_LAW,
-    r"benchmarks\.": BENCHMARKS,
+    r"benchmarks\.histories": BENCHMARKS,
     r"oracles\.resolved_contact": ENGINE,
 }
 """Other lines of blocks, and what runs them."""

@@ -1,26 +1,27 @@
-"""One history by heyoka's Taylor integrator; full contact is given, or heyoka's too.
+"""One history by heyoka's Taylor integrators: full contact by one, uplifted motion by another.
 
+The equations are written once more (Theory, sections 1 to 4), mirrored: `x = |theta|`, and floors
+and ground are multiplied by the side of the tilt, so that one right-hand side serves both sides.
 The ground acceleration is linear between samples, so the integrator stops at each of them and gets
-two new parameters; constants of the phase are parameters too, and one compiled integrator serves
-both phases and both sides. theta = 0 and theta = beta are its terminal events.
+two new parameters; constants of the phase are parameters too. theta = 0 and theta = beta are its
+terminal events. Nothing of the program's kernels is used.
 """
 
 from __future__ import annotations
 
-from typing import Any
+import math
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from benchmarks.peers.rocking import (
-    FixedBase,
-    Floats,
-    Landing,
-    PeerHistory,
-    Phase,
-    Rocking,
-    fixed_base_of,
-    stand,
-)
+from rpscli.model.podium import PodiumStructure
+from rpscli.model.superstructure import RayleighDamping
+
+Floats = NDArray[np.float64]
+
+NEGLIGIBLE = 1e-6
+"""An excursion below this times alpha is not followed: the storey locks."""
 
 ACROSS, SLOPE, P, Q, CURVE, SHIFT, SQUARE, LEVEL = range(8)  # parameters
 IMPACT, ARC_END = -1, -2
@@ -33,8 +34,124 @@ UPLIFTS = {-1: 1.0, -2: -1.0}
 """Side of the uplift for the number of the event that ends full contact."""
 
 
+class PeerHistory(NamedTuple):
+    """What a history says."""
+
+    max_rotation: float
+    impacts: int
+
+
+class Phase(NamedTuple):
+    """Constants of rolling or of rocking (Theory, section 1)."""
+
+    p: float
+    q: float
+    c: float
+    u0: float
+
+
+class Rocking(NamedTuple):
+    """A building on kinematic bearings; `level` is beta, where rolling and rocking meet."""
+
+    R: float
+    alpha: float
+    level: float
+    rolling: Phase
+    rocking: Phase
+    Io: float
+    gamma: float
+    eta: float
+    columns_mass: float
+    masses: Floats
+    stiffnesses: Floats
+    a0: float
+    a1: float
+    restitution: float
+    gravity: float
+    limit: float
+
+
+def rocking_of(structure: PodiumStructure) -> Rocking:
+    """The numbers of a structure with curved ends, Rayleigh damping and the rigid impact law."""
+    b, building = structure.bearing, structure.superstructure
+    assert building is not None
+    assert isinstance(building.damping, RayleighDamping)
+    alpha = math.atan(b.slenderness)
+    k = 2.0 * b.curvature_ratio * math.cos(alpha)
+    beta = math.asin((b.wedge_slenderness - b.slenderness) / (2.0 * b.curvature_ratio))
+    sine, cosine = math.sin(alpha), math.cos(alpha)
+    a0, a1 = building.damping.coefficients(building.frequencies)
+    gamma = structure.cap_beam_mass / structure.columns_mass
+    eta = float(building.masses.sum()) / structure.cap_beam_mass
+    carried = 4.0 * gamma * (1.0 + eta)
+    return Rocking(
+        R=b.semi_diagonal,
+        alpha=alpha,
+        level=beta,
+        rolling=Phase(sine, k - cosine, k, sine),
+        rocking=Phase(
+            sine + k * math.sin(beta), k * (1.0 - math.cos(beta)) - cosine, 0.0, sine + k * beta
+        ),
+        Io=b.inertia_ratio,
+        gamma=gamma,
+        eta=eta,
+        columns_mass=structure.columns_mass,
+        masses=np.array(building.masses),
+        stiffnesses=np.array(building.stiffnesses),
+        a0=a0,
+        a1=a1,
+        restitution=1.0 - 2.0 * sine**2 * (1.0 + carried) / (b.inertia_ratio + carried),
+        gravity=structure.gravity,
+        limit=2.0 * b.critical_rotation,
+    )
+
+
+class Landing:
+    """Impacts of one podium, with the right-hand side at x = 0 prepared: it is linear there."""
+
+    def __init__(self, podium: Rocking) -> None:
+        n, gamma, eta = len(podium.masses), podium.gamma, podium.eta
+        sine, cosine = math.sin(podium.alpha), math.cos(podium.alpha)
+        self.storeys, self.restitution = n, podium.restitution
+        self.beam = 2.0 * podium.R * cosine
+        self.jump = self.beam * (1.0 - podium.restitution)
+        self.left_out = 2.0 / (1.0 + podium.restitution) * self.beam  # (3.5)
+        self.negligible = 2.0 * NEGLIGIBLE * podium.alpha
+        curve = podium.rolling.c
+        A = podium.Io - 1.0 + 1.0 + 4.0 * gamma + 4.0 * gamma * eta * sine**2
+        D = sine * ((1.0 + 4.0 * gamma) * curve + 4.0 * gamma * eta * (curve - cosine))
+        restoring = sine * podium.gravity / podium.R * (1.0 + 2.0 * gamma + 2.0 * gamma * eta)
+        self.restoring, self.turning = restoring / A, D / A
+        self.ground = cosine * (1.0 + 2.0 * gamma) / podium.R / A
+        shear = np.zeros(2 * n + 2)  # V = shear . y, beam at 2 R cos(alpha) x'
+        shear[1], shear[n + 2 :] = podium.stiffnesses[0], podium.a0 * podium.masses
+        shear[n + 2] += podium.a1 * podium.stiffnesses[0]
+        shear[n + 1] = -2.0 * podium.R * cosine * shear[n + 2 :].sum()
+        self.back = 0.0
+        """What decelerates the tilt behind the last impact [rad/s2]."""
+        self.building = 2.0 * cosine / (podium.columns_mass * podium.R) / A * shear
+
+    def land(self, y: Floats, across: float) -> bool:
+        """Impact: change the mirrored state to that of the other side; whether the storey locks.
+
+        `across` is the ground acceleration as mirrored on the side that is left.
+        """
+        n = self.storeys
+        rate = -self.restitution * y[n + 1]
+        y[n + 2 :] -= self.jump * y[n + 1]
+        np.negative(y, y)
+        y[0], y[n + 1] = 0.0, rate
+        back = self.restoring + self.turning * rate * rate - self.ground * across
+        back -= self.building @ y
+        self.back = float(back)
+        stays = back > 0.0 and rate * rate < self.negligible * back
+        if stays:
+            y[n + 2 :] += self.left_out * rate
+        return bool(stays)
+
+
 def equations(podium: Rocking) -> list[tuple[Any, Any]]:
-    """The mirrored equations of motion as heyoka's expressions, as in `rocking.rates`."""
+    """The mirrored equations of motion as heyoka's expressions."""
     import heyoka as hy
 
     n = len(podium.masses)
@@ -72,27 +189,34 @@ def equations(podium: Rocking) -> list[tuple[Any, Any]]:
 class HeyokaStanding:
     """A compiled integrator of the building on a fixed base, with uplift as its terminal event."""
 
-    def __init__(self, base: FixedBase, tol: float) -> None:
+    def __init__(self, podium: Rocking, dt: float, tol: float) -> None:
         import heyoka as hy
 
-        n = len(base.push) // 2
-        self.dt = base.dt
+        n, self.dt = len(podium.masses), dt
+        between = np.eye(n) - np.eye(n, k=-1)
+        stiffness = between.T @ np.diag(podium.stiffnesses) @ between
+        damping = podium.a0 * np.diag(podium.masses) + podium.a1 * stiffness
+        flow = -np.hstack([stiffness, damping]) / podium.masses[:, None]
+        gamma, eta = podium.gamma, podium.eta
+        share = 2.0 * gamma * eta / podium.masses.sum()
+        on_beam = share * np.r_[stiffness.sum(axis=0), damping.sum(axis=0)]
+        lift = podium.gravity * np.tan(podium.alpha) * (1.0 + 2.0 * gamma * (1.0 + eta))
         names = [f"{kind}{i}" for kind in "uv" for i in range(n)]
-        z = hy.make_vars(*names) if n > 0 else []
+        z = hy.make_vars(*names)
         across = hy.par[ACROSS] + hy.par[SLOPE] * hy.time
 
         def weighted(row: Floats) -> Any:
             return hy.sum([float(w) * x for w, x in zip(row, z, strict=True) if w != 0.0])
 
-        rates = [*z[n:], *(weighted(base.flow[n + i]) - across for i in range(n))]
-        push = weighted(base.push) - base.own * across
+        rates = [*z[n:], *(weighted(flow[i]) - across for i in range(n))]
+        push = weighted(on_beam) - (1.0 + 2.0 * gamma) * across
         self.integrator = hy.taylor_adaptive(
             list(zip(z, rates, strict=True)),
             np.zeros(2 * n),
             pars=np.zeros(2),
             tol=tol,
             t_events=[
-                hy.t_event(base.lift - sign * push, direction=hy.event_direction.negative)
+                hy.t_event(lift - sign * push, direction=hy.event_direction.negative)
                 for sign in UPLIFTS.values()
             ],
         )
@@ -100,7 +224,11 @@ class HeyokaStanding:
     def stand(
         self, z: Floats, slopes: list[float], intercepts: list[float], interval: int, after: float
     ) -> tuple[int, float, float]:
-        """As `rocking.stand`, for a record of given slopes and values at time zero."""
+        """From `after` seconds into an interval to the next uplift, or to the record's end.
+
+        Of a record of given slopes and values at time zero. Returns the interval, the time into it
+        and the side of uplift, 0 at the end.
+        """
         ta, dt = self.integrator, self.dt
         step, pars = ta.step, ta.pars
         ta.state[:] = z
@@ -121,16 +249,14 @@ class HeyokaStanding:
 
 
 class HeyokaRocking:
-    """A compiled integrator for one podium; `alone` if it follows full contact as well."""
+    """Compiled integrators for one podium."""
 
-    def __init__(
-        self, podium: Rocking, dt: float, tol: float = 1e-4, *, alone: bool = False
-    ) -> None:
+    def __init__(self, structure: PodiumStructure, dt: float, tol: float = 1e-4) -> None:
         import heyoka as hy
 
-        self.podium, self.landing = podium, Landing(podium)
-        self.dt, self.base = dt, fixed_base_of(podium, dt)
-        self.standing = HeyokaStanding(self.base, tol) if alone else None
+        podium = self.podium = rocking_of(structure)
+        self.dt, self.landing = dt, Landing(podium)
+        self.standing = HeyokaStanding(podium, dt, tol)
         x = hy.make_vars("x")
         self.integrator = hy.taylor_adaptive(
             equations(podium),
@@ -158,12 +284,9 @@ class HeyokaRocking:
         y, z = self.integrator.state, np.zeros(2 * n)
         interval, after = 0, 0.0
         while interval < len(slopes):
-            if self.standing is None:
-                interval, after, side = stand(z, record, interval, after, self.base)
-            else:
-                interval, after, side = self.standing.stand(
-                    z, self._slopes, self._intercepts, interval, after
-                )
+            interval, after, side = self.standing.stand(
+                z, self._slopes, self._intercepts, interval, after
+            )
             if side == 0.0:
                 break
             y[0], y[n + 1] = ASIDE, 0.0

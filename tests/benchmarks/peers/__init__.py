@@ -1,1 +1,0 @@
-"""What others would run: one history by scipy and by heyoka."""
