@@ -14,7 +14,7 @@ from random import Random
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from paper_structures import needs_compiled_kernels, yielding
+from paper_structures import FLAT, building, needs_compiled_kernels, podium, yielding
 from two_components import followed, pair
 
 from hunt.trials import hunt, shares
@@ -26,7 +26,7 @@ from rpscli.analyses.timehistory import denser_trace, time_history
 from rpscli.analyses.trace import Trace
 from rpscli.model.bearing import Bearing
 from rpscli.model.contact import Contact
-from rpscli.model.devices import FrictionDamper, RollingResistance
+from rpscli.model.devices import FrictionDamper, RollingResistance, Stop, Tendon, ViscousDamper
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import Device, PodiumStructure
 from rpscli.model.superstructure import (
@@ -72,7 +72,7 @@ def logarithmic(random: Random, low: float, high: float) -> float:
     return math.exp(random.uniform(math.log(low), math.log(high)))
 
 
-def building(random: Random) -> Superstructure | None:
+def random_building(random: Random) -> Superstructure | None:
     n = random.choice([0, 1, 1, 2, 2, 3, 3, 4, 6, 9, 15, 25, 33, 60])
     if not n:
         return None
@@ -99,7 +99,7 @@ def structure(random: Random) -> PodiumStructure:
     )
     columns = logarithmic(random, 1e3, 1e5)
     return PodiumStructure(
-        bearing, columns, columns * logarithmic(random, 0.3, 30), building(random), law
+        bearing, columns, columns * logarithmic(random, 0.3, 30), random_building(random), law
     )
 
 
@@ -126,6 +126,37 @@ def structure_on_a_bed(random: Random) -> PodiumStructure:
         contact=Contact(kind, damping=damping, **sizes),  # type: ignore[arg-type]
         devices=devices,
     )
+
+
+def device(random: Random, system: PodiumStructure) -> Device:
+    """One that matters, of any kind."""
+    force, width = system.uplift_force, system.bearing.half_width
+    part, choice = random.uniform(0.05, 0.6), random.choice
+    weight = system.weight / system.columns
+    exponent = choice([1.0, 0.2, 0.5, 1.5, 2.0])
+    prestress = 0.2 * part * weight
+    kinds: list[Device] = [
+        ViscousDamper(part * force / 0.3**exponent, exponent),
+        FrictionDamper(2.0 * part * force),
+        Stop(choice([0.0, 0.02, 0.1]), 20.0 * part * force, choice([0.0, part * force])),
+        Tendon(prestress, 4.0 * part * weight / width, choice([math.inf, 2.0 * prestress])),
+        RollingResistance(0.1 * part * width),
+    ]
+    return choice(kinds)
+
+
+def structure_with_devices(random: Random) -> PodiumStructure:
+    """Of a usual size, with one to four devices on six columns."""
+    storeys, rho = random.choice([0, 1, 3, 6]), random.choice([FLAT, 0.3, 0.5, 1.0])
+    law = ImpactLaw(random.choice(["rigid", "flexible"]))
+    above = building(storeys) if storeys else None
+    bare = podium(
+        storeys, random.uniform(0.06, 0.25), rho, R=random.uniform(0.7, 2.0), law=law,
+        superstructure=above,
+    )  # fmt: skip
+    bare = replace(bare, columns=6)
+    devices = tuple(device(random, bare) for _ in range(random.randrange(1, 5)))
+    return replace(bare, devices=devices)
 
 
 def samples(random: Random, peak: float) -> NDArray[np.float64]:
@@ -233,6 +264,9 @@ def judged_history(random: Random, draw: Callable[[Random], PodiumStructure] = s
             time_history(system, record, finer, vertical=vertical, with_fixed_base=False)
         )
     assert error <= RESIDUAL, f"residual {error:.2g}, {here.outcome}"
+    if system.devices:  # each dissipates, or gives back what it took
+        taken = here.trace.devices.energy
+        assert np.all(np.diff(taken, axis=0) >= -1e-9 * max(float(np.max(taken)), 1.0))
     falls = vertical is not None and float(vertical.acceleration.min()) < -system.gravity
     if falls and (system.storeys == 0 or nothing_pushed(record, here)):
         # where nothing pushes, what has no weight uplifts, and nothing says to which side
@@ -386,6 +420,15 @@ def test_histories_that_lost_too_much(seed: str) -> None:
 @pytest.mark.parametrize("part", range(4))
 def test_histories(part: int, long: bool) -> None:
     hunt(f"histories {part}", judged_history, 6, 1000 if long else None)
+
+
+@needs_compiled_kernels
+@shares
+def test_devices(long: bool) -> None:
+    def trial(random: Random) -> str:
+        return judged_history(random, structure_with_devices)
+
+    hunt("devices", trial, 40, 1000 if long else None)
 
 
 @needs_compiled_kernels

@@ -227,16 +227,3 @@ class Equipment:
             if isinstance(device, Tendon):
                 room = (device.yield_force - device.prestress) / device.stiffness
                 self.plastic[k] = max(0.0, e - room)
-
-    def stored(self, x: float, *, rolling: bool) -> float:
-        """Elastic energy of stops and tendons [J], tendons over their slack length."""
-        displacement = self.lagrangian.cap_beam(x, rolling=rolling)[0].real
-        e, _ = self.elongation(x, rolling=rolling)
-        total = 0.0
-        for k, device in enumerate(self.devices):
-            if isinstance(device, Stop):
-                total += 0.5 * device.stiffness * max(0.0, displacement - device.gap) ** 2
-            elif isinstance(device, Tendon):
-                tension = self.tension(k, device, e)
-                total += 0.5 * device.columns * tension**2 / device.stiffness
-        return total

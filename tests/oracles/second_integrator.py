@@ -42,15 +42,11 @@ class OracleResult:
     theta: Array
     drifts: Array
     max_rotation: float
-    max_rotation_at_samples: float
-    max_base_shear_at_samples: float
     max_storey_shears_at_samples: Array
     impacts: int
     uplifts: int
     overturned: bool
     energy_lost: float
-    arrivals: tuple[float, ...]
-    """|theta'| just before each impact."""
     device_work: Array
     """What each device took up [J], in its stiffness or for good."""
     plastic: tuple[float, ...]
@@ -89,9 +85,8 @@ class _Simulation:
         self.stuck, self.direction = False, 1
         self.step = np.inf  # the last free step of DOP853
         self.max_rotation = self.energy_lost = 0.0
-        self.impacts = self.uplifts = self.branches = 0
+        self.impacts = self.uplifts = 0
         self.overturned = False
-        self.arrivals: list[float] = []
 
     def advance(self, ground: LinearGround, duration: float) -> None:
         """Through one interval of the record, however many events it holds."""
@@ -332,7 +327,6 @@ class _Simulation:
             ]
         for change in found:
             equipment.branches[change.device] = change.branch
-            self.branches += 1
 
     def turn(self, ground: LinearGround) -> None:
         """At rest for an instant, or for longer if friction holds what acts otherwise."""
@@ -348,7 +342,6 @@ class _Simulation:
         motion, n1 = self.lagrangian, self.lagrangian.storeys + 1
         before = sum(motion.energies(contact, self.y))
         self.impacts += 1
-        self.arrivals.append(abs(float(self.y[n1])))
         self.equipment.stand()
         self.y = motion.after_impact(self.y)
         beyond = Contact(-contact.side, contact.rolling)
@@ -441,14 +434,11 @@ def simulate(
         theta=history[:, 0],
         drifts=drifts,
         max_rotation=run.max_rotation,
-        max_rotation_at_samples=float(np.max(np.abs(history[:, 0]))),
-        max_base_shear_at_samples=float(shears[0]) if n else 0.0,
         max_storey_shears_at_samples=shears,
         impacts=run.impacts,
         uplifts=run.uplifts,
         overturned=run.overturned,
         energy_lost=run.energy_lost,
-        arrivals=tuple(run.arrivals),
         device_work=run.y[2 * n + 2 :].copy(),
         plastic=tuple(run.equipment.plastic),
     )

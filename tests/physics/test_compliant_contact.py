@@ -406,6 +406,24 @@ def test_under_sustained_upward_acceleration_edges_are_held_where_they_lift(
     assert abs(energy.residual) < 1e-6 * supplied  # over up to three hundred re-entries
 
 
+@needs_compiled_kernels
+def test_landing_beside_the_end_of_a_steep_bed() -> None:
+    """A step that ended there was longer than its error allowed, and two thirds of energy went."""
+    bearing = Bearing(1.5388597138810514, 0.10702607933586131, 0.10702607933586131, 0.0)
+    structure = PodiumStructure(
+        bearing,
+        20000.0,
+        85980.9325461938,
+        None,
+        ImpactLaw(loss=0.23307715435675697),
+        devices=(Stop(0.1, 4707864.741390806, 94157.29482781613),),
+        contact=Contact("plane", stiffness=581030453.4829509, damping=0.26238587675047614),
+    )
+    result = shaken(structure, waves(6.0, 0.01, 1.5086094682829487, 1288))
+    assert len(result.events) > 170
+    assert abs(result.energy.residual) < 2e-6 * result.energy.input
+
+
 @pytest.mark.evidence("compliant ends", "program")
 @needs_compiled_kernels
 @pytest.mark.parametrize(
