@@ -205,13 +205,16 @@ def uplift_time(system: OracleSystem, a_g: Array, dt: float) -> float:
 
 
 def least_tilt(system: OracleSystem, axial: float, tilt: float, turning: float) -> float:
-    """Where free motion of a rigid frame on flat ends, begun so, comes nearest to upright."""
-    motion, mass = StoreyLagrangian(system), system.columns_mass * system.R**2
+    """Where free motion of a rigid frame on flat ends, begun so, comes nearest to upright.
+
+    `axial` is the inertia of all columns about their axes [kg m2].
+    """
+    motion = StoreyLagrangian(system)
 
     def round_inertia(x: float) -> float:
         around = motion.moving_mass * motion.cap_beam(x, rolling=False)[0].real ** 2
-        turned = (system.inertia_ratio - 1.0) * math.sin(x) ** 2
-        return float(around + mass * (turned + axial * (1.0 - math.cos(x)) ** 2))
+        turned = motion.spin_inertia * math.sin(x) ** 2
+        return float(around + turned + axial * (1.0 - math.cos(x)) ** 2)
 
     momentum = round_inertia(tilt) * turning
     frame = RigidFrame(system)

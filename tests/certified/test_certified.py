@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import json
 import math
 import re
@@ -17,16 +16,22 @@ from click.testing import CliRunner
 from oracles import multibody
 from paper_structures import needs_compiled_kernels
 
-from rpscli.analyses.verification import ANSWERS, FOLDER, certified
+from rpscli.analyses.verification import ANSWERS, FOLDER
 from rpscli.case.case import load_case
 from rpscli.cli import program
 from rpscli.model.podium import PodiumStructure
 
-from .make import UNCHANGED, distance
-from .problems import DT, MOTIONS, Change, problems
+from .problems import PROBLEMS, UNCHANGED, Change
 
-NAMES = tuple(problems())
 NUMBER = re.compile(r"(?<![\w.])\d[\d.]*(?:e[+-]\d+)?")
+SAMPLE = "parting_motions"
+"""Whose answers are a distribution."""
+
+
+def distance(a: Sequence[float], b: Sequence[float]) -> float:
+    """Kolmogorov's, by its definition."""
+    one, other = np.array(a), np.array(b)
+    return max(abs(float(np.mean(one <= x)) - float(np.mean(other <= x))) for x in (*a, *b))
 
 
 def given(folder: Path, names: Iterable[str], change: Change) -> Path:
@@ -34,9 +39,11 @@ def given(folder: Path, names: Iterable[str], change: Change) -> Path:
     file = folder / "given.csv"
     rows = ["problem,quantity,value"]
     for name in names:
-        problem = problems()[name]
-        quantities = [*problem.units] * max(problem.members, 1)
-        for quantity, value in zip(quantities, problem.second(change), strict=True):
+        found = PROBLEMS[name].second(change)
+        quantities = [*PROBLEMS[name].asked]
+        if name == SAMPLE:
+            quantities *= len(found)
+        for quantity, value in zip(quantities, found, strict=True):
             if not math.isnan(value):  # impacts that take nothing are fewer
                 rows.append(f"{name},{quantity},{float(value)!r}")
     file.write_text("\n".join(rows))
@@ -53,12 +60,12 @@ def scored(file: Path, *options: str) -> tuple[int, dict[str, Any]]:
 @needs_compiled_kernels
 def test_the_program_has_nearly_all_digits_that_are_certified(tmp_path: Path) -> None:
     """All but the last: weights of the step's rule of up to 176 multiply rounding."""
-    code, document = scored(given(tmp_path, NAMES, UNCHANGED), "--digits", "9")
+    code, document = scored(given(tmp_path, PROBLEMS, UNCHANGED), "--digits", "9")
     assert code == 0
     for line in document["comparisons"]:
         assert line["digits"] is None or line["digits"] > min(11, line["certified_digits"] - 0.1)
     assert document["not_answered"] == []
-    assert document["compared"] == sum(len(problem.units) for problem in problems().values())
+    assert document["compared"] == sum(len(problem.asked) for problem in PROBLEMS.values())
     short = [line for line in document["comparisons"] if line["certified_digits"] < 12]
     assert {line["group"] for line in short} == {"plane_joints", "edges", "parting_motions"}
 
@@ -152,28 +159,51 @@ def test_a_stranger_finds_all_there_is(tmp_path: Path) -> None:
     lines = (folder / ANSWERS).read_text(encoding="utf-8").splitlines()
     assert all(line.endswith(",") for line in lines[1:])
     asked = [tuple(line.split(",")[:2]) for line in lines[1:]]
-    assert asked == [(name, q) for name in NAMES for q in problems()[name].units]
-    known = certified()
-    for name in NAMES:
-        assert f"]({name}.md) | {len(problems()[name].units)} |" in listed
+    assert asked == [(name, q) for name in PROBLEMS for q in PROBLEMS[name].asked]
+    for name, problem in PROBLEMS.items():
+        assert f"]({name}.md) | {len(problem.asked)} |" in listed
         page = (folder / f"{name}.md").read_text(encoding="utf-8")
-        table = problems()[name].podium.table().splitlines()
-        for line, told in zip(table, page[page.index("| | |") :].splitlines(), strict=False):
-            assert NUMBER.split(line) == NUMBER.split(told)
-            # eigenvalues differ by rounding between machines
-            numbers = ([float(z) for z in NUMBER.findall(text)] for text in (line, told))
-            assert next(numbers) == pytest.approx(next(numbers), rel=1e-13)
         assert load_case(folder / f"{name}.yaml").title == page.splitlines()[0].removeprefix("# ")
-        for quantity, unit in problems()[name].units.items():
-            if not problems()[name].members:
-                _, digits, (value,) = known[name, quantity]
+        for quantity, (unit, digits, (value, *_)) in problem.asked.items():
+            if name != SAMPLE:
                 assert f"| {quantity} [{unit}] | {value:.{digits + 1}g} | {digits} |" in page
 
 
-def shipped_answers(name: str) -> Sequence[tuple[float, int]]:
-    with (FOLDER / ANSWERS).open(encoding="utf-8", newline="") as file:
-        rows = [row for row in csv.DictReader(file) if row["problem"] == name]
-    return [(float(row["value"]), int(row["digits"])) for row in rows]
+@pytest.mark.parametrize("name", PROBLEMS)
+def test_a_page_says_the_numbers_of_its_case(name: str) -> None:
+    page = (FOLDER / f"{name}.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| (.*?) \| (.*) \|$", page[page.index("| | |") :], re.MULTILINE)
+    told = {head.partition("`")[0].strip(" ,"): cell for head, cell in rows}
+
+    def numbers(row: str) -> list[float]:
+        return [float(z) for z in NUMBER.findall(told[row])]
+
+    structure = PROBLEMS[name].structure
+    bearing, above = structure.bearing, structure.superstructure
+    assert bearing.inertia_ratio == 4.0 / 3.0
+    expected = {
+        "slenderness of the flat part": [bearing.slenderness],
+        "semi-diagonal": [bearing.semi_diagonal],
+        "mass of all columns": [structure.columns_mass],
+        "inertia of a column about an edge of its flat part, over its mass and": [4.0, 3.0],
+    }
+    if bearing.curvature_ratio:
+        expected["radius of the arcs over the height"] = [bearing.curvature_ratio]
+        expected["slenderness to the arcs' outer edge"] = [bearing.wedge_slenderness]
+    if structure.cap_beam_mass:
+        expected["mass of the cap beam"] = [structure.cap_beam_mass]
+    if bearing.slenderness:
+        expected["tilt rate after an impact over that before"] = [structure.restitution]
+    if above:
+        expected["floors, from the bottom"] = above.masses.tolist()
+        expected["storey stiffness"] = above.stiffnesses.tolist()
+        (row,) = (row for row in told if row.startswith("damping,"))
+        # a_0 only where there are two modes
+        *a_0, a_1 = (float(z) for z in re.findall(r"= (\S+)", told[row]))
+        C = sum(a_0) * above.mass_matrix + a_1 * above.stiffness_matrix
+        np.testing.assert_allclose(above.damping_matrix, C, rtol=0.0, atol=1e-12 * C.max())
+    for row, values in expected.items():
+        assert numbers(row) == pytest.approx(values, rel=1e-13), row
 
 
 @pytest.mark.long
@@ -189,20 +219,16 @@ def shipped_answers(name: str) -> Sequence[tuple[float, int]]:
 @pytest.mark.evidence("devices", "exact")
 @pytest.mark.evidence("modes", "exact")
 @pytest.mark.evidence("pushover", "exact")
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", PROBLEMS)
 def test_both_roads_lead_to_the_certified_numbers(name: str) -> None:
-    problem, answers = problems()[name], shipped_answers(name)
-    first, second = (
-        [float(z) for z in road] for road in (problem.first(), problem.second(UNCHANGED))
-    )
-    if problem.members:
-        values = np.array([value for value, _ in answers])
-        # 0.23 would part samples of a hundred; the first road is where they come from
-        assert distance(values, np.array(first)) < 0.2
-        assert distance(values, np.array(second)) < 0.2
-        return
-    for road in (first, second):
-        for found, (value, digits) in zip(road, answers, strict=True):
+    problem = PROBLEMS[name]
+    for road in (problem.first(), problem.second(UNCHANGED)):
+        if name == SAMPLE:
+            # 0.23 would part samples of a hundred; the first road is where they come from
+            ((_, _, sample),) = problem.asked.values()
+            assert distance(sample, road) < 0.2
+            continue
+        for found, (_, digits, (value,)) in zip(road, problem.asked.values(), strict=True):
             # Half of the last digit that is written, one of those that are certified; weights of
             # the kernel's rule, of up to 176, multiply its rounding: 9.9e-12 in one number.
             assert abs(found / value - 1.0) < max(1.5 * 10.0**-digits, 1e-11)
@@ -214,8 +240,8 @@ def test_both_roads_lead_to_the_certified_numbers(name: str) -> None:
 def test_bodies_in_contact_score_as_well(name: str, tmp_path: Path) -> None:
     """They know no impact law, and touch within 0.1 ms: 2.4 to 5.0 digits, 3.7 in the mean."""
     pytest.importorskip("mujoco", reason="no physics engine: pip install rpscli[contact]")
-    podium, rows = problems()[name].podium, ["problem,quantity,value"]
-    found = multibody.simulate(podium.oracle(), MOTIONS["x"], DT, 3.0)
+    problem, rows = PROBLEMS[name], ["problem,quantity,value"]
+    found = multibody.simulate(problem.system, problem.ground, problem.dt, 3.0)
     for t in (1.0, 2.0, 3.0):
         i = int(np.searchsorted(found.time, t - 1e-9))
         rows.append(f"{name},tilt at {t:g} s,{found.rotation[i]}")
