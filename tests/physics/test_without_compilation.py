@@ -71,8 +71,6 @@ STRUCTURES = [
     ),
 ]
 REQUESTS = [
-    Request(2, 0),
-    Request(0, 0),
     Request(0, 2),
     Request(1, 0, scale=0.25),
     Request(0, 1, scale=0.35),
@@ -91,38 +89,39 @@ def integrated(requests: list[Request], lanes: int, rows: int = 0) -> Run:
     return run
 
 
-def demands_of_all(lanes: int) -> list[dict[str, Any]]:
+def demands_of_all(run: Run) -> list[dict[str, Any]]:
     """What every history leaves behind."""
     return [
         {name: np.ravel(result[name]).tolist() for name in result.dtype.names}
-        for result in integrated(REQUESTS, lanes).results
+        for result in run.results
     ]
 
 
 def sampled_history() -> dict[str, Any]:
-    """The first one, with devices, with its samples and events."""
-    run = integrated(REQUESTS[:1], lanes=1, rows=ROWS)
+    """One with devices, with its samples and events."""
+    run = integrated([Request(2, 0)], lanes=1, rows=ROWS)
     kept = int(run.results.intervals[0]) + 1
     samples, log = run.output.samples[:kept], run.output.log[: int(run.results.events[0].sum())]
     found = {f"sampled {name}": samples[name].tolist() for name in samples.dtype.names}
     found |= {f"event {name}": log[name].tolist() for name in log.dtype.names}
+    found |= demands_of_all(run)[0]
     count = len(STRUCTURES[-1].devices)
     found |= {"devices": run.output.devices[:kept, :, :count].ravel().tolist()}
     return found | {"floors": run.output.floors[:kept].ravel().tolist()}
 
 
 def everything(lanes: int = 3) -> Histories:
-    """The same histories one after the other and side by side, and the sampled one.
+    """Histories side by side, and the sampled one.
 
     Python takes its time for each lane: with few of them, they take several histories each.
     """
-    one, several = demands_of_all(1), demands_of_all(lanes)
-    return {"one": one, "several": several, "sampled": [sampled_history()]}
+    several = demands_of_all(integrated(REQUESTS, lanes))
+    return {"several": several, "sampled": [sampled_history()]}
 
 
 def digest_of_a_pair() -> str:
     """Of a storey that uplifts under two pulses, and passes near upright; samples included."""
-    x, y = two_pulses()[:, 80:190]
+    x, y = two_pulses()[:, 80:106]
     x[0] = y[0] = 0.0
     structure = frame(1, 1.0, tan_wedge=0.3, rho=0.5, contact_time=2e-3)
     history = followed(structure, pair(x, y, 0.01))
@@ -151,7 +150,7 @@ def interpreted() -> Histories:
 
 
 @needs_compiled_kernels
-@pytest.mark.parametrize("kind", ["one", "several", "sampled"])
+@pytest.mark.parametrize("kind", ["several", "sampled"])
 def test_python_and_machine_code_agree(interpreted: Histories, kind: str) -> None:
     """Machine code in as many lanes as it has, Python in few."""
     compiled = everything(LANES)[kind]
@@ -162,20 +161,13 @@ def test_python_and_machine_code_agree(interpreted: Histories, kind: str) -> Non
             np.testing.assert_array_equal(slow[name], values, err_msg=name)
 
 
-def test_lanes_side_by_side_give_the_bits_of_one_without_compilation(
-    interpreted: Histories,
-) -> None:
-    assert json.dumps(interpreted["one"]) == json.dumps(interpreted["several"])
-
-
 def test_the_histories_compared_are_not_trivial(interpreted: Histories) -> None:
-    events = np.array([found["events"] for found in interpreted["one"]])
+    events = np.array([found["events"] for found in interpreted["several"]])
     assert np.count_nonzero(events[:, UPLIFT]) >= 4
-    assert np.count_nonzero(events[:, IMPACT]) >= 4
-    assert events[:, IMPACT].sum() >= 10
+    assert events[:, IMPACT].sum() >= 9
     assert events[:, RECONTACT].any()
     for kind in (STICKING, SLIDING, STOP_MET, STOP_LEFT, TENDON_YIELDING):
-        assert events[0, kind] > 0
+        assert interpreted["sampled"][0]["events"][kind] > 0
     assert not events[-1].any()  # one stays in full contact
 
 
