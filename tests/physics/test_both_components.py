@@ -252,6 +252,12 @@ def test_one_component_is_the_planar_program_with_devices(kind: str) -> None:
     left, other = history.left, planar.history
     for name in ("device_force", "device_velocity", "device_energy", "permanent"):
         assert left[name][0] == pytest.approx(other[name][0], rel=1e-4, abs=1e-12), name
+    forces = (
+        np.abs(time_history(structure, motion, fine(), with_fixed_base=False).trace.devices.force)
+        for motion in (pair(x, 0.0 * x, STEP), MotionComponents(ground(x, STEP)))
+    )
+    one, other_one = (force[:until] for force in forces)
+    assert np.max(np.abs(one - other_one)) < 1e-4 * np.max(one)
     if kind != "no gap":  # whose last, smallest swings differ
         for event in (STOP_MET, STOP_LEFT, TENDON_YIELDING):
             assert left.events[event] == other.events[event]

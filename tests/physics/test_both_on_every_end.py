@@ -20,7 +20,6 @@ from paper_structures import Array, RecordLoader, ground, needs_compiled_kernels
 from two_components import History, followed, frame, pair, released, two_pulses
 
 import rpscli
-from rpscli.analyses.demand import Request, demands
 from rpscli.analyses.kernels.history import SampledHistory, sampled_history
 from rpscli.analyses.kernels.systems import stacked_systems
 from rpscli.analyses.settings import TimeHistorySettings
@@ -198,7 +197,7 @@ def test_one_component_is_the_planar_program(end: str, kind: str) -> None:
 @pytest.mark.evidence("both components", "exact")
 @pytest.mark.parametrize(("end", "kind"), CELLS)
 def test_no_axis_is_special(end: str, kind: str) -> None:
-    """Turned by any angle, the pair turns the result; mirrored, it mirrors it to the last bit."""
+    """Turned by any angle, the pair turns the result."""
     x, y = two_pulses()
     structure = structure_of(end, kind)
     turn = np.exp(0.64j)
@@ -207,27 +206,6 @@ def test_no_axis_is_special(end: str, kind: str) -> None:
     other = followed(structure, pair(turned.real, turned.imag, STEP), short(2.0))
     assert np.max(np.abs(turn * one.tilt - other.tilt)) < 1e-8 * one.left.max_theta
     assert other.left.max_theta == pytest.approx(one.left.max_theta, rel=1e-9)
-    mirrored = followed(structure, pair(-x, y, STEP), short(2.0))
-    assert np.array_equal(mirrored.samples.beam, one.samples.beam * [-1.0, 1.0])
-    assert abs(one.residual) < 1e-6
-
-
-@needs_compiled_kernels
-@pytest.mark.parametrize("vertical", [False, True])
-@pytest.mark.parametrize("end", ENDS)
-def test_alone_and_in_company(end: str, vertical: bool) -> None:
-    """The same bits, whatever goes on in other lanes."""
-    x, y = two_pulses()
-    up = 0.5 * (x + y) if vertical else None
-    settings = TimeHistorySettings(free_vibration=2.0)
-    requests = [
-        Request(structure_of(end, kind), pair(factor * x, y, STEP, up), settings)
-        for kind in ("", "friction")
-        for factor in np.linspace(0.2, 1.2, 12)
-    ]
-    together, alone = demands(requests), demands(requests, worth_lanes=1000)
-    for one, other in zip(together, alone, strict=True):
-        assert one.history.tobytes() == other.history.tobytes()
 
 
 @needs_compiled_kernels

@@ -21,7 +21,7 @@ from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.model.bearing import Bearing
 from rpscli.model.contact import Contact
-from rpscli.model.devices import FrictionDamper, Stop, ViscousDamper
+from rpscli.model.devices import Stop
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import Device, PodiumStructure
 from rpscli.model.superstructure import (
@@ -31,7 +31,6 @@ from rpscli.model.superstructure import (
     Superstructure,
     profile_stiffnesses,
 )
-from rpscli.physics.state import BEDDED
 from rpscli.records.ground_motion import GroundMotion, MotionComponents
 
 UNDAMPED = ModalDamping(0.0)
@@ -221,56 +220,6 @@ def test_a_sine_sweep_is_that_of_the_modes() -> None:
     _, _, states = lsim((A, b, np.eye(8), np.zeros((8, 1))), motion.acceleration, time)
     floors = found.trace.floor_displacements
     np.testing.assert_allclose(floors, states[:, 1:4], atol=1e-8 * np.abs(floors).max())
-
-
-def mirrored(motion: GroundMotion) -> GroundMotion:
-    return ground(-motion.acceleration, motion.dt)
-
-
-DEVICES: list[tuple[Device, ...]] = [
-    (),
-    (FrictionDamper(3e4),),
-    (ViscousDamper(2e5), Stop(0.02, 1e7, 1e5)),
-]
-
-
-@needs_compiled_kernels
-@pytest.mark.parametrize("devices", DEVICES)
-@pytest.mark.parametrize("rho", [0.0, RHO])
-def test_audit_mirror_image_and_company(devices: tuple[Device, ...], rho: float) -> None:
-    motion = waves(6.0, 0.01, 3.0, seed=2)
-    contact = Contact("plane", stiffness=6e7)
-    structure = podium(3, contact, loss=0.3, rho=rho, devices=devices)
-    one, other = (shaken(structure, m) for m in (motion, mirrored(motion)))
-    assert one.uplifts > 2
-    assert abs(one.energy.residual) < 1e-6 * one.energy.input
-    np.testing.assert_array_equal(one.trace.rotation, -other.trace.rotation)
-    assert one.scalars() == other.scalars()
-    together = demands([Request(structure, MotionComponents(motion))] * 9)
-    assert {d.max_rotation for d in together} == {one.max_rotation}
-    assert {d.max_base_shear for d in together} == {one.max_base_shear}
-
-
-@needs_compiled_kernels
-@pytest.mark.parametrize("amplitude", [0.3, 4.0])
-def test_nothing_comes_after_the_end(amplitude: float) -> None:
-    motion = waves(5.0, 0.01, amplitude, seed=7)
-    structure = podium(3, Contact("plane", period_ratio=1.2), loss=0.3)
-    short, long = (shaken(structure, motion, **how) for how in ({}, {"free_vibration": 60.0}))
-    assert short.duration < long.duration
-    assert short.history["phase"] == BEDDED
-    for name in ("max_rotation", "max_base_shear", "max_floor_acceleration"):
-        assert getattr(short, name) == getattr(long, name)
-    np.testing.assert_array_equal(short.storey_shears, long.storey_shears)
-
-
-@pytest.mark.evidence("compliant ends", "exact")
-@needs_compiled_kernels
-def test_the_residual_falls_with_the_order_of_the_steps() -> None:
-    motion = waves(4.0, 0.02, 3.0, seed=5)
-    structure = podium(3, Contact("edges", period_ratio=1.2), loss=1.0)
-    coarse, fine = (abs(shaken(structure, motion, accuracy=a).energy.residual) for a in (0.5, 1.0))
-    assert coarse > 2**6 * fine
 
 
 def slope(f: Array, x: Array) -> Array:

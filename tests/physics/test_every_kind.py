@@ -1,0 +1,125 @@
+"""Every kind of end, device and floor, in a plane and in space: lanes, mirror, energy, the end."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from paper_structures import ground, known, needs_compiled_kernels, waves, yielding
+from two_components import frame
+
+from rpscli.analyses.demand import Request, demands
+from rpscli.analyses.settings import TimeHistorySettings
+from rpscli.analyses.timehistory import time_history
+from rpscli.model.contact import Contact
+from rpscli.model.devices import FrictionDamper, RollingResistance, Stop, Tendon, ViscousDamper
+from rpscli.model.podium import Device, PodiumStructure
+from rpscli.records.ground_motion import MotionComponents
+
+pytestmark = needs_compiled_kernels
+
+ARCS: dict[str, Any] = {"tan_wedge": 0.3, "rho": 0.5}
+SPHERICAL: dict[str, Any] = {"tan_alpha": 0.0, "tan_wedge": 0.3, "rho": 0.8}
+SOFT, EDGES = (Contact(kind, period_ratio=1.2) for kind in ("plane", "edges"))
+W = frame(3, 3.0).weight
+FRICTION, ROLLING = FrictionDamper(0.02 * W), RollingResistance(0.02)
+
+
+def usual(*devices: Device, **options: Any) -> PodiumStructure:
+    return frame(3, 3.0, contact_time=2e-3, devices=devices, **options)
+
+
+def of_its_own(*, sprung: bool, yields: bool) -> PodiumStructure:
+    """With floors on vertical springs, that yield, or both."""
+    plain = usual(**ARCS)
+    above = replace(known(plain.superstructure), vertical_period=0.1 if sprung else None)
+    if yields:
+        above = yielding(above, 1.3 * plain.static_base_shear)
+    return replace(plain, superstructure=above)
+
+
+KINDS: dict[str, PodiumStructure] = {
+    "flat": usual(),
+    "arcs": usual(**ARCS),
+    "viscous": usual(ViscousDamper(0.2 * W, 0.5), **ARCS),
+    "friction": usual(FRICTION, **ARCS),
+    "stop": usual(Stop(0.05, 20.0 * W, 2.0 * W), **ARCS),
+    "tendon": usual(Tendon(0.05 * W, 3.0 * W, 0.11 * W), **ARCS),
+    "rolling": usual(ROLLING, **ARCS),
+    "plane": usual(contact=SOFT, loss=0.3),
+    "plane arcs, friction": usual(FRICTION, contact=SOFT, loss=0.3, **ARCS),
+    "edges": usual(contact=EDGES),
+    "edges arcs, stop": usual(
+        Stop(0.02, 5.0 * W, 0.1 * W), ViscousDamper(0.1 * W), contact=EDGES, **ARCS
+    ),
+    "spherical": usual(**SPHERICAL),
+    "spherical, friction": usual(FRICTION, ROLLING, **SPHERICAL),
+    "springs": of_its_own(sprung=True, yields=False),
+    "yields": of_its_own(sprung=False, yields=True),
+    "both": of_its_own(sprung=True, yields=True),
+}
+
+
+def shaken(seed: int, *, pairs: bool, sign: float = 1.0) -> MotionComponents:
+    """Eight seconds that lift the columns, with a vertical motion."""
+    x, y, up = (
+        ground(factor * waves(8.0, 0.01, 3.0, seed + i).acceleration, 0.01)
+        for i, factor in enumerate((sign, sign, 0.3))
+    )
+    return MotionComponents(x, y=y if pairs else None, vertical=up)
+
+
+of_kinds = pytest.mark.parametrize("kind", KINDS)
+in_planes = pytest.mark.parametrize("pairs", [False, True], ids=["plane", "pair"])
+MIRRORED = (
+    "max_theta", "storey_shear", "floor_acceleration", "heavy_top", "normal_top", "friction_top",
+    "ductility", "yielded", "energy_input", "energy_damped", "energy_lost", "bed_energy",
+    "device_energy", "device_force", "events",
+)  # fmt: skip
+
+
+@of_kinds
+@in_planes
+def test_mirrored_and_in_company(kind: str, pairs: bool) -> None:
+    """Bit for bit: a mirrored motion, and a history among others in lanes."""
+    motions = [shaken(3 * seed, pairs=pairs) for seed in range(12)]
+    motions[7] = shaken(12, pairs=pairs, sign=-1.0)
+    found = demands([Request(KINDS[kind], motion) for motion in motions])
+    assert len({each.max_rotation for each in found}) > 3  # some overturn
+    for i in (4, 7):
+        (alone,) = demands([Request(KINDS[kind], motions[i])], worth_lanes=1000)
+        assert alone.history.tobytes() == found[i].history.tobytes()
+    one, other = found[4].history, found[7].history
+    for name in MIRRORED:
+        assert np.array_equal(one[name], other[name]), name
+    assert np.array_equal(one["slip"], -other["slip"])
+
+
+@of_kinds
+@in_planes
+@pytest.mark.evidence("steps, events, energy", "exact")
+def test_energy_is_booked_whole(kind: str, pairs: bool) -> None:
+    """To the accuracy of the rule, and by its order better with half the step."""
+    residuals = []
+    for accuracy in (1.0, 2.0):
+        settings = TimeHistorySettings(free_vibration=1.0, accuracy=accuracy)
+        motion = shaken(5, pairs=pairs)
+        result = time_history(KINDS[kind], motion, settings, with_fixed_base=False)
+        residuals.append(abs(result.energy.residual / result.energy.input))
+        assert result.history["max_theta"] > 0.01
+    assert residuals[0] < 1e-6
+    assert residuals[1] < max(residuals[0] / 20.0, 1e-9)
+
+
+@of_kinds
+def test_nothing_new_comes_after_the_end(kind: str) -> None:
+    motion, structure = shaken(8, pairs=False), KINDS[kind]
+    auto = time_history(structure, motion, with_fixed_base=False).history
+    assert auto["time"] < 60.0
+    long = TimeHistorySettings(free_vibration=auto["time"] + 60.0 - 8.0)
+    longer = time_history(structure, motion, long, with_fixed_base=False).history
+    for name in ("max_theta", "storey_shear", "floor_acceleration", "heavy_top", "normal_top"):
+        assert np.array_equal(auto[name], longer[name]), name
+    assert np.array_equal(auto["slip"], longer["slip"])
