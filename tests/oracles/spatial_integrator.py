@@ -50,7 +50,6 @@ class SpatialSimulation:
         recontact: float = 1e-6,
         rtol: float = 1e-11,
         limit: float = 2.0,
-        tip: float = TIP,
         integrated_spin: bool = False,
         begins_at: float | None = None,
         devices: tuple[OracleDevice, ...] = (),
@@ -64,7 +63,7 @@ class SpatialSimulation:
         self.devices = self.motion.devices = SpatialDevices(plane, devices)
         self.fixed = [FullContact(type(plane)(way)) for way in (along_x, along_y)]
         self.alpha = math.atan(along_x.tan_alpha)
-        self.contact_time, self.rtol, self.tip = contact_time, rtol, tip
+        self.contact_time, self.rtol = contact_time, rtol
         self.negligible = recontact * self.alpha
         self.limit = limit * plane.critical_rotation
         self.restitution = type(plane)(replace(along_x, law="flexible")).restitution
@@ -79,7 +78,6 @@ class SpatialSimulation:
         self.step = np.inf
         self.uplifts: list[tuple[float, float]] = []
         self.passes: list[Passed] = []
-        self.rests: list[float] = []
 
     @property
     def half(self) -> int:
@@ -228,7 +226,7 @@ class SpatialSimulation:
             curve = through_nodes(float(first[0]), theta)
             pieces = monotone_pieces(curve)
             noise = 1e-12 * float(np.sum(np.abs(curve[1:])))
-            levels = [("limit", self.limit, 1), ("tip", self.tip, -1)]
+            levels = [("limit", self.limit, 1), ("tip", TIP, -1)]
             if beta > 0.0:
                 levels.append(("phase", beta, 1 if self.rolling else -1))
             events: list[tuple[float, str]] = []
@@ -266,7 +264,7 @@ class SpatialSimulation:
 
     def miss(self, kind: str, y: Array) -> float:
         theta, moving = self.curves(y)
-        level = {"limit": self.limit, "tip": self.tip, "phase": self.plane.beta}
+        level = {"limit": self.limit, "tip": TIP, "phase": self.plane.beta}
         return float(moving if kind in ("pass", "turn") else theta - level[kind])
 
     def meet(
@@ -336,7 +334,7 @@ class SpatialSimulation:
         # exactly tangential: the next step shall not find this approach again
         self.y[half : half + 2] = around / tilt * np.array([-self.y[1], self.y[0]])
         self.turn(-math.copysign(share * self.spare_turn(), around), scale)
-        self.come_down(ground, slope, tilt, self.going_round * (scale * around) ** 2, time)
+        self.come_down(ground, slope, tilt, self.going_round * (scale * around) ** 2)
         lost = before - self.motion.energy(self.y, rolling=self.rolling)
         self.passes.append(Passed(time, tilt, share, lost))
 
@@ -365,13 +363,11 @@ class SpatialSimulation:
         out = matrix @ outwards
         self.y[:2] = tilt * out
         self.y[half : half + 2] = scale * (-radial * out + around * np.array([-out[1], out[0]]))
-        self.come_down(ground, slope, near, self.falling * (scale * speed) ** 2, time)
+        self.come_down(ground, slope, near, self.falling * (scale * speed) ** 2)
         lost = before - self.motion.energy(self.y, rolling=self.rolling)
         self.passes.append(Passed(time, near, share, lost))
 
-    def come_down(
-        self, ground: Array, slope: Array, tilt: float, twice_energy: float, time: float
-    ) -> None:
+    def come_down(self, ground: Array, slope: Array, tilt: float, twice_energy: float) -> None:
         """Full contact if neither this pass nor the next swing would be seen."""
         push_x, push_y, hold = self.margin(ground, slope, 1.0)
         spare = hold[0] - math.hypot(push_x[0], push_y[0])
@@ -379,7 +375,6 @@ class SpatialSimulation:
         if max(tilt, height) < self.negligible:
             self.y[:2] = self.y[self.half : self.half + 2] = 0.0
             self.standing = True
-            self.rests.append(time)
 
     def advance(self, ground: Array, slope: Array, duration: float) -> None:
         """Through one interval in which the ground is linear."""

@@ -9,13 +9,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from paper_structures import RecordLoader, known
+from two_components import part_of_pair
 
 from .crossings import Array
 from .multibody_spatial import inertia_ratios, simulate
 from .reference_systems import GRAVITY, pulse, uniform_podium
 from .spatial_integrator import SpatialSimulation, simulate_pair
 from .storey_lagrangian import OracleSystem
-from .test_spatial import recorded_pair
 
 pytest.importorskip(
     "mujoco", reason="the physics engine is not installed: pip install rpscli[contact]"
@@ -70,10 +71,12 @@ def test_two_pulses(building: str) -> None:
 
 
 @pytest.mark.parametrize(("pair", "start"), [(1, 2.0), (7, 3.0), (8, 9.0)])
-def test_recorded_pairs(pair: int, start: float) -> None:
+def test_recorded_pairs(pair: int, start: float, fema_record: RecordLoader) -> None:
     """Three storeys without damping, until small differences have grown."""
     row = {"pair": pair, "t0": start, "T": 6.0, "scale": 1.0}
-    ground, dt = recorded_pair(row)
+    motion = part_of_pair(row, fema_record)
+    x, y, dt = motion.horizontal, known(motion.y), motion.horizontal.dt
+    ground = np.array([x.acceleration, y.acceleration, np.zeros(x.npts)])
     gap, run = differences(structure(3), structure(3), ground, dt, 6.0)
     assert run.uplifts
     assert np.sqrt(np.mean(gap**2)) < 1e-3
