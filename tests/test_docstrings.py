@@ -105,24 +105,6 @@ def parsed(file: Path) -> ast.Module:
     return ast.parse(file.read_text(encoding="utf-8"))
 
 
-@pytest.mark.parametrize(
-    ("source", "missing"),
-    [
-        ("def f(self, a, *, b):\n 'F.'", {"a", "b"}),
-        ("def f(a):\n 'F.'", set()),
-        ("def f(a, b):\n '''F.\n\n Parameters\n ----------\n a\n     A [m].\n '''", {"b"}),
-        ("def f(a, b):\n '''F.\n\n Parameters\n ----------\n a, b : int\n     Two.\n '''", set()),
-        ("def f(a, b):\n '''F.\n\n Parameters\n ----------\n a\n b\n     B.\n '''", {"a"}),
-        ("def f(a, b):\n '''F.\n\n Returns\n -------\n a\n     A.\n b\n     B.\n '''", {"a", "b"}),
-        ("class C:\n 'C.'\n a: int\n 'One.'\n b: int", {"b"}),
-        ("class C:\n 'C.'\n a: int", set()),
-    ],
-)
-def test_what_is_missing_is_found(source: str, missing: set[str]) -> None:
-    (node,) = public(ast.parse(source).body)
-    assert unexplained(node, set()) == missing
-
-
 def public_nodes() -> Iterator[tuple[str, ast.FunctionDef | ast.ClassDef, set[str]]]:
     """What `import rpscli` offers, with its modules.
 

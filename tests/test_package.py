@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ast
 import re
 import runpy
 import subprocess
@@ -15,7 +14,7 @@ from typing import Any
 
 import pytest
 import yaml
-from evidence import DOCUMENT, marks, with_table
+from evidence import DOCUMENT, with_table
 
 from rpscli.version import VERSION
 
@@ -103,14 +102,3 @@ def test_links_of_the_readme_lead_to_the_repository(monkeypatch: pytest.MonkeyPa
 def test_the_table_is_what_the_marks_say() -> None:
     text = DOCUMENT.read_text(encoding="utf-8")
     assert with_table(text) == text, "write it again: cd tests; python -m evidence"
-
-
-@pytest.mark.parametrize("words", ["'device', 'exact'", "'devices', 'sure'"])
-def test_a_mark_has_known_words(words: str) -> None:
-    with pytest.raises(ValueError, match=r"add it to tests/evidence\.py"):
-        list(marks(ast.parse(f"pytest.mark.evidence({words})")))
-
-
-def test_marks_count_by_test_or_for_all_of_a_module() -> None:
-    tree = ast.parse("@pytest.mark.evidence('modes', 'exact')\ndef test_one(): ...")
-    assert list(marks(tree)) == [("modes", "exact")]

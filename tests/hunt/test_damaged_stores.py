@@ -124,7 +124,7 @@ def test_damaged_stores(long: bool) -> None:
         assert Path("copy/points.csv").read_bytes() == table
         return "--fresh"
 
-    hunt("damaged stores", trial, 12, 100 if long else None)
+    hunt("damaged stores", trial, 6, 100 if long else None)
 
 
 @needs_compiled_kernels
@@ -153,4 +153,4 @@ def test_killed_studies(long: bool) -> None:
         assert Path("hasty/points.csv").read_bytes() == table
         return f"{kills} killed, {'some' if stored else 'none'} stored"
 
-    hunt("killed studies", trial, 2, 160 if long else None)
+    hunt("killed studies", trial, 1, 160 if long else None)

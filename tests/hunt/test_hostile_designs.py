@@ -52,7 +52,7 @@ def test_designs(long: bool) -> None:
         Path("design.yaml").write_text(mutated(DESIGN, random), encoding="utf-8", errors="replace")
         return judged("design", "design.yaml", "--dry-run", places=("design.yaml", ".yaml:"))
 
-    hunt("designs", trial, 12, 1200 if long else None)
+    hunt("designs", trial, 6, 1200 if long else None)
 
 
 @shares
@@ -65,7 +65,7 @@ def test_values_of_designs(long: bool) -> None:
         change = f"{random.choice([*DESIGN_KEYS, *CASE_KEYS])}={random.choice([*values, *sums])}"
         return judged("design", "design.yaml", "--dry-run", "--set", change)
 
-    hunt("values of designs", trial, 12, 800 if long else None)
+    hunt("values of designs", trial, 6, 800 if long else None)
 
 
 @pytest.mark.parametrize(
@@ -197,7 +197,7 @@ def test_drawings_of_bearings(long: bool) -> None:
             assert all(Path("drawn", f"bearing.{each}").is_file() for each in formats.split(","))
         return end
 
-    hunt("drawings", trial, 8, 300 if long else None)
+    hunt("drawings", trial, 4, 300 if long else None)
 
 
 def test_styles_are_files(tmp_path: Path) -> None:
@@ -253,7 +253,7 @@ def test_options_of_reports(stored: Path, long: bool) -> None:
         change = f"reports=[{{{kind}: {{{options}}}}}]"
         return judged("sweep", str(stored / "study.yaml"), "--set", change, *place)
 
-    hunt("options of reports", trial, 6, 1000 if long else None)
+    hunt("options of reports", trial, 3, 1000 if long else None)
 
 
 @shares

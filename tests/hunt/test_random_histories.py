@@ -419,7 +419,7 @@ def test_histories_that_lost_too_much(seed: str) -> None:
 @shares
 @pytest.mark.parametrize("part", range(4))
 def test_histories(part: int, long: bool) -> None:
-    hunt(f"histories {part}", judged_history, 6, 1000 if long else None)
+    hunt(f"histories {part}", judged_history, 3, 1000 if long else None)
 
 
 @needs_compiled_kernels
@@ -428,7 +428,7 @@ def test_devices(long: bool) -> None:
     def trial(random: Random) -> str:
         return judged_history(random, structure_with_devices)
 
-    hunt("devices", trial, 40, 1000 if long else None)
+    hunt("devices", trial, 30, 1000 if long else None)
 
 
 @needs_compiled_kernels

@@ -181,20 +181,6 @@ def test_both_roads_with_devices(names: str) -> None:
     assert ("tendon_slack" in kinds) >= ("loose" in names)
 
 
-@pytest.mark.evidence("devices", "program")
-@pytest.mark.parametrize(
-    "names",
-    [names if "," in names else pytest.param(names, marks=pytest.mark.long) for names in EQUIPPED],
-)
-def test_both_roads_with_devices_under_a_piece_of_an_earthquake(
-    names: str, fema_record: RecordLoader
-) -> None:
-    bare, _ = EQUIPPED[names]
-    structure = with_devices(bare, *names.split(", "))
-    record = piece_of(fema_record("farfield/1/b"))
-    assert agree(structure, record, None, 0.5, 1e-7).uplifts >= 1
-
-
 SOON_AT_REST = [
     podium(0, 0.15, FLAT, law=ImpactLaw("value", 0.4)),
     podium(1, 0.15, 0.5, law=ImpactLaw("rigid", factor=0.6)),

@@ -255,28 +255,6 @@ def test_moments_are_slopes_of_the_potential(kind: str, rho: float) -> None:
             assert one == pytest.approx(other, rel=1e-9, abs=1e-11)
 
 
-LAW = {  # phi/phi_u: m, lift of the end's centre over B phi_u
-    1.0: (1.0 / 3.0, 0.0), 2.0: (0.528595, 0.171573), 4.0: (2.0 / 3.0, 1.0),
-    25.0: (0.866667, 16.0), 100.0: (0.933333, 81.0),
-}  # fmt: skip
-
-
-@pytest.mark.evidence("compliant ends", "exact")
-def test_the_law_of_a_plane_end() -> None:
-    """Columns so slender that B hardly changes: the law of one end remains."""
-    alpha, phi_u = ALPHA, 1e-7
-    bed = known(podium(0, lifting_at("plane", phi_u)).bed)
-    x = phi_u * np.array([*LAW])
-    path = bed.path(x)
-    np.testing.assert_allclose(path.arm / math.sin(alpha), [m for m, _ in LAW.values()], atol=1e-4)
-    np.testing.assert_allclose(
-        path.lift / (math.sin(alpha) * phi_u),
-        [lift for _, lift in LAW.values()],
-        rtol=1e-4,
-        atol=1e-6,
-    )
-
-
 STRIPS = 4000
 """Of a plane end: where its contact ends is known to a strip, 5e-4 of the half width."""
 
@@ -371,21 +349,6 @@ def test_landing_beside_the_end_of_a_steep_bed() -> None:
     result = shaken(structure, waves(6.0, 0.01, 1.5086094682829487, 1288))
     assert len(result.events) > 170
     assert abs(result.energy.residual) < 2e-6 * result.energy.input
-
-
-@pytest.mark.evidence("compliant ends", "program")
-@needs_compiled_kernels
-@pytest.mark.parametrize(
-    ("kind", "share", "zeta", "back"),
-    [("plane", 0.01, 0.0, 0.39972), ("plane", 0.01, 0.3, 0.37885), ("edges", 0.01, 0.3, 0.36127)],
-)
-def test_a_frame_released_on_its_bed(kind: str, share: float, zeta: float, back: float) -> None:
-    """Back swings over alpha that another program of such beds found, within what half of alpha
-    squared makes of the geometry."""
-    settlement = share * ALPHA * 1.5 * math.sin(ALPHA)
-    structure = podium(0, Contact(kind, settlement=settlement), loss=0.3)  # type: ignore[arg-type]
-    _, _, path = resolved(structure, np.zeros(2), 1e-3, zeta=zeta, theta0=0.4 * ALPHA, seconds=2.4)
-    assert -path.min() / ALPHA == pytest.approx(back, abs=6e-4)
 
 
 @pytest.mark.evidence("compliant ends", "program")

@@ -148,20 +148,3 @@ def test_energy_changes_by_what_the_ground_gives_and_the_dampers_take(state: Sta
     lifted = 2.0 * state.structure.bearing.semi_diagonal * state.structure.weight
     size = max(lifted, *(abs(energy) for energy in energies.values()))
     assert flow == pytest.approx(slope, abs=1e-14 / h * size)
-
-
-def inertia_and_slope(state: State, shift: float = 0.0) -> tuple[float, float]:
-    """A and D a little off the state's tilt, in its own phase."""
-    lane = OneLane(state.structure, state.motion)
-    at = lane.at(float(state.position[0]) + shift)
-    return at.A, at.D
-
-
-@given(states())
-def test_the_inertia_changes_at_twice_the_coefficient_of_the_squared_rate(state: State) -> None:
-    h = 1e-2
-    around = {i: inertia_and_slope(state, i * h)[0] for i in range(-3, 4)}
-    slope = sum(w * (around[i] - around[-i]) for i, w in SIXTH_ORDER.items()) / (60.0 * h)
-    coefficient = inertia_and_slope(state)[1]
-    # order 6: h^6/140 times the scale of A, plus eps/h of it
-    assert coefficient == pytest.approx(0.5 * slope, abs=1e-11 * around[0])

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from paper_structures import Array, building, ground, podium, waves
-from scipy.linalg import expm
 from scipy.signal import lsim
 
 from rpscli.analyses.settings import TimeHistorySettings
@@ -60,25 +59,6 @@ def test_full_contact_equals_lsim(above: Superstructure) -> None:
     sampled = np.max(np.abs(absolute), axis=0)
     assert np.all(result.floor_accelerations >= (1.0 - 1e-5) * sampled)
     assert result.floor_accelerations == pytest.approx(sampled, rel=0.1)
-
-
-@pytest.mark.evidence("buildings on bearings under earthquakes", "exact")
-@pytest.mark.parametrize("above", BUILDINGS[:3], ids=lambda b: str(b.storeys))
-def test_one_long_interval_is_as_good_as_many(above: Superstructure) -> None:
-    """Two samples 1.3 s apart: one interval, against one exponential."""
-    n, dt = above.storeys, 1.3
-    a0, a1 = 0.1, -0.15
-    result = time_history(
-        podium(n, superstructure=above), ground([a0, a1], dt), TimeHistorySettings(free_vibration=0)
-    )
-    flow = np.zeros((2 * n + 2, 2 * n + 2))
-    flow[: 2 * n, : 2 * n] = state_matrix(above)
-    flow[n : 2 * n, 2 * n] = -1.0
-    flow[2 * n, 2 * n + 1] = 1.0
-    state = expm(flow * dt) @ np.concatenate((np.zeros(2 * n), [a0, (a1 - a0) / dt]))
-    expected = state[:n]
-    got = result.trace.floor_displacements[-1]
-    assert got == pytest.approx(expected, abs=2e-8 * float(np.max(np.abs(expected))))
 
 
 @pytest.mark.parametrize("above", BUILDINGS, ids=lambda b: f"{b.storeys}-{b.damping}")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from paper_structures import FLAT, Array, needs_compiled_kernels, podium, stillness
 
@@ -76,6 +76,7 @@ def test_rigid_loses_energy_when_all_moves_together_and_creates_it_against_the_b
     assert after_impact(flexible, rate, [-base] * 3)[1] > 0.0
 
 
+@settings(max_examples=25)
 @given(
     velocities, rates, st.sampled_from(["rigid", "flexible", "value"]), st.sampled_from([FLAT, 0.5])
 )
@@ -104,13 +105,13 @@ TOLERANCES = np.array([1e-5, 1e-6, 1e-7, 1e-8])
 
 def vibration(structure: PodiumStructure, tolerance: float) -> Array:
     """Drifts of a released structure long after it came to rest, while the building rings on."""
-    settings = TimeHistorySettings(
+    chosen = TimeHistorySettings(
         free_vibration=8.8,
         initial_rotation=0.02,
         recontact_tolerance=tolerance,
         accuracy=4.0,
     )
-    result = time_history(structure, stillness(0.02), settings)
+    result = time_history(structure, stillness(0.02), chosen)
     (locked,) = (event for event in result.events if event.kind == "recontact")
     assert locked.time < 8.0
     return result.trace.drifts[401:440]

@@ -5,7 +5,6 @@ from __future__ import annotations
 import ast
 import errno
 import os
-import runpy
 import shutil
 import signal
 import sqlite3
@@ -155,58 +154,6 @@ def test_all_that_decides_about_a_kernel_is_in_the_digest(tmp_path: Path) -> Non
     changed = tmp_path / "constants.py"
     changed.write_text(CONSTANTS.read_text(encoding="utf-8").replace("200", "64"))
     assert sources_digest(tmp_path, CONSTANTS) != sources_digest(tmp_path, changed)
-
-
-def test_a_source_that_moves_to_another_folder_counts_as_changed(tmp_path: Path) -> None:
-    for place in ("one", "two"):
-        (tmp_path / place / "sub").mkdir(parents=True)
-    (tmp_path / "one" / "a.py").write_text("A = 1\n")
-    (tmp_path / "two" / "sub" / "a.py").write_text("A = 1\n")
-    one, two = (sources_digest(tmp_path / place) for place in ("one", "two"))
-    assert one != two
-    # what is no source does not count
-    (tmp_path / "one" / "notes.txt").write_text("A = 2\n")
-    assert sources_digest(tmp_path / "one") == one
-
-
-PROGRAM = """
-from rpscli.physics import compile as compilation
-@compilation.kernel
-def four(x: float) -> float:
-    return 4.0 * x
-assert four(0.5) == 2.0
-found = sum(four.stats.cache_hits.values()), compilation.is_compiled("four")
-compilation.remember_compiled("four")
-"""
-
-
-@needs_compiled_kernels
-def test_damaged_files_are_not_run_and_made_again(
-    fresh_folder: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
-    """Whatever a power loss or a bad disk leaves of index and code."""
-    program = tmp_path / "program.py"
-    program.write_text(PROGRAM)
-    fresh_folder.setenv("RPS_CACHE_DIR", str(tmp_path / "cache"))
-
-    def run() -> object:
-        """Kernels found in the cache, and whether the program believed so before."""
-        # another process, so to speak: only the disk knows
-        fresh_folder.setattr(compilation, "_compiled_here", set())
-        cache_folder.cache_clear()
-        return runpy.run_path(str(program))["found"]
-
-    assert run() == (0, False)
-    assert run() == (1, True)
-    for suffix in ("nbi", "nbc"):
-        (file,) = (tmp_path / "cache").rglob(f"*.{suffix}")
-        whole = file.read_bytes()
-        middle = len(whole) // 2
-        flipped = whole[:middle] + bytes([whole[middle] ^ 1]) + whole[middle + 1 :]
-        for damaged in (b"", whole[:-1], flipped, bytes(len(whole)), whole + b"\0"):
-            file.write_bytes(damaged)
-            assert run() == (0, True)
-            assert run() == (1, True)
 
 
 TWO_RECORDS = """

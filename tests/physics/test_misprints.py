@@ -85,27 +85,3 @@ def test_3_the_first_order_theta_cr_jumps_at_its_rho_cr() -> None:
         ours = above.critical_rotation / below.critical_rotation - 1.0
         assert abs(ours) < 1e-8
         assert abs(printed) == pytest.approx(jump, rel=0.01)
-
-
-@given(st.floats(0.02, 0.3), st.floats(0.1, 3.0))
-def test_3_the_first_order_theta_cr_is_near_the_root(tan_alpha: float, rho: float) -> None:
-    if 2.0 * rho < 1.001 * tan_alpha:
-        rho = tan_alpha
-    bearing = Bearing(1.5, tan_alpha, 2.0 * tan_alpha, rho)
-    paper = bearing.critical_rotation_of_paper
-    # relative error of order beta^2, beta <= 90 degrees where the arc just reaches
-    assert paper == pytest.approx(
-        bearing.critical_rotation, rel=0.6 * math.sin(bearing.beta) ** 2 + 1e-9
-    )
-
-
-def test_the_first_order_values_that_hold_exactly() -> None:
-    """While rolling the printed branch is no approximation; flat ends have theta_cr = alpha."""
-    for rho in (0.16, 0.2, 0.24):
-        bearing = Bearing(1.5, 0.15, 0.30, rho)
-        assert bearing.overturns_rolling
-        root = math.atan2(0.15, 1.0 - 2.0 * rho)
-        assert bearing.critical_rotation == pytest.approx(root, rel=1e-14)
-        assert bearing.critical_rotation_of_paper == pytest.approx(root, rel=1e-14)
-    flat = Bearing(1.5, 0.15, 0.30, FLAT)
-    assert flat.critical_rotation_of_paper == pytest.approx(flat.alpha, rel=1e-15)

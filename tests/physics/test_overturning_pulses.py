@@ -58,30 +58,6 @@ def test_half_sine_without_impact(size: float) -> None:
     assert least == pytest.approx(expected, rel=2.0 * CHORDS + 2.0 * SLENDER**2)
 
 
-@pytest.mark.evidence("free-standing blocks", "exact")
-def test_any_pulse_without_impact_overturns_by_its_weighted_integral() -> None:
-    """Int exp(-p t) a dt/(g alpha) from uplift must reach 1/p: s = p t."""
-    structure = slender_block(1.0)
-    p, unit = math.sqrt(0.75 * structure.gravity), structure.gravity * SLENDER
-    knots, heights = np.array([0.0, 0.2, 0.3, 0.7, 0.8]), np.array([0.0, 1.0, 0.4, 0.8, 0.0])
-    dt = 1.0 / 2000.0
-    shape = np.interp(np.arange(1601) * dt, knots, heights)
-
-    def weighted(amplitude: float) -> float:
-        """The integral over straight pieces, exact; uplift is on the first one."""
-        start = knots[1] / amplitude
-        times = np.concatenate(([start], knots[1:]))
-        a = amplitude * np.interp(times, knots, heights)
-        slopes = np.diff(a) / np.diff(times)
-        decay = np.exp(-p * (times - start))
-        ends = a[:-1] * decay[:-1] - a[1:] * decay[1:]
-        return float(np.sum(ends / p + slopes / p**2 * (decay[:-1] - decay[1:])) * p)
-
-    expected = float(brentq(lambda amplitude: weighted(amplitude) - 1.0, 1.05, 20.0))
-    least = least_amplitude(structure, unit * shape, 1.0, 1.5 * expected)
-    assert least == pytest.approx(expected, rel=2.0 * SLENDER**2)
-
-
 PUBLISHED_STEP = 1e-3
 """The published values are bracketed by runs 0.001 g apart, with rounded data: the closed form
 gives 0.55459 g for the first of them where 0.5545 g is printed as falling."""

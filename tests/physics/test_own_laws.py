@@ -41,10 +41,6 @@ def linear(path: float, speed: float, c: float) -> float:
     return c * speed
 
 
-def square(path: float, speed: float, c: float) -> float:
-    return c * speed**2
-
-
 def relieved(path: float, speed: float, c: float, opens: float) -> float:
     return c * min(speed, opens)
 
@@ -139,24 +135,6 @@ def test_a_linear_law_is_the_viscous_damper(name: str) -> None:
     )
     assert own.devices[0].force == pytest.approx(ours.devices[0].force, rel=1e-12)
     assert own.energy.devices == pytest.approx(ours.energy.devices, rel=1e-12)
-
-
-def test_the_same_interpreted_or_compiled() -> None:
-    """Short enough for both."""
-    structure = replace(SMALL, devices=(VISCOUS,))
-    motion = MotionComponents(waves(0.24, DT, 9.0, seed=5))
-    ours, own = history(structure, motion), history(with_own(structure, LINEAR, C), motion)
-    assert ours.max_rotation > 1e-3
-    assert own.max_rotation == pytest.approx(ours.max_rotation, rel=1e-12)
-
-
-@needs_compiled_kernels
-def test_a_law_with_a_kink_at_rest_is_followed_as_ours() -> None:
-    structure = replace(USUAL, devices=(ViscousDamper(1e6, 2.0),))
-    law = DamperLaw(ONE_CONSTANT, square, most, None)
-    ours, own = history(structure), history(with_own(structure, law, 1e6))
-    assert own.max_rotation == pytest.approx(ours.max_rotation, rel=1e-9)
-    assert own.history["steps"] == ours.history["steps"]
 
 
 @pytest.mark.parametrize(
