@@ -13,7 +13,6 @@ from oracles.spatial_integrator import SpatialSimulation, simulate_pair
 from paper_structures import (
     Array,
     RecordLoader,
-    ground,
     known,
     needs_compiled_kernels,
     oracle_devices,
@@ -22,12 +21,11 @@ from paper_structures import (
 )
 from two_components import followed, frame, pair, part_of_pair, released, two_pulses
 
-from rpscli.analyses.kernels.history import sampled_history
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.model.devices import Stop, Tendon, ViscousDamper
 from rpscli.model.podium import Device, PodiumStructure
-from rpscli.physics.state import STOP_LEFT, STOP_MET, TENDON_YIELDING, UPLIFT
+from rpscli.physics.state import UPLIFT
 from rpscli.records.ground_motion import MotionComponents
 
 pytestmark = needs_compiled_kernels
@@ -134,27 +132,6 @@ def test_directions_are_exchanged_with_their_buildings() -> None:
 
 
 @pytest.mark.evidence("both components", "exact")
-def test_one_component_is_the_planar_motion() -> None:
-    """Along x with an impact's loss: Y stays 0, the planar program's rotations and demands."""
-    x, _ = two_pulses()
-    structure = frame(**THREE, contact_time=2e-3)
-    history = followed(structure, pair(x, 0.0 * x, STEP))
-    settings = TimeHistorySettings(free_vibration=0.0)
-    planar = sampled_history(structure, MotionComponents(ground(x, STEP)), settings)
-    assert set(history.samples.azimuth.tolist()) <= {0.0, np.pi, -np.pi}
-    until = round(history.recontacts.time[0] / STEP) if len(history.recontacts) else None
-    assert np.max(np.abs(history.tilt.real - planar.samples.theta)[:until]) < 1e-6
-    left, other = history.left, planar.history
-    assert left.max_theta == pytest.approx(other.max_theta, rel=1e-4)
-    for mine in ("storey_shear", "storey_shear_x"):
-        assert np.allclose(left[mine][:3], other.storey_shear[:3], rtol=1e-3)
-    assert np.allclose(left.floor_acceleration[:3], other.floor_acceleration[:3], rtol=2e-3)
-    assert not left.storey_shear_y.any()
-    for name in ("normal_bottom", "heavy_bottom", "friction_top"):
-        assert left[name] == pytest.approx(other[name], rel=5e-3)
-
-
-@pytest.mark.evidence("both components", "exact")
 @pytest.mark.parametrize("options", [{"contact_time": 0.0}, {"factor": 1.0 / 0.8388687078360144}])
 def test_nothing_is_lost_without_contact_time_or_loss(options: dict[str, Any]) -> None:
     x, y = two_pulses()
@@ -216,46 +193,6 @@ def test_a_third_of_a_second_with_a_damper() -> None:
 @pytest.mark.parametrize("kind", KINDS)
 def test_against_the_second_integrator(kind: str, arcs: bool) -> None:
     beside_the_second_integrator(kind, arcs, *two_pulses(2.0))
-
-
-@pytest.mark.parametrize("kind", KINDS)
-def test_one_component_is_the_planar_program_with_devices(kind: str) -> None:
-    """Along x: rotations until it rests, what the device saw, and what went through it."""
-    x, _ = two_pulses()
-    structure = equipped(kind, **ARCS)
-    history = followed(structure, pair(x, 0.0 * x, STEP), fine())
-    planar = sampled_history(structure, MotionComponents(ground(x, STEP)), fine())
-    until = round(history.recontacts.time[0] / STEP) if len(history.recontacts) else None
-    assert np.max(np.abs(history.tilt.real - planar.samples.theta)[:until]) < 1e-6
-    left, other = history.left, planar.history
-    for name in ("device_force", "device_velocity", "device_energy", "permanent"):
-        assert left[name][0] == pytest.approx(other[name][0], rel=1e-4, abs=1e-12), name
-    forces = (
-        np.abs(time_history(structure, motion, fine(), with_fixed_base=False).trace.devices.force)
-        for motion in (pair(x, 0.0 * x, STEP), MotionComponents(ground(x, STEP)))
-    )
-    one, other_one = (force[:until] for force in forces)
-    assert np.max(np.abs(one - other_one)) < 1e-4 * np.max(one)
-    if kind != "no gap":  # whose last, smallest swings differ
-        for event in (STOP_MET, STOP_LEFT, TENDON_YIELDING):
-            assert left.events[event] == other.events[event]
-
-
-@pytest.mark.evidence("both components", "exact")
-@pytest.mark.parametrize("kind", ["", *KINDS])
-def test_no_axis_is_special(kind: str) -> None:
-    """Turned by any angle, the pair turns the result."""
-    x, y = two_pulses()
-    turn = np.exp(0.64j)
-    turned = turn * (x + 1j * y)
-    structure = frame(**THREE, devices=(KINDS[kind],)) if kind else frame(**THREE)
-    one = followed(structure, pair(x, y, STEP), fine())
-    other = followed(structure, pair(turned.real, turned.imag, STEP), fine())
-    assert np.max(np.abs(turn * one.tilt - other.tilt)) < 1e-9
-    for name in ("device_force", "device_velocity", "device_energy"):
-        assert other.left[name][0] == pytest.approx(one.left[name][0], rel=1e-5), name
-    for name in ("max_theta", "friction_bottom", "heavy_bottom", "torsion_lever"):
-        assert kind or other.left[name] == pytest.approx(one.left[name], rel=2e-3), name
 
 
 @pytest.mark.evidence("both components", "exact")

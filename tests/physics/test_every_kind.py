@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 import pytest
 from paper_structures import ground, known, needs_compiled_kernels, waves, yielding
-from two_components import frame
+from two_components import followed, frame, pair, two_pulses
 
 from rpscli.analyses.demand import Request, demands
+from rpscli.analyses.kernels.history import sampled_history
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.model.contact import Contact
@@ -123,3 +124,49 @@ def test_nothing_new_comes_after_the_end(kind: str) -> None:
     for name in ("max_theta", "storey_shear", "floor_acceleration", "heavy_top", "normal_top"):
         assert np.array_equal(auto[name], longer[name]), name
     assert np.array_equal(auto["slip"], longer["slip"])
+
+
+X, Y = two_pulses()
+FINE = TimeHistorySettings(free_vibration=0.0, accuracy=4.0)
+
+
+@of_kinds
+@pytest.mark.evidence("both components", "exact")
+def test_one_component_is_the_planar_program(kind: str) -> None:
+    """Along x nothing moves in y; rotations until it rests, what floors and devices saw."""
+    structure, still = KINDS[kind], np.zeros(len(X))
+    history = followed(structure, pair(X, still, 0.01), FINE)
+    planar = sampled_history(structure, MotionComponents(ground(X, 0.01)), FINE)
+    left, other = history.left, planar.history
+    assert not history.samples.beam[:, 1].any()
+    assert not left.storey_shear_y.any()
+    # bounces are summed in a plane, and followed in space
+    until = round(history.recontacts.time[0] / 0.01) if len(history.recontacts) else None
+    gap = np.max(np.abs(history.tilt.real - planar.samples.theta)[:until])
+    assert gap < (5e-9 if structure.bed or structure.passes_smoothly else 1e-7)
+    for name in ("device_force", "device_energy", "permanent"):
+        np.testing.assert_allclose(left[name], other[name], rtol=1e-4, atol=1e-12, err_msg=name)
+    for name in ("energy_input", "energy_damped", "bed_energy", "max_theta"):
+        assert left[name] == pytest.approx(other[name], rel=1e-5), name
+    for mine in ("storey_shear", "storey_shear_x"):
+        assert np.allclose(left[mine][:3], other.storey_shear[:3], rtol=1e-4)
+    # of the instants of passes
+    for name in ("normal_bottom", "heavy_bottom", "friction_top"):
+        assert left[name] == pytest.approx(other[name], rel=0.05), name
+
+
+@pytest.mark.evidence("both components", "exact")
+@pytest.mark.parametrize("kind", [kind for kind in KINDS if kind not in ("yields", "both")])
+def test_no_axis_is_special(kind: str) -> None:
+    """Turned by any angle, the pair turns the result; storeys yield along both axes alone."""
+    turn = np.exp(0.64j)
+    turned = turn * (X + 1j * Y)
+    one, other = (
+        followed(KINDS[kind], pair(x, y, 0.01), FINE)
+        for x, y in ((X, Y), (turned.real, turned.imag))
+    )
+    assert np.max(np.abs(turn * one.tilt - other.tilt)) < 1e-8 * one.left.max_theta
+    for name in ("device_force", "device_velocity", "device_energy"):
+        np.testing.assert_allclose(other.left[name], one.left[name], rtol=1e-5, atol=1e-12)
+    for name in ("max_theta", "friction_bottom", "heavy_bottom", "torsion_lever"):
+        assert other.left[name] == pytest.approx(one.left[name], rel=2e-3), name
