@@ -132,7 +132,8 @@ def printed(drawing: Drawing, columns: int) -> list[str]:
         return [f"{drawing.name}: {fault}" for fault in faults(figure)]
 
 
-@pytest.mark.parametrize("columns", [1, pytest.param(2, marks=pytest.mark.long)])
+@pytest.mark.long
+@pytest.mark.parametrize("columns", [1, 2])
 def test_figures_of_analyses_can_be_read(columns: int) -> None:
     devices = ViscousDamper(2e5), Stop(0.02, 4e6), Tendon(2e4, 1e6), FrictionDamper(1e5)
     made, look = replace(structure(CURVED, 6), devices=devices), Look(columns=columns)
@@ -221,8 +222,9 @@ def result(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyP
     return eighteen(place)
 
 
+@pytest.mark.long
 @needs_compiled_kernels
-@pytest.mark.parametrize("columns", [1, pytest.param(2, marks=pytest.mark.long)])
+@pytest.mark.parametrize("columns", [1, 2])
 def test_reports_can_be_read(result: rpscli.StudyResult, columns: int) -> None:
     assert {*result.study.reports} == {*REPORT_NAMES}
     found = []
