@@ -180,13 +180,10 @@ def building(problem: Problem) -> Iterator[float]:
 
 def giving_way(problem: Problem) -> Iterable[float]:
     system, contact = problem.system, problem.structure.contact
-    motion, above = StoreyLagrangian(system), known(problem.structure.superstructure)
-    storey = CompliantStorey(
-        system.R, math.atan(system.tan_alpha), system.inertia_ratio, system.columns_mass,
-        system.cap_beam_mass, system.masses, above.stiffness_matrix, system.damping_matrix,
-        known(contact.settlement) / motion.half_width, contact.damping, contact.kind == "plane",
-        motion.restitution,
-    )  # fmt: skip
+    motion = StoreyLagrangian(system)
+    lifts = known(contact.settlement) / motion.half_width
+    plane, kept = contact.kind == "plane", motion.restitution
+    storey = CompliantStorey(system, lifts, contact.damping, plane, kept)
     tilt, floors = storey.history(problem.ground, problem.dt, tolerance=3e-14)[:2]
     return (z for j in problem.rows(problem.dt) for z in (tilt[j], floors[j, -1]))
 

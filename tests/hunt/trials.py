@@ -53,19 +53,7 @@ shares = pytest.mark.parametrize(
 
 
 def hunt(name: str, trial: Trial, quick: int, long: int | None = None) -> None:
-    """Run trials of a kind; all that fail are told, each with its number.
-
-    Parameters
-    ----------
-    name
-        Of the kind, for seeds and the table.
-    trial
-        Raises AssertionError, or anything else, where a promise is broken.
-    quick
-        How many of them.
-    long
-        How many where the long hunt was asked for, times `RPS_HUNT_TIMES`.
-    """
+    """Run trials of a kind, `long` if given in place of `quick`; failures by their numbers."""
     count = quick if long is None else round(long * TIMES)
     seed = SEED if long is not None else "1"
     ends: Counter[str] = Counter()
@@ -110,18 +98,9 @@ def time_limit(seconds: float) -> Iterator[None]:
 def judged(
     *arguments: str, places: tuple[str, ...] = (), text: str = "", codes: frozenset[int] = PROMISED
 ) -> str:
-    """Run `rps` and hold its exit code and its messages to what is promised.
+    """Run `rps`; its exit code and messages must be as promised.
 
-    Parameters
-    ----------
-    *arguments
-        Of the command line.
-    places
-        One of these must stand in the first line of a refusal,
-    text
-        or this text must hold what the line begins with, such as the source of a record.
-    codes
-        That may be its end.
+    The first line of a refusal names one of `places`, or begins with what stands in `text`.
     """
     result = CliRunner().invoke(program, list(arguments))
     shown = f"{' '.join(arguments)[:300]}: {result.stderr[-600:]}"

@@ -6,33 +6,38 @@ floor displacements; nothing is taken from the kernels. B = R sin(alpha - x), C 
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
-from functools import partial
+from functools import cached_property, partial
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
-Array = NDArray[np.float64]
+from .storey_lagrangian import Array, OracleSystem
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class CompliantStorey:
-    """SI; `plane` or two edges, phi_u where they lift, `kept` of theta' at each return."""
+    """Of a system with flat ends; `plane` or two edges, phi_u where they lift.
 
-    R: float
-    alpha: float
-    Io: float
-    columns: float
-    beam: float
-    masses: Array
-    stiffness: Array  # (n, n) of the building
-    damping: Array
+    `kept` of theta' is left at each return.
+    """
+
+    system: OracleSystem
     phi_u: float
     zeta: float
     plane: bool
     kept: float
-    gravity: float = 9.80665
+
+    @property
+    def alpha(self) -> float:
+        return math.atan(self.system.tan_alpha)
+
+    @cached_property
+    def stiffness(self) -> Array:
+        """(n, n) of the building."""
+        between = np.eye(len(self.system.masses)) - np.eye(len(self.system.masses), k=-1)
+        return np.asarray(between.T @ np.diag(self.system.stiffnesses) @ between)
 
     def arms(self, x: float) -> tuple[float, float, float, float, float]:
         """Weight's arm, B_v, dB_v/dx, C and dC/dx at x > phi_u."""
@@ -55,10 +60,10 @@ class CompliantStorey:
 
         What is lifted, W/g by v_b' = 2 R B_v theta', feels a_v; in full contact nothing is.
         """
-        n, R = len(self.masses), self.R
+        n, R = len(self.system.masses), self.system.R
         x, rate, u, du = y[0], y[1], y[2 : 2 + n], y[2 + n :]
-        total, g = self.masses.sum(), self.gravity
-        weight = (0.5 * self.columns + self.beam + total) * g
+        total, g = self.system.masses.sum(), self.system.gravity
+        weight = (0.5 * self.system.columns_mass + self.system.cap_beam_mass + total) * g
         if bedded:
             end = self.arms(self.phi_u * (1.0 + 1e-15))
             moment = 2.0 * R * weight * end[0] * x / self.phi_u
@@ -66,8 +71,8 @@ class CompliantStorey:
         else:
             arm, Bv, dBv, C, dC = self.arms(x)
             moment = 2.0 * R * weight * (arm + Bv * a_v / g)
-        own = 0.25 * self.columns + self.beam
-        Icm = (self.Io - 1.0) * self.columns * R * R
+        own = 0.25 * self.system.columns_mass + self.system.cap_beam_mass
+        Icm = (self.system.inertia_ratio - 1.0) * self.system.columns_mass * R * R
         inertia = Icm + 4.0 * R * R * (own * (C * C + Bv * Bv) + total * Bv * Bv)
         slope = 8.0 * R * R * (own * (C * dC + Bv * dBv) + total * Bv * dBv)
         if bedded:
@@ -76,38 +81,48 @@ class CompliantStorey:
             )
         base = self.beam_path(x, bedded)
         drift, drift_rate = u - base, du - 2.0 * R * C * rate
-        forces = self.stiffness @ drift + self.damping @ drift_rate
-        push = forces.sum() - (0.5 * self.columns + self.beam) * a_g
+        forces = self.stiffness @ drift + self.system.damping_matrix @ drift_rate
+        push = forces.sum() - (0.5 * self.system.columns_mass + self.system.cap_beam_mass) * a_g
         ddx = (2.0 * R * C * push - moment - 0.5 * slope * rate * rate) / inertia
-        return np.array([rate, ddx, *du, *(-forces / self.masses - a_g)])
+        return np.array([rate, ddx, *du, *(-forces / self.system.masses - a_g)])
 
     @property
     def k(self) -> float:
         """Secant of the moment up to phi_u [N m]."""
-        weight = (0.5 * self.columns + self.beam + self.masses.sum()) * self.gravity
-        return float(2.0 * self.R * weight * self.arms(self.phi_u * (1.0 + 1e-15))[0] / self.phi_u)
+        weight = (
+            0.5 * self.system.columns_mass + self.system.cap_beam_mass + self.system.masses.sum()
+        ) * self.system.gravity
+        return float(
+            2.0 * self.system.R * weight * self.arms(self.phi_u * (1.0 + 1e-15))[0] / self.phi_u
+        )
 
     def beam_path(self, x: float, bedded: bool) -> float:
         """u_b, linear up to phi_u and continuous there."""
         a, u = self.alpha, self.phi_u
         if bedded:
-            return float(2.0 * self.R * np.cos(a - u) * x)
+            return float(2.0 * self.system.R * np.cos(a - u) * x)
         start = np.cos(a - u) * u + np.sin(a - u)
-        return float(2.0 * self.R * (start - np.sin(a - x)))
+        return float(2.0 * self.system.R * (start - np.sin(a - x)))
 
     def kept_at_uplift(self) -> float:
         """Of theta', so that the energy of the tilt is kept where B_v jumps."""
         if self.plane:
             return 1.0
-        own, total, a = 0.25 * self.columns + self.beam, self.masses.sum(), self.alpha - self.phi_u
-        low = (self.Io - 1.0) * self.columns / 4.0 + own * np.cos(a) ** 2
+        own, total, a = (
+            0.25 * self.system.columns_mass + self.system.cap_beam_mass,
+            self.system.masses.sum(),
+            self.alpha - self.phi_u,
+        )
+        low = (self.system.inertia_ratio - 1.0) * self.system.columns_mass / 4.0 + own * np.cos(
+            a
+        ) ** 2
         return float(np.sqrt(low / (low + (own + total) * np.sin(a) ** 2)))
 
     def history(
         self, a_g: Array, dt: float, a_v: Array | None = None, tolerance: float = 1e-11
     ) -> tuple[Array, Array, int]:
         """theta and u_t at the samples, and the number of returns to full contact; from rest."""
-        n = len(self.masses)
+        n = len(self.system.masses)
         y, side, bedded, returns = np.zeros(2 + 2 * n), 1.0, True, 0
         found = [(0.0, *y[2 : 2 + n])]
         a_v = np.zeros_like(a_g) if a_v is None else a_v

@@ -184,6 +184,7 @@ for name in sys.argv[1:]:
 """
 
 
+@pytest.mark.long
 @needs_compiled_kernels
 def test_code_of_one_record_is_not_called_for_another(tmp_path: Path) -> None:
     """Compiled by two processes, loaded by a third."""
