@@ -198,6 +198,7 @@ def test_elements_nest() -> None:
     assert made == "<p>a<b>c</b>d<i></i>e</p>"
 
 
+@pytest.mark.long
 def test_a_long_record_leaves_the_page_small_enough_to_be_sent() -> None:
     record = "synthetic:?pga=0.5g&duration=300&dt=0.005&seed=3"
     result = history(structure(storeys=6), record)

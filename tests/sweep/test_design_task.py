@@ -260,6 +260,7 @@ def test_values_are_printed_as_they_were_judged(design: Sweep) -> None:
         assert len(best) <= 8
 
 
+@pytest.mark.long
 @needs_compiled_kernels
 def test_interrupted_and_resumed_or_in_two_threads_it_ends_in_the_same_bytes(
     design: Sweep, workplace: Path
