@@ -253,7 +253,7 @@ def test_options_of_reports(stored: Path, long: bool) -> None:
         change = f"reports=[{{{kind}: {{{options}}}}}]"
         return judged("sweep", str(stored / "study.yaml"), "--set", change, *place)
 
-    hunt("options of reports", trial, 3, 1000 if long else None)
+    hunt("options of reports", trial, 2, 1000 if long else None)
 
 
 @shares

@@ -44,23 +44,16 @@ def pressed(depth: float, turn: float, rate: float, turn_rate: float, tau: float
 @compiled
 def rates(y: Any, out: Array, a_g: float, n: int, c: Array, M: Array, K: Array, D: Array) -> None:
     """y = [theta, v, u.., theta', v', u'..]; c as `follow` packs it."""
-    H, B, R, alpha, columns, beam, total, g, icm, bed, tau, edges = c
+    H, B, R, alpha, columns, beam, total, g, icm, bed, tau = c
     theta, v, omega, rise = y[0], y[1], y[2 + n], y[3 + n]
     w = 0.5 * v + H * (1.0 - math.cos(theta))
     dw = 0.5 * rise + H * math.sin(theta) * omega
     turn, turn_rate = math.sin(theta), math.cos(theta) * omega
-    if edges > 0.0:
-        force, moment = 0.0, 0.0
-        for xi in (-B, B):
-            d, rate = -w + xi * turn, -dw + xi * turn_rate
-            p = bed * B * (d + tau * rate) if d > 0.0 and d + tau * rate > 0.0 else 0.0
-            force, moment = force + p, moment + p * xi
-    else:
-        force, moment = pressed(-w, turn, -dw, turn_rate, tau, B)
-        force, moment = bed * force, bed * moment
+    force, moment = pressed(-w, turn, -dw, turn_rate, tau, B)
+    force, moment = bed * force, bed * moment
     C = math.cos(alpha - abs(theta))
     slope = math.sin(alpha - abs(theta)) * (1.0 if theta >= 0.0 else -1.0)
-    own, base = 0.25 * columns + beam, 0.0
+    own = 0.25 * columns + beam
     # u_b, odd in theta
     base = 2.0 * R * (math.sin(alpha) - math.sin(alpha - abs(theta)))
     base = base if theta >= 0.0 else -base
@@ -85,11 +78,9 @@ def follow(
     y: Array, acc: Array, dt: float, parts: int, n: int, c: Array, M: Array, K: Array, D: Array,
     k1: float, limit: float,
 ) -> Any:  # fmt: skip
-    """Largest |theta| and base shear at all steps, and theta at the samples."""
+    """Largest |theta| and base shear at all steps."""
     k = np.zeros((4, y.size))
     largest, shear, h = abs(y[0]), 0.0, dt / parts
-    path = np.zeros(acc.size)
-    path[0] = y[0]
     for i in range(acc.size - 1):
         for part in range(parts):
             a0 = acc[i] + (acc[i + 1] - acc[i]) * part / parts
@@ -101,19 +92,16 @@ def follow(
             y = y + h / 6.0 * (k[0] + 2.0 * k[1] + 2.0 * k[2] + k[3])
             largest = max(largest, abs(y[0]))
             base = 2.0 * c[2] * (math.sin(c[3]) - math.sin(c[3] - abs(y[0])))
-            if n > 0:
-                shear = max(shear, abs(k1 * (y[2] - (base if y[0] >= 0.0 else -base))))
+            shear = max(shear, abs(k1 * (y[2] - (base if y[0] >= 0.0 else -base))))
             if largest > limit:
-                return largest, shear, path
-        path[i + 1] = y[0]
-    return largest, shear, path
+                return largest, shear
+    return largest, shear
 
 
 def resolved(
-    structure: Any, acceleration: Array, dt: float, *, zeta: float, theta0: float = 0.0,
-    seconds: float = 0.0, limit: float = math.inf,
-) -> tuple[float, float, Array]:  # fmt: skip
-    """max |theta| [rad], largest base shear [N] and theta of a `PodiumStructure` with flat ends.
+    structure: Any, acceleration: Array, dt: float, *, zeta: float, seconds: float, limit: float
+) -> tuple[float, float]:
+    """max |theta| [rad] and largest base shear [N] of a `PodiumStructure` with flat ends.
 
     `zeta` is the damping ratio of the bounce on all beds, omega_v^2 = g/(2 D_0).
     """
@@ -123,33 +111,17 @@ def resolved(
     weight, settled = structure.weight, bed.settlement
     bounce = math.sqrt(g / (2.0 * settled))
     icm = (b.inertia_ratio - 1.0) * structure.columns_mass * b.semi_diagonal**2
-    stiffness = weight / (2.0 * B * settled)  # per width; of edges B of it each
-    edges = 1.0 if structure.contact.kind == "edges" else 0.0
+    stiffness = weight / (2.0 * B * settled)  # per width
     c = np.array([
         H, B, b.semi_diagonal, b.alpha, structure.columns_mass, structure.cap_beam_mass, total, g,
-        icm, stiffness, 2.0 * zeta / bounce, edges,
+        icm, stiffness, 2.0 * zeta / bounce,
     ])  # fmt: skip
-    M = above.masses if n else np.zeros(0)
-    K = above.stiffness_matrix if n else np.zeros((0, 0))
-    D = above.damping_matrix if n else np.zeros((0, 0))
-    own = math.sqrt(structure.weight * B * 2.0 * B / settled / (4.0 * H * H) / bed.mass)
-    fastest = max(2.0 * bounce * max(1.0, zeta), own, above.frequencies[-1] if n else 0.0)
+    M, K, D = above.masses, above.stiffness_matrix, above.damping_matrix
+    own = math.sqrt(weight * B * 2.0 * B / settled / (4.0 * H * H) / bed.mass)
+    fastest = max(2.0 * bounce * max(1.0, zeta), own, above.frequencies[-1])
     parts = max(math.ceil(dt * fastest / 0.15), 1)
     y = np.zeros(4 + 2 * n)
-    y[0] = theta0
-    lift = 2.0 * H * (math.cos(theta0) - 1.0)
-    y[1] = lift - 2.0 * settled
-    if theta0 > 0.0:  # at rest on its own: the middle of an end rises as the table says
-        ratio = math.sqrt(bed.uplift_rotation)
-        rise = (
-            B * (math.sqrt(theta0) - ratio) ** 2
-            if not edges
-            else B * (theta0 - bed.uplift_rotation)
-        )
-        y[1] += 2.0 * rise
-        base = 2.0 * b.semi_diagonal * (math.sin(b.alpha) - math.sin(b.alpha - theta0))
-        y[2 : 2 + n] = base
+    y[1] = -2.0 * settled
     acc = np.concatenate([acceleration, np.zeros(round(seconds / dt))])
-    k1 = float(above.stiffnesses[0]) if n else 0.0
-    largest, shear, path = follow(y, acc, dt, parts, n, c, M, K, D, k1, limit)
-    return largest, shear, path
+    largest, shear = follow(y, acc, dt, parts, n, c, M, K, D, float(above.stiffnesses[0]), limit)
+    return largest, shear

@@ -19,7 +19,10 @@ from .second_integrator import _Simulation, simulate
 from .storey_lagrangian import OracleSystem
 
 
-@pytest.mark.parametrize(("law", "restitution"), [("rigid", 0.7), ("flexible", 0.5)])
+@pytest.mark.parametrize(
+    ("law", "restitution"),
+    [("rigid", 0.7), pytest.param("flexible", 0.5, marks=pytest.mark.long)],
+)
 def test_locking_needs_no_small_tolerance(
     law: Literal["rigid", "flexible"], restitution: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -165,8 +165,18 @@ EQUIPPED = {
 }
 
 
+QUICK = {
+    "damper of 0.5", "damped stop", "stop without gap", "loose tendon",
+    "much friction, rolling resistance", "friction, linear damper, stop, yielding tendon",
+}  # fmt: skip
+"""Each kind of device once; the others are long."""
+
+
 @pytest.mark.evidence("devices", "program")
-@pytest.mark.parametrize("names", EQUIPPED)
+@pytest.mark.parametrize(
+    "names",
+    [pytest.param(names, marks=[] if names in QUICK else pytest.mark.long) for names in EQUIPPED],
+)
 def test_both_roads_with_devices(names: str) -> None:
     bare, peak = EQUIPPED[names]
     structure = with_devices(bare, *names.split(", "))

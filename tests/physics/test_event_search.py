@@ -20,7 +20,7 @@ from rpscli.physics.quintic import (
 
 pytestmark = pytest.mark.evidence("steps, events, energy", "exact")
 
-RANDOM_CURVES = 3000 if COMPILED else 100
+RANDOM_CURVES = 1500 if COMPILED else 100
 
 
 def to_powers(b: Quintic) -> Array:

@@ -85,10 +85,10 @@ MIRRORED = (
 @in_planes
 def test_mirrored_and_in_company(kind: str, pairs: bool) -> None:
     """Bit for bit: a mirrored motion, and a history among others in lanes."""
-    motions = [shaken(3 * seed, pairs=pairs) for seed in range(12)]
-    motions[7] = shaken(12, pairs=pairs, sign=-1.0)
+    motions = [shaken(3 * seed, pairs=pairs) for seed in range(8)]
+    motions[7] = shaken(12, pairs=pairs, sign=-1.0)  # of the fourth
     found = demands([Request(KINDS[kind], motion) for motion in motions])
-    assert len({each.max_rotation for each in found}) > 3  # some overturn
+    assert len({each.max_rotation for each in found}) > 2  # some overturn
     for i in (4, 7):
         (alone,) = demands([Request(KINDS[kind], motions[i])], worth_lanes=1000)
         assert alone.history.tobytes() == found[i].history.tobytes()

