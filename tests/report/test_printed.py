@@ -240,7 +240,9 @@ REPORT_NAMES = [next(iter(each)) if isinstance(each, dict) else each for each in
 
 
 @needs_compiled_kernels
-@pytest.mark.parametrize("first", range(0, len(REPORTS), 4))
+@pytest.mark.parametrize(
+    "first", [8, *(pytest.param(first, marks=pytest.mark.long) for first in (0, 4))]
+)
 def test_reports_fit_into_a_grid(result: rpscli.StudyResult, first: int) -> None:
     figure = Figure(figsize=(7.0, 5.0), layout="constrained")
     for axes, name in zip(figure.subplots(2, 2).flat, REPORT_NAMES[first:], strict=False):
