@@ -70,7 +70,7 @@ def test_a_picture_that_fails_is_a_warning(
         raise ValueError("y must contain only finite values")
 
     with monkeypatch.context() as patch:
-        patch.setattr("rpscli.report.bundles.energy_figure", fails)
+        patch.setattr("rpscli.report.figures.history.energy_figure", fails)
         result = rps("timehistory", "small.yaml")
         warned = rps_json("timehistory", "small.yaml")["warnings"]
     reason = "energy.png is not drawn: ValueError: y must contain only finite values"

@@ -34,7 +34,7 @@ from rpscli.physics.devices import load_devices
 from rpscli.physics.follow import load_system
 from rpscli.physics.friction import grip_of
 from rpscli.physics.laws import place_of
-from rpscli.physics.state import IMPACT, SLIDING, STATE, STICKING, STUCK, UPLIFT, records
+from rpscli.physics.state import IMPACT, SLIDING, STATE, STICKING, STUCK, UPLIFT, Record, records
 from rpscli.physics.upright import enter_phase, set_polar
 from rpscli.records.ground_motion import MotionComponents
 
@@ -148,6 +148,7 @@ ENDS: dict[str, dict[str, Any]] = {
     "edges arcs": {"contact": Contact("edges", period_ratio=1.2), **SOFT},
     "spherical": {"tan_alpha": 0.0, "tan_wedge": 0.3, "rho": 0.8},
 }
+RIGID: dict[str, dict[str, Any]] = {"rigid": {"rho": 0.0}, "rigid arcs": SOFT}
 DEVICES: dict[str, tuple[Device, ...]] = {
     "": (),
     "viscous": (ViscousDamper(0.2 * W),),
@@ -173,6 +174,38 @@ def test_sustained_upward_acceleration(end: str) -> None:
     assert abs(history.residual) < 1e-6
 
 
+# Geometry and inertia.
+
+
+def lane_of(structure: PodiumStructure) -> Record:
+    """A lane of the kernel in the phase in which a tilt to any side grows, at none."""
+    state = records(STATE, 1, 2, 1)[0]
+    system = stacked_systems([(structure, TimeHistorySettings())], pairs=True)[0]
+    load_system(state, 0, system)
+    load_devices(state, 0, system)
+    load_bed(state, 0, system)
+    enter_phase(state, 0, system, first_phase(system))
+    return state
+
+
+@pytest.mark.evidence("both components", "exact")
+@pytest.mark.parametrize("end", ["rigid", "rigid arcs", *ENDS])
+@pytest.mark.parametrize("part", [0.1, 0.5, 0.9])
+def test_slopes_are_what_differences_tend_to(end: str, part: float) -> None:
+    """Central differences of order 4 over parts of a thousandth leave some 1e-11."""
+    state = lane_of(frame(3, 3.0, **RIGID.get(end) or ENDS[end]))
+    low = max(state.x_low[0], 0.0)
+    tilt = low + part * (min(state.x_high[0], 0.3) - low)
+    step, at = 1e-3 * tilt, place_of(state, 0, tilt)
+    around = [place_of(state, 0, tilt + k * step) for k in (-2, -1, 1, 2)]
+    slopes = {"Bv": at.Bv_slope, "A": 2.0 * at.D, "h": at.dh, "K": at.K_slope, "G": at.G_slope}
+    for name, slope in slopes.items():
+        values = np.array([getattr(each, name) for each in around])
+        difference = np.array([1.0, -8.0, 8.0, -1.0]) @ values / (12.0 * step)
+        assert slope == pytest.approx(difference, rel=1e-9, abs=1e-9)
+    assert at.cone == pytest.approx((at.K - at.A) / tilt, rel=1e-9, abs=1e-11)
+
+
 # What friction holds.
 
 
@@ -180,13 +213,7 @@ def test_sustained_upward_acceleration(end: str) -> None:
 @pytest.mark.parametrize("kind", ["friction", "rolling", "friction and rolling"])
 def test_what_is_held_is_held_against_every_direction(kind: str) -> None:
     """Q.d <= P |W d| + M for 360 vectors d, on either side of the margin's zero."""
-    structure = structure_of("spherical", kind)
-    left = records(STATE, 1, 2, 1)[0]
-    system = stacked_systems([(structure, TimeHistorySettings())], pairs=True)[0]
-    load_system(left, 0, system)
-    load_devices(left, 0, system)
-    load_bed(left, 0, system)
-    enter_phase(left, 0, system, first_phase(system))
+    left = lane_of(structure_of("spherical", kind))
     set_polar(left, 0, 0.12, 0.6, 0.8, 0.0, 0.0)
     at = place_of(left, 0, 0.12)
     P = left.share[0] * left.friction_force[0]

@@ -395,7 +395,7 @@ def test_cases_studies_and_designs_are_told_apart(design: Sweep, workplace: Path
 
 
 def test_shipped_designs_keep_the_schema() -> None:
-    result = CliRunner().invoke(program, ["schema", "--design"])
+    result = CliRunner().invoke(program, ["schema", "design"])
     schema = json.loads(result.stdout)
     files = sorted((ROOT / "cases/designs").glob("*.yaml"))
     assert files
