@@ -27,6 +27,7 @@ from numba.extending import intrinsic, overload, register_jitable
 
 from rpscli.errors import PluginError
 from rpscli.physics.parts import PartCompiler
+from rpscli.physics.state import PADDING
 from rpscli.user_cache import VARIABLE, alone_in, is_private, user_cache
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -174,17 +175,13 @@ def together(alone: Function) -> Callable[[Function], Function]:
     def register(function: Function) -> Function:
         def choose(s: Any, systems: Any) -> Callable[..., Any]:
             del systems
-            lanes: int = s.record.fields["x"].type.shape[0]
-            return function if lanes > LEAST_LANES else alone
+            lanes: int = s.record.fields["x"].type.shape[0] - PADDING
+            return function if lanes > 1 else alone
 
         overload(alone, jit_options=cast("Any", PART), strict=False)(choose)
         return function
 
     return register
-
-
-LEAST_LANES = 9
-"""Entries of a field of one lane, with those that no lane uses."""
 
 
 def fma(a: float, b: float, c: float) -> float:

@@ -50,7 +50,6 @@ from rpscli.physics.laws import (
 )
 from rpscli.physics.peaks import middle_of, peak, turning_value
 from rpscli.physics.quintic import (
-    SETTLED,
     Quintic,
     first_descent,
     lower_hull,
@@ -77,7 +76,7 @@ SURELY = 1.0 - 1e-9
 """Room for the rounding of either side."""
 
 UNSEEN = 1e-6
-"""Of the weight: so little more or less of the floors' force on springs is not looked for."""
+"""Of the weight: smaller changes of the floors' force on springs are ignored."""
 
 NEARLY = 0.999
 """Steps that may pass this part of the largest force so far, with what the base shear may be within
@@ -664,7 +663,7 @@ def log_critical_passage(
 ) -> None:
     """Note when theta_cr was passed for the first time, within the step just taken."""
     level, h = s.theta_cr[l], s.h[l]
-    t = min(first_descent(offset(path, -1.0, level), SETTLED, s.piece), 1.0)
+    t = min(first_descent(offset(path, -1.0, level), s.piece), 1.0)
     sign = s.side[l] if ways_of(s) == 1 else 1.0
     rate = sign * slope(path, t) / h if h > 0.0 else 0.0
     s.critical_time[l] = s.interval[l] * s.dt[l] + s.time[l] + t * h

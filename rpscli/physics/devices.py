@@ -3,10 +3,12 @@
 Dampers and stops push the cap beam, a tendon pulls both ends of its column together, rolling
 resistance turns the columns back. Which branch of its law a device follows is part of the state, so
 that all is smooth within a step; a law changes where a watched value falls below zero. A new law is
-its force and its power in `resistance` and `power_of`, and what it watches in `watched`.
+its force and its power in `drag_of` or `resistance` and `power_of`, what it watches in `watched`
+and `change_law`, and where it has any, its constants in `load_devices`, its energy in `stored_in`.
 
-Friction in one plane has the sign of `direction`. Of a tilt to any side it acts along the velocity,
-which seldom is zero: what comes to a stop is held, or turns at once to where it is pushed (13.25).
+Friction in one plane has the sign of `direction`. Where the tilt may have any azimuth it acts along
+the velocity, which seldom is zero: what comes to a stop is held, or turns at once to where it is
+pushed (13.25).
 """
 
 from __future__ import annotations

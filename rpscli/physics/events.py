@@ -16,7 +16,6 @@ from rpscli.physics.friction import grip_at
 from rpscli.physics.laws import felt_at, lanes_of, ways_of
 from rpscli.physics.quintic import (
     NO_PASSAGE,
-    SETTLED,
     Quintic,
     first_descent,
     lower_hull,
@@ -218,10 +217,10 @@ def first_yield(s: Record, l: int, systems: Record) -> tuple[float, int]:
     first, which = NO_PASSAGE, 0
     for r in range(ways_of(s) * s.n):
         left, right = storey_paths(s, l, systems, r)
-        t = first_descent(left, SETTLED, s.piece)
+        t = first_descent(left, s.piece)
         if t < first:
             first, which = t, 2 * r
-        t = first_descent(right, SETTLED, s.piece)
+        t = first_descent(right, s.piece)
         if t < first:
             first, which = t, 2 * r + 1
     return first, which
@@ -275,10 +274,10 @@ def of_storey(s: Record, l: int) -> tuple[float, int, int]:
     """The same of a tilt that is free, and of its devices."""
     first, kind, which, piece = NO_PASSAGE, NOTHING, 0, s.piece
     path, low, high = path_in_range(s, l)
-    t = first_descent(offset(path, 1.0, low), SETTLED, piece)
+    t = first_descent(offset(path, 1.0, low), piece)
     if t < first:
         first, kind = t, LOW
-    t = first_descent(offset(path, -1.0, high), SETTLED, piece)
+    t = first_descent(offset(path, -1.0, high), piece)
     if t < first:
         first, kind = t, HIGH
     if ways_of(s) == 2 and falls(s, l) and s.new_v[l] >= 0.0:
@@ -288,7 +287,7 @@ def of_storey(s: Record, l: int) -> tuple[float, int, int]:
     for number in range(WATCHED if s.devices[l] > 0 else 0):
         there, path = watched_path(s, l, number)
         if there:
-            t = first_descent(path, SETTLED, piece)
+            t = first_descent(path, piece)
             if t < first:
                 first, kind, which = t, CHANGE, number
     return first, kind, which
@@ -321,9 +320,9 @@ def let_go(s: Record, l: int) -> tuple[float, int, int]:
             one, two = grip_at(s, l, 0), grip_at(s, l, 1)
             start, end = max(one.margin + one.late, 0.0), two.margin + two.late
             path = cubic(h, start, one.slope, end, two.slope)
-            t = first_descent(path, SETTLED, piece)
+            t = first_descent(path, piece)
         else:
-            t = first_descent(squared_margin(s, l), SETTLED, piece)
+            t = first_descent(squared_margin(s, l), piece)
         return t, (LET_GO if t <= 1.0 else NOTHING), 1
     # Where gravity is lost both margins are negative at once: then the push decides.
     push = 0.0
@@ -345,7 +344,7 @@ def let_go(s: Record, l: int) -> tuple[float, int, int]:
             limit + 0.8 * change - sign * x[4] - factor * spared[4],
             limit + change - sign * x[5] - factor * spared[5],
         )
-        t = first_descent(path, SETTLED, piece)
+        t = first_descent(path, piece)
         if t < first:
             first, side = t, sign
     return first, (LET_GO if side != 0 else NOTHING), side

@@ -577,7 +577,7 @@ def next_history(
 
 @compiled
 def idle(s: Record, l: int) -> None:
-    """Leave a lane without a history: it makes steps of nothing."""
+    """Leave a lane without a history: it takes steps of zero length."""
     s.history[l], s.devices[l], s.kinks[l], s.outcome[l] = NO_HISTORY, 0, 0.0, RUNNING
     s.yields[l], s.marked[l] = 0, 0
     s.kind[l], s.wanted[l], s.phase[l], s.moves[l] = NOTHING, NOTHING, FULL_CONTACT, 0.0

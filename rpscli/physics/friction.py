@@ -131,8 +131,9 @@ def sticks(s: Record, l: int, log: Record) -> bool:
     return True
 
 
-# Of a tilt to any side (13.25). With P the friction of dampers along W d = (C d_n, h d_t) and M
-# that of rolling along d, Q is held if Q.d <= P |W d| + M for every unit vector d.
+# Where the tilt may have any azimuth (13.25). With P the friction of dampers along W d =
+# (C d_n, h d_t) and M that of rolling along d, Q is held if Q.d <= P |W d| + M for every unit
+# vector d.
 
 
 class Grip(NamedTuple):

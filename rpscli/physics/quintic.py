@@ -29,11 +29,8 @@ NO_PASSAGE = 2.0
 """Returned instead of a t in [0, 1]."""
 
 SETTLED = 1e-9
-"""A correction so small leaves its square, less than rounding; at a double root, which is not known
-any better, its like."""
-
-NEAR = 1e-3
-"""The same where the quintic itself is no better: what it interpolates is met from there."""
+"""Relative correction at which Newton's method stops: its square, the error left, is less than
+rounding; at a double root, which is not known any better, the error is as large."""
 
 DEEPEST_HALVING = 40
 """Pieces of 2^-40 of a step are below rounding: a contact of two roots there is one."""
@@ -86,14 +83,14 @@ def value(b: Quintic, t: float) -> float:
 
 
 @compiled
-def first_descent(b: Quintic, settled: float, piece: NDArray[np.float64]) -> float:
+def first_descent(b: Quintic, piece: NDArray[np.float64]) -> float:
     """Smallest t in [0, 1] from which f < 0, or `NO_PASSAGE` [piece (6,)]."""
     stays = min(lower_hull(b), b[0]) >= 0.0
-    return NO_PASSAGE if stays else search_descent(b, settled, piece)
+    return NO_PASSAGE if stays else search_descent(b, piece)
 
 
 @compiled
-def search_descent(b: Quintic, settled: float, piece: NDArray[np.float64]) -> float:
+def search_descent(b: Quintic, piece: NDArray[np.float64]) -> float:
     """The same for a quintic whose hull does not say that there is none [piece (6,)]."""
     level, index = 0, 0
     while True:
@@ -103,7 +100,7 @@ def search_descent(b: Quintic, settled: float, piece: NDArray[np.float64]) -> fl
         if leaving < 0:
             return index * width
         if changes == 1 or (changes > 1 and level == DEEPEST_HALVING):
-            return (index + descent_in(piece, settled)) * width
+            return (index + descent_in(piece)) * width
         if changes == 0:
             index += 1
             while index % 2 == 0 and level > 0:
@@ -148,7 +145,7 @@ def sign_pattern(piece: NDArray[np.float64]) -> tuple[int, int]:
 
 
 @compiled
-def descent_in(piece: NDArray[np.float64], settled: float) -> float:
+def descent_in(piece: NDArray[np.float64]) -> float:
     """The root of a piece that changes sign once, downwards: Newton's method inside a bracket."""
     b = (piece[0], piece[1], piece[2], piece[3], piece[4], piece[5])
     low, high = 0.0, 1.0
@@ -163,7 +160,7 @@ def descent_in(piece: NDArray[np.float64], settled: float) -> float:
         better = t - f / fall if fall < 0.0 else -1.0
         if not low <= better <= high:
             better = 0.5 * (low + high)
-        if abs(better - t) <= settled * t:
+        if abs(better - t) <= SETTLED * t:
             return better
         t = better
     return t

@@ -179,7 +179,6 @@ SYSTEM = (
     *_fields("modes", "N/m", stiffness="k of a storey"),
     *_fields("modes", "kg", mass="of a floor"),
     *_fields("modes", "rad/s", omega="frequencies of the fixed base"),
-    *_fields("modes", "-", xi="damping ratios"),
     *_fields("modes", "1/s2", omega2="w^2"),
     *_fields("modes", "1/s", two_xi_omega="2 xi w"),
     *_fields("modes", "sqrt(kg)", Gamma="participation Phi^T M 1, shapes mass-normalised"),
@@ -255,7 +254,9 @@ STATE = (
     *_fields("lanes", "1/(kg m)", share="2/(N m_c R)"),
     *_fields("lanes", "kg", columns_mass="N m_c", cap_beam_mass="m_b", floors_mass="M_tot"),
     *_fields("lanes", "kg", riding="of floors that are lifted with the cap beam: all, or none"),
-    *_fields("lanes", "1/kg", spared="of g + a_v at contacts, by a force that floors lack, else 0"),
+    *_fields(
+        "lanes", "1/kg", spared="g + a_v less at contacts, a newton of floors on springs, else 0"
+    ),
     *_fields("lanes", "m/s2", gravity="g"),
     *_fields("lanes", "rad", beta="end of the arc", theta_cr="static limit"),
     *_fields("lanes", "s", contact_time="t_c", shock_time="see `system`"),
@@ -313,7 +314,7 @@ STATE = (
         moves="1: the tilt is free",
         rolls="1: on the arcs",
         cone="1: columns that may tilt to any side pass upright as a cone's tip, 0: smoothly",
-        turned="what u_b that goes on from a bed takes from K, times x^2",
+        turned="keeps K continuous at phi_u of a bed, times x^2",
         direction="sign of x' for friction",
     ),
     *_fields("lanes", "rad", x_low="the phase ends below", x_high="and above", bed_u="phi_u"),

@@ -59,7 +59,7 @@ FIRST_STEP = 3e-5
 """Longest step at the start of such an uplift [s]."""
 
 SLOW = 20.0
-"""Below this times (|z| + limit) theta_c/A a v^2 does not carry a pass away from upright."""
+"""A pass whose v^2 is below this times (|z| + limit) theta_c/A does not leave upright."""
 
 
 @compiled
@@ -68,8 +68,9 @@ def enter_phase(s: Record, l: int, system: Record, phase: int) -> None:
     s.phase[l], s.moves[l] = phase, 0.0 if phase in (FULL_CONTACT, STUCK) else 1.0
     if phase == STUCK:
         return
-    s.rolls[l] = 1.0 if phase == ROLLING else 0.0
-    constants = system.rolling if phase == ROLLING else system.rocking
+    # those of a column that stands are those with which a tilt would begin
+    rolls = phase == ROLLING or (phase == FULL_CONTACT and system.beta > 0.0)
+    s.rolls[l], constants = 1.0 if rolls else 0.0, system.rolling if rolls else system.rocking
     s.p[l], s.q0[l], s.c[l] = constants[0], constants[1], constants[2]
     s.u0[l], s.v0[l] = constants[3], constants[4]
     upright = 0.0
@@ -81,20 +82,10 @@ def enter_phase(s: Record, l: int, system: Record, phase: int) -> None:
     s.h_most[l] = 1.0 / system.step_rate
     enter_on_bed(s, l, system, phase)
     if phase == FULL_CONTACT:
-        enter_full_contact(s, l, system)
-
-
-@compiled
-def enter_full_contact(s: Record, l: int, system: Record) -> None:
-    """Stand: constants are those with which a tilt would begin."""
-    constants = system.rolling if system.beta > 0.0 else system.rocking
-    s.rolls[l] = 1.0 if system.beta > 0.0 else 0.0
-    s.p[l], s.q0[l], s.c[l] = constants[0], constants[1], constants[2]
-    s.u0[l], s.v0[l] = constants[3], constants[4]
-    s.x[l], s.v[l] = 0.0, 0.0
-    for axis in range(ways_of(s)):
-        s.tilt[axis, l], s.tilt_rate[axis, l] = 0.0, 0.0
-    set_limits(s, l)
+        s.x[l], s.v[l] = 0.0, 0.0
+        for axis in range(ways_of(s)):
+            s.tilt[axis, l], s.tilt_rate[axis, l] = 0.0, 0.0
+        set_limits(s, l)
 
 
 @compiled

@@ -13,7 +13,6 @@ from paper_structures import COMPILED, Array
 
 from rpscli.physics.quintic import (
     NO_PASSAGE,
-    SETTLED,
     Quintic,
     first_descent,
 )
@@ -39,7 +38,7 @@ def to_bernstein(powers: Array) -> Quintic:
 
 
 def descent(b: Quintic) -> float:
-    return first_descent(b, SETTLED, np.empty(6))
+    return first_descent(b, np.empty(6))
 
 
 def descent_by_roots(b: Quintic) -> float:

@@ -178,7 +178,7 @@ def fill_building(record: Record, building: Superstructure) -> None:
     omega2, shaken = omega * omega, np.abs(building.participation)
     shaken = np.maximum(shaken, LEAST_SHAKEN * shaken.max())
     shears = np.diff(shapes, prepend=0.0) * building.stiffnesses
-    record["omega"][:n], record["xi"][:n], record["Gamma"][:n] = omega, xi, building.participation
+    record["omega"][:n], record["Gamma"][:n] = omega, building.participation
     record["omega2"][:n], record["two_xi_omega"][:n] = omega2, 2.0 * xi * omega
     record["phi"][:n, :n], record["storey_shear_of"][:n, :n] = shapes, shears
     of_shears, of_accelerations = omega**3 * shaken**-0.3, omega**-0.6 * shaken**-0.5
