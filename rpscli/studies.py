@@ -405,7 +405,7 @@ class StudyResult(Shown):
 
     @property
     def keys(self) -> tuple[str, ...]:
-        """That tell apart the rows of statistics and verdicts."""
+        """Keys that distinguish the rows of statistics and verdicts."""
         return self.summary.keys if self.summary else ()
 
     @cached_property

@@ -53,3 +53,4 @@ def test_outcomes_are_explained_with_the_sentences_that_are_printed() -> None:
 def test_no_word_is_explained_twice() -> None:
     words = [part.strip() for entry, _ in glossary() for part in entry.split(",")]
     assert len(words) == len(set(words))
+    assert not any("|" in meaning for _, meaning in glossary())  # two rows in one line

@@ -216,7 +216,7 @@ def _beside(first: GroundMotion, second: GroundMotion, source: str) -> GroundMot
 
 
 def _apart(one: str, other: str) -> float:
-    """Seconds between two times of one spelling; none where one is not stated."""
+    """Seconds between two times in the same format; none where one is not stated."""
 
     def seconds(text: str) -> list[float]:
         numbers = [float(number) for number in re.findall(r"\d+(?:\.\d+)?|\.\d+", text)]

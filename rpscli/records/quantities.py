@@ -122,7 +122,7 @@ EXAMPLES = {
 """Examples of options."""
 
 LIKENESS = 0.5  # of a name to the one that was meant: names of records are long, and made of parts
-SOME = 12  # known words that are told where there are more than twice as many
+SOME = 12  # known words that are listed where there are more than twice as many
 
 
 def hint(word: str, known: Sequence[str]) -> str:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Numbers = NDArray[np.int64]
 
-WHOLE = 2_000_000  # sets at most of which all are looked at
+WHOLE = 2_000_000  # most sets that are searched exhaustively
 ROUNDS = 50  # searches, of which the best one counts
 STARTS = 5  # first choices of a search at random, each improved by exchange
 KICKS = 50  # times that the best of them is left by three motions at random, and improved again

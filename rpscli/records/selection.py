@@ -123,7 +123,7 @@ class Selection:
 
 @dataclass(frozen=True)
 class SelectionRequest:
-    """The wishes: `count` motions, or pairs, whose spectra are compared in `periods` [s].
+    """What is asked for: `count` motions, or pairs, whose spectra are compared in `periods` [s].
 
     `factors` bound those on a motion, `per_event` the motions from one earthquake. A `pgv` [m/s] is
     that of every motion, in place of the factor that fits it best. `rules` name what a code asks

@@ -51,7 +51,7 @@ def _with_added(
 
     def drawn(name: str) -> bytes:
         draw = FIGURES[name]
-        with FIGURES.blaming(name):  # what is wrong with its texts shows where the file is made
+        with FIGURES.blaming(name):  # errors in its labels surface when it is saved
             return style.single(draw, result, (title, name), 3.4)
 
     return {**{name: partial(drawn, name) for name in look.added}, **figures}

@@ -169,7 +169,7 @@ def answer_notes(answer: Answer, faults: Iterable[str]) -> Iterator[str]:
 
 
 NEAREST = 6
-"""Designs beside the best one that are looked at, where at least so many others were tried."""
+"""Designs beside the best one that are looked at, if that many were tried."""
 
 
 def neighbours_note(answer: Answer, best: int) -> Iterator[str]:

@@ -53,7 +53,7 @@ Content: TypeAlias = Written | Drawing
 
 
 def encoded(text: str) -> bytes:
-    r"""As UTF-8; bytes of the name of a file that are none become \udce4."""
+    r"""As UTF-8; bytes of a file name that cannot be decoded become \udce4."""
     return text.encode("utf-8", "backslashreplace")
 
 

@@ -38,10 +38,10 @@ Key = TypeVar("Key", bound=Hashable)
 Value = TypeVar("Value")
 
 SAMPLES_KEPT = 32_000_000
-"""Samples of ground motions held in memory (256 MB); the longest unused one goes first."""
+"""Samples of ground motions held in memory (256 MB); the least recently used go first."""
 
 SYSTEMS_KEPT = 512
-"""Systems held in memory with their modes of vibration; the longest unused one goes first."""
+"""Systems held in memory with their modes of vibration; the least recently used go first."""
 
 DECIDING = ("superstructure", "podium", "analysis")
 """Sections of a resolved case on which results depend besides the record."""

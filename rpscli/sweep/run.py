@@ -167,7 +167,7 @@ def batches(layout: StudyPoints, pending: Sequence[int], jobs: int) -> Iterator[
 
 
 HEARING = 0.2
-"""Seconds after which who waits for a batch looks up.
+"""Interval [s] at which the wait for a batch looks for a Ctrl-C.
 
 A Ctrl-C that comes between the last look and the beginning of the wait, or that is given to another
 thread, wakes nobody; on Windows none does.

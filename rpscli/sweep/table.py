@@ -95,7 +95,7 @@ class Intensity(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Table(Outcomes):
-    """Those of all points of a study, laid out.
+    """Outcomes of all points of a study, laid out.
 
     `scale` (points,) are factors on the records, NaN where one is not known; `messages` are reasons
     of failed points, by their number; `storey_shears` (points, most storeys) are the largest from

@@ -1,4 +1,4 @@
-"""Doubts about a case, possible and yet hardly meant: the number, and what is usual.
+"""Doubts about a case, possible, but probably not intended: the number, and what is usual.
 
 Mostly slips of units: millimetres for metres, kilograms for tonnes. The systems of a study are
 looked at as a single case is; what is doubted in many of them is told once, with the range.

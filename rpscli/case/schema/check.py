@@ -53,7 +53,7 @@ class _Faults:
         self._of_another_file = "rps" in known and content.keys().isdisjoint(known)
 
     def told(self) -> list[Fault]:
-        """All of them, but for missing keys that unknown ones were taken for."""
+        """All of them, but for missing keys that were suggested for an unknown one."""
         instead = {fault for fault in self._missing if fault.path in self._meant}
         return [fault for fault in self._all if fault not in instead]
 

@@ -76,7 +76,7 @@ def axes_of(document: Document, vary: Vary) -> tuple[Axis, ...]:
 
 
 DIGITS = 6
-"""Of what is linked to other values: nobody builds more, and files stay readable."""
+"""Of what is linked to other values: finer cannot be built, and files stay readable."""
 
 
 def linked_value(key: str, terms: Mapping[str, float], values: Sequence[float]) -> float | int:

@@ -71,7 +71,7 @@ def shown(value: object, width: int = 60) -> str:
 
 
 MOST_FAULTS = 100
-"""Told at once."""
+"""Most faults that are listed in one message."""
 
 MISSING = object()
 """Stands for a value that a document does not hold (None is YAML's null)."""

@@ -195,8 +195,8 @@ def derived_blocks(structure: PodiumStructure, podium: Mapping[str, Any]) -> lis
     text = (
         "Angles are in radians, everything else in SI units. The numbers put in are rounded to"
         f" {DIGITS} digits; the values follow from unrounded ones. The formulas are derived in"
-        f" {THEORY}, sections 1 to 7 and 14. f, κ and e_given are factor, loss and restitution of"
-        " podium.impact, I is podium.bearing.inertia_ratio."
+        f" {THEORY}, sections 1 to 7, 12, 14 and 16. f, κ and e_given are factor, loss and"
+        " restitution of podium.impact, I is podium.bearing.inertia_ratio."
     )
     return [text, _derived(derived.derivations(structure, podium))]
 

@@ -47,7 +47,7 @@ def rotation(study: StudyResults, options: RotationOptions) -> Found:
     systems = groups(layout, [key])
     wanted = [group for group in systems if group.values[0] == options.reference]
     reference = wanted[0] if wanted else systems[-1]
-    # Each intensity has a panel, unless the study says else.
+    # Each intensity has a panel, unless the study says otherwise.
     keys = own_keys(layout, leading) if options.panels is None else options.panels
     found = grouping(table, keys, leading)
 

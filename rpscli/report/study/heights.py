@@ -233,7 +233,7 @@ def without_floors(layout: StudyPoints, _options: ReportOptions) -> Iterator[str
         yield "the sample varies the number of storeys; vary it in an axis instead"
 
 
-NOT_DRAWN = "fractiles that overturned are not drawn"
+NOT_DRAWN = "fractiles at which the structure overturned are not drawn"
 
 STOREY_SHEAR = Report(StoreyShearOptions, storey_shear, requires=unlike_buildings)
 FLOOR_SPECTRA = Report(FloorSpectraOptions, floor_spectra, requires=without_floors)

@@ -161,7 +161,7 @@ def risk(study: StudyResults, options: RiskOptions) -> Found:
         risk_figure(found, known, years) if known else None,
         [*_report_notes(found, known, section.component), *found.notes],
         shown={"": dict.fromkeys(keys, "") | readers} | ({"_at": {}} if options.at else {}),
-        remark=f"{fragile.what_bands_hold(layout, options)}; rate of shares: of the observed ones,"
+        remark=f"{fragile.what_bands_hold(layout, options)}; rate of shares: from observed shares,"
         " no lognormal",
     )
 

@@ -77,7 +77,7 @@ def _statistic(histories: Histories, values: Array, wanted: float | str, largest
 
 
 def table_report(study: StudyResults, options: TableOptions) -> Found:
-    """Each system, at each intensity unless the study says else."""
+    """Each system, at each intensity unless the study says otherwise."""
     table, layout = study.table, study.table.layout
     make: Callable[[Histories], Cell] = _share
     result, unit, words = "overturned", "-", "overturned: share, number, 95 % interval"

@@ -296,7 +296,7 @@ def passes_text(result: TimeHistoryResult) -> str | None:
         f"{result.passes:.0f} passes near upright, however wide; {lost} of them lose like an impact"
         " (l > 0.5);"
         f" contact time {1e3 * result.structure.impact_law.contact_time:g} ms assumed: it decides"
-        f" how the end of the motion dies, and hardly how large it becomes; {ROUND}"
+        f" how the motion dies out, but hardly its maxima; {ROUND}"
     )
 
 

@@ -25,7 +25,7 @@ ROUNDING = 1e-9
 
 
 class Share(NamedTuple):
-    """A number of so many histories, and the interval of the probability; NaN without any.
+    """A count out of a number of histories, and the interval of the probability; NaN without any.
 
     The interval is that of Clopper and Pearson, exact for independent histories, see `clustered`
     for others: `recordings` are behind them, or events if `by` says so. Where none or all are
@@ -158,7 +158,7 @@ def demand(table: Outcomes, values: Array, *, from_below: bool = False) -> Array
 
 
 def fractiles(demands: Array, shares: Sequence[float]) -> Array:
-    """The least of the demands that so large shares do not exceed; NaN is left out."""
+    """The smallest demand not exceeded by each share; NaN is left out."""
     known = np.sort(demands[~np.isnan(demands)])
     if not len(known):
         return np.full(len(shares), np.nan)
