@@ -212,9 +212,10 @@ class DesignTask:
     def values(self, places: Array) -> Array:
         """(designs, keys) values in SI units."""
         found = {}
-        for (key, low, high), of, at in zip(self.unknowns, self.unknowns, places.T, strict=True):
+        for unknown, at in zip(self.unknowns, places.T, strict=True):
+            key, low, high = unknown
             values = low + (high - low) * at
-            found[key] = np.array([round(value, of.digits) for value in values.tolist()])
+            found[key] = np.array([round(value, unknown.digits) for value in values.tolist()])
         for key, terms in self.file.linked.items():
             columns = zip(*(found[name].tolist() for name in terms if name != PLUS), strict=True)
             found[key] = np.array([linked_value(key, terms, row) for row in columns], dtype=float)

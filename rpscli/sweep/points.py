@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -35,6 +35,15 @@ from rpscli.sweep.context import (
 from rpscli.sweep.evaluation import Indices
 from rpscli.sweep.systems import Change, SystemProperties, Watched, changes, examined, sample
 from rpscli.units import as_written
+
+
+class Places(NamedTuple):
+    """(points,) places of points among systems, records, scales and members."""
+
+    system: Indices
+    record: Indices
+    scale: Indices
+    member: Indices
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,10 +115,10 @@ class StudyPoints:
         return self.context.system(index, self.properties[index].values)
 
     @cached_property
-    def places(self) -> tuple[Indices, ...]:
-        """(points,) places of all points among systems, records, scales and members."""
+    def places(self) -> Places:
+        """Of all points."""
         shape = (len(self.properties), *self._within)
-        return frozen(np.unravel_index(np.arange(len(self)), shape))
+        return Places(*frozen(np.unravel_index(np.arange(len(self)), shape)))
 
     @cached_property
     def factors(self) -> Array:

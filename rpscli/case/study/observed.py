@@ -104,8 +104,8 @@ def read_observed(
     columns = []
     for head in heads:
         match = _TITLE.fullmatch(head)
-        unit = (match and match[2]) or ""
-        columns.append(_Column(match[1] if match else head.strip(), unit * (unit not in "-1")))
+        title, unit = (match[1], match[2] or "") if match else (head.strip(), "")
+        columns.append(_Column(title, "" if unit in ("-", "1") else unit))
     known = [RECORD, "scale", *(key for axis in axes for key in axis.keys)]
     document.refuse(_fault(name, first, text) for text in _title_faults(columns, known))
     faults, seen = [], []

@@ -292,7 +292,7 @@ def _fragility(
     low, high = (intensity.min() / 1.5, intensity.max() * 1.5) if len(kept) else (1.0, 1.0)
     grid = np.geomspace(low, high, CURVE_POINTS)
     # Motions over points: directions, samples and members of an ensemble share a motion.
-    shaken = layout.recordings[kept] * len(layout.scales) + layout.places[2][kept]
+    shaken = layout.recordings[kept] * len(layout.scales) + layout.places.scale[kept]
     weight = len(np.unique(shaken)) / max(len(kept), 1)
     # Members of an ensemble perturb one intensity, and tell no others.
     _, cell = np.unique(kept // len(layout.members), return_inverse=True)

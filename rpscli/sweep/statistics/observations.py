@@ -39,7 +39,7 @@ def observed_pairs(layout: StudyPoints, observed: Observed) -> Pairs:
     for group in groups(layout, observed.keys):
         system = tuple(map(comparable, observed.keys, group.values))
         row_of = np.array([rows.get((n, system), -1) for n in range(len(layout.records))])
-        place = row_of[layout.places[1][group.points]]
+        place = row_of[layout.places.record[group.points]]
         points.append(group.points[place >= 0])
         places.append(place[place >= 0])
     found, row = np.concatenate(points), np.concatenate(places)
