@@ -98,6 +98,8 @@ __all__ = [name for name, value in [*globals().items()] if hasattr(value, "__wra
 
 def __getattr__(name: str) -> Any:
     """A panel that another package adds."""
+    if name == "moment":  # before
+        return moment_rotation
     if not name.startswith("_") and name in FIGURES.names():
         return FIGURES[name]
     meant = hint(name, [*__all__, *FIGURES.names()], "help(rpscli.figures) lists all", 0.6)

@@ -138,6 +138,7 @@ def test_legends_may_be_left_out_and_names_are_hinted_at() -> None:
     draw(axes, *energy, legend=False)
     assert axes.get_legend() is None
     assert axes.get_legend_handles_labels()[1]  # for one's own
+    assert figures.moment is figures.moment_rotation
     for name in ("moment_rotatoin", "storeycurve"):
         with pytest.raises(AttributeError, match=r"has no panel .*; did you mean \w+\?"):
             getattr(figures, name)
