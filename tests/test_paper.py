@@ -157,7 +157,7 @@ def test_table_3(tmp_path: Path, fema_record: RecordLoader) -> None:
 def test_what_is_documented() -> None:
     granite = (ROOT / "cases" / "granite" / "README.md").read_text("utf-8")
     law = " ".join((ROOT / "cases/studies/impact_law/README.md").read_text("utf-8").split())
-    assert re.search(r"nine runs within 3 % .*\| 90\.0 % \|", granite)
+    assert re.search(r"nine runs within 3 % .*\| 89\.5 % \|", granite)
     assert "The same 576 buildings" in law
     assert "under the 44 far-field motions" in law
     said("documented", ("90", "44", "576"))
