@@ -113,11 +113,6 @@ class Field(NamedTuple):
     unit: str  # SI; ``-`` for plain numbers, ``mixed`` where entries or cases differ
     meaning: str  # symbol or formula, and words
 
-    def __str__(self) -> str:
-        """One line, as `describe` prints it."""
-        sizes = f"({self.sizes})" if self.sizes else "number"
-        return f"{self.name:22} {sizes:18} [{self.unit}] {self.meaning}"
-
 
 def _fields(sizes: str, unit: str, **meanings: str) -> tuple[Field, ...]:
     """Fields of the same sizes and unit."""
@@ -614,8 +609,3 @@ def scratch(ways: int, lanes: int) -> Record:
     if name not in kept:
         kept[name] = records(STATE, 1, ways, lanes)
     return kept[name]
-
-
-def describe(fields: tuple[Field, ...]) -> str:
-    """A table of a record, for reading: ``print(describe(STATE))``."""
-    return "\n".join(map(str, fields))

@@ -21,7 +21,7 @@ from rpscli.case.case import load_case
 from rpscli.cli import program
 from rpscli.model.podium import PodiumStructure
 
-from .problems import PROBLEMS, UNCHANGED, Change
+from .problems import PROBLEMS, Change, unchanged
 
 NUMBER = re.compile(r"(?<![\w.])\d[\d.]*(?:e[+-]\d+)?")
 SAMPLE = "parting_motions"
@@ -60,7 +60,7 @@ def scored(file: Path, *options: str) -> tuple[int, dict[str, Any]]:
 @needs_compiled_kernels
 def test_the_program_has_nearly_all_digits_that_are_certified(tmp_path: Path) -> None:
     """All but the last: weights of the step's rule of up to 176 multiply rounding."""
-    code, document = scored(given(tmp_path, PROBLEMS, UNCHANGED), "--digits", "9")
+    code, document = scored(given(tmp_path, PROBLEMS, unchanged), "--digits", "9")
     assert code == 0
     for line in document["comparisons"]:
         assert line["digits"] is None or line["digits"] > min(11, line["certified_digits"] - 0.1)
@@ -222,7 +222,7 @@ def test_a_page_says_the_numbers_of_its_case(name: str) -> None:
 @pytest.mark.parametrize("name", PROBLEMS)
 def test_both_roads_lead_to_the_certified_numbers(name: str) -> None:
     problem = PROBLEMS[name]
-    for road in (problem.first(), problem.second(UNCHANGED)):
+    for road in (problem.first(), problem.second(unchanged)):
         if name == SAMPLE:
             # 0.23 would part samples of a hundred; the first road is where they come from
             ((_, _, sample),) = problem.asked.values()
