@@ -3,16 +3,24 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.analyses.result_quantities import FIXED_BASE_MODES, LINEAR, UPLIFTED, values_of
+from rpscli.analyses.result_quantities import (
+    FIXED_BASE_MODES,
+    LINEAR,
+    UPLIFTED,
+    VERTICAL_MODES,
+    values_of,
+)
 from rpscli.analyses.settings import require_structure
 from rpscli.model.bearing import UpliftedState, uplifted_state
 from rpscli.model.podium import PodiumStructure
+from rpscli.model.superstructure import Superstructure
 from rpscli.physics import geometry
 from rpscli.shown import Shown, frozen
 
@@ -45,7 +53,8 @@ class UpliftedModes(Shown):
     linearised_at: float  # |theta| where that is [rad]: 0, or beta rocking on curved ends
 
     eigenvalues: Complex
-    """(2 n + 2,) the storey's own pair first, then the pairs of the vibration modes [1/s]."""
+    """(2 n + 2,) the storey's own pair first, then the pairs of the vibration modes [1/s];
+    (4 n + 2,) with vertical springs, whose modes are the last."""
     frequencies: Array  # (n,) omega_u = |lambda| of the vibration modes [rad/s]
     damping: Array  # (n,) xi_u = -Re(lambda)/|lambda|
     frequency_ratio: Array  # (n,) omega_u/omega_0, mode by mode
@@ -57,6 +66,9 @@ class UpliftedModes(Shown):
     shapes: Array
     """(n + 1, n + 1): storey's own mode first, then the vibration modes, one a column;
     u_b first, then the floors, relative to the ground, scaled to 1 at the largest component."""
+    vertical_frequencies: Array
+    """(n,) |lambda| of the modes that strain the vertical springs most [rad/s]; (0,) without."""
+    vertical_damping: Array
     first_order: UpliftedModes | None = None
     """The paper's: to first order in alpha, rocking continued to theta = 0. None of those."""
 
@@ -107,6 +119,8 @@ class ModalResult(Shown):
     full_contact
         Of compliant ends: n + 1 modes, shapes from the cap beam up; None on rigid ends, where
         it is `fixed_base`.
+    vertical
+        Of the floors on vertical springs in full contact; None without.
     """
 
     structure: PodiumStructure
@@ -114,16 +128,14 @@ class ModalResult(Shown):
     rolling: UpliftedModes | None
     rocking: UpliftedModes
     full_contact: FixedBaseModes | None = None
+    vertical: FixedBaseModes | None = None
 
     @property
     def left_out(self) -> tuple[str, ...]:
-        """Parts that are not in the modes: devices that are not linear, vertical springs."""
+        """Devices that are not in the modes, as they are not linear."""
         state = uplifted_state(self.structure.bearing, rolling=False)
         laws = (device.linear(self.structure, state) for device in self.structure.devices)
-        left = [law.left_out for law in laws if law.left_out]
-        if self.structure.upwards is not None:
-            left.append("vertical springs of the floors, which ride on the beam here")
-        return tuple(dict.fromkeys(left))
+        return tuple(dict.fromkeys(law.left_out for law in laws if law.left_out))
 
     @property
     def uplifted(self) -> dict[str, UpliftedModes]:
@@ -160,6 +172,21 @@ class ModalResult(Shown):
         orders = {name: (modes, modes.first_order) for name, modes in self.uplifted.items()}
         return {name: (exact, paper) for name, (exact, paper) in orders.items() if paper}
 
+    def vibrations(self) -> Iterator[tuple[str, Array]]:
+        """Modes of each uplifted state, one a row, and of its vertical springs.
+
+        Frequency and damping, both over those in full contact, both to first order (n, 6).
+        """
+        for name, (exact, first) in self.both_orders.items():
+            ratios = exact.frequency_ratio, exact.damping_ratio
+            orders = exact.frequencies, exact.damping, *ratios, first.frequencies, first.damping
+            yield name, np.transpose(orders)
+            if (upright := self.vertical) is not None:
+                w, xi = exact.vertical_frequencies, exact.vertical_damping
+                ratios = w / upright.frequencies, _over(xi, upright.damping)
+                paper = first.vertical_frequencies, first.vertical_damping
+                yield f"{name}_vertical", np.transpose((w, xi, *ratios, *paper))
+
     def facts(self) -> dict[str, Any]:
         """Periods on a fixed base, and what the storey itself does in each state."""
         fixed = self.fixed_base
@@ -171,13 +198,16 @@ class ModalResult(Shown):
     def results(self) -> dict[str, Any]:
         """Lists by mode and the parameters of each state; None for one that does not exist."""
         fixed, full = self.fixed_base, self.full_contact
+        vertical = VERTICAL_MODES if self.structure.upwards else ()
         states = {
-            name: values_of(exact, UPLIFTED) | {"first_order": values_of(paper, LINEAR)}
+            name: values_of(exact, (*UPLIFTED, *vertical))
+            | {"first_order": values_of(paper, (*LINEAR, *vertical))}
             for name, (exact, paper) in self.both_orders.items()
         }
         return {
             "fixed_base": None if fixed is None else values_of(fixed, FIXED_BASE_MODES),
             **({"full_contact": values_of(full, FIXED_BASE_MODES)} if full else {}),
+            **({"vertical": values_of(self.vertical, FIXED_BASE_MODES)} if vertical else {}),
             "rolling": None,
             **states,
             "left_out": list(self.left_out),
@@ -191,17 +221,22 @@ def modal(structure: PodiumStructure) -> ModalResult:
     Exact where a state begins; the paper's first-order values are in `first_order` of each state.
     """
     require_structure(structure)
-    fixed = None
-    if (building := structure.superstructure) is not None:
-        shapes = _scaled(np.array(building.shapes))
-        fixed = FixedBaseModes(building.frequencies, building.damping_ratios, shapes)
+    building = structure.superstructure
     return ModalResult(
         structure=structure,
-        fixed_base=fixed,
+        fixed_base=_on_its_base(building),
         rolling=None if structure.bearing.is_flat else _both_orders(structure, rolling=True),
         rocking=_both_orders(structure, rolling=False),
         full_contact=_full_contact(structure),
+        vertical=_on_its_base(building.upwards if building else None),
     )
+
+
+def _on_its_base(building: Superstructure | None) -> FixedBaseModes | None:
+    if building is None:
+        return None
+    shapes = _scaled(np.array(building.shapes))
+    return FixedBaseModes(building.frequencies, building.damping_ratios, shapes)
 
 
 def _full_contact(structure: PodiumStructure) -> FixedBaseModes | None:
@@ -241,21 +276,37 @@ def _both_orders(structure: PodiumStructure, *, rolling: bool) -> UpliftedModes:
 def linearised_matrices(
     structure: PodiumStructure, state: UpliftedState
 ) -> tuple[Array, Array, Array]:
-    """M_L, C_L, K_L in [2 R theta, u_t], each (n + 1, n + 1), about a state at rest."""
+    """M_L, C_L, K_L in [2 R theta, u_t], each (n + 1, n + 1), about a state at rest.
+
+    With vertical springs in [2 R theta, u_t, y] of the floors' lifts y, each (2 n + 1, 2 n + 1)
+    (Theory (14.8)).
+    """
     # Paper, Table 2, where the sign of the (2 rho - 1) term must be +: as printed, a larger radius
     # would soften the storey (Theory (6.3)). Dampers, elastic tendons: Theory, section 11.
-    n = structure.storeys
-    M, C, K = (np.zeros((n + 1, n + 1)) for _ in range(3))
-    M[0, 0] = _base_mass(structure, state) + structure.superstructure_mass * state.arm**2
+    vibrating, riding = _vibrating(structure, state), structure.superstructure_mass * state.arm**2
+    n, size = structure.storeys, 1 + structure.storeys * len(vibrating)
+    M, C, K = (np.zeros((size, size)) for _ in range(3))
+    M[0, 0] = _base_mass(structure, state) + (riding if len(vibrating) < 2 else 0.0)
     stiffness, C[0, 0] = _of_devices(structure, state)
     K[0, 0] = structure.weight * state.kappa / (2.0 * structure.bearing.semi_diagonal) + stiffness
-    if (building := structure.superstructure) is not None:
-        M[1:, 1:] = building.mass_matrix
+    for first, (building, lever) in zip(range(1, size, n or 1), vibrating, strict=True):
+        rows = slice(first, first + n)
+        M[rows, rows] = building.mass_matrix
         for whole, part in ((C, building.damping_matrix), (K, building.stiffness_matrix)):
-            whole[0, 0] += state.height**2 * part.sum()
-            whole[0, 1:] = whole[1:, 0] = -state.height * part.sum(axis=0)
-            whole[1:, 1:] = part
+            whole[0, 0] += lever**2 * part.sum()
+            whole[0, rows] = whole[rows, 0] = -lever * part.sum(axis=0)
+            whole[rows, rows] = part
     return M, C, K
+
+
+def _vibrating(
+    structure: PodiumStructure, state: UpliftedState
+) -> list[tuple[Superstructure, float]]:
+    """Floors on their columns and on vertical springs, and what moves their base by 2 R theta."""
+    if (building := structure.superstructure) is None:
+        return []
+    upwards = building.upwards if state.arm else None  # none is moved in full contact
+    return [(building, state.height)] + ([(upwards, state.arm)] if upwards else [])
 
 
 def _base_mass(structure: PodiumStructure, state: UpliftedState) -> float:
@@ -286,21 +337,49 @@ def _uplifted(structure: PodiumStructure, state: UpliftedState) -> UpliftedModes
         # A defective double zero: rounding splits it into +-sqrt(eps), which is not a frequency.
         values[:2], vectors[:, :2] = 0.0, 1.0
     pairs, frequencies, damping = _vibrations(values[2:])
-    columns = [0, *(2 + index for *_, index in pairs)]
+    indices = np.array([2 + index for *_, index in pairs], dtype=int)
+    across, up = _across_and_up(structure, state, vectors[:, indices])
     building = structure.superstructure
     omega = building.frequencies if building else np.empty(0)
     xi = building.damping_ratios if building else np.empty(0)
     return UpliftedModes(
         linearised_at=state.rotation,
-        eigenvalues=np.concatenate([values[:2], *([a, b] for a, b, _ in pairs)]),
-        frequencies=frequencies,
-        damping=damping,
-        frequency_ratio=frequencies / omega,
-        damping_ratio=np.divide(damping, xi, out=np.full_like(damping, np.nan), where=xi > 0.0),
+        eigenvalues=np.concatenate([values[:2], *(pairs[i][:2] for i in (*across, *up))]),
+        frequencies=frequencies[across],
+        damping=damping[across],
+        vertical_frequencies=frequencies[up],
+        vertical_damping=damping[up],
+        frequency_ratio=frequencies[across] / omega,
+        damping_ratio=_over(damping[across], xi),
         frequency_parameter=math.sqrt(abs(values[0] * values[1])),
         frequency_parameter_rigid=math.sqrt(abs(kappa) * structure.weight / (diameter * rigid)),
-        shapes=_scaled(np.column_stack([_real_shape(vectors[:, i]) for i in columns])),
+        shapes=_scaled(
+            np.column_stack(
+                [_real_shape(vectors[: 1 + structure.storeys, i]) for i in (0, *indices[across])]
+            )
+        ),
     )
+
+
+def _over(damping: Array, xi: Array) -> Array:
+    """Damping ratios over others, not a number where those are none."""
+    return np.divide(damping, xi, out=np.full_like(xi, np.nan), where=xi > 0.0)
+
+
+def _across_and_up(
+    structure: PodiumStructure, state: UpliftedState, vectors: Complex
+) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Vibration modes that strain columns most, and those that strain vertical springs."""
+    n, strains = structure.storeys, []
+    for first, (part, lever) in zip(
+        range(1, len(vectors), n or 1), _vibrating(structure, state), strict=True
+    ):
+        drift = vectors[first : first + n] - lever / state.height * vectors[0]
+        strains.append(np.sum(drift.conj() * (part.stiffness_matrix @ drift), axis=0).real)
+    if len(strains) < 2:
+        return np.arange(n), np.arange(0)
+    order = np.argsort(strains[1] / (strains[0] + strains[1]), kind="stable")
+    return np.sort(order[:n]), np.sort(order[n:])
 
 
 def _own_pair(values: Complex, kappa: float, decay: float) -> tuple[int, int]:

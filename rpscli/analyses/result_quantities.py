@@ -288,6 +288,12 @@ UPLIFTED = (
 """All results of an uplifted state besides its shapes."""
 
 FIXED_BASE_SHAPES = (_SHAPES,)
+VERTICAL_MODES = (
+    _Q("vertical_frequencies", "rad/s", "vertical frequency", r"$\omega_v$"),
+    _Q("vertical_damping", "-", "vertical damping", r"$\xi_v$"),
+)
+"""Lists by mode of the vertical springs, uplifted; nothing without them."""
+
 UPLIFTED_SHAPES = (_SHAPES, _Q("elastic_shapes", "-", "elastic mode shape"))
 LEVEL = _Q("floor", "", "level (0 = cap beam)")
 """Levels over which shapes are drawn."""

@@ -71,11 +71,11 @@ def _tables(result: ModalResult, title: str, left_out: Collection[str]) -> Itera
         numbers = modes.frequency_parameter, paper.frequency_parameter
         rigid = modes.frequency_parameter_rigid
         storey.append((name, modes.own_motion, *map(shown, (*numbers, rigid))))
-        for i, w in enumerate(modes.frequencies):
-            xi = shown(100.0 * modes.damping[i], 3), shown(100.0 * paper.damping[i], 3)
-            ratios = shown(modes.frequency_ratio[i]), shown(modes.damping_ratio[i])
-            cells = shown(w), shown(paper.frequencies[i]), ratios[0], *xi, ratios[1]
-            vibrations.append((name, str(i + 1), *cells))
+    for name, uplifted in result.vibrations():
+        for i, (w, xi, ratio, over, *first) in enumerate(uplifted.tolist(), 1):
+            percent = shown(100.0 * xi, 3), shown(100.0 * first[1], 3)
+            cells = shown(w), shown(first[0]), shown(ratio), *percent, shown(over)
+            vibrations.append((name.replace("_", ", "), str(i), *cells))
     yield Heading(title)
     heads: tuple[str, ...] = "storey's own mode", "", "p_ext rad/s", FIRST_ORDER, "rigid estimate"
     yield Table.of_texts(heads, storey, words=2).without(left_out)
@@ -94,6 +94,8 @@ def _tables(result: ModalResult, title: str, left_out: Collection[str]) -> Itera
     if (fixed := result.fixed_base) is None:
         return
     yield _mode_table(result.fixed_base_state.replace("_", " "), fixed)
+    if result.vertical is not None:
+        yield _mode_table("vertical", result.vertical)
     heads = "rad/s", FIRST_ORDER, "of fixed base", "xi %", FIRST_ORDER, "of fixed base"
     table = Table.of_texts(("uplifted", "mode", *heads), vibrations, words=1, keys=2)
     yield table.without(left_out)

@@ -154,14 +154,13 @@ def mode_columns(result: ModalResult) -> list[Column]:
     for state, modes, of_itself in (
         ("full_contact", result.full_contact, None),
         (result.fixed_base_state, result.fixed_base, 1.0),
+        ("vertical", result.vertical, 1.0),
     ):
         pairs = np.transpose([modes.frequencies, modes.damping]).tolist() if modes else ()
         for i, (w, xi) in enumerate(pairs, 1):
             rows.append((state, i, w, 2.0 * math.pi / w, xi, of_itself, of_itself, None, None))
-    for name, (exact, first) in result.both_orders.items():
-        found = (exact.frequencies, exact.damping, exact.frequency_ratio, exact.damping_ratio)
-        numbers = np.transpose([*found, first.frequencies, first.damping]).tolist()
-        for i, (w, *others) in enumerate(numbers, 1):
+    for name, modes_of_state in result.vibrations():
+        for i, (w, *others) in enumerate(modes_of_state.tolist(), 1):
             rows.append((name, i, w, 2.0 * math.pi / w, *others))
     return columns_of(heads, rows)
 

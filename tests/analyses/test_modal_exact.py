@@ -9,11 +9,12 @@ import numpy as np
 import pytest
 from oracles.devices import Equipment
 from oracles.storey_lagrangian import Contact, StoreyLagrangian
-from paper_structures import FLAT, Array, oracle_devices, oracle_system, podium
+from paper_structures import FLAT, Array, building, oracle_devices, oracle_system, podium
 
 from rpscli.analyses.modal import modal
 from rpscli.model.bearing import Bearing
 from rpscli.model.devices import FrictionDamper, Tendon, ViscousDamper
+from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import Device, PodiumStructure
 
 pytestmark = pytest.mark.evidence("modes", "program")
@@ -78,6 +79,50 @@ def test_eigenvalues_are_those_of_the_jacobian(
         zero = 1e-5 if modes.frequency_parameter == 0.0 else 0.0
         for value in modes.eigenvalues:
             assert np.min(np.abs(expected - value)) < 1e-6 * np.max(np.abs(expected)) + zero
+
+
+@pytest.mark.evidence("floors on vertical springs", "exact")
+@pytest.mark.parametrize("shape", SHAPES, ids=str)
+@pytest.mark.parametrize("storeys", [1, 3])
+def test_vertical_springs_in_tilt_drifts_and_lifts(
+    storeys: int, shape: tuple[float, float, float]
+) -> None:
+    """Second derivatives of the energies in [theta, drifts, lifts over the beam].
+
+    Weight and springs cancel where floors have sagged, so lifts add nothing but their springs.
+    """
+    above = replace(building(storeys), vertical_period=0.12, vertical_damping=0.07)
+    usual = podium(storeys, law=ImpactLaw(), superstructure=above)
+    structure = replace(usual, bearing=Bearing(1.5, *shape))
+    n, motion = storeys, StoreyLagrangian(oracle_system(structure))
+    chain = 2.0 * np.eye(n) - np.eye(n, k=1) - np.eye(n, k=-1)
+    chain[-1, -1] = 1.0  # the roof
+    root = 1.0 / np.sqrt(above.masses)
+    squares, vectors = np.linalg.eigh(root[:, None] * chain * root)
+    squares *= (2.0 * math.pi / 0.12) ** 2 / squares[0]
+    weighted = vectors / root[:, None]
+    for name, modes in modal(structure).uplifted.items():
+        rolling = name == "rolling"
+        _, slope, bend = motion.cap_beam(0.0 if rolling else motion.beta, rolling=rolling)
+        M, C, K = (np.zeros((2 * n + 1, 2 * n + 1)) for _ in range(3))
+        M[: n + 1, : n + 1] = motion.mass_matrix(slope)
+        M[0, n + 1 :] = M[n + 1 :, 0] = slope.imag * above.masses
+        M[n + 1 :, n + 1 :] = np.diag(above.masses)
+        K[0, 0] = motion.lifted_mass * structure.gravity * bend.imag
+        K[1 : n + 1, 1 : n + 1] = np.diag(above.stiffnesses)
+        K[n + 1 :, n + 1 :] = (weighted * squares) @ weighted.T
+        C[1 : n + 1, 1 : n + 1] = motion.drift_damping
+        C[n + 1 :, n + 1 :] = 2.0 * 0.07 * (weighted * np.sqrt(squares)) @ weighted.T
+        turned = np.linalg.solve(M, np.hstack([-K, -C]))
+        unmoved = np.hstack([np.zeros_like(M), np.eye(2 * n + 1)])
+        expected = np.linalg.eigvals(np.vstack([unmoved, turned]))
+        assert len(modes.eigenvalues) == len(expected) == 4 * n + 2
+        zero = 1e-5 if modes.frequency_parameter == 0.0 else 0.0
+        for value in modes.eigenvalues:
+            assert np.min(np.abs(expected - value)) < 1e-9 * np.max(np.abs(expected)) + zero
+        assert len(modes.frequencies) == len(modes.vertical_frequencies) == n
+        # a beam that is lifted with the floors is stiffer than one that stands
+        assert np.all(modes.vertical_frequencies > 0.99 * np.sqrt(squares))
 
 
 @pytest.mark.parametrize("devices", ["none", "prestress"])
