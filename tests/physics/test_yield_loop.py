@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from paper_structures import building, podium
 
@@ -22,7 +23,7 @@ F = 4e5  # N
 @pytest.mark.parametrize("hardening", [0.0, 0.05, 0.4])
 def test_a_spring_beside_one_that_slips(hardening: float) -> None:
     """h k d and (1 - h) times an elastic-perfectly plastic spring; work is stored or yielded."""
-    h, above = hardening, replace(building(1), strengths=[F], hardening=hardening)
+    h, above = hardening, replace(building(1), strengths=np.array([F]), hardening=hardening)
     lane = OneLane(podium(1, superstructure=above, law=ImpactLaw()), FULL_CONTACT)
     s, system, k = lane.s, lane.system, float(above.stiffnesses[0])
     shear_of, limit, work, reached, lies = float(system.storey_shear_of[0, 0]), F / k, 0.0, 0.0, 0.0
