@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 from importlib.util import find_spec
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numba
 import numpy as np
@@ -16,6 +16,9 @@ from oracles import devices as oracle_kinds
 from oracles.storey_lagrangian import OracleSystem
 
 from rpscli.analyses.kernels.systems import uplifted_rate
+from rpscli.analyses.results import TimeHistoryResult
+from rpscli.analyses.settings import TimeHistorySettings
+from rpscli.analyses.timehistory import time_history
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.model.bearing import Bearing
 from rpscli.model.devices import FrictionDamper, RollingResistance, Stop, Tendon, ViscousDamper
@@ -120,6 +123,25 @@ def ground(acceleration: ArrayLike, dt: float) -> GroundMotion:
 def stillness(dt: float) -> GroundMotion:
     """No ground motion at all, for free motions that are stored every dt."""
     return ground(np.zeros(2), dt)
+
+
+def let_go(
+    structure: PodiumStructure, rotation: float, seconds: float, dt: float = 0.01, **settings: Any
+) -> TimeHistoryResult:
+    """From rest at a tilt, on a ground that stands still."""
+    chosen = TimeHistorySettings(free_vibration=seconds, initial_rotation=rotation, **settings)
+    return time_history(structure, stillness(dt), chosen, with_fixed_base=False)
+
+
+def bisected(
+    happens: Callable[[float], bool], low: float, high: float, within: float = 1e-17
+) -> tuple[float, float]:
+    """Where something begins to happen: the last number below, and the first beyond."""
+    for _ in range(60):
+        if high - low > within * high:
+            middle = 0.5 * (low + high)
+            low, high = (low, middle) if happens(middle) else (middle, high)
+    return low, high
 
 
 def waves(seconds: float, dt: float, peak: float, seed: int) -> GroundMotion:
