@@ -14,6 +14,7 @@ import pytest
 from numpy.typing import ArrayLike, NDArray
 from oracles import devices as oracle_kinds
 from oracles.storey_lagrangian import OracleSystem
+from scipy.signal import lsim
 
 from rpscli.analyses.kernels.systems import uplifted_rate
 from rpscli.analyses.results import TimeHistoryResult
@@ -131,6 +132,23 @@ def let_go(
     """From rest at a tilt, on a ground that stands still."""
     chosen = TimeHistorySettings(free_vibration=seconds, initial_rotation=rotation, **settings)
     return time_history(structure, stillness(dt), chosen, with_fixed_base=False)
+
+
+def linear_response(M: Array, C: Array, K: Array, push: Array, a_g: Array, dt: float) -> Array:
+    """Positions and rates, (samples, 2 n), of M u'' + C u' + K u = -push a_g, exact if linear."""
+    n = len(M)
+    flow = np.eye(2 * n, k=n)
+    flow[n:] = -np.linalg.solve(M, np.hstack([K, C]))
+    load = np.concatenate((np.zeros(n), -np.linalg.solve(M, push)))[:, None]
+    system = (flow, load, np.eye(2 * n), np.zeros((2 * n, 1)))
+    _, states, _ = lsim(system, a_g, dt * np.arange(len(a_g)))
+    return np.asarray(states).reshape(len(a_g), 2 * n)
+
+
+def part(record: GroundMotion, start: float, seconds: float, factor: float = 1.0) -> GroundMotion:
+    """From an instant on, for a time [s], times a factor."""
+    first, count = round(start / record.dt), round(seconds / record.dt) + 1
+    return ground(factor * record.acceleration[first : first + count], record.dt)
 
 
 def bisected(
