@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 from importlib.util import find_spec
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numba
 import numpy as np
@@ -14,8 +14,12 @@ import pytest
 from numpy.typing import ArrayLike, NDArray
 from oracles import devices as oracle_kinds
 from oracles.storey_lagrangian import OracleSystem
+from scipy.signal import lsim
 
 from rpscli.analyses.kernels.systems import uplifted_rate
+from rpscli.analyses.results import TimeHistoryResult
+from rpscli.analyses.settings import TimeHistorySettings
+from rpscli.analyses.timehistory import time_history
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.model.bearing import Bearing
 from rpscli.model.devices import FrictionDamper, RollingResistance, Stop, Tendon, ViscousDamper
@@ -120,6 +124,42 @@ def ground(acceleration: ArrayLike, dt: float) -> GroundMotion:
 def stillness(dt: float) -> GroundMotion:
     """No ground motion at all, for free motions that are stored every dt."""
     return ground(np.zeros(2), dt)
+
+
+def let_go(
+    structure: PodiumStructure, rotation: float, seconds: float, dt: float = 0.01, **settings: Any
+) -> TimeHistoryResult:
+    """From rest at a tilt, on a ground that stands still."""
+    chosen = TimeHistorySettings(free_vibration=seconds, initial_rotation=rotation, **settings)
+    return time_history(structure, stillness(dt), chosen, with_fixed_base=False)
+
+
+def linear_response(M: Array, C: Array, K: Array, push: Array, a_g: Array, dt: float) -> Array:
+    """Positions and rates, (samples, 2 n), of M u'' + C u' + K u = -push a_g, exact if linear."""
+    n = len(M)
+    flow = np.eye(2 * n, k=n)
+    flow[n:] = -np.linalg.solve(M, np.hstack([K, C]))
+    load = np.concatenate((np.zeros(n), -np.linalg.solve(M, push)))[:, None]
+    system = (flow, load, np.eye(2 * n), np.zeros((2 * n, 1)))
+    _, states, _ = lsim(system, a_g, dt * np.arange(len(a_g)))
+    return np.asarray(states).reshape(len(a_g), 2 * n)
+
+
+def part(record: GroundMotion, start: float, seconds: float, factor: float = 1.0) -> GroundMotion:
+    """From an instant on, for a time [s], times a factor."""
+    first, count = round(start / record.dt), round(seconds / record.dt) + 1
+    return ground(factor * record.acceleration[first : first + count], record.dt)
+
+
+def bisected(
+    happens: Callable[[float], bool], low: float, high: float, within: float = 1e-17
+) -> tuple[float, float]:
+    """Where something begins to happen: the last number below, and the first beyond."""
+    for _ in range(60):
+        if high - low > within * high:
+            middle = 0.5 * (low + high)
+            low, high = (low, middle) if happens(middle) else (middle, high)
+    return low, high
 
 
 def waves(seconds: float, dt: float, peak: float, seed: int) -> GroundMotion:

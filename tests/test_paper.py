@@ -15,10 +15,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 import yaml
-from oracles.reference_systems import podium as oracle_podium
 from oracles.second_integrator import simulate
-from oracles.test_second_integrator import ROWS, recorded
-from paper_structures import RecordLoader, block, needs_compiled_kernels, podium
+from oracles.test_second_integrator import ROWS
+from paper_structures import RecordLoader, block, needs_compiled_kernels, oracle_system, podium
 from physics.test_overturning_pulses import SINE, least_amplitude
 from reproduction.test_histories import PRINTED
 
@@ -130,11 +129,10 @@ def test_a_published_pulse() -> None:
 @pytest.mark.long
 def test_second_integrator(fema_record: RecordLoader) -> None:
     row = ROWS[4]
-    other = simulate(oracle_podium(row.storeys, row.tan_alpha, row.rho), *recorded(row))
+    structure, record = podium(row.storeys, row.tan_alpha, row.rho), fema_record(row.record)
+    other = simulate(oracle_system(structure), record.acceleration, record.dt)
     settings = rpscli.TimeHistorySettings(free_vibration=10.0, accuracy=16.0)
-    ours = rpscli.demand(
-        podium(row.storeys, row.tan_alpha, row.rho), fema_record("farfield/17/a"), settings
-    )
+    ours = rpscli.demand(structure, record, settings)
     said("second integrator", (f"{ours.impacts}", "1e-9"))
     assert other.impacts == ours.impacts
     assert ours.max_rotation == pytest.approx(other.max_rotation, rel=1e-9)

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from oracles.devices import Equipment
+from oracles.devices import Tendon as OracleTendon
 from oracles.storey_lagrangian import Contact, StoreyLagrangian
 from paper_structures import FLAT, Array, building, oracle_devices, oracle_system, podium
 
@@ -37,11 +38,16 @@ def jacobian(structure: PodiumStructure, *, rolling: bool) -> Array:
     A constant moment holds the weight and the tendons there, so that it is an equilibrium.
     """
     motion, n = StoreyLagrangian(oracle_system(structure)), structure.storeys
-    gear = Equipment(motion, oracle_devices(structure), 1.0)
+    gear = Equipment(motion, oracle_devices(structure))
     contact, start = Contact(1, rolling=rolling), 0.0 if rolling else motion.beta
     y = np.zeros(2 * n + 2)
     y[0] = start
-    gear.release(start, rolling=rolling)
+    gear.unload(start, rolling=rolling)
+    endless = {"yield_force": math.inf}  # as long as it is unloaded: drawn further it would yield
+    gear.devices = tuple(
+        replace(each, **endless) if isinstance(each, OracleTendon) else each
+        for each in gear.devices
+    )
 
     def devices(y: Array) -> float:
         return sum(active for active, _ in gear.moments(contact, y[0], y[n + 1], 1))

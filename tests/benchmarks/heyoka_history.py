@@ -16,7 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.model.podium import PodiumStructure
-from rpscli.model.superstructure import RayleighDamping
+from rpscli.model.superstructure import RayleighDamping, Superstructure
+from rpscli.physics.geometry import Phase
 
 Floats = NDArray[np.float64]
 
@@ -41,95 +42,39 @@ class PeerHistory(NamedTuple):
     impacts: int
 
 
-class Phase(NamedTuple):
-    """Constants of rolling or of rocking (Theory, section 1)."""
-
-    p: float
-    q: float
-    c: float
-    u0: float
-
-
-class Rocking(NamedTuple):
-    """A building on kinematic bearings; `level` is beta, where rolling and rocking meet."""
-
-    R: float
-    alpha: float
-    level: float
-    rolling: Phase
-    rocking: Phase
-    Io: float
-    gamma: float
-    eta: float
-    columns_mass: float
-    masses: Floats
-    stiffnesses: Floats
-    a0: float
-    a1: float
-    restitution: float
-    gravity: float
-    limit: float
-
-
-def rocking_of(structure: PodiumStructure) -> Rocking:
-    """The numbers of a structure with curved ends, Rayleigh damping and the rigid impact law."""
-    b, building = structure.bearing, structure.superstructure
+def building_of(podium: PodiumStructure) -> tuple[Superstructure, float, float]:
+    """The building and its coefficients of Rayleigh's damping."""
+    building = podium.superstructure
     assert building is not None
     assert isinstance(building.damping, RayleighDamping)
-    alpha = math.atan(b.slenderness)
-    k = 2.0 * b.curvature_ratio * math.cos(alpha)
-    beta = math.asin((b.wedge_slenderness - b.slenderness) / (2.0 * b.curvature_ratio))
-    sine, cosine = math.sin(alpha), math.cos(alpha)
-    a0, a1 = building.damping.coefficients(building.frequencies)
-    gamma = structure.cap_beam_mass / structure.columns_mass
-    eta = float(building.masses.sum()) / structure.cap_beam_mass
-    carried = 4.0 * gamma * (1.0 + eta)
-    return Rocking(
-        R=b.semi_diagonal,
-        alpha=alpha,
-        level=beta,
-        rolling=Phase(sine, k - cosine, k, sine),
-        rocking=Phase(
-            sine + k * math.sin(beta), k * (1.0 - math.cos(beta)) - cosine, 0.0, sine + k * beta
-        ),
-        Io=b.inertia_ratio,
-        gamma=gamma,
-        eta=eta,
-        columns_mass=structure.columns_mass,
-        masses=np.array(building.masses),
-        stiffnesses=np.array(building.stiffnesses),
-        a0=a0,
-        a1=a1,
-        restitution=1.0 - 2.0 * sine**2 * (1.0 + carried) / (b.inertia_ratio + carried),
-        gravity=structure.gravity,
-        limit=2.0 * b.critical_rotation,
-    )
+    return building, *building.damping.coefficients(building.frequencies)
 
 
 class Landing:
     """Impacts of one podium, with the right-hand side at x = 0 prepared: it is linear there."""
 
-    def __init__(self, podium: Rocking) -> None:
-        n, gamma, eta = len(podium.masses), podium.gamma, podium.eta
-        sine, cosine = math.sin(podium.alpha), math.cos(podium.alpha)
+    def __init__(self, podium: PodiumStructure) -> None:
+        (building, a0, a1), R = building_of(podium), podium.bearing.semi_diagonal
+        n, gamma, eta, alpha = podium.storeys, podium.gamma, podium.eta, podium.bearing.alpha
+        sine, cosine = math.sin(alpha), math.cos(alpha)
         self.storeys, self.restitution = n, podium.restitution
-        self.beam = 2.0 * podium.R * cosine
+        self.beam = 2.0 * R * cosine
         self.jump = self.beam * (1.0 - podium.restitution)
         self.left_out = 2.0 / (1.0 + podium.restitution) * self.beam  # (3.5)
-        self.negligible = 2.0 * NEGLIGIBLE * podium.alpha
-        curve = podium.rolling.c
-        A = podium.Io - 1.0 + 1.0 + 4.0 * gamma + 4.0 * gamma * eta * sine**2
+        self.negligible = 2.0 * NEGLIGIBLE * alpha
+        curve = podium.bearing.rolling.c
+        A = podium.bearing.inertia_ratio + 4.0 * gamma + 4.0 * gamma * eta * sine**2
         D = sine * ((1.0 + 4.0 * gamma) * curve + 4.0 * gamma * eta * (curve - cosine))
-        restoring = sine * podium.gravity / podium.R * (1.0 + 2.0 * gamma + 2.0 * gamma * eta)
+        restoring = sine * podium.gravity / R * (1.0 + 2.0 * gamma + 2.0 * gamma * eta)
         self.restoring, self.turning = restoring / A, D / A
-        self.ground = cosine * (1.0 + 2.0 * gamma) / podium.R / A
+        self.ground = cosine * (1.0 + 2.0 * gamma) / R / A
         shear = np.zeros(2 * n + 2)  # V = shear . y, beam at 2 R cos(alpha) x'
-        shear[1], shear[n + 2 :] = podium.stiffnesses[0], podium.a0 * podium.masses
-        shear[n + 2] += podium.a1 * podium.stiffnesses[0]
-        shear[n + 1] = -2.0 * podium.R * cosine * shear[n + 2 :].sum()
+        shear[1], shear[n + 2 :] = building.stiffnesses[0], a0 * building.masses
+        shear[n + 2] += a1 * building.stiffnesses[0]
+        shear[n + 1] = -self.beam * shear[n + 2 :].sum()
         self.back = 0.0
         """What decelerates the tilt behind the last impact [rad/s2]."""
-        self.building = 2.0 * cosine / (podium.columns_mass * podium.R) / A * shear
+        self.building = 2.0 * cosine / (podium.columns_mass * R) / A * shear
 
     def land(self, y: Floats, across: float) -> bool:
         """Impact: change the mirrored state to that of the other side; whether the storey locks.
@@ -150,12 +95,13 @@ class Landing:
         return bool(stays)
 
 
-def equations(podium: Rocking) -> list[tuple[Any, Any]]:
+def equations(podium: PodiumStructure) -> list[tuple[Any, Any]]:
     """The mirrored equations of motion as heyoka's expressions."""
     import heyoka as hy
 
-    n = len(podium.masses)
-    R, gamma, eta = podium.R, podium.gamma, podium.eta
+    building, a0, a1 = building_of(podium)
+    masses, stiffnesses, n = building.masses, building.stiffnesses, podium.storeys
+    R, gamma, eta = podium.bearing.semi_diagonal, podium.gamma, podium.eta
     names = ["x", *(f"u{i}" for i in range(n)), "w", *(f"v{i}" for i in range(n))]
     y = hy.make_vars(*names)
     x, u, w, v = y[0], y[1 : n + 1], y[n + 1], y[n + 2 :]
@@ -170,18 +116,17 @@ def equations(podium: Rocking) -> list[tuple[Any, Any]]:
     beam_rate = 2.0 * R * C * w
     below, rates_below = [beam, *u[:-1]], [beam_rate, *v[:-1]]
     shears = [
-        podium.stiffnesses[i] * (u[i] - below[i])
-        + podium.stiffnesses[i] * podium.a1 * (v[i] - rates_below[i])
+        stiffnesses[i] * (u[i] - below[i]) + stiffnesses[i] * a1 * (v[i] - rates_below[i])
         for i in range(n)
     ]
-    drags = [podium.a0 * (v[i] - beam_rate) for i in range(n)]
-    V = hy.sum([shears[0], *(podium.masses[i] * drags[i] for i in range(n))])
-    A = podium.Io - 1.0 + (1.0 + 4.0 * gamma) * S + 4.0 * gamma * eta * B * B
+    drags = [a0 * (v[i] - beam_rate) for i in range(n)]
+    V = hy.sum([shears[0], *(masses[i] * drags[i] for i in range(n))])
+    A = podium.bearing.inertia_ratio - 1.0 + (1.0 + 4.0 * gamma) * S + 4.0 * gamma * eta * B * B
     D = B * ((1.0 + 4.0 * gamma) * c - 4.0 * gamma * eta * rise)
     weight = podium.gravity / R * (1.0 + 2.0 * gamma + 2.0 * gamma * eta) * B
     push = (1.0 + 2.0 * gamma) / R * across - 2.0 / (podium.columns_mass * R) * V
     pulls = [shears[i] - shears[i + 1] if i + 1 < n else shears[i] for i in range(n)]
-    bends = [-(1.0 / podium.masses[i]) * pulls[i] - drags[i] - across for i in range(n)]
+    bends = [-(1.0 / masses[i]) * pulls[i] - drags[i] - across for i in range(n)]
     speeds = [w, *v]
     return list(zip(y, [*speeds, -(weight + C * push + D * w * w) / A, *bends], strict=True))
 
@@ -189,18 +134,15 @@ def equations(podium: Rocking) -> list[tuple[Any, Any]]:
 class HeyokaStanding:
     """A compiled integrator of the building on a fixed base, with uplift as its terminal event."""
 
-    def __init__(self, podium: Rocking, dt: float, tol: float) -> None:
+    def __init__(self, podium: PodiumStructure, dt: float, tol: float) -> None:
         import heyoka as hy
 
-        n, self.dt = len(podium.masses), dt
-        between = np.eye(n) - np.eye(n, k=-1)
-        stiffness = between.T @ np.diag(podium.stiffnesses) @ between
-        damping = podium.a0 * np.diag(podium.masses) + podium.a1 * stiffness
-        flow = -np.hstack([stiffness, damping]) / podium.masses[:, None]
+        (building, _, _), n, self.dt = building_of(podium), podium.storeys, dt
+        forces = np.hstack([building.stiffness_matrix, building.damping_matrix])
+        flow = -forces / building.masses[:, None]
         gamma, eta = podium.gamma, podium.eta
-        share = 2.0 * gamma * eta / podium.masses.sum()
-        on_beam = share * np.r_[stiffness.sum(axis=0), damping.sum(axis=0)]
-        lift = podium.gravity * np.tan(podium.alpha) * (1.0 + 2.0 * gamma * (1.0 + eta))
+        on_beam = 2.0 * gamma * eta / building.masses.sum() * forces.sum(axis=0)
+        lift = podium.uplift_acceleration * (1.0 + 2.0 * gamma * (1.0 + eta))
         names = [f"{kind}{i}" for kind in "uv" for i in range(n)]
         z = hy.make_vars(*names)
         across = hy.par[ACROSS] + hy.par[SLOPE] * hy.time
@@ -254,13 +196,15 @@ class HeyokaRocking:
     def __init__(self, structure: PodiumStructure, dt: float, tol: float = 1e-4) -> None:
         import heyoka as hy
 
-        podium = self.podium = rocking_of(structure)
+        podium = self.podium = structure
+        self.rolling, self.rocking = structure.bearing.rolling, structure.bearing.rocking
+        self.level, self.limit = structure.bearing.beta, 2.0 * structure.bearing.critical_rotation
         self.dt, self.landing = dt, Landing(podium)
         self.standing = HeyokaStanding(podium, dt, tol)
         x = hy.make_vars("x")
         self.integrator = hy.taylor_adaptive(
             equations(podium),
-            np.zeros(2 * len(podium.masses) + 2),
+            np.zeros(2 * podium.storeys + 2),
             pars=np.zeros(8),
             tol=tol,
             t_events=[
@@ -269,14 +213,14 @@ class HeyokaRocking:
                 hy.t_event(x - hy.par[LEVEL], cooldown=0.0),
             ],
         )
-        self.integrator.pars[LEVEL] = podium.level
+        self.integrator.pars[LEVEL] = self.level
         self._peak, self._impacts = 0.0, 0
         self._slopes: list[float] = []
         self._intercepts: list[float] = []
 
     def history(self, record: Floats) -> PeerHistory:
         """One history from rest to the end of the record; infinite rotation if it overturns."""
-        podium, n, dt = self.podium, len(self.podium.masses), self.dt
+        n, dt = self.podium.storeys, self.dt
         slopes = np.diff(record) / dt
         self._slopes = slopes.tolist()
         self._intercepts = (record[:-1] - slopes * np.arange(len(slopes)) * dt).tolist()
@@ -293,17 +237,16 @@ class HeyokaRocking:
             y[1 : n + 1], y[n + 2 :] = side * z[:n], side * z[n:]
             interval, after, side = self._fly(interval, after, side)
             z[:n] = side * y[1 : n + 1]
-            z[n:] = side * (y[n + 2 :] - 2.0 * podium.R * np.cos(podium.alpha) * y[n + 1])
+            z[n:] = side * (y[n + 2 :] - self.landing.beam * y[n + 1])
         return PeerHistory(self._peak, self._impacts)
 
     def _fly(self, interval: int, after: float, side: float) -> tuple[int, float, float]:
         """From an uplift to re-contact: interval, time into it, and side of the state."""
-        ta, podium, dt = self.integrator, self.podium, self.dt
-        n = len(podium.masses)
+        ta, n, dt = self.integrator, self.podium.storeys, self.dt
         step, land = ta.step, self.landing.land
         y, pars, slopes, intercepts = ta.state, ta.pars, self._slopes, self._intercepts
         value = y.item  # Python's own floats: numpy's would double the time of this loop
-        self._enter(podium.rolling)
+        self._enter(self.rolling)
         ta.time = interval * dt + after
         ta.reset_cooldowns()
         peak, left, before, w = self._peak, dt - after, 0.0, 0.0
@@ -331,25 +274,25 @@ class HeyokaRocking:
                         return i, dt - left, side
                     y[0], pars[ACROSS], pars[SLOPE] = ASIDE, across, slope
                 elif code == ARC_END:
-                    self._enter(podium.rocking if w > 0.0 else podium.rolling)
-                    y[0] = podium.level + (ASIDE if w > 0.0 else -ASIDE)
+                    self._enter(self.rocking if w > 0.0 else self.rolling)
+                    y[0] = self.level + (ASIDE if w > 0.0 else -ASIDE)
                 else:
                     refuse_failure(code)
             left = dt
-            if y[0] > podium.limit:
+            if y[0] > self.limit:
                 peak = np.inf
                 break
         self._peak = float(peak)
         return len(slopes), 0.0, side
 
     def _enter(self, phase: Phase) -> None:
-        pars, (p, q, c, u0) = self.integrator.pars, phase
+        pars, (p, q, c, u0, _) = self.integrator.pars, phase
         pars[P], pars[Q], pars[CURVE], pars[SHIFT] = p, q, c, u0
         pars[SQUARE] = p * p + q * q - c * c
 
     def _turning_point(self, h: float) -> float:
         """The tilt where its rate is zero within the last step, by its dense output."""
-        ta, n = self.integrator, len(self.podium.masses)
+        ta, n = self.integrator, self.podium.storeys
         low, high = ta.time - h, ta.time
         for _ in range(30):
             middle = 0.5 * (low + high)

@@ -13,9 +13,8 @@ from typing import Any
 import pytest
 from click.testing import CliRunner
 
-from hunt.mutation import mutated
 from hunt.test_hostile_files import CASE_KEYS, CASES, VALUES
-from hunt.trials import LONGEST_LINE, PROMISED, hunt, judged, shares
+from hunt.trials import LONGEST_LINE, PROMISED, hunt, hunted, judged, mutated, shares
 from rpscli import load_case, load_record, load_study
 from rpscli.case.design import DesignFile, parse_design
 from rpscli.case.schema.keys import key_references, known_paths
@@ -46,13 +45,10 @@ def test_the_design_is_sound() -> None:
     assert judged("design", "design.yaml", "--dry-run") == "done"
 
 
-@shares
-def test_designs(long: bool) -> None:
-    def trial(random: Random) -> str:
-        Path("design.yaml").write_text(mutated(DESIGN, random), encoding="utf-8", errors="replace")
-        return judged("design", "design.yaml", "--dry-run", places=("design.yaml", ".yaml:"))
-
-    hunt("designs", trial, 6, 1200 if long else None)
+@hunted("designs", 6, 1200)
+def test_designs(random: Random) -> str:
+    Path("design.yaml").write_text(mutated(DESIGN, random), encoding="utf-8", errors="replace")
+    return judged("design", "design.yaml", "--dry-run", places=("design.yaml", ".yaml:"))
 
 
 @shares
@@ -185,19 +181,16 @@ EXTREMES = {
 }
 
 
-@shares
-def test_drawings_of_bearings(long: bool) -> None:
-    def trial(random: Random) -> str:
-        keys = random.sample(list(EXTREMES), random.choice([1, 1, 2]))
-        changes = [f"{key}={random.choice(EXTREMES[key])}" for key in keys]
-        options = [word for change in changes for word in ("--set", change)]
-        case, formats = f"{CASES}/rigid_frame.yaml", random.choice(["png", "svg,pdf"])
-        end = judged("check", case, "--draw", "--figures", formats, "-o", "drawn", *options)
-        if end == "done":
-            assert all(Path("drawn", f"bearing.{each}").is_file() for each in formats.split(","))
-        return end
-
-    hunt("drawings", trial, 4, 300 if long else None)
+@hunted("drawings", 4, 300)
+def test_drawings_of_bearings(random: Random) -> str:
+    keys = random.sample(list(EXTREMES), random.choice([1, 1, 2]))
+    changes = [f"{key}={random.choice(EXTREMES[key])}" for key in keys]
+    options = [word for change in changes for word in ("--set", change)]
+    case, formats = f"{CASES}/rigid_frame.yaml", random.choice(["png", "svg,pdf"])
+    end = judged("check", case, "--draw", "--figures", formats, "-o", "drawn", *options)
+    if end == "done":
+        assert all(Path("drawn", f"bearing.{each}").is_file() for each in formats.split(","))
+    return end
 
 
 def test_styles_are_files(tmp_path: Path) -> None:

@@ -23,9 +23,8 @@ from commands.test_identify import FRAME
 from paper_structures import needs_compiled_kernels
 from sweep.small_studies import BASE
 
-from hunt.mutation import mutated
 from hunt.test_damaged_stores import DAMAGES
-from hunt.trials import PROMISED, hunt, judged, shares
+from hunt.trials import PROMISED, hunt, judged, mutated, shares
 from rpscli import registry
 from rpscli.analyses.verification import ANSWERS, problem_files
 from rpscli.physics.compile import cache_folder

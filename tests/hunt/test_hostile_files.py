@@ -10,8 +10,7 @@ from random import Random
 import pytest
 from small_records import cosmos, csmip, esm, geonet, knet, smc
 
-from hunt.mutation import mutated
-from hunt.trials import hunt, judged, shares
+from hunt.trials import hunt, hunted, judged, mutated, shares
 from rpscli.case.schema.case_file import DEVICE_KEYS as NEEDED
 from rpscli.case.schema.case_file import CaseFile
 from rpscli.case.schema.keys import known_paths
@@ -62,51 +61,42 @@ def written(name: str, text: str, random: Random) -> str:
     return data.decode(encoding, "replace")
 
 
-@shares
-def test_cases(long: bool) -> None:
-    def trial(random: Random) -> str:
-        text = mutated(random.choice(CASE_TEXTS), random)
-        text += written("case.yaml", text, random)
-        command = random.choice(["check", "check", "check", "modal"])
-        options = random.choice([(), ("--json",), ("-q",)]) if command == "check" else ("--json",)
-        return judged(command, "case.yaml", *options, places=("case.yaml",), text=text)
-
-    hunt("cases", trial, 60, 8000 if long else None)
+@hunted("cases", 60, 8000)
+def test_cases(random: Random) -> str:
+    text = mutated(random.choice(CASE_TEXTS), random)
+    text += written("case.yaml", text, random)
+    command = random.choice(["check", "check", "check", "modal"])
+    options = random.choice([(), ("--json",), ("-q",)]) if command == "check" else ("--json",)
+    return judged(command, "case.yaml", *options, places=("case.yaml",), text=text)
 
 
-@shares
-def test_values_of_cases(long: bool) -> None:
-    def trial(random: Random) -> str:
-        text = random.choice(CASE_TEXTS)
-        Path("case.yaml").write_text(text, encoding="utf-8")
-        changes = [
-            f"{random.choice(CASE_KEYS)}={random.choice(VALUES)}"
-            for _ in range(random.choice([1, 1, 2, 3]))
-        ]
-        options = [word for change in changes for word in ("--set", change)]
-        places = ("case.yaml", "--set")
-        text = " ".join([text, *changes])
-        return judged("check", "case.yaml", *options, "--json", places=places, text=text)
-
-    hunt("values of cases", trial, 60, 5000 if long else None)
+@hunted("values of cases", 60, 5000)
+def test_values_of_cases(random: Random) -> str:
+    text = random.choice(CASE_TEXTS)
+    Path("case.yaml").write_text(text, encoding="utf-8")
+    changes = [
+        f"{random.choice(CASE_KEYS)}={random.choice(VALUES)}"
+        for _ in range(random.choice([1, 1, 2, 3]))
+    ]
+    options = [word for change in changes for word in ("--set", change)]
+    places = ("case.yaml", "--set")
+    text = " ".join([text, *changes])
+    return judged("check", "case.yaml", *options, "--json", places=places, text=text)
 
 
-@shares
-def test_devices(long: bool) -> None:
-    def trial(random: Random) -> str:
-        Path("case.yaml").write_text(random.choice(CASE_TEXTS), encoding="utf-8")
-        devices = []
-        for _ in range(random.choice([1, 1, 2])):
-            kind, values = random.choice(KINDS), [*VALUES, *["0.5", "0.1 m", "20 kN/mm"] * 8]
-            keys = set(random.sample(DEVICE_KEYS, random.choice([0, 0, 1, 3])))
-            keys |= {*NEEDED.get(kind, ((), ()))[0]}  # else hardly one is accepted
-            inside = "".join(f", {key}: {random.choice(values)}" for key in sorted(keys))
-            devices.append(f"{{kind: {kind}{inside}}}")
-        change = f"podium.devices=[{', '.join(devices)}]"
-        places = ("case.yaml", "--set")
-        return judged("check", "case.yaml", "--set", change, "--json", places=places)
-
-    hunt("devices", trial, 40, 3000 if long else None)
+@hunted("devices", 40, 3000)
+def test_devices(random: Random) -> str:
+    Path("case.yaml").write_text(random.choice(CASE_TEXTS), encoding="utf-8")
+    devices = []
+    for _ in range(random.choice([1, 1, 2])):
+        kind, values = random.choice(KINDS), [*VALUES, *["0.5", "0.1 m", "20 kN/mm"] * 8]
+        keys = set(random.sample(DEVICE_KEYS, random.choice([0, 0, 1, 3])))
+        keys |= {*NEEDED.get(kind, ((), ()))[0]}  # else hardly one is accepted
+        inside = "".join(f", {key}: {random.choice(values)}" for key in sorted(keys))
+        devices.append(f"{{kind: {kind}{inside}}}")
+    change = f"podium.devices=[{', '.join(devices)}]"
+    places = ("case.yaml", "--set")
+    return judged("check", "case.yaml", "--set", change, "--json", places=places)
 
 
 @shares
@@ -141,37 +131,28 @@ NAMES = ["..", "a", "#", "?b=c", " ", "\x1b", "\n", "\u202e", "\udce4", ",", "'"
 NAMES += ["&factor=2", "x:"]
 
 
-@shares
-def test_names(long: bool) -> None:
-    def trial(random: Random) -> str:
-        folder = Path(f"f{random.randrange(10**9)}")
-        folder.mkdir()
-        name = "".join(random.choice(NAMES) for _ in range(random.randrange(1, 4))) + ".at2"
-        (folder / name).write_text(at2())
-        Path("case.yaml").write_text(CASE_TEXTS[0], encoding="utf-8")
-        source = random.choice([f"{folder}/{name}", str(folder), f"{folder}/*"])
-        return judged("record", "info", source, "--json", places=(str(folder),))
-
-    hunt("names", trial, 40, 1000 if long else None)
+@hunted("names", 40, 1000)
+def test_names(random: Random) -> str:
+    folder = Path(f"f{random.randrange(10**9)}")
+    folder.mkdir()
+    name = "".join(random.choice(NAMES) for _ in range(random.randrange(1, 4))) + ".at2"
+    (folder / name).write_text(at2())
+    Path("case.yaml").write_text(CASE_TEXTS[0], encoding="utf-8")
+    source = random.choice([f"{folder}/{name}", str(folder), f"{folder}/*"])
+    return judged("record", "info", source, "--json", places=(str(folder),))
 
 
-@shares
-def test_studies(long: bool) -> None:
-    def trial(random: Random) -> str:
-        written("study.yaml", mutated(random.choice(STUDY_TEXTS), random), random)
-        return judged("sweep", "study.yaml", "--dry-run", places=("study.yaml", ".yaml:"))
-
-    hunt("studies", trial, 12, 1200 if long else None)
+@hunted("studies", 12, 1200)
+def test_studies(random: Random) -> str:
+    written("study.yaml", mutated(random.choice(STUDY_TEXTS), random), random)
+    return judged("sweep", "study.yaml", "--dry-run", places=("study.yaml", ".yaml:"))
 
 
-@shares
-def test_values_of_studies(long: bool) -> None:
-    def trial(random: Random) -> str:
-        Path("study.yaml").write_text(random.choice(STUDY_TEXTS), encoding="utf-8")
-        change = f"{random.choice([*STUDY_KEYS, *CASE_KEYS])}={random.choice(VALUES)}"
-        return judged("sweep", "study.yaml", "--dry-run", "--set", change)
-
-    hunt("values of studies", trial, 12, 500 if long else None)
+@hunted("values of studies", 12, 500)
+def test_values_of_studies(random: Random) -> str:
+    Path("study.yaml").write_text(random.choice(STUDY_TEXTS), encoding="utf-8")
+    change = f"{random.choice([*STUDY_KEYS, *CASE_KEYS])}={random.choice(VALUES)}"
+    return judged("sweep", "study.yaml", "--dry-run", "--set", change)
 
 
 def at2() -> str:
@@ -224,20 +205,16 @@ def test_records_of_the_agencies(long: bool, records_folder: Path) -> None:
     hunt("records of agencies", trial, 4, 700 if long else None)
 
 
-@shares
-def test_folders_of_records(long: bool) -> None:
+@hunted("folders of records", 6, 300)
+def test_folders_of_records(random: Random) -> str:
     """Of a study: what is no record is left out, and none hangs."""
-
-    def trial(random: Random) -> str:
-        folder = Path(f"folder{random.random()}")
-        folder.mkdir()
-        for name in random.sample(sorted(LAYOUTS), 3):
-            written(f"{folder}/{name}", mutated(LAYOUTS[name](), random), random)
-        text = f"rps: 1\nbase: {CASES}/rigid_frame.yaml\nrecords: [{folder}]\n"
-        Path("study.yaml").write_text(text, encoding="utf-8")
-        return judged("sweep", "study.yaml", "--dry-run", places=("study.yaml", str(folder)))
-
-    hunt("folders of records", trial, 6, 300 if long else None)
+    folder = Path(f"folder{random.random()}")
+    folder.mkdir()
+    for name in random.sample(sorted(LAYOUTS), 3):
+        written(f"{folder}/{name}", mutated(LAYOUTS[name](), random), random)
+    text = f"rps: 1\nbase: {CASES}/rigid_frame.yaml\nrecords: [{folder}]\n"
+    Path("study.yaml").write_text(text, encoding="utf-8")
+    return judged("sweep", "study.yaml", "--dry-run", places=("study.yaml", str(folder)))
 
 
 PATHS = [

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from paper_structures import FLAT, building, needs_compiled_kernels, podium, yielding
 from two_components import followed, pair
 
-from hunt.trials import hunt, shares
+from hunt.trials import hunt, hunted, shares
 from rpscli.analyses.kernels.systems import most_seconds, steps_a_second
 from rpscli.analyses.largest_demands import Demand
 from rpscli.analyses.results import TimeHistoryResult
@@ -423,21 +423,15 @@ def test_histories(part: int, long: bool) -> None:
 
 
 @needs_compiled_kernels
-@shares
-def test_devices(long: bool) -> None:
-    def trial(random: Random) -> str:
-        return judged_history(random, structure_with_devices)
-
-    hunt("devices", trial, 30, 1000 if long else None)
+@hunted("devices", 30, 1000)
+def test_devices(random: Random) -> str:
+    return judged_history(random, structure_with_devices)
 
 
 @needs_compiled_kernels
-@shares
-def test_ends_that_give_way(long: bool) -> None:
-    def trial(random: Random) -> str:
-        return judged_history(random, structure_on_a_bed)
-
-    hunt("compliant ends", trial, 6, 1000 if long else None)
+@hunted("compliant ends", 6, 1000)
+def test_ends_that_give_way(random: Random) -> str:
+    return judged_history(random, structure_on_a_bed)
 
 
 @needs_compiled_kernels
@@ -447,29 +441,20 @@ def test_pairs(long: bool) -> None:
 
 
 @needs_compiled_kernels
-@shares
-def test_pairs_on_every_end(long: bool) -> None:
-    def trial(random: Random) -> str:
-        return judged_pair(random, smooth_structure_of_a_pair)
-
-    hunt("pairs on every end", trial, 6, 1000 if long else None)
+@hunted("pairs on every end", 6, 1000)
+def test_pairs_on_every_end(random: Random) -> str:
+    return judged_pair(random, smooth_structure_of_a_pair)
 
 
 @needs_compiled_kernels
-@shares
-def test_floors_of_their_own(long: bool) -> None:
-    def trial(random: Random) -> str:
-        draw = random.choice([structure, structure, structure_on_a_bed])
-        return judged_history(random, lambda of: with_floors_of_its_own(of, draw))
-
-    hunt("floors of their own", trial, 8, 1000 if long else None)
+@hunted("floors of their own", 8, 1000)
+def test_floors_of_their_own(random: Random) -> str:
+    draw = random.choice([structure, structure, structure_on_a_bed])
+    return judged_history(random, lambda of: with_floors_of_its_own(of, draw))
 
 
 @needs_compiled_kernels
-@shares
-def test_pairs_under_floors_of_their_own(long: bool) -> None:
-    def trial(random: Random) -> str:
-        draw = random.choice([structure_of_a_pair, smooth_structure_of_a_pair])
-        return judged_pair(random, lambda of: with_floors_of_its_own(of, draw))
-
-    hunt("pairs under floors of their own", trial, 8, 1000 if long else None)
+@hunted("pairs under floors of their own", 8, 1000)
+def test_pairs_under_floors_of_their_own(random: Random) -> str:
+    draw = random.choice([structure_of_a_pair, smooth_structure_of_a_pair])
+    return judged_pair(random, lambda of: with_floors_of_its_own(of, draw))

@@ -1,64 +1,145 @@
-"""Roots of a polynomial piece found between its turning points, so that none can hide in a pair."""
+"""Steps of DOP853, and roots found between turning points, so that none can hide in a pair."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
+from functools import cached_property
+from typing import Any, NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
+from scipy.integrate import DOP853
 from scipy.optimize import brentq
 
 Array = NDArray[np.float64]
+Rates = Callable[[float, Any], Any]
 
 DEGREE = 7  # of the dense output of DOP853
 NODES: Array = np.asarray(0.5 - 0.5 * np.cos(np.pi * np.arange(1, DEGREE + 1) / DEGREE))
 _FIT = np.linalg.inv(NODES[:, None] ** np.arange(1, DEGREE + 1))
 
 
-def through_nodes(start: float, values: Array) -> Array:
-    """Rising coefficients of the degree-7 polynomial through (0, start) and (NODES, values).
+class Curve:
+    """A polynomial on [0, 1], by its rising coefficients.
 
-    The value at 0 is kept exactly: a step that starts on an event starts on it exactly.
+    `end` is the value at 1 from which the next piece will start: if rounding puts the polynomial on
+    the other side of a level, the end is the crossing.
     """
-    return np.concatenate(([start], _FIT @ (values - start)))
+
+    def __init__(self, rising: Array, end: float | None = None) -> None:
+        self.rising, self.end = rising, float(np.sum(rising)) if end is None else end
+
+    @classmethod
+    def through(cls, values: Array) -> Curve:
+        """Of degree 7 through values at 0 and at the nodes, and what follows from another one at 1.
+
+        The value at 0 is kept exactly: a step that starts on an event starts on it exactly.
+        """
+        start = values[0]
+        return cls(np.concatenate(([start], _FIT @ (values[1:-1] - start))), float(values[-1]))
+
+    @cached_property
+    def noise(self) -> float:
+        """Of rounding: what starts on a level with no slope seems to wave about it."""
+        return 1e-12 * float(np.sum(np.abs(self.rising[1:])))
+
+    @cached_property
+    def pieces(self) -> list[float]:
+        """0, the turning points inside (0, 1), 1."""
+        slope = self.rising[1:] * np.arange(1, len(self.rising))
+        if abs(slope[0]) > np.sum(np.abs(slope[1:])):
+            return [0.0, 1.0]  # the slope cannot change its sign
+        roots = np.roots(slope[::-1])
+        # a double root is returned as a pair just off the real axis; a break too many does no harm
+        inside = roots.real[(np.abs(roots.imag) < 1e-6) & (roots.real > 0.0) & (roots.real < 1.0)]
+        return [0.0, *sorted(float(root) for root in inside), 1.0]
+
+    def highest(self, until: float) -> float:
+        """The largest value at a turning point up to there, or at the start."""
+        turns = np.array([z for z in self.pieces if z <= until])
+        return float(np.max(np.polynomial.polynomial.polyval(turns, self.rising)))
+
+    def crossing(self, level: float, direction: int, noise: float = 0.0) -> float | None:
+        """The least argument in (0, 1] where the level is passed downwards (-1) or upwards (+1).
+
+        A start on the level itself is no crossing. The curve must have been off the level by more
+        than `noise` before.
+        """
+        shifted = self.rising.copy()
+        shifted[0] -= level
+
+        def excess(z: float) -> float:
+            return direction * float(np.polynomial.polynomial.polyval(z, shifted))
+
+        values = [*(excess(z) for z in self.pieces[:-1]), direction * (self.end - level)]
+        for i, (right, b) in enumerate(zip(self.pieces[1:], values[1:], strict=True)):
+            if values[i] < -noise and b >= 0.0:
+                if excess(right) <= 0.0:
+                    return right
+                return float(brentq(excess, self.pieces[i], right, xtol=1e-15, rtol=1e-14))
+        return None
 
 
-def monotone_pieces(coefficients: Array) -> list[float]:
-    """0, the turning points inside (0, 1), 1."""
-    rising = coefficients[1:] * np.arange(1, len(coefficients))
-    if abs(rising[0]) > np.sum(np.abs(rising[1:])):
-        return [0.0, 1.0]  # the slope cannot change its sign
-    roots = np.roots(rising[::-1])
-    # a double root is returned as a pair just off the real axis; a break too many does no harm
-    inside = roots.real[(np.abs(roots.imag) < 1e-6) & (roots.real > 0.0) & (roots.real < 1.0)]
-    return [0.0, *sorted(float(root) for root in inside), 1.0]
+class Step(NamedTuple):
+    """From `start` on for h; states at its start, at the nodes and at its end in columns."""
+
+    start: float
+    h: float
+    states: Array
 
 
-def first_crossing(
-    coefficients: Array,
-    pieces: list[float],
-    level: float,
-    direction: int,
-    *,
-    end: float,
-    noise: float = 0.0,
-) -> float | None:
-    """The least argument in (0, 1] where the level is passed downwards (-1) or upwards (+1).
+class Stepper:
+    """A state y that goes through intervals of a record by DOP853."""
 
-    A start on the level itself is no crossing. `end` is the value at 1 from which the next piece
-    will start: if rounding puts the polynomial on the other side of it, the end is the crossing.
-    The curve must have been off the level by more than `noise` before: one that starts on it with
-    no slope seems to wave about it by rounding.
-    """
-    shifted = coefficients.copy()
-    shifted[0] -= level
+    y: Array
+    rtol: float
+    tolerance: Array
+    step = np.inf  # the last free step
 
-    def excess(z: float) -> float:
-        return direction * float(np.polynomial.polynomial.polyval(z, shifted))
+    def solver(self, rates: Rates, start: float, end: float) -> DOP853:
+        first = min(self.step, end - start)
+        atol: Any = self.tolerance
+        return DOP853(rates, start, self.y, end, rtol=self.rtol, atol=atol, first_step=first)
 
-    values = [excess(z) for z in pieces]
-    values[-1] = direction * (end - level)
-    for left, right, a, b in zip(pieces[:-1], pieces[1:], values[:-1], values[1:], strict=True):
-        if a < -noise and b >= 0.0:
-            if excess(right) <= 0.0:
-                return right
-            return float(brentq(excess, left, right, xtol=1e-15, rtol=1e-14))
-    return None
+    def advanced(self, solver: DOP853) -> None:
+        message = solver.step()
+        if solver.status == "failed":
+            raise RuntimeError(f"DOP853: {message}")
+
+    def steps(self, rates: Rates, duration: float) -> Iterator[Step]:
+        """Each is taken when the next one is asked for."""
+        solver = self.solver(rates, 0.0, duration)
+        while solver.status == "running":
+            self.advanced(solver)
+            assert solver.t_old is not None
+            h = solver.t - solver.t_old
+            inner = solver.dense_output()(solver.t_old + h * NODES)
+            yield Step(solver.t_old, h, np.column_stack((self.y, inner, solver.y)))
+            self.y = np.asarray(solver.y).copy()
+            # the last step of an interval is cut short by its end, not by the error
+            cut = solver.t >= duration
+            self.step = max(h, min(self.step, 10.0 * h)) if cut else h
+
+    def meet(self, rates: Rates, miss: Callable[[Array], float], step: Step, at: float) -> float:
+        """Integrate to an event itself: the dense output is less accurate than the step.
+
+        Returns its time; y is the state there.
+        """
+        begin, tau, apart = self.y, at * step.h, 1e-7 * step.h
+        correction = np.inf
+        for _ in range(12):
+            self.y = begin
+            arrival = self.solver(rates, step.start, step.start + tau) if tau > 0.0 else None
+            while arrival and arrival.status == "running":
+                self.advanced(arrival)
+            y = np.asarray(arrival.y if arrival else begin, dtype=np.float64).copy()
+            moved = apart * rates(step.start + tau, y)
+            change = (miss(y + moved) - miss(y - moved)) / (2.0 * apart)
+            correction = -miss(y) / change if change else 0.0
+            if abs(correction) < 1e-12 * step.h:
+                break
+            tau = min(max(tau + correction, 0.0), step.h)
+        if abs(correction) > max(1e-9 * step.h, 1e-12):
+            raise RuntimeError("no convergence to an event")
+        self.y = y
+        return step.start + tau

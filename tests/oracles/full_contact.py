@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.linalg import expm
 
-from .crossings import Array, first_crossing, monotone_pieces
+from .crossings import Array, Curve
 from .storey_lagrangian import StoreyLagrangian
 
 _TAYLOR_ORDER = 20  # 1/21! of the leading term with sub-intervals of one radian of the fastest mode
@@ -91,8 +91,7 @@ class FullContact:
             excess[:2] -= hold
             if excess[0] > 0.0:
                 return 0.0, way.direction
-            pieces = monotone_pieces(excess)
-            root = first_crossing(excess, pieces, 0.0, 1, end=float(np.sum(excess)))
+            root = Curve(excess).crossing(0.0, 1)
             if root is not None:
                 found.append((root * h, way.direction))
         return min(found, default=None)

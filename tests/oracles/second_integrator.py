@@ -5,28 +5,28 @@ matrix is full and solved at each evaluation (`storey_lagrangian`), the steps ar
 restarted at every sample of the record (the ground acceleration is linear in between, so that the
 right-hand side is smooth), and full contact is the matrix exponential. Events are searched between
 the turning points of the dense output, then met by a new integration that ends on them. Devices
-(`devices`) are smooth between their own events; friction holds a tilted storey as the ground holds
-a standing one, with the same matrix exponential.
+(`devices`) are functions whose kinks the steps find; friction holds a tilted storey as the ground
+holds a standing one, with the same matrix exponential.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Literal, NamedTuple
+from functools import partial
+from typing import Any
 
 import numpy as np
-from scipy.integrate import DOP853
 
-from .crossings import NODES, Array, first_crossing, monotone_pieces, through_nodes
-from .devices import Change, Equipment, OracleDevice, Stop
+from .crossings import Array, Curve, Rates, Stepper
+from .devices import Equipment, OracleDevice
 from .full_contact import Exit, FullContact, LinearGround
 from .storey_lagrangian import Contact, OracleSystem, StoreyLagrangian
 
 __all__ = ["OracleResult", "OracleSystem", "simulate"]
 
 _REMAINDER = 1e-13  # of an interval: less than this is not integrated any more
+TURN = -1.0  # in place of a level: the rate changes its sign
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,16 +53,7 @@ class OracleResult:
     """Of each tendon, the elongation that stays [m]."""
 
 
-class Event(NamedTuple):
-    """When, as a fraction of the step, and what."""
-
-    at: float
-    kind: Literal["level", "change", "turn", "letting go", "none"]
-    level: float = 0.0
-    change: Change | None = None
-
-
-class _Simulation:
+class _Simulation(Stepper):
     """The state y = [theta, d, theta', d'] and its contact (None: full contact)."""
 
     def __init__(
@@ -79,11 +70,14 @@ class _Simulation:
         self.negligible = recontact * np.arctan(system.tan_alpha)
         self.limit = overturning * self.lagrangian.critical_rotation
         self.rtol = rtol
-        self.equipment = Equipment(self.lagrangian, devices, self.limit)
-        self.y: Array = np.zeros(2 * self.lagrangian.storeys + 2 + len(devices))
+        self.equipment = Equipment(self.lagrangian, devices)
+        moving = 2 * self.lagrangian.storeys + 2
+        self.y: Array = np.zeros(moving + len(devices))
+        self.tolerance = np.full(len(self.y), 1e-3 * rtol)
+        # the work of devices follows from the motion and shall not shorten its steps
+        self.tolerance[moving:] = np.inf
         self.contact: Contact | None = None
         self.stuck, self.direction = False, 1
-        self.step = np.inf  # the last free step of DOP853
         self.max_rotation = self.energy_lost = 0.0
         self.impacts = self.uplifts = 0
         self.overturned = False
@@ -136,14 +130,11 @@ class _Simulation:
             self.uplifts += 1
             self.contact = Contact(direction, rolling=self.lagrangian.beta > 0.0)
         self.stuck = False
-        contact = self.contact
-        self.equipment.turn(
-            contact.side * float(self.y[0]),
-            outwards=direction == contact.side,
-            rolling=contact.rolling,
-        )
+        if direction != self.contact.side:
+            tilt = self.contact.side * float(self.y[0])
+            self.equipment.unload(tilt, rolling=self.contact.rolling)
 
-    def rates(self, ground: LinearGround, contact: Contact) -> Callable[[float, Any], Any]:
+    def rates(self, ground: LinearGround, contact: Contact) -> Rates:
         """y' as a function of the time since `ground` and y."""
         motion, n1 = self.lagrangian, self.lagrangian.storeys + 1
         gravity, direction = motion.system.gravity, self.direction
@@ -158,25 +149,6 @@ class _Simulation:
 
         return rates
 
-    def solver(self, ground: LinearGround, contact: Contact, start: float, end: float) -> DOP853:
-        tolerance: Any = np.full(len(self.y), 1e-3 * self.rtol)
-        # the work of devices follows from the motion and shall not shorten its steps
-        tolerance[2 * self.lagrangian.storeys + 2 :] = np.inf
-        return DOP853(
-            self.rates(ground, contact),
-            start,
-            self.y,
-            end,
-            rtol=self.rtol,
-            atol=tolerance,
-            first_step=min(self.step, end - start),
-        )
-
-    def run(self, solver: DOP853) -> None:
-        message = solver.step()
-        if solver.status == "failed":
-            raise RuntimeError(f"DOP853: {message}")
-
     def levels(self, contact: Contact) -> list[tuple[float, int]]:
         """Values of |theta| that end this contact, with the direction of passing."""
         beta = self.lagrangian.beta
@@ -186,147 +158,49 @@ class _Simulation:
 
     def move(self, ground: LinearGround, duration: float) -> float:
         """Rolling or rocking until an event or the end; returns the time that passed."""
-        contact = self.contact
+        contact, n1 = self.contact, self.lagrangian.storeys + 1
         assert contact is not None
-        solver = self.solver(ground, contact, 0.0, duration)
-        while solver.status == "running":
-            self.run(solver)
-            assert solver.t_old is not None
-            h = solver.t - solver.t_old
-            x_end = contact.side * float(solver.y[0])
-            inner = solver.dense_output()(solver.t_old + h * NODES)
-            curve = through_nodes(contact.side * float(self.y[0]), contact.side * inner[0])
-            pieces = monotone_pieces(curve)
-            events = self.device_events(contact, inner, solver.y)
-            events.append(self.first_level(contact, curve, pieces, x_end))
-            event = min(events, key=lambda event: event.at)
-            turns = [z for z in pieces if z < event.at]
-            peaks = np.polynomial.polynomial.polyval(np.array(turns), curve)
-            self.max_rotation = max(self.max_rotation, float(np.max(peaks)))
-            if event.kind != "none":
-                tau = self.meet(ground, contact, solver.t_old, solver.t_old + event.at * h, event)
+        rates, least = self.rates(ground, contact), 0.0 if contact.rolling else self.lagrangian.beta
+        for step in self.steps(rates, duration):
+            tilt = Curve.through(contact.side * step.states[0])
+            events = [
+                (root, level)
+                for level, way in self.levels(contact)
+                if (root := tilt.crossing(level, way, tilt.noise)) is not None
+            ]
+            if self.equipment.turns:
+                rate = Curve.through(self.direction * step.states[n1])
+                if (root := rate.crossing(0.0, -1, rate.noise)) is not None:
+                    events.append((root, TURN))
+            at, event = min(events, default=(1.0, np.nan))
+            self.max_rotation = max(self.max_rotation, tilt.highest(at))
+            if events:
+                tau = self.meet(rates, partial(self.miss, contact, event), step, at)
+                self.y[n1 if event == TURN else 0] = 0.0 if event == TURN else contact.side * event
                 self.max_rotation = max(self.max_rotation, abs(float(self.y[0])))
                 self.switch(contact, event, ground.later(tau))
                 return tau
-            self.y = solver.y.copy()
-            self.max_rotation = max(self.max_rotation, x_end)
-            if x_end < (0.0 if contact.rolling else self.lagrangian.beta):
+            self.max_rotation = max(self.max_rotation, tilt.end)
+            if tilt.end < least:
                 raise RuntimeError("an event was passed unseen")
-            # the last step of an interval is cut short by its end, not by the error
-            cut = solver.t >= duration
-            self.step = max(h, min(self.step, 10.0 * h)) if cut else h
         return duration
 
-    def first_level(
-        self, contact: Contact, curve: Array, pieces: list[float], x_end: float
-    ) -> Event:
-        """The first level of |theta| that is passed; none at the end of the step."""
-        noise = 1e-12 * float(np.sum(np.abs(curve[1:])))
-        levels = [(level, way, None) for level, way in self.levels(contact)]
-        changes = [(change.level, change.direction, change) for change in self.equipment.changes()]
-        crossings = [
-            Event(root, "change" if change else "level", level, change)
-            for level, way, change in (*levels, *changes)
-            if (root := first_crossing(curve, pieces, level, way, end=x_end, noise=noise))
-            is not None
-        ]
-        return min(crossings, default=Event(1.0, "none"), key=lambda event: event.at)
-
-    def device_events(self, contact: Contact, inner: Array, end: Array) -> list[Event]:
-        """Where the rate changes its sign, or the damper of a stop its own."""
-        n1, events = self.lagrangian.storeys + 1, []
-
-        def zero(start: float, values: Array, last: float, direction: int) -> float | None:
-            curve = through_nodes(start, values)
-            noise = 1e-12 * float(np.sum(np.abs(curve[1:])))
-            return first_crossing(
-                curve, monotone_pieces(curve), 0.0, direction, end=last, noise=noise
-            )
-
-        if self.equipment.turns:
-            rate = self.direction * np.r_[self.y[n1], inner[n1], end[n1]]
-            at = zero(float(rate[0]), rate[1:-1], float(rate[-1]), -1)
-            events += [] if at is None else [Event(at, "turn")]
-        for k, stop in self.equipment.letting_go():
-            states = (self.y, *inner.T, end)
-            push = np.array([self.push(contact, stop, state) for state in states])
-            pushing = self.equipment.branches[k] == "pushing"
-            at = zero(float(push[0]), push[1:-1], float(push[-1]), -1 if pushing else 1)
-            change = Change(0.0, 0, k, "released" if pushing else "pushing")
-            events += [] if at is None else [Event(at, "letting go", 0.0, change)]
-        return events
-
-    def push(self, contact: Contact, stop: Stop, y: Array) -> float:
-        """Of a stop, spring and damper together, also where they would pull."""
-        side, rate = contact.side, float(y[self.lagrangian.storeys + 1])
-        shift, slope, _ = self.lagrangian.cap_beam(side * float(y[0]), rolling=contact.rolling)
-        return self.equipment.push(stop, shift.real, side * slope.real * rate)
-
-    def miss(self, contact: Contact, event: Event, y: Array) -> float:
-        """What vanishes at the event."""
-        if event.kind == "turn":
+    def miss(self, contact: Contact, event: float, y: Array) -> float:
+        """What vanishes at the event: a level of |theta|, or a turn."""
+        if event == TURN:
             return float(y[self.lagrangian.storeys + 1])
-        if event.kind == "letting go":
-            assert event.change is not None
-            stop = self.equipment.devices[event.change.device]
-            assert isinstance(stop, Stop)
-            return self.push(contact, stop, y) / stop.stiffness
-        return contact.side * float(y[0]) - event.level
+        return contact.side * float(y[0]) - event
 
-    def meet(
-        self, ground: LinearGround, contact: Contact, start: float, near: float, event: Event
-    ) -> float:
-        """Integrate to the event itself: the dense output is less accurate than the step."""
-        tau, rates = near, self.rates(ground, contact)
-        for _ in range(12):
-            arrival = self.solver(ground, contact, start, tau)
-            while arrival.status == "running":
-                self.run(arrival)
-            y: Array = np.asarray(arrival.y, dtype=np.float64)
-            miss = self.miss(contact, event, y)
-            if abs(miss) < 1e-15:
-                break
-            apart = 1e-6 * rates(tau, y)
-            change = self.miss(contact, event, y + apart) - self.miss(contact, event, y - apart)
-            correction = -miss * 2e-6 / change
-            if abs(correction) < 1e-14:
-                break
-            tau += correction
-        else:
-            raise RuntimeError(f"no convergence to {event}")
-        self.y = y.copy()
-        if event.kind in ("level", "change"):
-            self.y[0] = contact.side * event.level
-        elif event.kind == "turn":
-            self.y[self.lagrangian.storeys + 1] = 0.0
-        return tau
-
-    def switch(self, contact: Contact, event: Event, ground: LinearGround) -> None:
+    def switch(self, contact: Contact, event: float, ground: LinearGround) -> None:
         """What an event does to the contact, to the velocities and to the devices."""
-        if event.kind == "turn":
+        if event == TURN:
             self.turn(ground)
-        elif event.change is not None:
-            self.change(event)
-        elif event.level == self.limit:
+        elif event == self.limit:
             self.overturned = True
-        elif event.level > 0.0:
+        elif event > 0.0:
             self.contact = Contact(contact.side, not contact.rolling)
         else:
             self.impact(contact, ground)
-
-    def change(self, event: Event) -> None:
-        """All devices that change here: two stops may have the same gap."""
-        assert event.change is not None
-        equipment, found = self.equipment, [event.change]
-        if event.kind == "change":
-            found = [
-                change
-                for change in equipment.changes()
-                if change.direction == event.change.direction
-                and abs(change.level - event.level) < 1e-13
-            ]
-        for change in found:
-            equipment.branches[change.device] = change.branch
 
     def turn(self, ground: LinearGround) -> None:
         """At rest for an instant, or for longer if friction holds what acts otherwise."""
@@ -342,7 +216,6 @@ class _Simulation:
         motion, n1 = self.lagrangian, self.lagrangian.storeys + 1
         before = sum(motion.energies(contact, self.y))
         self.impacts += 1
-        self.equipment.stand()
         self.y = motion.after_impact(self.y)
         beyond = Contact(-contact.side, contact.rolling)
         back = -beyond.side * float(self.rates(ground, beyond)(0.0, self.y)[n1])
@@ -411,7 +284,7 @@ def simulate(
         tilt = abs(initial_rotation)
         run.max_rotation = tilt
         run.contact = Contact(1 if initial_rotation > 0.0 else -1, tilt < run.lagrangian.beta)
-        run.equipment.release(tilt, rolling=run.contact.rolling)
+        run.equipment.unload(tilt, rolling=run.contact.rolling)
     vertical = np.zeros_like(ag) if av is None else av
     states = [run.y.copy()]
     for j in range(len(ag) - 1 + round(free_vibration / dt)):

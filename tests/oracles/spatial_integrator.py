@@ -9,18 +9,17 @@ falls below `TIP` the storey crosses the rest of the cone, unrolled, in a straig
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
-from scipy.integrate import DOP853
 
-from .crossings import NODES, Array, first_crossing, monotone_pieces, through_nodes
+from .crossings import Array, Curve, Rates, Stepper
 from .devices import OracleDevice
 from .full_contact import FullContact
 from .spatial_lagrangian import SpatialDevices, SpatialLagrangian
-from .storey_lagrangian import OracleSystem
+from .storey_lagrangian import Contact, OracleSystem
 
 TIP = 1e-10
 _BEGINNING = 1e-12  # tilt at which an uplift is handed over to the integrator
@@ -37,7 +36,7 @@ class Passed:
     lost: float
 
 
-class SpatialSimulation:
+class SpatialSimulation(Stepper):
     """The state y = [X, Y, u_x, u_y and their rates], floors relative to the ground."""
 
     def __init__(
@@ -75,7 +74,9 @@ class SpatialSimulation:
         self.y: Array = np.zeros(4 + 4 * plane.storeys)
         self.standing, self.rolling, self.overturned = True, plane.beta > 0.0, False
         self.time = self.end = self.max_tilt = 0.0
-        self.step = np.inf
+        self.tolerance = np.full(len(self.y), 1e-3 * rtol)
+        # towards the tip positions decide; rates have the rounding of theta'^2/theta in them
+        self.tolerance[:2], self.tolerance[self.half :][:2] = 1e-6 * rtol, 1e-4 * rtol
         self.uplifts: list[tuple[float, float]] = []
         self.passes: list[Passed] = []
 
@@ -120,7 +121,9 @@ class SpatialSimulation:
         hold = np.zeros(_ORDER + 1)
         weight = self.plane.lifted_mass * math.tan(self.alpha)
         hold[:2] = weight * (self.motion.system.gravity + ground[2]), weight * slope[2] * h
-        hold[0] += self.devices.at_rest(self.alpha, self.motion.system.R)
+        upright = Contact(1, rolling=self.plane.beta > 0.0)
+        active, held = self.devices.at_rest(upright, 0.0)
+        hold[0] += (held - active) / self.lever
         return np.array([*rows, hold])
 
     def stand(self, ground: Array, slope: Array, duration: float) -> float:
@@ -135,11 +138,7 @@ class SpatialSimulation:
             if math.hypot(np.sum(np.abs(push_x)), np.sum(np.abs(push_y))) >= least:
                 excess = np.convolve(push_x, push_x) + np.convolve(push_y, push_y)
                 excess -= np.convolve(hold, hold)
-                found = 0.0 if excess[0] > 0.0 else None
-                if found is None:
-                    found = first_crossing(
-                        excess, monotone_pieces(excess), 0.0, 1, end=float(np.sum(excess))
-                    )
+                found = 0.0 if excess[0] > 0.0 else Curve(excess).crossing(0.0, 1)
                 if found is not None:
                     self.stay(here, slope, found * h)
                     at = piece * h + found * h
@@ -179,7 +178,7 @@ class SpatialSimulation:
 
     # tilted
 
-    def rates(self, ground: Array, slope: Array) -> Callable[[float, Any], Any]:
+    def rates(self, ground: Array, slope: Array) -> Rates:
         rolling, half = self.rolling, self.half
 
         def rates(tau: float, y: Any) -> Any:
@@ -187,21 +186,6 @@ class SpatialSimulation:
             return np.concatenate((y[half:], moved))
 
         return rates
-
-    def solver(self, ground: Array, slope: Array, start: float, end: float) -> DOP853:
-        tolerance: Any = np.full(len(self.y), 1e-3 * self.rtol)
-        half = self.half
-        # towards the tip positions decide; rates have the rounding of theta'^2/theta in them
-        tolerance[:2], tolerance[half : half + 2] = 1e-6 * self.rtol, 1e-4 * self.rtol
-        return DOP853(
-            self.rates(ground, slope),
-            start,
-            self.y,
-            end,
-            rtol=self.rtol,
-            atol=tolerance,
-            first_step=min(self.step, end - start),
-        )
 
     def curves(self, y: Array) -> Array:
         """theta and theta theta' of states in columns."""
@@ -212,87 +196,33 @@ class SpatialSimulation:
 
     def tilted(self, ground: Array, slope: Array, duration: float) -> float:
         """Tilted until an event or the end; returns the time that passed."""
-        solver = self.solver(ground, slope, 0.0, duration)
-        beta = self.plane.beta
-        while solver.status == "running":
-            message = solver.step()
-            if message:
-                raise RuntimeError(f"DOP853: {message}")
-            assert solver.t_old is not None
-            h = solver.t - solver.t_old
-            inner = solver.dense_output()(solver.t_old + h * NODES)
-            first, last = self.curves(self.y), self.curves(np.asarray(solver.y))
-            theta, moving = self.curves(inner)
-            curve = through_nodes(float(first[0]), theta)
-            pieces = monotone_pieces(curve)
-            noise = 1e-12 * float(np.sum(np.abs(curve[1:])))
-            levels = [("limit", self.limit, 1), ("tip", TIP, -1)]
-            if beta > 0.0:
-                levels.append(("phase", beta, 1 if self.rolling else -1))
-            events: list[tuple[float, str]] = []
-            for kind, level, way in levels:
-                root = first_crossing(curve, pieces, level, way, end=float(last[0]), noise=noise)
-                if root is not None:
-                    events.append((root, kind))
-            radial = through_nodes(float(first[1]), moving)
+        rates, levels = self.rates(ground, slope), [("limit", self.limit, 1), ("tip", TIP, -1)]
+        if self.plane.beta > 0.0:
+            levels.append(("phase", self.plane.beta, 1 if self.rolling else -1))
+        for step in self.steps(rates, duration):
+            curve, radial = (Curve.through(values) for values in self.curves(step.states))
+            roots = [(curve.crossing(level, way, curve.noise), kind) for kind, level, way in levels]
             # a steady wobble has nothing but rounding here
-            noise = 1e-12 * float(last[0]) * float(np.abs(solver.y[self.half :][:2]).sum())
-            root = first_crossing(
-                radial, monotone_pieces(radial), 0.0, 1, end=float(last[1]), noise=noise
-            )
-            if root is not None:
-                events.append((root, "pass"))
-            if self.devices.yields(float(np.max(theta)), rolling=self.rolling):
-                root = first_crossing(
-                    radial, monotone_pieces(radial), 0.0, -1, end=float(last[1]), noise=noise
-                )
-                if root is not None:
-                    events.append((root, "turn"))
+            noise = 1e-12 * curve.end * float(np.abs(step.states[self.half :, -1][:2]).sum())
+            roots.append((radial.crossing(0.0, 1, noise), "pass"))
+            if self.devices.yields(
+                float(np.max(self.curves(step.states)[0])), rolling=self.rolling
+            ):
+                roots.append((radial.crossing(0.0, -1, noise), "turn"))
+            events = [(root, kind) for root, kind in roots if root is not None]
             at, kind = min(events, default=(1.0, ""))
-            peaks = [z for z in pieces if z <= at]
-            highest = np.polynomial.polynomial.polyval(np.array(peaks), curve)
-            self.max_tilt = max(self.max_tilt, float(np.max(highest)))
+            self.max_tilt = max(self.max_tilt, curve.highest(at))
             if kind:
-                tau = self.meet(ground, slope, solver.t_old, h, at, kind)
-                self.step = h
+                tau = self.meet(rates, partial(self.miss, kind), step, at)
+                self.step = step.h
                 self.switch(kind, ground + slope * tau, slope, self.end - duration + tau)
                 return tau
-            self.y = np.asarray(solver.y).copy()
-            cut = solver.t >= duration
-            self.step = max(h, min(self.step, 10.0 * h)) if cut else h
         return duration
 
     def miss(self, kind: str, y: Array) -> float:
         theta, moving = self.curves(y)
         level = {"limit": self.limit, "tip": TIP, "phase": self.plane.beta}
         return float(moving if kind in ("pass", "turn") else theta - level[kind])
-
-    def meet(
-        self, ground: Array, slope: Array, start: float, h: float, at: float, kind: str
-    ) -> float:
-        """Integrate to the event itself: the dense output is less accurate than the step."""
-        begin, rates = self.y.copy(), self.rates(ground, slope)
-        tau = at * h
-        for _ in range(8):
-            self.y = begin
-            if tau > 0.0:
-                arrival = self.solver(ground, slope, start, start + tau)
-                while arrival.status == "running":
-                    arrival.step()
-                y: Array = np.asarray(arrival.y)
-            else:
-                y = begin.copy()
-            apart = rates(start + tau, y)
-            size = 1e-7 * h
-            change = (self.miss(kind, y + size * apart) - self.miss(kind, y - size * apart)) / (
-                2.0 * size
-            )
-            correction = -self.miss(kind, y) / change if change else 0.0
-            if abs(correction) < 1e-11 * h:
-                break
-            tau = min(max(tau + correction, 0.0), h)
-        self.y = y.copy()
-        return start + tau
 
     def switch(self, kind: str, ground: Array, slope: Array, time: float) -> None:
         if kind == "phase":

@@ -1,7 +1,8 @@
-"""Bodies in contact against the program and the second integrator.
+"""Bodies in contact against the program and both second integrators.
 
 They know no impact law, and tell which one holds; they have devices and vertical springs of their
-own.
+own. On a round column contacts close within 0.08 ms; passes of its motions take 60 ms and more, and
+lose nothing.
 """
 
 from __future__ import annotations
@@ -13,21 +14,31 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from paper_structures import ground, known, needs_compiled_kernels, oracle_system, stillness
+from paper_structures import (
+    RecordLoader,
+    ground,
+    known,
+    needs_compiled_kernels,
+    oracle_system,
+    stillness,
+)
 from shown_commands import ROOT, of_blocks, run_in_shell
+from two_components import frame, part_of_pair
 
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import denser_trace, time_history
+from rpscli.constants import STANDARD_GRAVITY
 from rpscli.model.impact import ImpactKind, ImpactLaw
 from rpscli.model.superstructure import RayleighDamping
 from rpscli.records.loading import load_record
 
 from .crossings import Array
 from .devices import Friction, OracleDevice, RollingResistance, Stop, Tendon, Viscous
-from .multibody import simulate, turning_points
-from .reference_systems import pulse
+from .multibody import inertia_ratios, simulate, turning_points
+from .multibody import simulate_pair as simulate_bodies
 from .resolved_contact import LAWS, structure_of
 from .second_integrator import simulate as integrated
+from .spatial_integrator import SpatialSimulation, simulate_pair
 from .storey_lagrangian import OracleSystem, StoreyLagrangian
 
 pytest.importorskip(
@@ -131,6 +142,12 @@ KINDS: dict[str, tuple[OracleDevice, ...]] = {
 }
 
 
+def pulse(peak: float, period: float, dt: float) -> Array:
+    return np.asarray(
+        peak * np.sin(2.0 * math.pi * np.arange(round(period / dt) + 1) * dt / period)
+    )
+
+
 def gap(
     system: OracleSystem,
     ag: Array,
@@ -215,3 +232,67 @@ def test_floors_on_vertical_springs(building: str, period: float) -> None:
     carried = known(resolved.carried)
     assert force.max() == pytest.approx(np.max(carried), rel=2e-3)
     assert force.min() == pytest.approx(np.min(carried), abs=5e-3)
+
+
+RATIO, AXIAL = inertia_ratios(0.15)
+
+
+def round_structure(storeys: int, damping: float = 0.0) -> OracleSystem:
+    """Flat ends; damping of the first mode in proportion to stiffness."""
+    made = frame(storeys, float(storeys), 0.3)
+    system = replace(oracle_system(made), law="rigid", inertia_ratio=RATIO)
+    if made.superstructure is None:
+        return system
+    springs = made.superstructure.stiffness_matrix
+    return replace(system, damping_matrix=damping * 0.3 / np.pi * springs)
+
+
+def distances(
+    along_x: OracleSystem, along_y: OracleSystem, ground: Array, dt: float, duration: float
+) -> tuple[Array, SpatialSimulation]:
+    """Between both programs at the samples, over the largest tilt."""
+    time, bodies = simulate_bodies(along_x, along_y, ground, dt, duration)
+    run = SpatialSimulation(along_x, along_y, axial=AXIAL, rtol=1e-9)
+    states = simulate_pair(run, ground, dt, duration)
+    at = np.searchsorted(time, dt * np.arange(len(states)) - 1e-9)
+    gap: Array = np.hypot(*(bodies[at] - states[:, :2]).T) / run.max_tilt
+    return gap, run
+
+
+@pytest.mark.evidence("both components", "program")
+@pytest.mark.parametrize("building", ["column", "frame", "three", "three, soft in y"])
+def test_two_pulses_on_a_round_column(building: str) -> None:
+    dt = 0.01
+    ground = np.zeros((3, 120))
+    for way, (peak, period, first) in enumerate([(0.25, 0.6, 2), (0.21, 0.7, 12)]):
+        ground[way, first:][: round(period / dt) + 1] = pulse(peak * STANDARD_GRAVITY, period, dt)
+    along_x = round_structure(3 if "three" in building else 0, damping=0.05)
+    along_y = along_x
+    if building == "column":
+        along_x = along_y = replace(along_x, columns_mass=1e5, cap_beam_mass=0.0)
+        ground *= 0.8  # 0.9 turns it over; 0.7 hardly lifts it, and starts 1e-5 of the peak apart
+    if "soft" in building:
+        along_y = replace(
+            along_x,
+            stiffnesses=0.5 * along_x.stiffnesses,
+            damping_matrix=0.5 * along_x.damping_matrix,
+        )
+        ground[2] = 0.4 * np.roll(ground[0], 10)
+    gap, run = distances(along_x, along_y, ground, dt, 3.0)
+    assert 0.03 < run.max_tilt < 0.15
+    assert np.sqrt(np.mean(gap**2)) < 5e-5
+
+
+@pytest.mark.evidence("both components", "program")
+@pytest.mark.parametrize(("pair", "start"), [(1, 2.0), (7, 3.0), (8, 9.0)])
+def test_recorded_pairs_on_a_round_column(
+    pair: int, start: float, fema_record: RecordLoader
+) -> None:
+    """Three storeys without damping, until small differences have grown."""
+    row = {"pair": pair, "t0": start, "T": 6.0, "scale": 1.0}
+    motion = part_of_pair(row, fema_record)
+    x, y, dt = motion.horizontal, known(motion.y), motion.horizontal.dt
+    ground = np.array([x.acceleration, y.acceleration, np.zeros(x.npts)])
+    gap, run = distances(round_structure(3), round_structure(3), ground, dt, 6.0)
+    assert run.uplifts
+    assert np.sqrt(np.mean(gap**2)) < 1e-3

@@ -1,9 +1,17 @@
-"""Motion under both components: near passes, symmetries, other programs, devices."""
+"""Motion under both components: near passes, symmetries, other programs, every end and device.
+
+The histories of `both_references.json` come from a program that shares no equation with this one:
+momenta of the tilt vector, complex-step derivatives of the Lagrangian, an adaptive rule of order 8
+at 1e-12. Their results have ten digits.
+"""
 
 from __future__ import annotations
 
 import json
 import math
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -13,30 +21,40 @@ from oracles.spatial_integrator import SpatialSimulation, simulate_pair
 from paper_structures import (
     Array,
     RecordLoader,
+    ground,
     known,
     needs_compiled_kernels,
     oracle_devices,
     oracle_system,
     waves,
 )
-from two_components import followed, frame, pair, part_of_pair, released, two_pulses
+from two_components import History, followed, frame, pair, part_of_pair, released, two_pulses
 
+import rpscli
+from rpscli.analyses.kernels.history import SampledHistory, sampled_history
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
-from rpscli.model.devices import Stop, Tendon, ViscousDamper
+from rpscli.case.case import load_case
+from rpscli.constants import STANDARD_GRAVITY
+from rpscli.model.contact import Contact
+from rpscli.model.devices import FrictionDamper, RollingResistance, Stop, Tendon, ViscousDamper
+from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import Device, PodiumStructure
-from rpscli.physics.state import UPLIFT
+from rpscli.physics.state import IMPACT, SLIDING, STICKING, STUCK, UPLIFT
 from rpscli.records.ground_motion import MotionComponents
 
 pytestmark = needs_compiled_kernels
 
-REFERENCES: dict[str, Any] = json.loads(
-    (Path(__file__).parents[1] / "oracles" / "spatial_references.json").read_text()
-)
+ORACLES = Path(__file__).parents[1] / "oracles"
+REFERENCES: dict[str, Any] = json.loads((ORACLES / "spatial_references.json").read_text())
+OTHERS: dict[str, Any] = json.loads((ORACLES / "both_references.json").read_text())
+HISTORIES = {each["name"]: each for each in OTHERS["histories"]}
 STEP = 0.01
 ARCS: dict[str, Any] = {"tan_wedge": 0.3, "rho": 0.5}
 THREE: dict[str, Any] = {"storeys": 3, "eta": 3.0, **ARCS}
-
+FINE = TimeHistorySettings(free_vibration=0.0, accuracy=4.0)
+X, Y = two_pulses()
+PULSES = pair(X, Y, STEP)
 
 TURNS: dict[str, tuple[dict[str, Any], float]] = {
     "frame": ({}, 181.997),
@@ -80,8 +98,7 @@ def upwards() -> Array:
 )
 def test_two_pulses(vertical: bool, contact_time: float, largest: float) -> None:
     """Maxima by two other programs, vertical motion at uplift included."""
-    x, y = two_pulses()
-    motion = pair(x, y, STEP, upwards() if vertical else None)
+    motion = pair(X, Y, STEP, upwards() if vertical else None)
     structure = frame(**THREE, contact_time=contact_time)
     fine = TimeHistorySettings(free_vibration=0.0, accuracy=3.0)
     assert followed(structure, motion, fine).left.max_theta == pytest.approx(largest, abs=1e-8)
@@ -119,23 +136,21 @@ def test_recorded_pairs_of_another_program(row: int, fema_record: RecordLoader) 
 
 def test_directions_are_exchanged_with_their_buildings() -> None:
     """Another building in y: x and y change places."""
-    x, y = two_pulses()
     options: dict[str, Any] = {"storeys": 3, "eta": 3.0, "contact_time": 2e-3}
-    one = followed(frame(**options, period=0.3, period_y=0.5), pair(x, y, STEP))
-    other = followed(frame(**options, period=0.5, period_y=0.3), pair(y, x, STEP))
+    one = followed(frame(**options, period=0.3, period_y=0.5), PULSES)
+    other = followed(frame(**options, period=0.5, period_y=0.3), pair(Y, X, STEP))
     mirrored = 1j * np.conj(one.tilt)
     assert np.max(np.abs(mirrored - other.tilt)) < 1e-6 * 0.08
     assert np.allclose(one.left.storey_shear_x[:3], other.left.storey_shear_y[:3], rtol=1e-5)
     assert one.left.storey_shear_x[0] != pytest.approx(one.left.storey_shear_y[0], rel=0.01)
-    same = followed(frame(**options, period=0.3, period_y=0.3), pair(x, y, STEP))
-    assert same.tilt.tolist() == followed(frame(**options), pair(x, y, STEP)).tilt.tolist()
+    same = followed(frame(**options, period=0.3, period_y=0.3), PULSES)
+    assert same.tilt.tolist() == followed(frame(**options), PULSES).tilt.tolist()
 
 
 @pytest.mark.evidence("both components", "exact")
 @pytest.mark.parametrize("options", [{"contact_time": 0.0}, {"factor": 1.0 / 0.8388687078360144}])
 def test_nothing_is_lost_without_contact_time_or_loss(options: dict[str, Any]) -> None:
-    x, y = two_pulses()
-    history = followed(frame(**{**THREE, **options}), pair(x, y, STEP))
+    history = followed(frame(**{**THREE, **options}), PULSES)
     assert len(history.passes)
     assert history.left.energy_passes == pytest.approx(0.0, abs=1e-12 * history.left.energy_input)
 
@@ -157,16 +172,12 @@ def equipped(kind: str, storeys: int = 3, **options: Any) -> PodiumStructure:
     return frame(storeys, 3.0, contact_time=2e-3, devices=(KINDS[kind],), **options)
 
 
-def fine() -> TimeHistorySettings:
-    return TimeHistorySettings(free_vibration=0.0, accuracy=4.0)
-
-
 def beside_the_second_integrator(
     kind: str, arcs: bool, x: Array, y: Array, storeys: int = 3
 ) -> None:
     """Cartesian, adaptive, laws as functions: the same tilts throughout."""
     structure = equipped(kind, storeys, **(ARCS if arcs else {}))
-    ours = followed(structure, pair(x, y, STEP), fine())
+    ours = followed(structure, pair(x, y, STEP), FINE)
     run = SpatialSimulation(
         oracle_system(structure),
         axial=structure.bearing.inertia_ratio_axial,
@@ -206,3 +217,206 @@ def test_energy_closes_where_tendons_yield_and_columns_go_round(seed: int) -> No
     assert sum(event.kind == "tendon_yielding" for event in result.events) >= 1
     assert known(result.passes) >= 1
     assert abs(result.energy.residual) < 1e-7 * result.energy.input
+
+
+def motion_of(reference: dict[str, Any], fema_record: RecordLoader) -> MotionComponents:
+    """Sines, or a part of a recorded pair."""
+    of = reference["motion"]
+    if "sines" in of:
+        t = np.arange(of["npts"]) * of["dt"]
+        x, y = (
+            np.where(
+                (t >= start) & (t <= start + period),
+                a * STANDARD_GRAVITY * np.sin(2.0 * np.pi * (t - start) / period),
+                0.0,
+            )
+            for a, period, start in of["sines"]
+        )
+        return pair(x, y, of["dt"])
+    both = [fema_record(f"farfield/{of['fema']}/{way}") for way in "ab"]
+    dt = both[0].dt
+    first, count = round(of["t0"] / dt), round(reference["T"] / dt) + 1
+    x, y = (of["scale"] * each.acceleration[first : first + count] for each in both)
+    return pair(x, y, dt)
+
+
+@pytest.mark.evidence("both components", "program")
+@pytest.mark.parametrize("name", HISTORIES)
+def test_histories_of_another_program(name: str, fema_record: RecordLoader) -> None:
+    reference = HISTORIES[name]
+    motion = motion_of(reference, fema_record)
+    structure = load_case({"rps": 1, **reference["case"]}).structure
+    free = max(reference["T"] - motion.horizontal.duration, 0.0)
+    history = followed(structure, motion, TimeHistorySettings(free_vibration=free))
+    trace, left = np.array(reference["trace"]), history.left
+    rows = np.rint(trace[:, 0] / motion.horizontal.dt).astype(int)
+    tilt = trace[:, 1] + 1j * trace[:, 2]
+    # 1e-10 rad are found, 5e-8 where friction lets go, of which a motion begins with some velocity
+    held = left.events[SLIDING] > 0
+    assert np.max(np.abs(history.tilt[rows] - tilt)) < (1e-7 if held else 3e-9)
+    assert left.max_theta == pytest.approx(reference["max_tilt"], rel=1e-6 if held else 1e-7)
+    if structure.superstructure is not None:
+        elastic = elastic_shear(structure, history)[: rows[-1] + 1].max()
+        assert elastic == pytest.approx(reference["base_shear"], rel=1e-6)
+    spent = reference["energy"]
+    for mine, theirs in (
+        (left.energy_input, "input"),
+        (left.energy_damped, "damped"),
+        (left.bed_energy, "bed"),
+        (left.energy_lost, "impact"),
+        (left.energy_stored, "stored"),
+        (left.device_energy.sum(), "devices"),
+    ):
+        assert mine == pytest.approx(
+            spent[theirs], abs=(3e-7 if held else 1e-7) * spent["input"]
+        ), theirs
+    uplifts, reentries, sticks = reference["events"]
+    begins_stuck = left.events[STICKING] > 0 and structure.bearing.alpha * (not structure.bed) == 0
+    assert left.events[UPLIFT] == uplifts
+    assert left.events[IMPACT] == reentries
+    assert left.events[STICKING] - begins_stuck == sticks
+    assert (left.phase == STUCK or history.samples.phase[-1] == STUCK) == reference["stuck"]
+
+
+def elastic_shear(structure: PodiumStructure, history: History) -> Array:
+    """Resultant of the springs of the first storey at the samples [N]."""
+    n, both = structure.storeys, []
+    for axis, building in enumerate(
+        (structure.superstructure, structure.superstructure_y or structure.superstructure)
+    ):
+        assert building is not None
+        first = history.floors[:, 0, n * axis] - history.samples.beam[:, axis]
+        both.append(building.stiffnesses[0] * first)
+    return np.asarray(np.hypot(*both))
+
+
+PLANE, EDGES = (Contact(kind, stiffness=6.34e8, damping=0.0) for kind in ("plane", "edges"))
+
+
+@pytest.mark.evidence("both components", "program")
+@pytest.mark.parametrize("reference", OTHERS["free"], ids=["near", "nearest", "edges"])
+def test_free_motion_on_compliant_ends(reference: dict[str, Any]) -> None:
+    """Energy and momentum stay; the other program's path."""
+    contact = PLANE if reference["kind"] == "plane" else EDGES
+    plain = frame(loss=0.0)
+    bearing = replace(plain.bearing, inertia_ratio=1.35)
+    structure = replace(
+        plain, bearing=bearing, columns_mass=2e4, cap_beam_mass=2e5, contact=contact
+    )
+    free = released(structure, 0.06, reference["across"], 10.0, accuracy=4.0)
+    trace = np.array(reference["trace"])
+    rows = np.rint(trace[:, 0] / STEP).astype(int)
+    assert np.max(np.abs(free.tilt[rows] - trace[:, 1] - 1j * trace[:, 2])) < 1e-9
+    begun = free.samples[0].energy_stored
+    assert free.left.energy_stored == pytest.approx(begun, rel=1e-9)
+
+
+SOFT: dict[str, Any] = {"loss": 0.3, **ARCS}
+ENDS: dict[str, dict[str, Any]] = {
+    "plane": {"contact": Contact("plane", period_ratio=1.2), "loss": 0.3},
+    "plane arcs": {"contact": Contact("plane", period_ratio=1.2), **SOFT},
+    "edges": {"contact": Contact("edges", period_ratio=1.2)},
+    "edges arcs": {"contact": Contact("edges", period_ratio=1.2), **SOFT},
+    "spherical": {"tan_alpha": 0.0, "tan_wedge": 0.3, "rho": 0.8},
+}
+GIVING_WAY = [end for end in ENDS if end != "spherical"]
+
+
+@pytest.mark.parametrize("end", GIVING_WAY)
+def test_sustained_upward_acceleration(end: str) -> None:
+    """Where the bed pushes out what lifted ends turn back, histories go on, and energy closes."""
+    motion = pair(X, Y, STEP, 3.0 * np.ones(len(X)))
+    settings = TimeHistorySettings(free_vibration=2.0)
+    history = followed(frame(3, 3.0, **ENDS[end]), motion, settings)
+    assert history.left.outcome in (1, 2, 3)
+    assert abs(history.residual) < 1e-6
+
+
+@pytest.mark.evidence("compliant ends", "exact")
+@pytest.mark.parametrize("end", GIVING_WAY)
+def test_in_proportion_to_the_stiffness(end: str) -> None:
+    """Stiffer and stiffer, the motion of rigid ends with passes that lose nothing."""
+    x, y = two_pulses(2.0)
+    options = {k: v for k, v in ENDS[end].items() if k != "contact"} | {"loss": 0.0}
+    rigid = followed(frame(3, 3.0, **options, contact_time=0.0), pair(x, y, STEP))
+    gaps = []
+    for stiffness in (1e10, 1e11, 1e12):
+        contact = replace(EDGES if end.startswith("edges") else PLANE, stiffness=stiffness)
+        soft = followed(frame(3, 3.0, **options, contact=contact), pair(x, y, STEP))
+        gaps.append(np.max(np.abs(soft.tilt - rigid.tilt)))
+    assert rigid.left.max_theta > 0.02
+    assert gaps[0] > 1.5 * gaps[1] > 2.2 * gaps[2]
+    if end.startswith("edges"):
+        assert gaps[2] < 1e-5
+
+
+@pytest.mark.parametrize("aim", [0.0, 1e-12, 0.5, 1.0, 1.5])
+@pytest.mark.parametrize("contact", [PLANE, EDGES], ids=["plane", "edges"])
+def test_passes_at_any_distance(contact: Contact, aim: float) -> None:
+    """Aimed at parts of phi_u, nothing is lost without loss, and neighbours stay neighbours."""
+    structure = frame(contact=contact, loss=0.0)
+    assert structure.bed is not None
+    u = structure.bed.uplift_rotation
+    one, other = (
+        released(structure, 0.06, part * u * 10.0, 3.0, accuracy=4.0)
+        for part in (aim, aim * (1.0 + 1e-7))
+    )
+    assert one.left.energy_stored == pytest.approx(one.samples[0].energy_stored, rel=1e-9)
+    assert np.max(np.abs(one.tilt - other.tilt)) < 1e-6
+
+
+# What goes together.
+
+GUIDE = Path(rpscli.__file__).with_name("GUIDE.md").read_text(encoding="utf-8")
+HEAD = "| ends | components |"
+REFUSED = {
+    "tendon": "tendons",
+    "rolling_resistance": "rolling resistance",
+    "impact": "floors.*jump",
+}
+WORDS: dict[str, tuple[Device, ...]] = {
+    "viscous": (ViscousDamper(0.2 * W),),
+    "friction": (FrictionDamper(0.02 * W),),
+    "stop": (Stop(0.05, 20.0 * W),),
+    "tendon": (Tendon(0.02 * W, W),),
+    "rolling_resistance": (RollingResistance(0.01),),
+}
+
+
+def cells() -> Iterator[tuple[str, bool, str, bool]]:
+    """Ends, whether both components act, device or law, and whether the guide says yes."""
+    rows = GUIDE[GUIDE.index(HEAD) :].split("\n\n", 1)[0].splitlines()
+    names = [cell.strip().split(" ")[0].strip("`") for cell in rows[0].split("|")[1:-1]]
+    for row in rows[2:]:
+        kinds, components, *marks = (cell.strip() for cell in row.split("|")[1:-1])
+        for end in kinds.replace("`", "").split(", "):
+            for name, mark in zip(names[2:], marks, strict=True):
+                yield end, components == "both", name, mark.startswith("yes")
+
+
+@pytest.mark.parametrize(("end", "both", "name", "goes"), list(cells()))
+def test_every_cell_of_the_guide(end: str, both: bool, name: str, goes: bool) -> None:
+    x, y = two_pulses(3.0)
+    motion = pair(x, y, STEP, 0.3 * x) if both else MotionComponents(ground(x, STEP))
+
+    def run() -> History | SampledHistory:
+        plain = frame(3, 3.0, **({} if end == "rigid" else ENDS[end]))
+        if name != "impact":
+            structure = replace(plain, devices=WORDS[name])
+        else:
+            structure = replace(plain, impact_law=ImpactLaw("rigid"))
+        follow = followed if both else sampled_history
+        return follow(structure, motion, TimeHistorySettings(free_vibration=0.0))
+
+    if goes:
+        assert run().samples.theta[-1] != 0.0
+    else:
+        with pytest.raises(ValueError, match=REFUSED[name]):
+            run()
+
+
+def test_the_guide_has_every_combination() -> None:
+    said = {(end, both, name) for end, both, name, _ in cells()}
+    assert said == set(
+        product(("rigid", "plane", "edges", "spherical"), (False, True), (*WORDS, "impact"))
+    )

@@ -1,4 +1,4 @@
-"""The right-hand side at random states: identities, and Lagrange's equations in other unknowns."""
+"""Geometry and equation of motion beside Lagrange's equations and the theory; the misprints."""
 
 from __future__ import annotations
 
@@ -10,57 +10,81 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from oracles.storey_lagrangian import Contact, StoreyLagrangian
-from paper_structures import Array, oracle_system
+from paper_structures import FLAT, needs_compiled_kernels, oracle_system, podium, stillness, waves
+from scipy.optimize import brentq
 
-from rpscli.model.bearing import Bearing
+from rpscli.analyses.kernels.history import sampled_history
+from rpscli.analyses.modal import linearised_matrices
+from rpscli.analyses.settings import TimeHistorySettings
+from rpscli.model.bearing import Bearing, uplifted_state
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import ModalDamping, RayleighDamping, Superstructure
-from rpscli.physics.state import ROCKING, ROLLING
+from rpscli.physics import geometry
+from rpscli.physics.state import FULL_CONTACT, ROLLING
+from rpscli.records.ground_motion import MotionComponents
 
-from .one_lane import OneLane
-
-pytestmark = [
-    pytest.mark.evidence("equation of motion", "exact"),
-    pytest.mark.evidence("equation of motion", "program"),
-]
-
-SIXTH_ORDER = {1: 45.0, 2: -9.0, 3: 1.0}
-"""Weights of central differences over 60 h."""
+ROUNDING = 2e-14
+"""A few dozen roundings of numbers of the size 1 + 4 rho, which every tolerance is scaled by."""
 
 
-class State(NamedTuple):
-    """A structure somewhere in its motion: [x, u_1 ... u_n] and rates."""
+class Path(NamedTuple):
+    """Theory, section 1, as it stands in the table."""
 
-    structure: PodiumStructure
-    motion: int
-    side: float
-    position: Array
-    velocity: Array
-    horizontal: float
-    vertical: float
+    B: float
+    C: float
+    u: float
+    v: float
 
-    def in_a_lane(self) -> OneLane:
-        lane = OneLane(self.structure, self.motion, self.side)
-        lane.place(self.position, self.velocity)
-        return lane
 
-    def accelerations(self) -> Array:
-        return self.in_a_lane().accelerations(self.horizontal, self.vertical)
+def printed(bearing: Bearing, x: float, *, rolling: bool) -> Path:
+    a, k, sin, cos = bearing.alpha, 2.0 * bearing.curvature_ratio, math.sin, math.cos
+    k, b = k * cos(a), x if rolling else bearing.beta
+    return Path(
+        B=sin(a - x) + k * (sin(b - x) + sin(x)),
+        C=cos(a - x) + k * (cos(b - x) - cos(x)),
+        u=sin(a) - sin(a - x) + k * (b - sin(x) - sin(b - x)),
+        v=cos(a - x) - cos(a) + k * (cos(b - x) - cos(x)),
+    )
 
-    @property
-    def arms(self) -> tuple[float, float]:
-        """B and C."""
-        bearing, x = self.structure.bearing, float(self.position[0])
-        phase = bearing.rolling if self.motion == ROLLING else bearing.rocking
-        return (
-            phase.p * math.cos(x) + phase.q * math.sin(x),
-            phase.c + phase.p * math.sin(x) - phase.q * math.cos(x),
-        )
+
+def shape_of(tan_alpha: float, widening: float, sin_beta: float) -> Bearing:
+    rise = tan_alpha * (widening - 1.0)
+    return Bearing(1.0, tan_alpha, tan_alpha + rise, rise / (2.0 * sin_beta))
+
+
+shapes = st.builds(shape_of, st.floats(0.02, 0.6), st.floats(1.05, 3.0), st.floats(0.02, 0.999))
+
+
+@pytest.mark.evidence("geometry of columns", "exact")
+@given(shapes)
+def test_critical_rotation_is_the_first_root_on_the_branch_travelled(bearing: Bearing) -> None:
+    def B(x: float) -> float:
+        return printed(bearing, x, rolling=x < bearing.beta).B
+
+    grid = np.linspace(0.0, 1.999 * math.pi, 801)  # B stays negative for half a turn
+    signs = np.array([B(x) for x in grid])
+    first = int(np.argmax(signs < 0.0))
+    assert signs[0] > 0.0
+    assert first > 0
+    root = float(brentq(B, grid[first - 1], grid[first], xtol=1e-15))
+    # B falls by at least its slope -C, |C| > 0.1 here; rounding of B is that of k
+    size = 1.0 + 4.0 * bearing.curvature_ratio
+    assert bearing.critical_rotation == pytest.approx(root, abs=1e-12 * size)
+
+
+@pytest.mark.evidence("geometry of columns", "exact")
+@given(shapes, st.lists(st.floats(0.0, 1.4), min_size=1, max_size=5))
+def test_the_path_takes_each_point_in_its_own_phase(bearing: Bearing, tilt: list[float]) -> None:
+    x = np.array(tilt)
+    path = np.array(geometry.path_along(bearing.rolling, bearing.rocking, bearing.beta, x))
+    expected = [printed(bearing, t, rolling=t < bearing.beta) for t in tilt]
+    size = 1.0 + 4.0 * bearing.curvature_ratio
+    assert path == pytest.approx(np.array(expected).T, abs=ROUNDING * size)
 
 
 @st.composite
-def states(draw: st.DrawFn) -> State:
+def structures(draw: st.DrawFn) -> PodiumStructure:
     n = draw(st.integers(0, 4))
     positive = st.floats(0.2, 5.0)
     above = None
@@ -75,76 +99,118 @@ def states(draw: st.DrawFn) -> State:
     rho = draw(st.sampled_from([0.0, 0.3, 0.5, 1.5]))
     bearing = Bearing(draw(positive), tan_alpha, 2.0 * tan_alpha, rho)
     rigid = ImpactLaw("rigid")  # of which any of these shapes goes over
-    structure = PodiumStructure(bearing, 1e4 * draw(positive), 1e5 * draw(positive), above, rigid)
-    motion = draw(st.sampled_from([ROLLING, ROCKING])) if rho else ROCKING
-    x = draw(st.floats(0.0, bearing.beta) if motion == ROLLING else st.floats(bearing.beta, 0.6))
-    floors = st.lists(st.floats(-0.5, 0.5), min_size=n, max_size=n)
-    rate, acceleration = st.floats(-1.0, 1.0), st.floats(-5.0, 5.0)
-    return State(
-        structure,
-        motion,
-        draw(st.sampled_from([1.0, -1.0])),
-        np.array([x, *draw(floors)]),
-        np.array([draw(rate), *draw(floors)]),
-        draw(acceleration),
-        draw(acceleration),
+    return PodiumStructure(bearing, 1e4 * draw(positive), 1e5 * draw(positive), above, rigid)
+
+
+@needs_compiled_kernels
+@pytest.mark.evidence("equation of motion", "exact")
+@pytest.mark.evidence("equation of motion", "program")
+@pytest.mark.evidence("equation of motion", "published")
+@given(structures(), st.integers(0, 99), st.floats(-0.9, 0.9))
+def test_samples_obey_lagrange_and_the_theory(
+    structure: PodiumStructure, seed: int, start: float
+) -> None:
+    """Accelerations and energies, while rolling and rocking, under a ground that also rises."""
+    settings = TimeHistorySettings(
+        free_vibration=0.0, initial_rotation=start * structure.critical_rotation
     )
+    record = waves(0.4, 0.01, 4.0 * structure.uplift_acceleration, seed)
+    vertical = waves(0.4, 0.01, 4.0, seed + 100)
+    run = sampled_history(structure, MotionComponents(record, vertical), settings)
+    system, n = oracle_system(structure), structure.storeys
+    lagrangian, R = StoreyLagrangian(system), structure.bearing.semi_diagonal
+    gamma, eta, m_c = structure.gamma, structure.eta, structure.columns_mass
+    for i, sample in enumerate(run.samples):
+        if sample.phase == FULL_CONTACT:
+            continue
+        side, rolling = (1 if sample.theta >= 0.0 else -1), sample.phase == ROLLING
+        contact, x, rate = Contact(side, rolling), side * sample.theta, sample.theta_dot
+        a_g, g = record.acceleration[i], structure.gravity + vertical.acceleration[i]
+        base, slope, bend = lagrangian.cap_beam(x, rolling=rolling)
+        u, du, absolute = run.floors[i, :3]
+        drifts = np.diff(u, prepend=side * base.real)
+        drift_rates = np.diff(du, prepend=slope.real * rate)
+        y = np.r_[sample.theta, drifts, rate, drift_rates]
+        q2 = lagrangian.acceleration(contact, y, a_g, g)
+        # the oracle solves with a full matrix, whose condition of up to 1e4 multiplies rounding
+        size = 1e-11 * (1.0 + float(np.max(np.abs(q2))))
+        assert sample.theta_ddot == pytest.approx(q2[0], abs=size)
+        beam = slope.real * q2[0] + side * bend.real * rate**2
+        floors = a_g + beam + np.cumsum(q2[1:])
+        # du_b/dtheta = 2 R C, C < 5
+        assert absolute == pytest.approx(floors, abs=size * (1.0 + 10.0 * R))
+        stored = sum(lagrangian.energies(contact, y))
+        assert sample.energy_stored == pytest.approx(stored, rel=1e-11, abs=1e-6)
+        B, C, _, _ = printed(structure.bearing, x, rolling=rolling)
+        forces = np.zeros(n)
+        if (above := structure.superstructure) is not None:
+            forces = above.stiffness_matrix @ np.cumsum(drifts)
+            forces += above.damping_matrix @ np.cumsum(drift_rates)
+        pull = B * g / R * (1.0 + 2.0 * gamma * (1.0 + eta))
+        push = C * (2.0 * forces.sum() / (m_c * R) - a_g / R * (1.0 + 2.0 * gamma))
+        A, D = coefficients(structure, x, rolling=rolling)
+        tilt = (push - side * (pull + D * rate**2)) / A
+        # sums of terms of up to 1e4 m/s2 in double precision
+        assert q2[0] == pytest.approx(tilt, rel=1e-10, abs=1e-10)
+        assert floors == pytest.approx(-forces / system.masses, rel=1e-9, abs=1e-9)
 
 
-def drift_state(state: State, lane: OneLane) -> Array:
-    """The same state as [theta, drifts, theta', drift rates], on the lane's own u_b and u_b'."""
-    base, base_velocity = lane.base, lane.base_velocity
-    return np.concatenate(
-        (
-            [state.side * state.position[0]],
-            np.diff(state.position[1:], prepend=base),
-            [state.side * state.velocity[0]],
-            np.diff(state.velocity[1:], prepend=base_velocity),
-        )
+def coefficients(structure: PodiumStructure, x: float, *, rolling: bool) -> tuple[float, float]:
+    """A and D of the equation of motion (Theory, section 2)."""
+    bearing, gamma, eta = structure.bearing, structure.gamma, structure.eta
+    B, C, _, _ = printed(bearing, x, rolling=rolling)
+    k = 2.0 * bearing.curvature_ratio * math.cos(bearing.alpha) if rolling else 0.0
+    A = bearing.inertia_ratio - 1.0 + (1.0 + 4.0 * gamma) * (B**2 + C**2) + 4.0 * gamma * eta * B**2
+    return A, (1.0 + 4.0 * gamma) * k * B + 4.0 * gamma * eta * B * (k - C)
+
+
+@given(st.floats(0.01, 0.4), st.sampled_from([FLAT, 0.5]))
+def test_misprint_1_d_while_rocking_lacks_4_eta_gamma(x: float, rho: float) -> None:
+    """Energy needs D = A'/2: A theta'^2/2 must change by what the forces do, and no more."""
+    structure, h = podium(3, 0.15, rho), 1e-3
+    before, (A, ours), after = (
+        coefficients(structure, x + k * h, rolling=False) for k in (-1, 0, 1)
     )
+    half_slope = (after[0] - before[0]) / (4.0 * h)
+    B, C, _, _ = printed(structure.bearing, x, rolling=False)
+    factor = 4.0 * structure.eta * structure.gamma
+    assert ours == pytest.approx(half_slope, abs=2.0 * h**2 * A)
+    assert ours == pytest.approx(-factor * C * B, rel=1e-12)
+    if abs(C * B) > 1e-2:
+        assert abs(half_slope + C * B) > 0.9 * (factor - 1.0) * abs(C * B)
 
 
-@given(states())
-def test_lagranges_equations_in_tilt_and_drifts_say_the_same(state: State) -> None:
-    lane = state.in_a_lane()
-    found = lane.accelerations(state.horizontal, state.vertical)
-    lagrangian = StoreyLagrangian(oracle_system(state.structure))
-    contact = Contact(int(state.side), rolling=state.motion == ROLLING)
-    gravity = state.structure.gravity + state.vertical
-    q2 = lagrangian.acceleration(contact, drift_state(state, lane), state.horizontal, gravity)
-    (B, C), diameter = state.arms, 2.0 * state.structure.bearing.semi_diagonal
-    base = state.side * diameter * (C * found[0] + B * state.velocity[0] ** 2)
-    # the oracle solves with a full matrix, whose condition of up to 1e4 multiplies rounding
-    size = 1e-11 * (1.0 + float(np.max(np.abs(q2))))
-    assert state.side * found[0] == pytest.approx(q2[0], abs=size)
-    # du_b/dtheta = 2 R C, C < 5
-    assert found[1:] == pytest.approx(base + np.cumsum(q2[1:]), abs=size * (1.0 + 5.0 * diameter))
+def tilt_acceleration(structure: PodiumStructure, x: float) -> float:
+    """theta'' of a storey at rest at the tilt x, its springs at ease."""
+    settings = TimeHistorySettings(free_vibration=0.0, initial_rotation=x)
+    run = sampled_history(structure, MotionComponents(stillness(0.01)), settings)
+    return float(run.samples[0].theta_ddot)
 
 
-@given(states())
-def test_energies_are_those_of_the_lagrangian(state: State) -> None:
-    lane = state.in_a_lane()
-    lane.accelerations()
-    lagrangian = StoreyLagrangian(oracle_system(state.structure))
-    contact = Contact(int(state.side), rolling=state.motion == ROLLING)
-    expected = sum(lagrangian.energies(contact, drift_state(state, lane)))
-    assert lane.energy() == pytest.approx(expected, rel=1e-11, abs=1e-6)
+@pytest.mark.parametrize("rho", [FLAT, 0.3, 0.7, 1.5])
+def test_misprint_2_the_sign_of_gravity_in_k_l(rho: float) -> None:
+    """K_L must be the derivative of the forces, and a larger radius must stiffen the storey."""
+    structure, h = podium(1, 1e-3, rho), 1e-6
+    state = uplifted_state(structure.bearing, rolling=True, exact=False)
+    M, _, K = linearised_matrices(structure, state)
+    wrong_K = K.copy()
+    wrong_K[0, 0] -= structure.weight * (2.0 * rho - 1.0) / structure.bearing.semi_diagonal
+    # along u_t = u_b the spring stays slack: only gravity is left
+    slope = (tilt_acceleration(structure, 2.0 * h) - tilt_acceleration(structure, h)) / h
+    ours, wrong = (-(matrix[0, 0] + matrix[0, 1]) / M[0, 0] for matrix in (K, wrong_K))
+    # linear to first order in alpha and in x
+    size = structure.gravity / structure.bearing.semi_diagonal
+    assert ours == pytest.approx(slope, abs=0.01 * size)
+    assert abs(wrong - slope) > 0.1 * size
+    assert wrong == pytest.approx(-ours, rel=1e-6)
 
 
-@given(states())
-def test_energy_changes_by_what_the_ground_gives_and_the_dampers_take(state: State) -> None:
-    """dE/dt = -a_g [...] - a_v [...] - v'^T C v' (Theory, section 8): the flows that are noted."""
-    lane, h = state.in_a_lane(), 1e-3
-    moving = lane.accelerations(state.horizontal, state.vertical)
-    given_power, taken = lane.powers()
-    flow = given_power - taken
-    energies = {}
-    for i in range(-3, 4):
-        lane.place(state.position + i * h * state.velocity, state.velocity + i * h * moving)
-        energies[i] = lane.energy()
-    slope = sum(w * (energies[i] - energies[-i]) for i, w in SIXTH_ORDER.items()) / (60.0 * h)
-    # What is left of the differences is rounding, eps/h of the largest term: the lift is a small
-    # difference of numbers of order one, times the weight.
-    lifted = 2.0 * state.structure.bearing.semi_diagonal * state.structure.weight
-    size = max(lifted, *(abs(energy) for energy in energies.values()))
-    assert flow == pytest.approx(slope, abs=1e-14 / h * size)
+def test_misprint_3_the_first_order_theta_cr_jumps_at_its_rho_cr() -> None:
+    """theta_cr is a root of a continuous B(x), so it cannot jump; the printed branches do."""
+    for tan_alpha, jump in ((0.10, 0.0099), (0.15, 0.0222), (0.20, 0.0392)):
+        wedge = 2.0 * tan_alpha
+        rho_cr = Bearing(1.5, tan_alpha, wedge, 0.5).critical_curvature_ratio_of_paper
+        below, above = (Bearing(1.5, tan_alpha, wedge, rho_cr + shift) for shift in (-1e-9, 1e-9))
+        paper = above.critical_rotation_of_paper / below.critical_rotation_of_paper - 1.0
+        assert abs(above.critical_rotation / below.critical_rotation - 1.0) < 1e-8
+        assert abs(paper) == pytest.approx(jump, rel=0.01)

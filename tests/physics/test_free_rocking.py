@@ -1,4 +1,4 @@
-"""Free motions with exact solutions: periods, decay, rest, and energy that stays."""
+"""Free motions: exact periods, decay and rest, energy that stays, and when `auto` may stop."""
 
 from __future__ import annotations
 
@@ -9,33 +9,28 @@ import pytest
 from paper_structures import (
     FLAT,
     SLENDER,
+    Array,
     building,
     ground,
+    let_go,
     needs_compiled_kernels,
     podium,
     steps_an_interval,
-    stillness,
+    waves,
 )
 
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.model.bearing import Bearing
-from rpscli.model.impact import ImpactLaw
+from rpscli.model.impact import ImpactKind, ImpactLaw
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import RayleighDamping
+from rpscli.physics.state import FULL_CONTACT
+from rpscli.records.ground_motion import GroundMotion
 
 LINEAR = 3.0 * SLENDER**2
 """What the linear theory leaves out, relative: a few alpha^2."""
-
-
-def released(
-    structure: PodiumStructure, rotation: float, seconds: float, dt: float, accuracy: float = 1.0
-) -> TimeHistoryResult:
-    settings = TimeHistorySettings(
-        free_vibration=seconds, initial_rotation=rotation, accuracy=accuracy
-    )
-    return time_history(structure, stillness(dt), settings)
 
 
 def impact_times(result: TimeHistoryResult) -> list[float]:
@@ -65,7 +60,7 @@ def test_slender_columns_rock_with_the_linear_periods(rho: float) -> None:
         fall = math.acos(ratio) if kappa > 0.0 else math.acosh(ratio)
         return fall / math.sqrt(abs(kappa) * w2)
 
-    times = impact_times(released(structure, start, 12.0, 0.02))
+    times = impact_times(let_go(structure, start, 12.0, 0.02))
     expected = [quarter(start), *(2.0 * quarter(amplitude(i)) for i in range(1, 8))]
     assert np.diff(times[:8], prepend=0.0) == pytest.approx(expected, rel=LINEAR)
 
@@ -74,14 +69,12 @@ def test_slender_columns_rock_with_the_linear_periods(rho: float) -> None:
 @pytest.mark.parametrize("storeys", [0, 2])
 def test_nothing_moves_without_a_push(storeys: int, rho: float) -> None:
     result = time_history(podium(storeys, 0.15, rho), ground(np.zeros(101), 0.02))
-    assert result.outcome == "at_rest"
-    assert result.events == ()
-    assert result.max_rotation == 0.0
+    assert (result.outcome, result.events, result.max_rotation) == ("at_rest", (), 0.0)
     assert not np.any(result.trace.rotation)
     assert not np.any(result.trace.floor_displacements)
-    assert result.friction_demand == 0.0
-    assert result.history.normal_top == 1.0  # the weight, no more
-    assert result.history.normal_bottom == 1.0
+    # the weight, no more
+    left = result.history
+    assert (result.friction_demand, left.normal_top, left.normal_bottom) == (0.0, 1.0, 1.0)
 
 
 @pytest.mark.evidence("steps, events, energy", "exact")
@@ -92,7 +85,7 @@ def test_without_damping_and_with_e_one_energy_stays(rho: float) -> None:
     structure = podium(2, 0.15, rho, law=ImpactLaw("value", 1.0), superstructure=above)
     steps, drift = [], []
     for accuracy in (0.5, 1.0, 2.0):
-        result = released(structure, 0.05, 20.0, 0.01, accuracy)
+        result = let_go(structure, 0.05, 20.0, accuracy=accuracy)
         stored = result.trace.energy_stored
         assert result.impacts >= 20
         assert result.energy.damped == 0.0
@@ -105,16 +98,25 @@ def test_without_damping_and_with_e_one_energy_stays(rho: float) -> None:
     assert np.mean(orders) > 6.0
 
 
+@needs_compiled_kernels
+@pytest.mark.parametrize(("storeys", "period"), [(1, 0.3), (3, 0.05)])
+def test_undamped_stiff_buildings_do_not_drift(storeys: int, period: float) -> None:
+    """Two minutes of rocking, in which nothing but the steps takes energy from the fast modes."""
+    above = building(storeys, period, RayleighDamping(0.0))
+    structure = podium(storeys, superstructure=above, law=ImpactLaw("value", 0.9999))
+    result = let_go(structure, 0.5 * structure.critical_rotation, 120.0, 0.02)
+    assert result.outcome == "survived"
+    assert result.impacts > 70
+    assert abs(result.energy.residual) < 1e-6 * result.trace.energy_stored[0]
+
+
 @pytest.mark.evidence("free-standing blocks", "exact")
 @pytest.mark.parametrize("tolerance", [1e-4, 1e-6, 1e-8])
 def test_impacts_shrink_and_come_to_an_end(tolerance: float) -> None:
     """Near theta = 0 each impact leaves e^2 of the height, until it is below the tolerance."""
     structure = podium(0, 0.15, FLAT)
     alpha, e = structure.bearing.alpha, structure.restitution
-    settings = TimeHistorySettings(
-        free_vibration=5.0, initial_rotation=1e-3 * alpha, recontact_tolerance=tolerance
-    )
-    result = time_history(structure, stillness(0.01), settings)
+    result = let_go(structure, 1e-3 * alpha, 5.0, recontact_tolerance=tolerance)
     locked = math.ceil(math.log(tolerance / 1e-3) / math.log(e**2))
     assert result.impacts == pytest.approx(locked, abs=1)
     assert [event.kind for event in result.events][-2:] == ["impact", "recontact"]
@@ -123,3 +125,86 @@ def test_impacts_shrink_and_come_to_an_end(tolerance: float) -> None:
     assert result.energy.impact == pytest.approx(result.trace.energy_stored[0], rel=1e-9)
     ratios = np.diff(impact_times(result))
     assert ratios[1:] / ratios[:-1] == pytest.approx(e, rel=2e-3)  # height/alpha <= 1e-3
+
+
+LAWS: list[tuple[ImpactKind, float]] = [("rigid", FLAT), ("flexible", 0.5), ("value", FLAT)]
+TOLERANCES = np.array([1e-5, 1e-6, 1e-7, 1e-8])
+
+
+def vibration(structure: PodiumStructure, tolerance: float) -> Array:
+    """Drifts of a released structure long after it came to rest, while the building rings on."""
+    result = let_go(structure, 0.02, 8.8, 0.02, recontact_tolerance=tolerance, accuracy=4.0)
+    (locked,) = (event for event in result.events if event.kind == "recontact")
+    assert locked.time < 8.0
+    return result.trace.drifts[401:440]
+
+
+@needs_compiled_kernels
+@pytest.mark.evidence("impact laws", "exact")
+@pytest.mark.parametrize(("law", "rho"), LAWS)
+def test_errors_are_in_proportion_to_the_tolerance(law: ImpactKind, rho: float) -> None:
+    """The excursions left out change the drift rates by about u_b', which is added (3.5).
+
+    u_b' is of the size 2 R sqrt(2 theta'' tol alpha). What is left out besides is what springs do
+    during them, the product of two such roots or less.
+    """
+    structure = podium(2, 0.15, rho, law=ImpactLaw(law, 0.8 if law == "value" else None))
+    exact = vibration(structure, 1e-13)  # a millionth of the least tolerance
+    gaps = np.array([np.max(np.abs(vibration(structure, t) - exact)) for t in TOLERANCES])
+    assert np.polyfit(np.log(TOLERANCES), np.log(gaps), 1)[0] > 0.8
+    assert gaps[1] < 1e-3 * np.max(np.abs(exact))  # at the default tolerance
+
+
+def random_case(seed: int) -> tuple[PodiumStructure, GroundMotion]:
+    """A building of the paper and a short record that leaves it rocking."""
+    rng = np.random.default_rng(seed)
+    storeys, rho = int(rng.integers(1, 10)), float(rng.choice([FLAT, 0.26, 0.5, 1.5]))
+    law = ImpactLaw("rigid" if rng.integers(2) else "flexible")
+    structure = podium(storeys, float(rng.choice([0.10, 0.15, 0.20])), rho, law=law)
+    seconds, peak = rng.uniform(0.5, 3.0), rng.uniform(1.0, 4.0)
+    return structure, waves(seconds, 0.01, peak * structure.uplift_acceleration, seed)
+
+
+@needs_compiled_kernels
+@pytest.mark.parametrize("seed", [*range(40), 409])
+def test_auto_finds_the_largest_demands(seed: int) -> None:
+    """Seed 409 has its largest floor acceleration at an impact after long quiet rocking."""
+    short, long = (
+        time_history(*random_case(seed), settings, with_fixed_base=False)
+        for settings in (TimeHistorySettings(), TimeHistorySettings(free_vibration=60.0))
+    )
+    assert short.outcome == long.outcome
+    if short.outcome != "survived":
+        return
+    assert short.duration < short.record.duration + 40.0
+    assert short.history.phase == FULL_CONTACT
+    assert short.max_rotation == long.max_rotation
+    assert short.storey_shears.tolist() == long.storey_shears.tolist()
+    assert short.floor_accelerations.tolist() == long.floor_accelerations.tolist()
+    # up to where it stopped it is the same history
+    rows = len(short.trace.time)
+    assert np.array_equal(short.trace.rotation, long.trace.rotation[:rows])
+    assert np.array_equal(short.trace.floor_displacements, long.trace.floor_displacements[:rows])
+
+
+@needs_compiled_kernels
+def test_not_all_of_those_cases_are_trivial() -> None:
+    results = [time_history(*random_case(seed), with_fixed_base=False) for seed in range(40)]
+    survived = [r for r in results if r.outcome == "survived"]
+    assert len(survived) > 20
+    assert sum(r.history.max_theta_time > r.record.duration for r in survived) > 5
+    assert sum(r.uplifts > 1 for r in survived) > 5
+
+
+def test_auto_waits_for_the_swing_of_a_building_that_never_lifts() -> None:
+    """A kick at the very end of a finely sampled record: all maxima come later."""
+    structure = podium(3)
+    record = ground(np.concatenate((np.zeros(5), np.full(5, 1.0))), 0.001)
+    result = time_history(structure, record)
+    longer = time_history(structure, record, TimeHistorySettings(free_vibration=0.5))
+    assert result.outcome == "at_rest"
+    assert result.duration < 0.5
+    sheared = np.abs(result.trace.storey_shears[:, 0])
+    assert np.argmax(sheared) > record.npts + 30
+    assert result.storey_shears.tolist() == longer.storey_shears.tolist()
+    assert result.floor_accelerations.tolist() == longer.floor_accelerations.tolist()

@@ -7,7 +7,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from paper_structures import SLENDER, Array, block, ground, needs_compiled_kernels, slender_block
+from paper_structures import (
+    SLENDER,
+    Array,
+    bisected,
+    block,
+    ground,
+    needs_compiled_kernels,
+    slender_block,
+)
 from scipy.optimize import brentq
 
 from rpscli.analyses.demand import demand
@@ -37,10 +45,8 @@ def least_amplitude(structure: PodiumStructure, shape: Array, low: float, high: 
     """Bisection between an amplitude that is withstood and one that overturns [m/s2]."""
     assert not overturns(structure, low * shape)
     assert overturns(structure, high * shape)
-    while high - low > 2e-7 * high:
-        middle = 0.5 * (low + high)
-        low, high = (low, middle) if overturns(structure, middle * shape) else (middle, high)
-    return 0.5 * (low + high)
+    found = bisected(lambda a: overturns(structure, a * shape), low, high, within=2e-7)
+    return 0.5 * sum(found)
 
 
 @pytest.mark.evidence("free-standing blocks", "exact")
