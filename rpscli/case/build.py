@@ -7,14 +7,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import MISSING, dataclass, fields
 
 import numpy as np
 
 from rpscli.analyses.result_quantities import LIMITED, YIELDING
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.case.schema.case_file import (
-    DEVICE_KEYS,
     AnalysisSection,
     BearingSection,
     CaseFile,
@@ -43,6 +42,16 @@ from rpscli.model.superstructure import (
 from rpscli.records.source import Source
 
 COMPLETE = "the rules of the case make sure that the value is given"
+
+
+DEVICE_KEYS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
+    kind: (
+        tuple(field.name for field in fields(device) if field.default is MISSING),
+        tuple(field.name for field in fields(device) if field.default is not MISSING),
+    )
+    for kind, device in DEVICES.items()
+}
+"""Keys that a device of each kind must have, and may have: the fields of its law."""
 
 
 def structure_of(file: CaseFile, document: Document) -> PodiumStructure:

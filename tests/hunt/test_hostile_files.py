@@ -12,7 +12,7 @@ from small_records import cosmos, csmip, esm, geonet, knet, smc
 
 from hunt.mutation import mutated
 from hunt.trials import hunt, judged, shares
-from rpscli.case.schema.case_file import DEVICE_KEYS as NEEDED
+from rpscli.case.build import DEVICE_KEYS as NEEDED
 from rpscli.case.schema.case_file import CaseFile
 from rpscli.case.schema.keys import known_paths
 from rpscli.case.study.schema import StudyFile

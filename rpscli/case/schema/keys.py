@@ -16,8 +16,16 @@ from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
 from pydantic_core import core_schema
 
 from rpscli.case.schema.case_file import CaseFile
-from rpscli.case.schema.fields import PLAIN, NameOf, OneOf, Quantity, Several, ValueRange, Whole
-from rpscli.case.schema.own import OwnLaws
+from rpscli.case.schema.fields import (
+    PLAIN,
+    NameOf,
+    OneOf,
+    OwnLaws,
+    Quantity,
+    Several,
+    ValueRange,
+    Whole,
+)
 from rpscli.case.text.document import Fault, Path, dotted, path_of
 from rpscli.errors import listed, nearest
 
