@@ -30,7 +30,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from weakref import finalize
 
 from rpscli.case.conditions import Condition
-from rpscli.case.rules.plausibility import doubts_of_many
+from rpscli.case.plausibility import doubts_of_many
 from rpscli.case.study.schema import StudyFile
 from rpscli.case.study.study import overridden, parse_study, study_of
 from rpscli.case.text.document import Document, text_of_values

@@ -13,8 +13,7 @@ from typing import Any
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.case import build
 from rpscli.case.overrides import Overrides, apply_overrides
-from rpscli.case.rules.consistency import Consistency, refused_by_model
-from rpscli.case.rules.plausibility import Doubt, doubts_of_structure, doubts_of_text
+from rpscli.case.plausibility import Doubt, doubts_of_structure, doubts_of_text
 from rpscli.case.schema.case_file import CaseFile, RecordSection
 from rpscli.case.schema.check import checked
 from rpscli.case.schema.fields import Section
@@ -188,28 +187,12 @@ def case_from_mapping(
     document = mapping if isinstance(mapping, Document) else Document(name, dict(mapping))
     document = apply_overrides(document, overrides, label=label)
     file = checked(CaseFile, document)
-    structure = _structure(file, document)
     return Case(
         stem_of(Path(name.strip("<>"))) or "case",
         name,
         folder or Path(),
         file,
-        structure,
+        build.structure_of(file, document),
         tuple(doubts_of_text(file.superstructure)),
         written=document.content,
     )
-
-
-def _structure(file: CaseFile, document: Document) -> PodiumStructure:
-    """The structure of valid sections, if they are consistent and the model takes it."""
-    rules = Consistency(file, document)
-    document.refuse(rules.faults())
-    try:
-        bearing = build.bearing_of(file.podium.bearing)
-        document.refuse(rules.faults_of_bearing(bearing))
-        structure = build.structure_of(bearing, file)
-        if structure.bed is not None:
-            structure.bed.refuse_start(file.analysis.initial_rotation)
-    except ValueError as error:
-        raise document.refusal([refused_by_model(error, document)]) from None
-    return structure

@@ -19,9 +19,9 @@ from rpscli.case.schema.check import checked
 from rpscli.case.schema.fields import Quantity, Section, Whole, must_be, refuse
 from rpscli.case.schema.keys import is_whole, unit
 from rpscli.case.schema.limits import Fractile
-from rpscli.case.study.axes import Axis, linked_value, sources_of
 from rpscli.case.study.schema import (
     PLUS,
+    Axis,
     Linked,
     Seed,
     Sources,
@@ -29,7 +29,15 @@ from rpscli.case.study.schema import (
     is_number,
     with_keys,
 )
-from rpscli.case.study.study import Study, key_faults, overridden, study_of, varying
+from rpscli.case.study.study import (
+    Study,
+    key_faults,
+    linked_value,
+    overridden,
+    sources_of,
+    study_of,
+    varying,
+)
 from rpscli.case.text.document import Document, Fault, is_case, is_design
 from rpscli.case.text.yaml_text import read_yaml
 from rpscli.errors import LARGEST, CaseError, hint, listed
@@ -264,7 +272,7 @@ def parse_design(
     )
     document, of_base = overridden(document, overrides, DesignFile)
     file = checked(DesignFile, document)
-    unseen, faults = _unseen(document, folder)
+    unseen, faults, _ = sources_of(document, folder, "validate")
     document.refuse(
         [*faults, *key_faults(document, of_base, folder), *_name_faults(document, file)]
     )
@@ -344,15 +352,3 @@ def _name_faults(document: Document, file: DesignFile) -> Iterator[Fault]:
         else:
             continue
         yield Fault(("minimise",), f"minimise: {text}")
-
-
-def _unseen(document: Document, folder: Path) -> tuple[tuple[str, ...], list[Fault]]:
-    """Sources under `validate.records`, and what is wrong with them."""
-    if not isinstance(document.content.get("validate"), dict):
-        return (), []
-    sources, faults, _ = sources_of(document.part("validate"), folder)
-    inside = (("validate", *fault.path) for fault in faults)
-    return sources, [
-        replace(fault, path=path, text=f"validate.{fault.text}")
-        for fault, path in zip(faults, inside, strict=True)
-    ]

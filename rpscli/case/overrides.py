@@ -44,29 +44,27 @@ def apply_overrides(
     faults = []
     for override in _parsed(overrides, label):
         path = path_of(override.key)
-        text = _unknown(path, model) or _put(changed, path, override)
-        if text:
+        if text := _unknown(path, model) or _put(changed, path, override):
             faults.append(Fault(path, text, place=override.place))
     changed.refuse(faults)
     return changed
 
 
 def _parsed(overrides: Overrides, label: str) -> Iterator[Override]:
-    if isinstance(overrides, Mapping):
-        for rank, (key, value) in enumerate(overrides.items(), start=1):
-            plain = _plain(value)
-            written = plain if isinstance(plain, str) else shown(plain)
-            yield Override(key, plain, Place(f"{label} {key}={written}", rank=rank))
-        return
-    for rank, text in enumerate(overrides, start=1):
-        if isinstance(text, Override):
-            yield text
-            continue
-        place = Place(f"{label} {text}", rank=rank)
-        key, sign, value = text.partition("=")
-        if not sign or not key.strip():
-            raise CaseError(f"{place}: write {label} dotted.key=value, as in podium.columns=4")
-        yield Override(key.strip(), read_value(value, str(place)), place)
+    items = overrides.items() if isinstance(overrides, Mapping) else overrides
+    for rank, item in enumerate(items, start=1):
+        if isinstance(item, Override):
+            yield item
+        elif isinstance(item, tuple):
+            key, value = item[0], _plain(item[1])
+            written = value if isinstance(value, str) else shown(value)
+            yield Override(key, value, Place(f"{label} {key}={written}", rank=rank))
+        else:
+            place = Place(f"{label} {item}", rank=rank)
+            key, sign, text = item.partition("=")
+            if not sign or not key.strip():
+                raise CaseError(f"{place}: write {label} dotted.key=value, as in podium.columns=4")
+            yield Override(key.strip(), read_value(text, str(place)), place)
 
 
 def _plain(value: Any) -> Any:
@@ -82,13 +80,12 @@ def _unknown(path: Path, model: type[BaseModel]) -> str:
     named = tuple(part for part in path if isinstance(part, str))
     if not named:
         return "an index alone is not a key of the format"
-    for length in range(1, len(named) + 1):
-        known, section = field_at(model, named[:length]), section_at(model, named[: length - 1])
-        if known is None and section is None:
-            whole = dotted(named[: length - 1])
-            return f"{whole} can be set as a whole only, not {dotted(named)}"
-        if known is None:
-            return unknown_key(model, named[:length])[0].text
+    for end, part in enumerate(named):
+        if field_at(model, named[: end + 1]) is not None:
+            continue
+        if section_at(model, named[:end]) is None:
+            return f"{dotted(named[:end])} can be set as a whole only, not {dotted(named)}"
+        return unknown_key(model, (*named[:end], part))[0].text
     return ""
 
 

@@ -110,7 +110,7 @@ def command(
 def _record(case: Case) -> tuple[dict[str, Any] | None, RpsError | None]:
     """The case's own record, or why it cannot be read; nothing if the case names none."""
     from rpscli.analyses.column_forces import no_bound  # numpy is slow
-    from rpscli.case.rules.plausibility import doubts_of_directions
+    from rpscli.case.plausibility import doubts_of_directions
 
     if case.record is None:
         return None, None

@@ -128,12 +128,12 @@ def schema_of(what: str) -> dict[str, Any]:
     """The schema of cases, of studies or of designs."""
     # pydantic is slow.
     if what == "case":
-        from rpscli.case.json_schema import json_schema_of
         from rpscli.case.schema.case_file import CaseFile
+        from rpscli.case.schema.keys import json_schema_of
 
         return json_schema_of(CaseFile)
     from rpscli.case.design import DesignFile
-    from rpscli.case.json_schema import study_json_schema
+    from rpscli.case.schema.keys import study_json_schema
     from rpscli.case.study.reports import format_with
     from rpscli.report.study.registry import REPORTS
 

@@ -17,7 +17,7 @@ from rpscli.analyses.result_quantities import LIMITED, NEEDS, ResultQuantity
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.timehistory import time_history
 from rpscli.case.conditions import LIMITS, Condition, case_conditions
-from rpscli.case.rules.plausibility import doubts_of_directions
+from rpscli.case.plausibility import doubts_of_directions
 from rpscli.commands import inputs
 from rpscli.commands.shell.options import OutputRequest
 from rpscli.commands.shell.terminal import Terminal, concluded, leave

@@ -16,9 +16,8 @@ from rpscli.analyses.result_quantities import HISTORY, NEEDS, SAMPLED, YIELDING
 from rpscli.case.case import Case, case_from_mapping
 from rpscli.case.conditions import Condition, conditions_of, with_friction
 from rpscli.case.overrides import Override
-from rpscli.case.rules.plausibility import Doubt, doubts_of_directions
-from rpscli.case.study.axes import Values
-from rpscli.case.study.schema import PerturbSection, RangeSection, SampleSection
+from rpscli.case.plausibility import Doubt, doubts_of_directions
+from rpscli.case.study.schema import PerturbSection, RangeSection, SampleSection, Values
 from rpscli.case.study.study import Study
 from rpscli.case.text.document import Fault, Place
 from rpscli.errors import CaseError, RecordError

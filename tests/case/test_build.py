@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from rpscli.analyses.demand import demand
 from rpscli.analyses.kernels.systems import DEVICE_KINDS
 from rpscli.case.case import Case, load_case, parse_case
-from rpscli.case.rules.plausibility import doubts_of_directions
+from rpscli.case.plausibility import doubts_of_directions
 from rpscli.case.schema.keys import unit
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import CaseError

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rpscli.case.rules.plausibility import Doubt, doubts_of_many
+from rpscli.case.plausibility import Doubt, doubts_of_many
 from rpscli.case.schema.fields import ValueRange
 from rpscli.case.schema.scale_to import scale_to_of
 from rpscli.case.study.observed import comparable

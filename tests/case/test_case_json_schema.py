@@ -8,9 +8,8 @@ from typing import Any
 import pytest
 
 from rpscli.analyses.result_quantities import LIMITED
-from rpscli.case.json_schema import json_schema_of
 from rpscli.case.schema.case_file import CaseFile
-from rpscli.case.schema.keys import field_at, known_paths, section_of
+from rpscli.case.schema.keys import field_at, json_schema_of, known_paths, section_of
 from rpscli.case.text.document import path_of
 from rpscli.units import KINDS
 

@@ -334,6 +334,6 @@ def test_what_only_the_model_refuses_is_placed(monkeypatch: pytest.MonkeyPatch) 
     def refusing(*_: object) -> None:
         raise ValueError("no such column")
 
-    monkeypatch.setattr("rpscli.case.build.structure_of", refusing)
+    monkeypatch.setattr("rpscli.case.build._built", refusing)
     with pytest.raises(CaseError, match=r"c\.yaml:9:1: podium: no such column"):
         parse_case(BUILDING, name="c.yaml")

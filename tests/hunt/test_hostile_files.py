@@ -11,7 +11,7 @@ import pytest
 from small_records import cosmos, csmip, esm, geonet, knet, smc
 
 from hunt.trials import hunt, hunted, judged, mutated, shares
-from rpscli.case.schema.case_file import DEVICE_KEYS as NEEDED
+from rpscli.case.build import DEVICE_KEYS as NEEDED
 from rpscli.case.schema.case_file import CaseFile
 from rpscli.case.schema.keys import known_paths
 from rpscli.case.study.schema import StudyFile

@@ -17,7 +17,8 @@ from paper_structures import FLAT, known, oracle_devices, oracle_system, podium
 from rpscli.analyses.modal import linearised_matrices, modal
 from rpscli.analyses.pushover import pushover
 from rpscli.analyses.result_quantities import HISTORY
-from rpscli.case.schema.case_file import DEVICE_KEYS, DeviceSection
+from rpscli.case.build import DEVICE_KEYS
+from rpscli.case.schema.case_file import DeviceSection
 from rpscli.model.bearing import uplifted_state
 from rpscli.model.devices import (
     DEVICES,

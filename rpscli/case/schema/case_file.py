@@ -5,7 +5,6 @@ Rules that join several keys stand in `case.rules`. Optional keys are None when 
 
 from __future__ import annotations
 
-from dataclasses import MISSING, fields
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, ConfigDict, Field, model_validator
@@ -14,6 +13,7 @@ from rpscli.case.schema.fields import (
     DampingRatio,
     ModePair,
     NameOf,
+    OwnLaws,
     Quantity,
     Section,
     Text,
@@ -21,20 +21,10 @@ from rpscli.case.schema.fields import (
     must_be,
 )
 from rpscli.case.schema.limits import LimitsSection
-from rpscli.case.schema.own import OwnLaws
 from rpscli.case.schema.scale_to import ScaleToSection
 from rpscli.constants import MOST_STOREYS, STANDARD_GRAVITY
-from rpscli.model.devices import DAMPERS, DEVICES
+from rpscli.model.devices import DAMPERS
 from rpscli.model.impact import CONTACT_TIME, IMPACT_LAWS, LONGEST_CONTACT
-
-DEVICE_KEYS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
-    kind: (
-        tuple(field.name for field in fields(device) if field.default is MISSING),
-        tuple(field.name for field in fields(device) if field.default is not MISSING),
-    )
-    for kind, device in DEVICES.items()
-}
-"""Keys that a device of each kind must have, and may have: the fields of its law."""
 
 
 class DeviceSection(Section):
@@ -70,8 +60,6 @@ class DeviceSection(Section):
 
 
 OWN_DAMPERS = OwnLaws("kind", DAMPERS, DeviceSection)
-
-FORMAT_VERSION = 1
 
 Ratio = Annotated[float, Quantity(at_least=0)]
 PositiveRatio = Annotated[float, Quantity(above=0)]
@@ -413,15 +401,18 @@ class DocumentSection(Section):
     """who checks the page and signs it"""
 
 
-class CaseFile(Section):
-    """A case of rps: one structure, its ground motion, and how to analyse it."""
+class TitledFile(Section):
+    """The first keys of all files."""
 
-    rps: Annotated[
-        int, Whole(FORMAT_VERSION, FORMAT_VERSION, "this program reads version 1 of the format")
-    ]
+    rps: Annotated[int, Whole(1, 1, "this program reads version 1 of the format")]
     """version of the format; write `rps: 1`"""
     title: Text | None = None
     """heading of reports and plots"""
+
+
+class CaseFile(TitledFile):
+    """A case of rps: one structure, its ground motion, and how to analyse it."""
+
     superstructure: SuperstructureSection
     """the building on the cap beam"""
     podium: PodiumSection

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from typing import Any, TypeVar
+from typing import TypeVar
 
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
@@ -22,82 +22,58 @@ KEYS_SHOWN = 12
 
 def checked(model: type[Model], document: Document) -> Model:
     """The sections of a document, each valid in itself; raises CaseError with all faults."""
-    content = dict(document.content)
-    by_itself = {
-        key: content.pop(key)
-        for key, field in fields_of(model).items()
-        if CHECKED_BY_ITSELF in field.metadata and key in content
-    }
-    faults, empty = _Faults(model, document, content), [*_nulls(content, ())]
-    announced = {fault.path for fault in document.faults}
-    for path in (path for path in empty if path not in announced):
-        faults.add_empty(path)
-    read, errors = _read(model, _without_nulls(content) | by_itself)
-    for error in errors:
-        path = _path(error, document)
-        lacks = any(path == inner[: len(path)] for inner in empty)
-        if not lacks or error["type"] == "extra_forbidden":  # else faulty by what is told already
-            faults.add(error, path)
-    document.refuse(faults.told())
+    read, errors = None, list[ErrorDetails]()
+    try:
+        read = model.model_validate(document.content)
+    except ValidationError as error:
+        errors = error.errors(include_url=False)
+    document.refuse(_told(model, document, errors))
     assert read is not None, "without faults the document is read"
     return read
 
 
-class _Faults:
-    """Faults of one document as they are met."""
-
-    def __init__(self, model: type[BaseModel], document: Document, content: dict[str, Any]) -> None:
-        self._model, self._document, self._all = model, document, [*document.faults]
-        self._missing, self._meant = set[Fault](), set[Path | None]()
-        known = fields_of(model)
-        self._of_another_file = "rps" in known and content.keys().isdisjoint(known)
-
-    def told(self) -> list[Fault]:
-        """All of them, but for missing keys that were suggested for an unknown one."""
-        instead = {fault for fault in self._missing if fault.path in self._meant}
-        return [fault for fault in self._all if fault not in instead]
-
-    def add(self, error: ErrorDetails, path: Path) -> None:
-        """Add what pydantic says of the value at a path."""
-        value, kind = self._document.at(path), error["type"]
-        if kind == "extra_forbidden":
-            self._add_unknown(path)
-        elif kind == "missing":
-            field = field_at(self._model, path)
-            text = f"{dotted(path)} is missing: {field.description if field else 'write it'}"
-            self._all.append(Fault(path, text, at_key=True))
-            self._missing.add(self._all[-1])
-        elif kind != "too_short" or not value:  # else its values are refused one by one
-            text = f"{dotted(path)} = {shown(value)} {_rule(error, path, self._model)}"
-            self._all.append(Fault(path, text))
-
-    def add_empty(self, path: Path) -> None:
-        """Add a key with nothing behind it; its name may be wrong besides."""
-        named = tuple(part for part in path if isinstance(part, str))
-        known = [annotation_at(self._model, named[: n + 1]) is not None for n in range(len(named))]
-        if all(known):
+def _told(
+    model: type[BaseModel], document: Document, errors: list[ErrorDetails]
+) -> Iterator[Fault]:
+    """What reading found, keys with nothing behind them, and what pydantic says of the others."""
+    known = fields_of(model)
+    by_itself = {key for key, field in known.items() if CHECKED_BY_ITSELF in field.metadata}
+    inside = {key: of for key, of in document.content.items() if key not in by_itself}
+    empty = [*_nulls(inside, ())]
+    announced = {fault.path for fault in document.faults}.intersection(empty)
+    unknown, missing = list[Path](), list[Path]()
+    yield from document.faults
+    for path in (path for path in empty if path not in announced):
+        if annotation_at(model, path) is not None:  # else it is unknown
             text = f"{dotted(path)} has no value; write one, or remove the key"
-            self._all.append(Fault(path, text, at_key=isinstance(path[-1], str)))
-        elif all(known[:-1]):  # otherwise the unknown key further up is told of
-            self._add_unknown(named)
+            yield Fault(path, text, at_key=isinstance(path[-1], str))
+    for error in errors:
+        path, kind = _path(error, document), error["type"]
+        if kind == "extra_forbidden":
+            unknown += [path] * (path not in announced)
+        elif any(path == inner[: len(path)] for inner in empty):
+            continue  # faulty by what is told already
+        elif kind == "missing":
+            missing.append(path)
+        elif kind != "too_short" or not document.at(path):  # else its values are refused one by one
+            text = f"{shown(document.at(path))} {_rule(error, path, model)}"
+            yield Fault(path, f"{dotted(path)} = {text}")
+    if "rps" in known and inside.keys().isdisjoint(known):
+        unknown = []  # of another file
+    yield from _misnamed(model, unknown, missing)
 
-    def _add_unknown(self, path: Path) -> None:
-        if self._of_another_file:
-            return
-        if len(self._all) > MOST_FAULTS:  # there is no use in what was meant
-            fault = Fault(path, f"{dotted(path)} is not a key of the format", at_key=True)
-            self._all.append(fault)
-            return
-        fault, suggestion = unknown_key(self._model, path)
-        self._all.append(fault)
-        self._meant.add(suggestion)
 
-
-def _read(model: type[Model], content: Any) -> tuple[Model | None, list[ErrorDetails]]:
-    try:
-        return model.model_validate(content), []
-    except ValidationError as error:
-        return None, error.errors(include_url=False)
+def _misnamed(model: type[BaseModel], unknown: list[Path], missing: list[Path]) -> Iterator[Fault]:
+    """Unknown keys, and missing ones that none of these was taken for."""
+    meant = set[Path | None]()
+    for number, path in enumerate(unknown):
+        fault, suggestion = unknown_key(model, path, suggest=number < MOST_FAULTS)
+        yield fault
+        meant.add(suggestion)
+    for path in (path for path in missing if path not in meant):
+        field = field_at(model, path)
+        text = f"{dotted(path)} is missing: {field.description if field else 'write it'}"
+        yield Fault(path, text, at_key=True)
 
 
 def _nulls(value: object, path: Path) -> Iterator[Path]:
@@ -106,19 +82,6 @@ def _nulls(value: object, path: Path) -> Iterator[Path]:
     elif isinstance(value, dict | list):
         for key, item in value.items() if isinstance(value, dict) else enumerate(value):
             yield from _nulls(item, (*path, key))
-
-
-def _without_nulls(value: Any) -> Any:
-    """A value without keys that hold null; an element that is null takes its list with it."""
-    if isinstance(value, list):
-        return [_without_nulls(item) for item in value]
-    if not isinstance(value, dict):
-        return value
-    return {key: _without_nulls(item) for key, item in value.items() if not _holds_null(item)}
-
-
-def _holds_null(value: object) -> bool:
-    return value is None or (isinstance(value, list) and any(map(_holds_null, value)))
 
 
 def _path(error: ErrorDetails, document: Document) -> Path:

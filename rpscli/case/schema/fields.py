@@ -9,24 +9,28 @@ from __future__ import annotations
 import math
 import operator
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cached_property
 from numbers import Integral, Real
 from typing import Annotated, Any, Literal, NoReturn, Self, TypeGuard
 
+import numpy as np
 from pydantic import (
     BaseModel,
     BeforeValidator,
     ConfigDict,
+    Field,
     GetCoreSchemaHandler,
     GetJsonSchemaHandler,
     PlainValidator,
     WithJsonSchema,
+    create_model,
     model_validator,
 )
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
-from rpscli.errors import LARGEST, SMALLEST, hint, listed, nearest
+from rpscli.errors import LARGEST, SMALLEST, PluginError, hint, listed, nearest
 from rpscli.registry import Registry
 from rpscli.units import KINDS, si_value
 
@@ -85,8 +89,23 @@ BOUNDS: dict[str, tuple[str, Callable[[float, float], bool], str]] = {
 """Sign, comparison, and key in JSON schemas."""
 
 
+class Mark:
+    """What a value must be: `read` refuses what it is not, and `json_schema` describes it."""
+
+    read: Callable[..., Any]
+    json_schema: Callable[..., dict[str, Any]]
+
+    def __get_pydantic_core_schema__(self, *_: object) -> CoreSchema:
+        """The check, for pydantic."""
+        return core_schema.no_info_plain_validator_function(self.read)
+
+    def __get_pydantic_json_schema__(self, *_: object) -> dict[str, Any]:
+        """The description, for pydantic."""
+        return self.json_schema()
+
+
 @dataclass(frozen=True)
-class Quantity:
+class Quantity(Mark):
     """A number in SI, or text with a unit."""
 
     unit: str = PLAIN
@@ -109,7 +128,7 @@ class Quantity:
         """The bounds in words, such as ``> 0 and <= 1``."""
         return " and ".join(f"{BOUNDS[name][0]} {b:g}" for name, b in self._bounds.items())
 
-    def number(self, value: object) -> float | str:
+    def read(self, value: object) -> float | str:
         """The SI value, or the word; raises pydantic's error if it is neither."""
         unit = "" if self.unit == PLAIN else f" {self.unit}"
         if isinstance(value, str):
@@ -147,8 +166,8 @@ class Quantity:
             refuse(str(error))
 
     def __get_pydantic_core_schema__(self, *_: object) -> CoreSchema:
-        """The check, for pydantic."""
-        one = core_schema.no_info_plain_validator_function(self.number)
+        """The check, for pydantic, of one value or of a list."""
+        one = super().__get_pydantic_core_schema__()
         if not self.per_storey:
             return one
         each = core_schema.tuple_schema([one], variadic_item_index=0, min_length=1)
@@ -157,7 +176,7 @@ class Quantity:
             discriminator=lambda value: "each" if isinstance(value, list | tuple) else "one",
         )
 
-    def __get_pydantic_json_schema__(self, *_: object) -> dict[str, Any]:
+    def json_schema(self) -> dict[str, Any]:
         """The JSON schema; its ``unit`` is the SI unit of a bare number."""
         bounds = {BOUNDS[name][2]: bound for name, bound in self._bounds.items()}
         forms: list[dict[str, Any]] = [{"type": "number"} | bounds]
@@ -175,22 +194,21 @@ class Quantity:
 
 
 @dataclass(frozen=True)
-class Whole:
+class Whole(Mark):
     """A whole number between bounds, both inclusive."""
 
     at_least: int
     at_most: int | None = None
     remedy: str = ""
 
-    def number(self, value: object) -> int:
+    def read(self, value: object) -> int:
         """The value; raises pydantic's error if it is not one."""
         if isinstance(value, bool) or not isinstance(value, Integral):
             whole = isinstance(value, float) and value.is_integer() and f"; write {value:.0f}"
             refuse(f"must be a whole number{whole or ''}")
         number = int(value)
         if number < self.at_least or (self.at_most is not None and number > self.at_most):
-            remedy = f"; {self.remedy}" if self.remedy else ""
-            refuse(f"must be a whole number {self.rule}{remedy}")
+            refuse(f"must be a whole number {self.rule}{f'; {self.remedy}' if self.remedy else ''}")
         return number
 
     @property
@@ -202,14 +220,33 @@ class Whole:
             return f"equal to {self.at_least}"
         return f"from {self.at_least} to {self.at_most}"
 
-    def __get_pydantic_core_schema__(self, *_: object) -> CoreSchema:
-        """The check, for pydantic."""
-        return core_schema.no_info_plain_validator_function(self.number)
-
-    def __get_pydantic_json_schema__(self, *_: object) -> dict[str, Any]:
+    def json_schema(self) -> dict[str, Any]:
         """The JSON schema."""
         most = {} if self.at_most is None else {"maximum": self.at_most}
         return {"type": "integer", "minimum": self.at_least} | most
+
+
+@dataclass(frozen=True, eq=False)
+class NameOf(Mark):
+    """One of the names in a registry, of ours or of other packages."""
+
+    registry: Registry[Any]
+
+    @property
+    def names(self) -> list[str]:
+        """All of them."""
+        return self.registry.names()
+
+    def read(self, value: object) -> str:
+        """The name; raises pydantic's error if it is none of them."""
+        if isinstance(value, str) and (value in self.registry or value in self.names):
+            return value
+        meant = nearest(str(value), self.names)
+        refuse(f"must be {listed(self.names)}" + (f"; did you mean {meant}?" if meant else ""))
+
+    def json_schema(self) -> dict[str, Any]:
+        """The JSON schema."""
+        return {"enum": self.names, "type": "string"}
 
 
 DampingRatio = Annotated[
@@ -273,11 +310,8 @@ class ValueRange(Section):
     @property
     def values(self) -> tuple[float, ...]:
         """Twelve digits, so that 0.1 to 0.3 in three steps has 0.2 in it."""
-        low, high, last = self.low, self.high, self.count - 1
-        if self.spacing == "linear":
-            values = [low + (high - low) * i / last for i in range(self.count)]
-        else:
-            values = [low * (high / low) ** (i / last) for i in range(self.count)]
+        spaced = np.linspace if self.spacing == "linear" else np.geomspace
+        values = spaced(self.low, self.high, self.count).tolist()
         return tuple(float(f"{value:.12g}") for value in values)
 
 
@@ -315,33 +349,6 @@ class Several:
         )
 
 
-@dataclass(frozen=True, eq=False)
-class NameOf:
-    """One of the names in a registry, of ours or of other packages."""
-
-    registry: Registry[Any]
-
-    @property
-    def names(self) -> list[str]:
-        """All of them."""
-        return self.registry.names()
-
-    def name(self, value: object) -> str:
-        """The value; raises pydantic's error if it is none of them."""
-        if isinstance(value, str) and (value in self.registry or value in self.names):
-            return value
-        meant = nearest(str(value), self.names)
-        refuse(f"must be {listed(self.names)}" + (f"; did you mean {meant}?" if meant else ""))
-
-    def __get_pydantic_core_schema__(self, *_: object) -> CoreSchema:
-        """The check, for pydantic."""
-        return core_schema.no_info_plain_validator_function(self.name)
-
-    def __get_pydantic_json_schema__(self, *_: object) -> dict[str, Any]:
-        """The JSON schema."""
-        return {"enum": self.names, "type": "string"}
-
-
 @dataclass(frozen=True)
 class OneOf:
     """A mapping that is one of several kinds of section, under its name: ``name: {option: value}``.
@@ -368,10 +375,6 @@ class OneOf:
     def __get_pydantic_core_schema__(self, _: object, handler: GetCoreSchemaHandler) -> CoreSchema:
         """The check, for pydantic."""
 
-        def checked(value: object) -> object:
-            self.name_of(value)
-            return value
-
         def inside(value: Any) -> object:
             (options,) = value.values()
             if not isinstance(options, dict):
@@ -383,7 +386,8 @@ class OneOf:
             name: before(inside, handler.generate_schema(section))
             for name, section in self.sections.items()
         }
-        return before(checked, core_schema.tagged_union_schema(kinds, self.name_of))
+        union = core_schema.tagged_union_schema(kinds, self.name_of)
+        return before(lambda value: self.name_of(value) and value, union)
 
     def __get_pydantic_json_schema__(
         self, schema: Any, handler: GetJsonSchemaHandler
@@ -398,3 +402,56 @@ class OneOf:
             "properties": {k: {"anyOf": [handler(each), {"type": "null"}]} for k, each in kinds},
         }
         return {"anyOf": [{"enum": list(self.sections)}, one]}
+
+
+@dataclass(frozen=True, eq=False)
+class OwnLaws:
+    """A section of ours, or where `key` names a law of another package that with its constants.
+
+    They are keys like ours, known once a document names the law.
+    """
+
+    key: str
+    registry: Registry[Any]
+    ours: type[Section]
+    loaded: dict[str, type[Section]] = field(default_factory=dict)
+    """By the names of laws, those that were asked for."""
+
+    def section(self, name: str) -> type[Section]:
+        """The section of a law: raises PluginError if its constants cannot be keys."""
+        if name not in self.loaded:
+            constants = self.registry[name].constants
+            with self.registry.blaming(name):
+                if taken := [*constants.keys() & self.ours.model_fields.keys()]:
+                    raise ValueError(f"its constant {taken[0]} must not be a key of rps; rename it")
+                keys: dict[str, Any] = {
+                    constant: (Annotated[float, quantity], Field(description=f"of {name}"))
+                    for constant, quantity in constants.items()
+                }
+                keys[self.key] = (Literal[name], Field(description="of another package"))
+                self.loaded[name] = create_model(name, __base__=self.ours, **keys)
+        return self.loaded[name]
+
+    def __get_pydantic_core_schema__(
+        self, source: Any, handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
+        """The check, for pydantic."""
+
+        def checked(value: Any, ours: Any) -> object:
+            name = value.get(self.key) if isinstance(value, dict) else None
+            if not isinstance(name, str) or name in self.registry:
+                return ours(value)
+            known = name in self.registry.names()
+            return self.section(name).model_validate(value) if known else ours(value)
+
+        return core_schema.no_info_wrap_validator_function(checked, handler(source))
+
+    def __get_pydantic_json_schema__(
+        self, schema: Any, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        """The JSON schema."""
+        own = []
+        for name, _ in self.registry.theirs():
+            with suppress(PluginError):  # told where it is asked for
+                own.append(self.section(name).model_json_schema())
+        return {"anyOf": [handler(schema), *own]} if own else handler(schema)

@@ -1,4 +1,7 @@
-"""The keys of a format: units, meaning and bounds, and what an unknown one was meant to be."""
+"""The keys of a format: units, meaning and bounds, and what an unknown one was meant to be.
+
+They are told one by one, for readers, and as JSON schemas, for editors and other programs.
+"""
 
 from __future__ import annotations
 
@@ -9,10 +12,20 @@ from typing import Any, Literal, NamedTuple, get_args, get_origin
 
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
+from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
+from pydantic_core import core_schema
 
 from rpscli.case.schema.case_file import CaseFile
-from rpscli.case.schema.fields import PLAIN, NameOf, OneOf, Quantity, Several, ValueRange, Whole
-from rpscli.case.schema.own import OwnLaws
+from rpscli.case.schema.fields import (
+    PLAIN,
+    NameOf,
+    OneOf,
+    OwnLaws,
+    Quantity,
+    Several,
+    ValueRange,
+    Whole,
+)
 from rpscli.case.text.document import Fault, Path, dotted, path_of
 from rpscli.errors import listed, nearest
 
@@ -35,8 +48,7 @@ def _is_section(annotation: Any) -> bool:
     return isinstance(annotation, type) and issubclass(annotation, BaseModel)
 
 
-def sections_of(annotation: Any) -> Iterator[type[BaseModel]]:
-    """The models inside an annotation (``Model | None``) or a field."""
+def _sections_of(annotation: Any) -> Iterator[type[BaseModel]]:
     for part in inside(annotation):
         if _is_section(part):
             yield part
@@ -48,35 +60,31 @@ def sections_of(annotation: Any) -> Iterator[type[BaseModel]]:
 
 def section_of(annotation: Any) -> type[BaseModel] | None:
     """The first model inside an annotation or a field, if it holds one."""
-    return next(sections_of(annotation), None)
-
-
-def _chosen_by_user(annotation: Any) -> Any:
-    """Annotation of values at keys that the user chooses, if it holds such a mapping."""
-    for part in inside(annotation):
-        if get_origin(part) is dict:
-            return get_args(part)[1]
-        if _is_section(part) and part.model_config.get("extra") == "allow":
-            return ValueRange  # further options, which may be equally spaced numbers
-    return None
-
-
-def annotation_at(model: type[BaseModel], path: Path) -> Any:
-    """Annotation of the value at a path, or None; an index stands for any element."""
-    below: Any = model
-    for part in path:
-        if not isinstance(part, int):
-            below = _chosen_by_user(below) or _keys_in(below).get(part)
-    return below
+    return next(_sections_of(annotation), None)
 
 
 def _keys_in(annotation: Any) -> dict[str, Any]:
     """The keys of a mapping, of any of its forms; names of sections stand for these."""
     fields: dict[str, Any] = {}
-    for section in sections_of(annotation):
+    for section in _sections_of(annotation):
         fields = fields_of(section) | fields
     kinds = (part.sections for part in inside(annotation) if isinstance(part, OneOf))
     return {**fields, **next(kinds, {})}
+
+
+def annotation_at(model: type[BaseModel], path: Path) -> Any:
+    """Annotation of the value at a path, or None; an index stands for any element."""
+    below: Any = model
+    for key in (part for part in path if isinstance(part, str)):
+        # Keys that the user chooses, or further options, which may be equally spaced numbers.
+        chosen = (
+            get_args(part)[1] if get_origin(part) is dict else ValueRange
+            for part in inside(below)
+            if get_origin(part) is dict
+            or (_is_section(part) and part.model_config.get("extra") == "allow")
+        )
+        below = next(chosen, None) or _keys_in(below).get(key)
+    return below
 
 
 def section_at(model: type[BaseModel], path: Path) -> type[BaseModel] | None:
@@ -90,31 +98,13 @@ def field_at(model: type[BaseModel], path: Path) -> FieldInfo | None:
 
 
 @cache
-def known_paths(model: type[BaseModel]) -> tuple[Path, ...]:
+def known_paths(model: type[BaseModel], path: Path = ()) -> tuple[Path, ...]:
     """Every key of the format, parents before their children."""
-
-    def below(section: type[BaseModel], path: Path) -> Iterator[Path]:
-        for name, field in fields_of(section).items():
-            yield (*path, name)
-            inner = section_of(field.annotation)
-            if inner:
-                yield from below(inner, (*path, name))
-
-    return tuple(below(model, ()))
-
-
-def suggestion_for(model: type[BaseModel], path: Path) -> Path | None:
-    """The known key that was probably meant: the same word, a sibling, a similar one."""
-    *parent, key = path
-    siblings = {name: (*parent, name) for name in _keys_in(annotation_at(model, tuple(parent)))}
-    anywhere = {str(p[-1]): p for p in reversed(known_paths(model))}
-    if str(key) in anywhere:
-        return anywhere[str(key)]
-    for names in (siblings, anywhere):
-        suggestion = nearest(str(key), names)
-        if suggestion:
-            return names[suggestion]
-    return None
+    known: list[Path] = []
+    for name, field in fields_of(model).items():
+        inner = section_of(field.annotation)
+        known += [(*path, name), *(known_paths(inner, (*path, name)) if inner else ())]
+    return tuple(known)
 
 
 REMOVED = {
@@ -132,36 +122,48 @@ ELEMENT = re.compile(r"\[(\d+)\]")
 """How some write an element of a list, which is ``.0`` here."""
 
 
-def unknown_key(model: type[BaseModel], path: Path) -> tuple[Fault, Path | None]:
-    """The fault of an unknown key, and the known key it was taken for."""
+def unknown_key(
+    model: type[BaseModel], path: Path, *, suggest: bool = True
+) -> tuple[Fault, Path | None]:
+    """The fault of an unknown key, and the known key it was taken for, if one is looked for."""
+    *above, key = path
+    parent, text = tuple(above), f"{dotted(path)} is not a key of the format"
     named = dotted(tuple(part for part in path if isinstance(part, str)))
-    if ELEMENT.search(named):
+    meant: Path | None = None
+    if not suggest:
+        remedy = ""
+    elif ELEMENT.search(named):
         plain = ELEMENT.sub(r".\1", dotted(path))
-        elements = "elements of lists are counted from 0"
-        text = f"{dotted(path)} is not a key of the format; did you mean {plain}? {elements}"
-        return Fault(path, text, at_key=True), path_of(plain)
-    if now := REMOVED.get(named):
-        return Fault(path, f"{dotted(path)} is gone: {now}", at_key=True), None
-    suggestion = suggestion_for(model, path)
-    suggestion = None if suggestion == path else suggestion  # a key of another law
-    siblings = fields_of(section_at(model, path[:-1]) or model)
-    longer = [name for name in siblings if f"_{path[-1]}_" in f"_{name}_"]
-    if suggestion is None and longer:
-        suggestion = (*path[:-1], longer[0])
-    text = f"{dotted(path)} is not a key of the format"
-    if suggestion is None:
-        section = section_at(model, path[:-1])
+        meant = path_of(plain)
+        remedy = f"; did you mean {plain}? elements of lists are counted from 0"
+    elif now := REMOVED.get(named):
+        text, remedy = f"{dotted(path)} is gone", f": {now}"
+    elif (meant := _meant(model, parent, str(key))) is None:
+        section = section_at(model, parent)
         fields = [*fields_of(section)] if section else []
-        if (parent := dotted(path[:-1])) and len(fields) > 12:
-            fields[12:] = [f"{len(fields) - 12} more (rps explain {parent})"]
-        names = listed(fields, "and") if fields else ""
-        return Fault(path, f"{text}; known here: {names}", at_key=True), None
-    if suggestion[-1] == path[-1]:
-        parent = dotted(suggestion[:-1])
-        hint = f"{path[-1]} belongs under {parent}" if parent else "it belongs at the top level"
+        if parent and len(fields) > 12:
+            fields[12:] = [f"{len(fields) - 12} more (rps explain {dotted(parent)})"]
+        remedy = f"; known here: {listed(fields, 'and') if fields else ''}"
+    elif meant[-1] != key:
+        remedy = f"; did you mean {dotted(meant)}?"
     else:
-        hint = f"did you mean {dotted(suggestion)}?"
-    return Fault(path, f"{text}; {hint}", at_key=True), suggestion
+        belongs = f"{key} belongs under {dotted(meant[:-1])}" if meant[:-1] else ""
+        remedy = f"; {belongs or 'it belongs at the top level'}"
+    return Fault(path, f"{text}{remedy}", at_key=True), meant
+
+
+def _meant(model: type[BaseModel], parent: Path, key: str) -> Path | None:
+    """The known key that was probably meant: the same word, a sibling, a similar or longer one."""
+    siblings = {name: (*parent, name) for name in _keys_in(annotation_at(model, parent))}
+    anywhere = {str(path[-1]): path for path in reversed(known_paths(model))}
+    meant = anywhere.get(key)
+    for names in (siblings, anywhere):
+        if meant is None and (word := nearest(key, names)):
+            meant = names[word]
+    if meant not in (None, (*parent, key)):  # else it is a key of another law
+        return meant
+    longer = (name for name in fields_of(section_at(model, parent) or model))
+    return next(((*parent, name) for name in longer if f"_{key}_" in f"_{name}_"), None)
 
 
 @lru_cache(maxsize=1024)
@@ -243,3 +245,46 @@ def _reference(key: str, field: FieldInfo) -> KeyReference:
         keys=tuple((name, each.description or "") for name, each in keys.items()),
         sections=next((SECTIONS[parent] for parent in parents if parent in SECTIONS), ""),
     )
+
+
+DIALECT = "https://json-schema.org/draft/2020-12/schema"
+
+
+class PresentKeys(GenerateJsonSchema):
+    """Optional keys are left out, never null: show neither null nor a default of null."""
+
+    def nullable_schema(self, schema: core_schema.NullableSchema) -> JsonSchemaValue:
+        """Schema of the value that the key has when it is written."""
+        return self.generate_inner(schema["schema"])
+
+    def default_schema(self, schema: core_schema.WithDefaultSchema) -> JsonSchemaValue:
+        """Schema with the default, where there is one."""
+        shown = super().default_schema(schema)
+        default = shown.pop("default", None)
+        if isinstance(default, dict):  # a whole section
+            default = {key: value for key, value in default.items() if value is not None}
+        return shown if default is None else {**shown, "default": default}
+
+    def field_title_should_be_set(self, schema: Any) -> bool:
+        """No titles: they would only repeat the keys."""
+        del schema
+        return False
+
+
+def json_schema_of(model: type[BaseModel]) -> dict[str, Any]:
+    """JSON schema of a model; ``unit`` beside a number is the SI unit of a bare number."""
+    schema = model.model_json_schema(schema_generator=PresentKeys)
+    return {"$schema": DIALECT, **schema}
+
+
+def study_json_schema(model: type[BaseModel]) -> dict[str, Any]:
+    """JSON schema of a study or design file; its base may lack what keys bring."""
+    study, base = json_schema_of(model), json_schema_of(CaseFile)
+    definitions = {**base.pop("$defs"), **study.pop("$defs")}
+    del base["required"], base["$schema"]
+    described = study["properties"]["base"]["description"]
+    study["properties"]["base"] = {
+        "anyOf": [{"type": "string", "minLength": 1}, base],
+        "description": described,
+    }
+    return {**study, "$defs": definitions}

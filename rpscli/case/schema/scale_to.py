@@ -39,7 +39,7 @@ def measured_value(value: object, info: ValidationInfo) -> float:
     """A value of the measure that stands before it, in SI: a number, or text with a unit."""
     measure = info.data.get("measure")
     bounds = Quantity(MEASURES[measure].unit, symbol=measure, above=0) if measure else Quantity()
-    number = bounds.number(value)
+    number = bounds.read(value)
     assert isinstance(number, float), "there are no words in place of the number"
     return Written(number, value) if isinstance(value, str) else number
 

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from rpscli.analyses.result_quantities import LIMITED
 from rpscli.case.schema.keys import unit as key_unit
-from rpscli.case.study.axes import Axis
+from rpscli.case.study.schema import Axis
 from rpscli.case.text.document import Document, Fault, Path, Place, shown
 from rpscli.case.text.files import read_text
 from rpscli.csv_text import csv_rows

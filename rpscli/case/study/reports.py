@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cache
 from typing import Annotated, Any, Generic, TypeVar
 
-from pydantic import AfterValidator
+from pydantic import AfterValidator, Field, create_model
 
-from rpscli.case.schema.fields import Section, Text, refuse
+from rpscli.case.schema.fields import OneOf, Section, Text, refuse
 from rpscli.case.schema.keys import inside
-from rpscli.case.study.axes import Axis
-from rpscli.case.study.schema import Analysis, AnyKeys, StudyFile, study_file
+from rpscli.case.study.schema import A_LIST, Analysis, AnyKeys, Axis, StudyFile
 from rpscli.case.text.document import Document, Fault, Path
 from rpscli.registry import Registry
 
@@ -88,13 +88,33 @@ class ReportKind(Generic[Options]):
 ReportKinds = Mapping[str, ReportKind[Any]]
 """The kinds by name."""
 
+GONE = {
+    "contrast": "`table: {rows: ..., columns: ..., statistic: median}` has the medians of each"
+    " system, and points.csv every history; use these",
+    "directions": "pairs with ?both act together, and points.csv has every angle; remove the"
+    " report",
+    "efficiency": "the beta of a fragility is the scatter by its measure; use `fragility:"
+    " {measure: ...}` for each measure",
+    "demand_sample": "points.csv has the demands of every history; remove the report",
+}
+"""Reports of earlier versions, and what to use in their place."""
+
 OF_THE_STUDY = ("points", "failed", "statistics", "verdicts")
 """Stems of files that every study leaves."""
 
 
 def format_with(kinds: ReportKinds) -> type[StudyFile]:
     """The format of studies that may ask for reports of these kinds."""
-    return study_file(tuple((name, kind.options) for name, kind in kinds.items()))
+    return _format(tuple((name, kind.options) for name, kind in kinds.items()))
+
+
+@cache
+def _format(kinds: tuple[tuple[str, type[Section]], ...]) -> type[StudyFile]:
+    if not kinds:
+        return StudyFile
+    each: Any = Annotated[tuple[Annotated[Any, OneOf("report", dict(kinds), GONE)], ...], A_LIST]
+    field = each, Field((), description=StudyFile.model_fields["reports"].description)
+    return create_model("StudyFile", __base__=StudyFile, __doc__=StudyFile.__doc__, reports=field)
 
 
 def written_out(document: Document, known: Registry[Any]) -> tuple[Document, ReportKinds]:

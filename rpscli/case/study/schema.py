@@ -1,12 +1,12 @@
 """The study file as pydantic models: every key, its meaning and bounds.
 
 What `base` and the varied keys hold belongs to the case format and is checked as a case; rules
-that join several keys stand in `rules`.
+that join several keys stand in `study`.
 """
 
 from __future__ import annotations
 
-from functools import cache
+from dataclasses import dataclass
 from typing import Annotated, Any, Literal, Self, TypeGuard
 
 from pydantic import (
@@ -19,16 +19,14 @@ from pydantic import (
     Tag,
     ValidationInfo,
     WithJsonSchema,
-    create_model,
     model_validator,
 )
 from pydantic_core import CoreSchema
 
-from rpscli.case.schema.case_file import FORMAT_VERSION, DocumentSection, PositiveRatio, Time
+from rpscli.case.schema.case_file import DocumentSection, PositiveRatio, Time, TitledFile
 from rpscli.case.schema.fields import (
     CHECKED_BY_ITSELF,
     DampingRatio,
-    OneOf,
     Quantity,
     Section,
     Several,
@@ -41,7 +39,7 @@ from rpscli.case.schema.fields import (
 from rpscli.case.schema.keys import unit
 from rpscli.case.schema.limits import StudyLimits
 from rpscli.case.schema.scale_to import MeasuredValue, MeasureName, at_period, measured_value
-from rpscli.case.text.document import shown
+from rpscli.case.text.document import Place, shown
 from rpscli.errors import LARGEST
 from rpscli.records.measures import Of
 from rpscli.records.recordings import By
@@ -94,6 +92,23 @@ Axes = Annotated[
     must_be(list, "a list of axes, each a mapping: `- dotted.key: [value, value]`"),
 ]
 """Values of keys that vary together, axis by axis."""
+
+
+Values = tuple[Any, ...]
+
+
+@dataclass(frozen=True)
+class Axis:
+    """Keys that go together, a row of values for each position, and where each was written."""
+
+    keys: tuple[str, ...]
+    rows: tuple[Values, ...]
+    places: tuple[tuple[Place, ...], ...]
+
+    def place(self, key: int, row: int) -> Place:
+        """Position of a value in the file."""
+        places = self.places[key]
+        return places[row] if len(places) == len(self.rows) else places[0]
 
 
 PLUS = "plus"
@@ -282,18 +297,12 @@ Base = Annotated[
     must_be((str, dict), "a file, as text, or a case, as a mapping", filled=True),
     CHECKED_BY_ITSELF,
 ]
-_A_LIST = must_be(list, "a list, as in [overturning, fragility]")
+A_LIST = must_be(list, "a list, as in [overturning, fragility]")
 
 
-class StudyParts(Section):
+class StudyParts(TitledFile):
     """What studies and designs say of a case, its records and its limits."""
 
-    rps: Annotated[
-        int, Whole(FORMAT_VERSION, FORMAT_VERSION, "this program reads version 1 of the format")
-    ]
-    """version of the format; write `rps: 1`"""
-    title: Text | None = None
-    """heading of reports and plots"""
     base: Base
     """a case file, seen from the study's folder, or the case itself"""
     records: Sources | None = None
@@ -332,27 +341,5 @@ class StudyFile(StudyParts):
     """uncertain parameters; one more axis"""
     observed: Text | None = None
     """CSV file of what was observed under records; for the report comparison"""
-    reports: Annotated[tuple[Any, ...], _A_LIST] = ()
+    reports: Annotated[tuple[Any, ...], A_LIST] = ()
     """names of reports, or `name: {option: value}`"""
-
-
-GONE = {
-    "contrast": "`table: {rows: ..., columns: ..., statistic: median}` has the medians of each"
-    " system, and points.csv every history; use these",
-    "directions": "pairs with ?both act together, and points.csv has every angle; remove the"
-    " report",
-    "efficiency": "the beta of a fragility is the scatter by its measure; use `fragility:"
-    " {measure: ...}` for each measure",
-    "demand_sample": "points.csv has the demands of every history; remove the report",
-}
-"""Reports of earlier versions, and what to use in their place."""
-
-
-@cache
-def study_file(kinds: tuple[tuple[str, type[Section]], ...]) -> type[StudyFile]:
-    """The format of studies that may ask for reports of these kinds, by their names."""
-    if not kinds:
-        return StudyFile
-    each: Any = Annotated[tuple[Annotated[Any, OneOf("report", dict(kinds), GONE)], ...], _A_LIST]
-    field = each, Field((), description=StudyFile.model_fields["reports"].description)
-    return create_model("StudyFile", __base__=StudyFile, __doc__=StudyFile.__doc__, reports=field)

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import hashlib
+import itertools
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path as Folder
@@ -15,9 +16,9 @@ from pydantic import ValidationError
 from rpscli.case.overrides import apply_overrides
 from rpscli.case.schema.case_file import CaseFile
 from rpscli.case.schema.check import checked
-from rpscli.case.schema.keys import field_at, fields_of, unknown_key
+from rpscli.case.schema.fields import is_finite
+from rpscli.case.schema.keys import field_at, fields_of, is_whole, unit, unknown_key
 from rpscli.case.schema.scale_to import ScaleToSection
-from rpscli.case.study.axes import Axis, axes_of, sources_of, unequal, with_linked
 from rpscli.case.study.observed import Observed, read_observed
 from rpscli.case.study.reports import (
     ReportKinds,
@@ -27,7 +28,15 @@ from rpscli.case.study.reports import (
     varied_keys,
     written_out,
 )
-from rpscli.case.study.schema import MeasureScale, StudyFile, StudyParts
+from rpscli.case.study.schema import (
+    PLUS,
+    Axis,
+    MeasureScale,
+    RecordPattern,
+    StudyFile,
+    StudyParts,
+    Values,
+)
 from rpscli.case.text.document import (
     Document,
     Fault,
@@ -40,8 +49,10 @@ from rpscli.case.text.document import (
 )
 from rpscli.case.text.files import read_text
 from rpscli.case.text.yaml_text import read_yaml
-from rpscli.errors import CaseError, RpsError, listed, stem_of
+from rpscli.errors import CaseError, RecordError, RpsError, listed, stem_of
+from rpscli.records.loading import expanded, repeated
 from rpscli.registry import Registry
+from rpscli.units import in_si
 
 OF_HISTORIES = ("records", "scale", "perturb", "observed", "hazard")
 """Keys of a study that only time histories have."""
@@ -49,11 +60,17 @@ OF_HISTORIES = ("records", "scale", "perturb", "observed", "hazard")
 OF_POINTS = ("record", "scale")
 """Axes of the product that are no case keys; reports may name them."""
 
+MOST_SOURCES = 100_000
+"""Ground motions that the options of one pattern may stand for."""
+
 MOST_SYSTEMS = 200_000
 """Each is checked as a case before anything runs, which takes a millisecond."""
 
 MOST_POINTS = 5_000_000
 """Their results, some thirty numbers each, are in memory when reports are drawn."""
+
+DIGITS = 6
+"""Of what is linked to other values: finer cannot be built, and files stay readable."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,7 +84,6 @@ class Study:
     file: StudyFile
     base: Document
     base_file: Folder | None
-    base_folder: Folder
     base_overrides: tuple[str, ...]
     axes: tuple[Axis, ...]
     sources: tuple[str, ...]
@@ -77,19 +93,20 @@ class Study:
     notes: tuple[str, ...] = ()
 
     @property
+    def base_folder(self) -> Folder:
+        """Where relative file names inside the base start."""
+        return self.base_file.parent if self.base_file else self.folder
+
+    @property
     def scale(self) -> MeasureScale | tuple[float, ...] | None:
         """Factors or targets of the records, else the target of the case at the base."""
-        record = self.base.content.get("record")
-        target = record.get("scale_to") if isinstance(record, dict) else None
-        of_study = self.file.scale is not None or self.file.analysis != "timehistory"
-        if of_study or target is None:
-            return self.file.scale
-        try:
-            section = ScaleToSection.model_validate(target)
-        except ValidationError:
-            return None  # told with the other faults of the systems
-        given = section.model_dump(exclude={"value"}, exclude_unset=True)
-        return MeasureScale.model_validate(given | {"values": target["value"]})
+        target = self.base.at(("record", "scale_to"))
+        if self.file.scale is None and self.file.analysis == "timehistory":
+            with suppress(ValidationError):  # told with the other faults of the systems
+                section = ScaleToSection.model_validate(target)
+                given = section.model_dump(exclude={"value"}, exclude_unset=True)
+                return MeasureScale.model_validate(given | {"values": target["value"]})
+        return self.file.scale
 
     @property
     def title(self) -> str:
@@ -147,9 +164,9 @@ def study_of(
     file = checked(format_with(asked), whole)
     reports = requests_of(whole, file)
     sources, faults, notes = sources_of(document, folder)
-    faults += [*unequal(document, file.vary), *key_faults(document, base_overrides, folder)]
+    faults += [*_unequal(document, file), *key_faults(document, base_overrides, folder)]
     document.refuse([*faults, *_analysis_faults(document, file, reports, asked)])
-    axes = with_linked(axes_of(document, file.vary), file.linked, document)
+    axes = _with_linked(_axes(document, file), file.linked, document)
     observed = read_observed(file.observed, folder, axes, document)
     document.refuse(_report_faults(document, file, axes, reports, asked))
     document.refuse(_size_faults(file, axes, sources))
@@ -162,7 +179,6 @@ def study_of(
         file=file,
         base=apply_overrides(base, base_overrides),
         base_file=base_file,
-        base_folder=base_file.parent if base_file else folder,
         base_overrides=tuple(base_overrides),
         axes=axes,
         sources=sources,
@@ -190,6 +206,113 @@ def _base(document: Document, folder: Folder) -> tuple[Document, Folder | None]:
     if "rps" not in base.content and not is_case(base):
         raise CaseError(f"{here} has neither `rps` nor `superstructure`; name a case")
     return base, path
+
+
+def _unequal(document: Document, file: StudyFile) -> Iterator[Fault]:
+    """Keys of one axis that have not equally many values."""
+    for index, columns in enumerate(file.vary):
+        first = next(iter(columns))
+        for key in (key for key in columns if len(columns[key]) != len(columns[first])):
+            text = (
+                f"{key} has {len(columns[key])} values, but"
+                f" {first}{document.where(('vary', index, first))} has {len(columns[first])}: the"
+                " keys of one axis go together; give equally many, or begin another axis with `-`"
+            )
+            yield Fault(("vary", index, key), text, at_key=True)
+
+
+def _axes(document: Document, file: StudyFile) -> tuple[Axis, ...]:
+    """Axes of a study whose columns are equally long."""
+    axes = []
+    for index, columns in enumerate(file.vary):
+        places = []
+        for key, of in columns.items():
+            path: Path = ("vary", index, key)
+            ranged = isinstance(document.at(path), dict)
+            inside = [path] if ranged else [(*path, row) for row in range(len(of))]
+            places.append(tuple(map(document.value_place, inside)))
+        rows = tuple(zip(*columns.values(), strict=True))
+        axes.append(Axis(tuple(columns), rows, tuple(places)))
+    return tuple(axes)
+
+
+def linked_value(key: str, terms: Mapping[str, float], values: Sequence[float]) -> float | int:
+    """A linear sum of the values of its keys, as a case takes it."""
+    factors = (factor for name, factor in terms.items() if name != PLUS)
+    products = (factor * value for factor, value in zip(factors, values, strict=True))
+    total = sum(products, terms.get(PLUS, 0.0))
+    return round(total) if is_whole(key) else float(f"{total:.{DIGITS}g}")
+
+
+def _with_linked(
+    axes: tuple[Axis, ...], linked: Mapping[str, Mapping[str, float]], document: Document
+) -> tuple[Axis, ...]:
+    """The axes with keys that are linear sums of others of theirs."""
+    for key, terms in linked.items():
+        path, names = ("linked", key), [name for name in terms if name != PLUS]
+        axis = next((each for each in axes if names and {*names} <= {*each.keys}), None)
+        if axis is None:
+            text = f"linked.{key} needs {listed(names or ['a key'], 'and')}, which no axis of vary"
+            raise document.refusal([Fault(path, f"{text} has; sums are of keys of one axis")])
+        columns = [(axis.keys.index(name), unit(name)) for name in names]
+        rows: list[list[Any]] = [[in_si(row[at], si) for at, si in columns] for row in axis.rows]
+        if not all(map(is_finite, itertools.chain(*rows))):
+            text = f"linked.{key} is a sum of numbers; {names} are not"
+            raise document.refusal([Fault(path, text)])
+        sums = (linked_value(key, terms, row) for row in rows)
+        values: tuple[Values, ...] = tuple(
+            (*old, new) for old, new in zip(axis.rows, sums, strict=True)
+        )
+        longer = Axis((*axis.keys, key), values, (*axis.places, (document.value_place(path),)))
+        axes = tuple(longer if each is axis else each for each in axes)
+    return axes
+
+
+def sources_of(
+    document: Document, folder: Folder, *owner: str
+) -> tuple[tuple[str, ...], list[Fault], list[str]]:
+    """Single sources of a list `records`, in order, each once; what is wrong, and notes."""
+    place: Path = (*owner, "records")
+    records = document.at(place)
+    sources: list[str] = []
+    faults: list[Fault] = []
+    notes: list[str] = []
+    for index, item in enumerate(records if isinstance(records, list) else ()):
+        try:
+            single = isinstance(item, str) and item.strip()
+            patterns = [item] if single else _product(item, (*place, index))
+            expansion = expanded(patterns, folder=folder)
+            sources += expansion.sources
+            notes += expansion.notes
+        except ValidationError:
+            continue  # told key by key
+        except (RecordError, ValueError) as error:
+            faults.append(Fault((*place, index), str(error)))
+    notes = [f"records: {text}" for text in dict.fromkeys([*notes, *repeated(sources)])]
+    return tuple(dict.fromkeys(sources)), faults, notes
+
+
+def _product(item: object, path: Path) -> list[str]:
+    """Sources of a mapping: every option may have several values, the first varies slowest."""
+    pattern = RecordPattern.model_validate(item)
+    source, extra = pattern.source, pattern.model_extra or {}
+    options = [[f"{key}={_text(value)}" for value in values] for key, values in extra.items()]
+    if (count := math.prod(map(len, options))) > MOST_SOURCES:
+        raise ValueError(
+            f"{dotted(path)} stands for {count} ground motions, which must not be more than"
+            f" {MOST_SOURCES}; use fewer values of its options"
+        )
+    mark = "&" if "?" in source and not source.endswith("?") else "?" * (not source.endswith("?"))
+    return [
+        f"{source}{mark if chosen else ''}{'&'.join(chosen)}"
+        for chosen in itertools.product(*options)
+    ]
+
+
+def _text(value: object) -> str:
+    """A value as an option is written: whole numbers without a fraction."""
+    whole = isinstance(value, float) and value.is_integer() and abs(value) < 1e15
+    return f"{value:.0f}" if whole else str(value)
 
 
 def varying(document: Document) -> list[tuple[str, Path]]:

@@ -32,6 +32,11 @@ class Place:
         return f"{self.source}:{self.line}:{self.column}" if self.line else _cut(self.source)
 
     @property
+    def order(self) -> tuple[int, int, int]:
+        """What places are sorted by."""
+        return self.rank, self.line, self.column
+
+    @property
     def short(self) -> str:
         """The place as a second one in a message: ``line 14``, or the source."""
         return f"line {self.line}" if self.line else _cut(self.source)
@@ -142,7 +147,7 @@ class Document:
             (f.place or (self.key_place if f.at_key else self.value_place)(f.path), f.text)
             for f in faults
         ]
-        placed.sort(key=lambda item: (item[0].rank, item[0].line, item[0].column))
+        placed.sort(key=lambda item: item[0].order)
         lines = list(dict.fromkeys(f"{place}: {text}" for place, text in placed))
         if (more := len(lines) - MOST_FAULTS) > 0:
             lines[MOST_FAULTS:] = [f"{self.name}: {more} more faults; correct these first"]

@@ -159,7 +159,7 @@ class FragilityOptions(MeasureOptions):
         scaled = layout.plan.measure
         measure = self.measure or (scaled.measure if scaled else "PGV")
         bounds = Quantity(MEASURES[measure].unit, symbol=measure, above=0)
-        return {name: float(bounds.number(value)) for name, value in self.at.items()}
+        return {name: float(bounds.read(value)) for name, value in self.at.items()}
 
 
 class Observed(NamedTuple):

@@ -8,8 +8,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from pydantic import AliasChoices, Field
 
-from rpscli.case.study.axes import Axis
 from rpscli.case.study.reports import ReportOptions, ReportRequest, VariedKeys
+from rpscli.case.study.schema import Axis
 from rpscli.case.text.document import Document, Fault
 from rpscli.errors import listed
 from rpscli.report.figures import style

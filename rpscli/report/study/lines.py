@@ -12,9 +12,8 @@ from pydantic import AliasChoices, Field, StrictBool
 
 from rpscli.analyses.result_quantities import ResultQuantity
 from rpscli.case.schema.fields import Text
-from rpscli.case.study.axes import Axis
 from rpscli.case.study.reports import ReportOptions, ReportRequest, VariedKeys
-from rpscli.case.study.schema import AnyKeys, Keys
+from rpscli.case.study.schema import AnyKeys, Axis, Keys
 from rpscli.case.text.document import Document, Fault, Path, dotted
 from rpscli.errors import hint
 from rpscli.report.figures import style

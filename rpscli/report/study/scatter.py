@@ -14,8 +14,8 @@ from pydantic import Field
 from rpscli.analyses.outcome import STOOD
 from rpscli.case.schema.case_file import Time
 from rpscli.case.schema.fields import Quantity, Section, Text
-from rpscli.case.study.axes import Axis
 from rpscli.case.study.reports import ReportOptions, ReportRequest, VariedKeys
+from rpscli.case.study.schema import Axis
 from rpscli.case.text.document import Document, Fault, Path, dotted
 from rpscli.errors import CaseError, RecordError, hint, is_number
 from rpscli.records.measures import MEASURES

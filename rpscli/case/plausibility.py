@@ -16,7 +16,6 @@ from rpscli.errors import listed
 from rpscli.model.statics import storey_strengths
 
 if TYPE_CHECKING:
-    from rpscli.model.contact import Bed
     from rpscli.model.podium import PodiumStructure
 
 
@@ -50,32 +49,6 @@ def doubts_of_many(systems: Sequence[Iterable[Doubt]]) -> list[str]:
     return texts
 
 
-class TypicalRange(NamedTuple):
-    """A quantity and the range in which buildings have it."""
-
-    name: str
-    unit: str
-    least: float
-    most: float
-
-    def doubts(self, value: float) -> Iterator[Doubt]:
-        """A doubt if the value is outside."""
-        if not self.least <= value <= self.most:
-            unit = f" {self.unit}" if self.unit else ""
-            usual = f"{self.least:g} to {self.most:g}{unit}"
-            advice = "; check the units" if unit else ""
-            yield Doubt(f"{self.name} = {{0}}{unit} is unusual: {usual} is usual{advice}", value)
-
-
-HEIGHT = TypicalRange("the height of the columns 2H", "m", 0.3, 10.0)
-SEMI_DIAGONAL = TypicalRange("the semi-diagonal of the columns R", "m", 0.15, 6.0)
-PERIOD = TypicalRange("the first period on a fixed base T1", "s", 0.02, 5.0)
-VERTICAL_PERIOD = TypicalRange("superstructure.vertical_period", "s", 0.01, 1.0)
-STOREY_MASS = TypicalRange("the mean mass of a storey", "t", 1.0, 10_000.0)
-COLUMN_MASS = TypicalRange("the mean mass of a column", "t", 0.02, 10_000.0)
-RESTITUTION = TypicalRange("the restitution at impact e", "", 0.5, 1.0)
-FRICTION = TypicalRange("the coefficient podium.friction", "", 0.1, 1.5)
-
 HOLDS = 1.3
 """Over tan(alpha): columns with less friction may slide in any record (Theory, section 2)."""
 
@@ -97,41 +70,41 @@ LARGEST_DRIFT = 0.02
 
 def doubts_of_structure(structure: PodiumStructure) -> Iterator[Doubt]:
     """Sizes, masses, period, restitution and friction; storey shears at uplift."""
+    yield from _unusual_sizes(structure)
     bearing, building = structure.bearing, structure.superstructure
-    yield from HEIGHT.doubts(2.0 * bearing.half_height)
-    yield from SEMI_DIAGONAL.doubts(bearing.semi_diagonal)
-    yield from RESTITUTION.doubts(structure.restitution)
-    if structure.friction is not None:
-        yield from FRICTION.doubts(structure.friction)
-        if structure.friction < HOLDS * bearing.slenderness:
-            yield Doubt(
-                f"podium.friction = {{0}} is below {HOLDS:g} tan(alpha): columns may slide in any"
-                " record that lifts them, which the model leaves out",
-                structure.friction,
-            )
-    if bearing.slenderness > WALKS and building is not None:
+    if structure.friction is not None and structure.friction < HOLDS * bearing.slenderness:
+        yield Doubt(
+            f"podium.friction = {{0}} is below {HOLDS:g} tan(alpha): columns may slide in any"
+            " record that lifts them, which the model leaves out",
+            structure.friction,
+        )
+    if (bed := structure.bed) is not None and (bed.period_ratio or STIFFEST) < STIFFEST:
+        yield Doubt(
+            f"podium.contact: the period in full contact is {{0}} of the fixed base, below"
+            f" {STIFFEST:g}: short steps and no effect; use kind: rigid",
+            bed.period_ratio,
+        )
+    if bed is not None and bed.ratio > SOFTEST:
+        yield Doubt(
+            f"podium.contact: ends lift at {{0}} alpha only, above {SOFTEST:g}: the settlement is"
+            " no longer small compared with the width of the joint",
+            bed.ratio,
+        )
+    if building is None:
+        return
+    if bearing.slenderness > WALKS:
         yield Doubt(
             f"tan(alpha) = {{0}} is above {WALKS:g}: contacts that rebound, which the model leaves"
             " out, let the cap beam walk over its columns",
             bearing.slenderness,
         )
-    if (bed := structure.bed) is not None:
-        yield from doubts_of_contact(bed)
-    if building is None:
-        return
-    yield from STOREY_MASS.doubts(1e-3 * float(building.masses.mean()))
-    yield from COLUMN_MASS.doubts(1e-3 * structure.columns_mass / structure.columns)
-    yield from PERIOD.doubts(float(building.periods[0]))
-    if building.vertical_period is not None:
-        yield from VERTICAL_PERIOD.doubts(building.vertical_period)
-    yield from doubts_of_strengths(structure)
-    share = bearing.slenderness
-    if share > STRONGEST:
+    yield from _weak_storeys(structure)
+    if bearing.slenderness > STRONGEST:
         yield Doubt(
             "the base shear at uplift V_st is {0} of the building's weight, above the"
             f" {STRONGEST:g} that any usual building carries: it would be damaged before it lifts;"
             " more slender columns lift earlier",
-            share,
+            bearing.slenderness,
         )
     if building.storey_heights is not None:
         above = building.carried * structure.uplift_acceleration
@@ -147,7 +120,34 @@ def doubts_of_structure(structure: PodiumStructure) -> Iterator[Doubt]:
             )
 
 
-def doubts_of_strengths(structure: PodiumStructure) -> Iterator[Doubt]:
+def _unusual_sizes(structure: PodiumStructure) -> Iterator[Doubt]:
+    """Quantities outside the range in which buildings have them."""
+    bearing, building = structure.bearing, structure.superstructure
+    ranges: list[tuple[str, float | None, str, float, float]] = [
+        ("the height of the columns 2H", 2.0 * bearing.half_height, "m", 0.3, 10.0),
+        ("the semi-diagonal of the columns R", bearing.semi_diagonal, "m", 0.15, 6.0),
+        ("the restitution at impact e", structure.restitution, "", 0.5, 1.0),
+        ("the coefficient podium.friction", structure.friction, "", 0.1, 1.5),
+    ]
+    if building is not None:
+        column = structure.columns_mass / structure.columns
+        ranges += [
+            ("the mean mass of a storey", 1e-3 * building.masses.mean(), "t", 1.0, 10_000.0),
+            ("the mean mass of a column", 1e-3 * column, "t", 0.02, 10_000.0),
+            ("the first period on a fixed base T1", building.periods[0], "s", 0.02, 5.0),
+            ("superstructure.vertical_period", building.vertical_period, "s", 0.01, 1.0),
+        ]
+    for name, value, unit, least, most in ranges:
+        if value is not None and not least <= value <= most:
+            usual = f"{least:g} to {most:g}{unit and f' {unit}'}"
+            advice = "; check the units" if unit else ""
+            yield Doubt(
+                f"{name} = {{0}}{unit and f' {unit}'} is unusual: {usual} is usual{advice}",
+                float(value),
+            )
+
+
+def _weak_storeys(structure: PodiumStructure) -> Iterator[Doubt]:
     """Storeys that the podium does not protect, as they yield before columns lift."""
     for way, seen in structure.ways.items():
         weak = {i: s for i, s in enumerate(storey_strengths(seen), 1) if not s.uplift_first}
@@ -160,23 +160,6 @@ def doubts_of_strengths(structure: PodiumStructure) -> Iterator[Doubt]:
                 min(s.strength / s.shear_at_uplift for s in weak.values()),
                 f" (storey {listed(map(str, weak), 'and')})",
             )
-
-
-def doubts_of_contact(bed: Bed) -> Iterator[Doubt]:
-    """Ends that hardly give way, or so much that small rotations are not small."""
-    ratio, share = bed.period_ratio, bed.ratio
-    if ratio is not None and ratio < STIFFEST:
-        yield Doubt(
-            f"podium.contact: the period in full contact is {{0}} of the fixed base, below"
-            f" {STIFFEST:g}: short steps and no effect; use kind: rigid",
-            ratio,
-        )
-    if share > SOFTEST:
-        yield Doubt(
-            f"podium.contact: ends lift at {{0}} alpha only, above {SOFTEST:g}: the settlement is"
-            " no longer small compared with the width of the joint",
-            share,
-        )
 
 
 def doubts_of_directions(structure: PodiumStructure, *, both: bool) -> Iterator[Doubt]:

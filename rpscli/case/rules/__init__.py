@@ -1,1 +1,0 @@
-"""Rules that join several keys of a case."""
