@@ -24,7 +24,7 @@ from rpscli.machine import mode_of
 from rpscli.records import made, sets
 from rpscli.records.ground_motion import GroundMotion, MotionComponents, rotated, scale_doubts
 from rpscli.records.quantities import LIKENESS
-from rpscli.records.recordings import earthquake, pairs_among, vertical_of, verticals
+from rpscli.records.recordings import channels, earthquake, pairs_among, vertical_of, verticals
 from rpscli.records.source import FILE, LIST, PAIRING, SET, Source, is_file, split_options
 
 _MAKERS: dict[str, Callable[[Source], GroundMotion]] = {
@@ -122,14 +122,11 @@ def _components(of: Source, folder: Path | None) -> tuple[GroundMotion, GroundMo
 
 
 def _read(of: Source, folder: Path | None) -> GroundMotion:
-    query, path = of.query("dt", "units", "channel"), _located(of.place, folder)
-    _require_file(path, of)
     from rpscli.records.formats import read_record  # sets and pulses are not files
 
-    dt = query.quantity("dt", "time") if "dt" in query.values else None
-    return read_record(
-        path, of, dt=dt, units=query.values.get("units"), channel=query.values.get("channel")
-    )
+    path = _located(of.place, folder)
+    _require_file(path, of)
+    return read_record(path, of)
 
 
 def load_components(
@@ -320,18 +317,15 @@ def _files(of: Source, folder: Path | None, notes: list[str]) -> list[Source]:
     if not held:
         raise RecordError("; ".join([f"{of}: no record file there that can be read", *why[:1]]))
     notes += [f"{of}: {text}" for text in why]
-    upright = verticals({name: [each.recording for each in held[name]] for name in held})
-    left_out, single = sorted(upright), list[Source]()
-    for name in (each for each in held if each not in upright):
-        several = held[name] if len(held[name]) > 1 and "channel" not in of.values else ()
-        single += [] if several else [of.at(name)]
-        for each in several:
-            if each.recording.is_vertical:
-                left_out.append(f"{name} channel {each.channel}")
-            else:
-                single.append(of.at(name).plus(channel=each.channel))
-    if left_out:
+    single = [each for name in held for each in channels(of.at(name), folder)]
+    if upright := verticals(single, folder):
+        left_out = [
+            each.place if "channel" in of.values or "channel" not in each.values
+            else f"{each.place} channel {each.values['channel']}"
+            for each in upright
+        ]  # fmt: skip
         notes.append(f"{of}: vertical components left out: {_some(left_out)}")
+        single = [each for each in single if each not in upright]
     return single if of.components else _paired(of, [each.alone for each in single], folder)
 
 
