@@ -194,8 +194,8 @@ def vertical_of(of: Source, folder: Path | None) -> Source:
         named = [each for each in found if of.place.startswith(_VERTICAL.sub(r"\1", each.place))]
         found = alike or named
     if len(found) != 1:
-        places = [each.place for each in found[:3]]
-        some = f", and {len(found)} are there: {', '.join(places)}" * bool(found)
+        names = ", ".join(each.place for each in found[:3])
+        some = f", and {len(found)} are there: {names}" * bool(found)
         raise RecordError(
             f"{of}: has no vertical component beside it that its name or its header tells"
             f"{some}; name it in place of `own`"

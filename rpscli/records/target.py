@@ -20,7 +20,8 @@ from rpscli.constants import STANDARD_GRAVITY
 from rpscli.csv_text import csv_rows
 from rpscli.errors import RecordError, beginning, stem_of
 from rpscli.records.measures import Of
-from rpscli.records.quantities import KNOWN_UNITS, canonical_unit, hint, parse_query, unit_factor
+from rpscli.records.quantities import KNOWN_UNITS, canonical_unit, unit_factor
+from rpscli.records.source import hint, parse_query
 from rpscli.registry import Registry
 
 Array = NDArray[np.float64]
@@ -349,7 +350,7 @@ def _table(path: Path, options: str, source: str) -> TargetSpectrum:
         damping=damping,
         span=(first, last),
         of=cast("Of", of) if of else None,
-        level=query.values.get("level", ""),
+        level=query.values.get("level") or "",
         deviation=deviation if scatters else None,
         pga=factor * float(rigid[0, 1]) if len(rigid) else None,
         pinned=float(cells[np.argmin(cells[:, 2]), 0]) if pinned else None,

@@ -368,9 +368,9 @@ _PADDING = re.compile(rb"\0{2,}|\0\Z")  # of old systems, to the ends of their b
 
 def read_text(path: Path, of: Source) -> RecordText:
     """Read a record file as text, with what its source says of it."""
-    query = of.query("dt", "units", "channel")
-    dt = query.quantity("dt", "time") if "dt" in query.values else None
-    units = query.values.get("units")
+    of.query("dt", "units", "channel")
+    dt = of.quantity("dt", "time") if "dt" in of.values else None
+    units = of.values.get("units")
     unit = None if units is None else canonical_unit(units)
     if units is not None and unit is None:
         raise RecordError(f"{of}: units = {units!r} is not known; use one of {KNOWN_UNITS}")
@@ -400,7 +400,7 @@ def read_text(path: Path, of: Source) -> RecordText:
         raise RecordError(
             f"{path}: the file is empty; fetch it again, or export the record as text"
         )
-    return RecordText(path, of, tuple(text.split("\n")), dt, unit, query.values.get("channel"))
+    return RecordText(path, of, tuple(text.split("\n")), dt, unit, of.values.get("channel"))
 
 
 _SUMMED = (1e-6, 1e-3)
