@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     )
     from rpscli.records.ground_motion import GroundMotion, MotionComponents
     from rpscli.records.loading import load_components, load_record
-    from rpscli.records.spectrum import response_spectrum
+    from rpscli.records.measures import response_spectrum
     from rpscli.studies import Study, StudyResult, load_study
 
     __version__: str
@@ -63,7 +63,7 @@ _HOMES = {
         "profile_stiffnesses",
     ),
     "rpscli.records.ground_motion": ("GroundMotion", "MotionComponents"),
-    "rpscli.records.spectrum": ("response_spectrum",),
+    "rpscli.records.measures": ("response_spectrum",),
     "rpscli.records.loading": ("load_components", "load_record"),
     "rpscli.studies": ("Study", "StudyResult", "load_study"),
 }

@@ -32,7 +32,7 @@ from rpscli.records.formats import RecordFormat
 from rpscli.records.formats.record_text import RecordText
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.measures import IntensityMeasure
-from rpscli.records.quantities import parse_query
+from rpscli.records.source import parse_query
 from rpscli.records.target import TargetSpectrum
 from rpscli.report.figures.style import single
 from rpscli.report.study.report import Found, Report

@@ -14,7 +14,7 @@ from rpscli.analyses.timehistory import denser_trace
 from rpscli.analyses.trace import Trace
 from rpscli.errors import CaseError
 from rpscli.records.ground_motion import GroundMotion
-from rpscli.records.spectrum import response_spectrum
+from rpscli.records.measures import response_spectrum
 from rpscli.shown import Shown, frozen
 
 Array = NDArray[np.float64]

@@ -111,7 +111,7 @@ def plot(
 
     Writes record.csv, spectrum.csv and the figure record; of a pair x_record.csv, y_record.csv, ...
     """
-    from rpscli.records.spectrum import drawn_spectrum
+    from rpscli.records.measures import drawn_spectrum
     from rpscli.report.bundles import record_files
 
     folder = record_folder(motions, output, "plot")

@@ -29,8 +29,7 @@ from rpscli.report.figures.look import Look
 from rpscli.report.files import OutputFolder, Run
 
 if TYPE_CHECKING:
-    from rpscli.records.requirements import Component, Periods, Requirements
-    from rpscli.records.target import TargetSpectrum
+    from rpscli.records.target import Component, Periods, Requirements, TargetSpectrum
 
 
 USUAL_PERIODS = 0.2, 3.0
@@ -161,10 +160,9 @@ def command(
     """
     from rpscli.records.loading import expanded, load_components
     from rpscli.records.measures import USUAL
-    from rpscli.records.requirements import RULES as KNOWN
-    from rpscli.records.requirements import kept, parse_filter
-    from rpscli.records.selection import SelectionRequest, select
+    from rpscli.records.selection import SelectionRequest, kept, parse_filter, select
     from rpscli.records.source import Source
+    from rpscli.records.target import RULES as KNOWN
     from rpscli.records.target import load_target
     from rpscli.report.bundles import selection_files
     from rpscli.report.tables import motions as report
@@ -225,7 +223,7 @@ def _structure(request: CaseRequest, terminal: Terminal) -> tuple[Periods, str]:
     from rpscli.case.conditions import conditions_of
     from rpscli.commands.inputs import read_case
     from rpscli.model.statics import secant_period
-    from rpscli.records.requirements import Periods
+    from rpscli.records.target import Periods
 
     case = read_case(request, terminal).case
     structure, critical = case.structure, case.structure.critical_rotation

@@ -23,9 +23,17 @@ from rpscli.errors import (
 from rpscli.machine import mode_of
 from rpscli.records import made, sets
 from rpscli.records.ground_motion import GroundMotion, MotionComponents, rotated, scale_doubts
-from rpscli.records.quantities import LIKENESS
-from rpscli.records.recordings import earthquake, pairs_among, vertical_of, verticals
-from rpscli.records.source import FILE, LIST, PAIRING, SET, Source, is_file, split_options
+from rpscli.records.recordings import channels, earthquake, pairs_among, vertical_of, verticals
+from rpscli.records.source import (
+    FILE,
+    LIKENESS,
+    LIST,
+    PAIRING,
+    SET,
+    Source,
+    is_file,
+    split_options,
+)
 
 _MAKERS: dict[str, Callable[[Source], GroundMotion]] = {
     SET: sets.load_component,
@@ -68,7 +76,7 @@ def load_record(
     """
     require_kind(source, str, "the record", "give its name as text")
     of = single_source(source, folder)
-    read, factor = _described(of, dt, units), of.factor
+    read, factor = _described(of, dt=None if dt is None else float(dt), units=units), of.factor
     if of.both:
         raise RecordError(
             f"{source}: holds two components, and one is wanted here; name one of them, or a"
@@ -83,16 +91,15 @@ def load_record(
     return replace(motion.scaled(factor), name=name, warnings=(*motion.warnings, *warnings))
 
 
-def _described(of: Source, dt: float | None, units: str | None) -> Source:
+def _described(of: Source, **given: object) -> Source:
     """The source of a file with the step and the unit that are given beside it."""
-    given = {"dt": None if dt is None else repr(float(dt)), "units": units}
-    given = {name: value for name, value in given.items() if value is not None}
-    if of.scheme and given:
+    texts = {name: f"{value}" for name, value in given.items() if value is not None}
+    if of.scheme and texts:
         raise RecordError(f"{of}: dt and units describe files; leave them out here")
-    for name, value in given.items():
-        if (own := of.values.get(name, value)) != value:
-            raise RecordError(f"{of}: {name} = {value} contradicts the {own} in it; keep one")
-    return of.plus(**given)
+    for name, text in texts.items():
+        if (own := of.values.get(name, text)) != text:
+            raise RecordError(f"{of}: {name} = {text} contradicts the {own} in it; keep one")
+    return of.plus(**texts)
 
 
 def _unscaled(of: Source, folder: Path | None) -> GroundMotion:
@@ -108,9 +115,13 @@ def _unscaled(of: Source, folder: Path | None) -> GroundMotion:
             )
         return _MAKERS[of.scheme](of) if of.scheme else _read(of, folder)
     motion = rotated(*_components(of, folder), angle)
-    name, direction = motion.name, f"_{angle:g}deg"
-    name = name.replace("_a", direction, 1) if of.scheme == SET else f"{name}{direction}"
-    return replace(motion, name=name)
+    return replace(motion, name=_named(motion, of, f"{angle:g}deg"))
+
+
+def _named(motion: GroundMotion, of: Source, way: str) -> str:
+    """The name of a pair: that of its first component, with the way in place of the side."""
+    in_set = of.scheme == SET and of.of_pair
+    return motion.name.replace("_a", f"_{way}", 1) if in_set else f"{motion.name}_{way}"
 
 
 def _components(of: Source, folder: Path | None) -> tuple[GroundMotion, GroundMotion]:
@@ -122,14 +133,11 @@ def _components(of: Source, folder: Path | None) -> tuple[GroundMotion, GroundMo
 
 
 def _read(of: Source, folder: Path | None) -> GroundMotion:
-    query, path = of.query("dt", "units", "channel"), _located(of.place, folder)
-    _require_file(path, of)
     from rpscli.records.formats import read_record  # sets and pulses are not files
 
-    dt = query.quantity("dt", "time") if "dt" in query.values else None
-    return read_record(
-        path, of, dt=dt, units=query.values.get("units"), channel=query.values.get("channel")
-    )
+    path = _located(of.place, folder)
+    _require_file(path, of)
+    return read_record(path, of)
 
 
 def load_components(
@@ -170,11 +178,10 @@ def load_components(
             return MotionComponents(along, above)
         across = _beside(along, load_record(y, **how), source)
     else:
-        along, across = _components(_described(of, how.get("dt"), how.get("units")), folder)
-    in_set = of.scheme == SET and of.both
-    name = along.name.replace("_a", "_both", 1) if in_set else f"{along.name}_both"
-    motion = MotionComponents(replace(along, name=name, source=source), above, y=across)
-    return motion.turned(of.rotation + rotation)
+        given = {name: value for name, value in how.items() if name != "folder"}
+        along, across = _components(_described(of, **given), folder)
+    along = replace(along, name=_named(along, of, "both"), source=source)
+    return MotionComponents(along, above, y=across).turned(of.rotation + rotation)
 
 
 _LATE = 10.0  # seconds between the starts of components of one recording at most
@@ -203,12 +210,11 @@ def _beside(first: GroundMotion, second: GroundMotion, source: str) -> GroundMot
             f"{source}: both components are the same one, {one.direction or first.source};"
             " name two of one recording"
         )
-    for each in (one, other):
-        if each.is_vertical:
-            raise RecordError(
-                f"{source}: {each.direction} is a vertical component; name two horizontal ones, and"
-                " that as `vertical`"
-            )
+    for each in filter(lambda of: of.is_vertical, (one, other)):
+        raise RecordError(
+            f"{source}: {each.direction} is a vertical component; name two horizontal ones, and"
+            " that as `vertical`"
+        )
     if apart <= 0.5 * first.dt:
         return second
     late = f"its header states the start {other.start}, that of the other component {one.start}"
@@ -220,13 +226,12 @@ def _apart(one: str, other: str) -> float:
 
     def seconds(text: str) -> list[float]:
         numbers = [float(number) for number in re.findall(r"\d+(?:\.\d+)?|\.\d+", text)]
-        if len(numbers) > 3:  # apart: date, hour, minute, second
-            *date, hour, minute, second = numbers
-            return [*date, 3600.0 * hour + 60.0 * minute + second]
-        return numbers
+        if len(numbers) < 4:  # not apart: date, hour, minute, second
+            return numbers
+        return [*numbers[:-3], 3600.0 * numbers[-3] + 60.0 * numbers[-2] + numbers[-1]]
 
     first, second = seconds(one), seconds(other)
-    if not (first and second) or one == other:
+    if not (first and second):
         return 0.0
     return abs(first[-1] - second[-1]) if first[:-1] == second[:-1] else float("inf")
 
@@ -320,18 +325,15 @@ def _files(of: Source, folder: Path | None, notes: list[str]) -> list[Source]:
     if not held:
         raise RecordError("; ".join([f"{of}: no record file there that can be read", *why[:1]]))
     notes += [f"{of}: {text}" for text in why]
-    upright = verticals({name: [each.recording for each in held[name]] for name in held})
-    left_out, single = sorted(upright), list[Source]()
-    for name in (each for each in held if each not in upright):
-        several = held[name] if len(held[name]) > 1 and "channel" not in of.values else ()
-        single += [] if several else [of.at(name)]
-        for each in several:
-            if each.recording.is_vertical:
-                left_out.append(f"{name} channel {each.channel}")
-            else:
-                single.append(of.at(name).plus(channel=each.channel))
-    if left_out:
+    single = [each for name in held for each in channels(of.at(name), folder)]
+    if upright := verticals(single, folder):
+        left_out = [
+            each.place if "channel" in of.values or "channel" not in each.values
+            else f"{each.place} channel {each.values['channel']}"
+            for each in upright
+        ]  # fmt: skip
         notes.append(f"{of}: vertical components left out: {_some(left_out)}")
+        single = [each for each in single if each not in upright]
     return single if of.components else _paired(of, [each.alone for each in single], folder)
 
 
@@ -355,17 +357,16 @@ def _listed(of: Source, folder: Path | None, notes: list[str]) -> Iterator[Sourc
         lines = path.read_text(encoding="utf-8-sig").splitlines()
     except UnicodeDecodeError:
         raise RecordError(f"{of}: is not text; name a list with one source a line") from None
-    empty = True
-    for number, written in enumerate(lines, 1):
-        line = _without_remark(written, path.parent)
-        if not line:
-            continue
-        empty, scheme = False, FILE
+    sources = [(n, source) for n, line in enumerate(lines, 1)
+               if (source := _without_remark(line, path.parent))]  # fmt: skip
+    if not sources:
+        raise RecordError(f"{of}: holds no sources; write one a line")
+    for number, line in sources:
+        scheme = FILE
         try:
             scheme = Source.parse(line, path.parent).scheme
-            if scheme != LIST:
-                seen = line if scheme else str(Path(of.place).parent / line)
-                found = _expand(seen, folder, notes)
+            seen = line if scheme else str(Path(of.place).parent / line)
+            found = [] if scheme == LIST else _expand(seen, folder, notes)
         except RecordError:
             if scheme:
                 raise
@@ -376,18 +377,13 @@ def _listed(of: Source, folder: Path | None, notes: list[str]) -> Iterator[Sourc
         if scheme == LIST:
             raise RecordError(f"{of}: {line}: a list holds no lists; write its sources here")
         yield from found
-    if empty:
-        raise RecordError(f"{of}: holds no sources; write one a line")
 
 
 def _without_remark(line: str, folder: Path) -> str:
     """The source in a line; the name of a file that is there may hold the mark of a remark."""
-    whole = line.strip()
-    named = 0
-    if "#" in whole:
-        place = split_options(whole)[0]
-        named = len(place) if "#" in place and is_file(place, folder) else 0
-    return whole[:named] + _REMARK.split(whole[named:])[0].strip()
+    place = split_options(line.strip())[0]
+    named = len(place) if is_file(place, folder) else 0
+    return line.strip()[:named] + _REMARK.split(line.strip()[named:])[0].strip()
 
 
 def _located(place: str, folder: Path | None) -> Path:

@@ -33,8 +33,7 @@ from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import RecordError
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.measures import displacement, velocity
-from rpscli.records.quantities import Query, hint
-from rpscli.records.source import Source
+from rpscli.records.source import Query, Source, hint
 
 Array = NDArray[np.float64]
 
@@ -121,7 +120,9 @@ def load_pulse(of: Source) -> GroundMotion:
     # The last sample of a pulse that fits is its end exactly, whatever the rounding of dt.
     step = pulse.periods / steps if pulse.fits else dt / period
     peak = abs(amplitude) / STANDARD_GRAVITY
-    bare = query.values.get("amplitude", "g").strip().replace(".", "").isdigit() and peak < DOUBTFUL
+    bare = (query.values.get("amplitude") or "g").strip().replace(
+        ".", ""
+    ).isdigit() and peak < DOUBTFUL
     doubt = f"{of}: an amplitude of {amplitude:g} m/s2 = {peak:.4g} g; was {amplitude:g}g meant?"
     return GroundMotion(
         amplitude * pulse.shape(np.arange(steps + 1, dtype=np.float64) * step),
@@ -138,12 +139,12 @@ def _bell_of_waves(query: Query, period: float) -> tuple[_Pulse, float]:
     cycles = query.quantity("cycles", "ratio", 2.0)
     phase = query.quantity("phase", "angle", 0.0)
     if not 1.0 < cycles <= 100.0:
-        raise RecordError(f"{query.source}: cycles = {cycles:g} must lie between 1 and 100")
+        raise RecordError(f"{query}: cycles = {cycles:g} must lie between 1 and 100")
     dense = np.linspace(0.0, cycles, 1 + 2 * _STEPS_PER_PERIOD * math.ceil(cycles))
     peak = float(np.max(np.abs(_mavroeidis_papageorgiou(dense, cycles, phase))))
     if ("amplitude" in query.values) == ("velocity_amplitude" in query.values):
         raise RecordError(
-            f"{query.source}: give either amplitude (peak acceleration) or velocity_amplitude"
+            f"{query}: give either amplitude (peak acceleration) or velocity_amplitude"
         )
     if "amplitude" in query.values:
         amplitude = query.acceleration("amplitude")

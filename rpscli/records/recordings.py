@@ -24,9 +24,10 @@ own.
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path, PurePath
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from rpscli.errors import RecordError
 from rpscli.records import sets
@@ -34,20 +35,44 @@ from rpscli.records.ground_motion import UNKNOWN, Recording
 from rpscli.records.measures import Of
 from rpscli.records.source import FILE, SET, Source
 
+if TYPE_CHECKING:
+    from rpscli.records.formats.record_text import Contents
+
 By = Literal["recordings", "events"]  # units that statistics take to be independent
 Pair = tuple[str, str]  # sources of two components
 _PEER_NUMBER = re.compile(r"(RSN\d+)_.*", re.IGNORECASE)
-_CHANNEL_CODE = re.compile(r"(?<=[._])([A-Z]{2})[ENXY12](?=[._])")
-_WAY = re.compile(r"_[xy](?=\.\w+$)")  # as `rps record convert` calls both components
-_KNET = re.compile(r"\.(?:EW|NS)([12]?)$", re.IGNORECASE)
 _AZIMUTH = re.compile(r"(.*\D)(\d{3}|(?<=-)[NESW])(\.at2)", re.IGNORECASE)
 _COMPASS = {"N": 0, "E": 90, "S": 180, "W": 270}
-_VERTICAL_MARK = re.compile(
+_COMPONENT = re.compile(
+    r"(?<=[._][A-Z]{2})[ENXY12](?=[._])"  # of ESM
+    r"|_[xy](?=\.\w+$)"  # as `rps record convert` calls both components
+    r"|(?i:(?<=\.)(?:EW|NS)(?=[12]?$))"  # of K-NET
+)
+"""Parts of a name that tell components of a recording apart."""
+
+_VERTICAL = re.compile(
     r"(.*?)(?:[-_.]?(?:UP|UD|DWN|VERT?)|[-_][VZ]|(?<=[A-Z])V(?=\.at2)|(?<=\.[A-Z]{2})Z)[12]?(?:\.\w+)*",
     re.IGNORECASE,
-)  # what it shares with others of its recording, and the rest
-_VERTICAL = re.compile(r".*(?:UP|UD|DWN|VER|V|Z)(?:\.\w+)?", re.IGNORECASE)
+)
+"""The name of a vertical component: what it shares with others of its recording, and the rest."""
+
 _SEED = re.compile(r"[A-Z]{2}[A-Z\d]\d*")  # of a direction: band, instrument, component
+_NAME = re.compile(r"\s*([^,_\d]+?)(?:\s+EQ\b|-\d+\b|[,_]|\s+(?=\d))", re.IGNORECASE)
+_YEAR = re.compile(r"\b((?:19|20)\d\d)\b|\d/\d+/(\d\d)\b")
+
+
+def channels(of: Source, folder: Path | None) -> list[Source]:
+    """Each channel of a file, or the file itself if it has one or its source names one."""
+    held = _contents(of, folder)
+    if len(held) < 2 or "channel" in of.values:
+        return [of] * bool(held)
+    return [of.plus(channel=each.channel) for each in held]
+
+
+def _contents(of: Source, folder: Path | None) -> tuple[Contents, ...]:
+    from rpscli.records.formats import contents  # sets and pulses are not files
+
+    return contents((folder or Path()) / Path(of.place).expanduser())
 
 
 def stated(of: Source, folder: Path | None) -> Recording:
@@ -57,9 +82,7 @@ def stated(of: Source, folder: Path | None) -> Recording:
             return sets.load_component(of.components[0]).recording
         if of.scheme != FILE:
             return UNKNOWN
-        from rpscli.records.formats import contents  # sets and pulses are not files
-
-        held = contents((folder or Path()) / Path(of.place).expanduser())
+        held = _contents(of, folder)
         channel = (of.values.get("channel") or "").partition(",")[0]
         return next((c.recording for c in held if c.channel == channel or len(held) == 1), UNKNOWN)
     except (RecordError, OSError, ValueError, RuntimeError):
@@ -82,10 +105,6 @@ def earthquake(text: str) -> str:
     return f"{found[1].strip().lower()} {number}".strip() if found else ""
 
 
-_NAME = re.compile(r"\s*([^,_\d]+?)(?:\s+EQ\b|-\d+\b|[,_]|\s+(?=\d))", re.IGNORECASE)
-_YEAR = re.compile(r"\b((?:19|20)\d\d)\b|\d/\d+/(\d\d)\b")
-
-
 def _stated_name(recording: Recording) -> set[str]:
     """The name of a recording by its station, its earthquake or start, and its instrument."""
     when = recording.origin or recording.start or earthquake(recording.event)
@@ -93,25 +112,35 @@ def _stated_name(recording: Recording) -> set[str]:
     return {f"{recording.station} {kind} at {when}"} if recording.station and when else set()
 
 
-def _families(sources: Sequence[Source], folder: Path | None) -> list[set[str]]:
-    """Of each source the names of its recording: by its file, or both of a pair, and by headers."""
-    named = [[name for name in (of.place, of.second) if name is not None] for of in sources]
+def clusters(
+    sources: Sequence[str], folder: Path | None = None, by: By = "recordings"
+) -> tuple[int, ...]:
+    """Numbers of the recordings or events of sources, from 0 in their order; headers are read."""
+    parsed = [Source.parse(source, folder) for source in sources]
+    places = [[name for name in (of.place, of.second) if name is not None] for of in parsed]
     # Beginnings of the names of two files that end with azimuths of 90 deg between them.
     azimuths: dict[str, list[int]] = {}
-    for match in filter(
-        None, map(_AZIMUTH.fullmatch, sorted({n for names in named for n in names}))
-    ):
-        azimuth = _COMPASS.get(match[2].upper())
-        azimuths.setdefault(match[1], []).append(int(match[2]) if azimuth is None else azimuth)
+    for match in map(_AZIMUTH.fullmatch, sorted({name for names in places for name in names})):
+        if match:
+            azimuth = _COMPASS.get(match[2].upper())
+            azimuths.setdefault(match[1], []).append(int(match[2]) if azimuth is None else azimuth)
     apart = {of for of, at in azimuths.items() if len(at) == 2 and (at[1] - at[0]) % 180 == 90}
-    families = [
-        {_family(of, name, apart) for name in names}
-        for of, names in zip(sources, named, strict=True)
-    ]
-    for of, names in zip(sources, families, strict=True):
+    groups: dict[str, int] = {}
+    first_names = list[str]()
+    for number, (of, own) in enumerate(zip(parsed, places, strict=True)):
+        names = {_family(of, place, apart) for place in own}
         if of.scheme == FILE:
-            names.update(_stated_name(stated(of, folder)))
-    return families
+            names |= _stated_name(stated(of, folder))
+        if by == "events" and (event := event_of(stated(of, folder))):
+            names.add(f"event {event}")
+        shared = {groups[name] for name in names & groups.keys()}
+        first = min(shared, default=number)
+        groups |= dict.fromkeys(names, first)
+        if len(shared) > 1:
+            groups |= {name: first for name, group in groups.items() if group in shared}
+        first_names.append(min(names))
+    numbers: dict[int, int] = {}
+    return tuple(numbers.setdefault(groups[name], len(numbers)) for name in first_names)
 
 
 def _family(of: Source, place: str, apart: set[str]) -> str:
@@ -127,66 +156,46 @@ def _family(of: Source, place: str, apart: set[str]) -> str:
         return azimuth[1]
     if number := _PEER_NUMBER.fullmatch(name):
         return str(folder / number[1].upper())
-    return str(folder / _KNET.sub(r".\1", _CHANNEL_CODE.sub(r"\1", _WAY.sub("", name))))
+    return str(folder / _COMPONENT.sub("", name))
 
 
-def _numbered(families: Sequence[set[str]]) -> list[int]:
-    """Numbers from 0 in the order of the sources, the same where names are shared."""
-    groups: dict[str, int] = {}
-    for place, names in enumerate(families):
-        shared = {groups[name] for name in names & groups.keys()}
-        groups |= dict.fromkeys(names, first := min(shared, default=place))
-        if len(shared) > 1:
-            groups |= {name: first for name, group in groups.items() if group in shared}
-    numbers: dict[int, int] = {}
-    return [numbers.setdefault(groups[min(names)], len(numbers)) for names in families]
-
-
-def clusters(
-    sources: Sequence[str], folder: Path | None = None, by: By = "recordings"
-) -> tuple[int, ...]:
-    """Numbers of the recordings or events of sources, from 0 in their order; headers are read."""
-    parsed = [Source.parse(source, folder) for source in sources]
-    families = _families(parsed, folder)
-    for names, of in zip(families, parsed, strict=True):
-        if by == "events" and (event := event_of(stated(of, folder))):
-            names.add(f"event {event}")
-    return tuple(_numbered(families))
-
-
-def verticals(files: Mapping[str, Sequence[Recording]]) -> set[str]:
-    """Vertical components among files, by name beside others of their recording or by header."""
-    marked = {name: match for name in sorted(files) if (match := _VERTICAL_MARK.fullmatch(name))}
-    others = [name for name in sorted(files) if name not in marked]
-    found = {
-        name
-        for name, match in marked.items()
-        if any(other.startswith(match[1]) for other in others)
+def verticals(sources: Iterable[Source], folder: Path | None) -> list[Source]:
+    """Vertical components among sources, by name beside others of their recording or by header."""
+    every = dict.fromkeys(sources)
+    single = Counter(of.place for of in every)  # channels of a file are not told by its name
+    marked = {
+        of: match
+        for of in every
+        if single[of.place] == 1 and (match := _VERTICAL.fullmatch(of.place))
     }
-    upright = {name for name, held in files.items() if all(of.is_vertical for of in held)}
-    return found | upright if files.keys() - found - upright else found
+    others = tuple(of.place for of in every if of not in marked)
+    found = [
+        of
+        for of in every
+        if (of in marked and any(other.startswith(marked[of][1]) for other in others))
+        or stated(of, folder).is_vertical
+    ]
+    return found if len(found) < len(every) else []
 
 
 def vertical_of(of: Source, folder: Path | None) -> Source:
     """The vertical component of the recording of a file: another channel, or a file beside it."""
-    from rpscli.records.formats import contents
-
-    path = (folder or Path()) / Path(of.place).expanduser()
-    alone, within = of.alone.without("channel"), contents(path) if of.scheme == FILE else ()
-    if len(within) > 1:
-        found = [alone.plus(channel=c.channel) for c in within if c.recording.is_vertical]
-    else:
-        beside = sorted(path.parent.iterdir()) if within else []
-        every = {str(PurePath(of.place).with_name(file.name)): contents(file) for file in beside}
-        held = {
-            name: [each.recording for each in inside] for name, inside in every.items() if inside
-        }
-        upright, own = sorted(verticals(held)), _stated_name(stated(of, folder))
-        named = [n for n in upright if of.place.startswith(_VERTICAL_MARK.sub(r"\1", n))]
-        alike = [name for name in upright if own & _stated_name(held[name][0])]
-        found = [alone.at(name) for name in alike or named]
+    alone = of.alone.without("channel")
+    found = channels(alone, folder) if of.scheme == FILE else []
+    several = len(found) > 1
+    if found and not several:
+        beside = sorted(((folder or Path()) / Path(of.place).expanduser()).parent.iterdir())
+        places = (alone.at(str(PurePath(of.place).with_name(file.name))) for file in beside)
+        found = [each for place in places for each in channels(place, folder)]
+    found = verticals(found, folder)
+    if not several:
+        own = _stated_name(stated(of, folder))
+        alike = [each for each in found if own & _stated_name(stated(each, folder))]
+        named = [each for each in found if of.place.startswith(_VERTICAL.sub(r"\1", each.place))]
+        found = alike or named
     if len(found) != 1:
-        some = f", and {len(found)} are there: {', '.join(found[:3])}" * bool(found)
+        names = ", ".join(each.place for each in found[:3])
+        some = f", and {len(found)} are there: {names}" * bool(found)
         raise RecordError(
             f"{of}: has no vertical component beside it that its name or its header tells"
             f"{some}; name it in place of `own`"
@@ -203,7 +212,7 @@ def pairs_among(
     """
     given = list(dict.fromkeys(single))
     members: dict[int, list[Source]] = {}
-    for of, number in zip(given, _numbered(_families(given, folder)), strict=True):
+    for of, number in zip(given, clusters(given, folder), strict=True):
         if of.of_pair:
             raise RecordError(f"{of}: is of two components already, which {text} asks for again")
         if of.scheme not in (FILE, SET):
@@ -229,14 +238,9 @@ def pairs_among(
     return found
 
 
-def _horizontal(sources: Iterable[Source], folder: Path | None) -> list[Source]:
-    """Components that neither their names nor their headers tell to be vertical."""
-    return [
-        of
-        for of in sources
-        if not (("channel" not in of.values and _VERTICAL.fullmatch(of.place))
-                or stated(of, folder).is_vertical)
-    ]  # fmt: skip
+def _horizontal(sources: Sequence[Source], folder: Path | None) -> list[Source]:
+    upright = verticals(sources, folder)
+    return [of for of in sources if of not in upright]
 
 
 ONE_FACTOR = (
@@ -258,7 +262,7 @@ def pairs(
             raise RecordError(f"{pair}: {ONE_FACTOR}")
         return (None,) * len(sources)
     members: dict[int, dict[tuple[str | bool | None, ...], Source]] = {}
-    numbers = _numbered(_families(parsed, folder))
+    numbers = clusters(parsed, folder)
     for number, p in zip(numbers, parsed, strict=True):
         direction = p.place, p.values.get("channel"), p.of_pair and not p.both
         members.setdefault(number, {})[direction] = p
@@ -268,7 +272,7 @@ def pairs(
         if known is None and p.scheme == FILE:
             # Both components of the recording that are among the sources, under the factor of one.
             every = (each for m in members[number].values() for each in m.components or (m,))
-            both = sorted(_horizontal({each.alone.without("factor") for each in every}, folder))
+            both = _horizontal(sorted({each.alone.without("factor") for each in every}), folder)
             if len(both) == 2 and p.alone.without("factor") in both:
                 factor = {name: value for name, value in p.values.items() if name == "factor"}
                 known = both[0].plus(**factor), both[1].plus(**factor)

@@ -18,8 +18,7 @@ import numpy as np
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import RecordError
 from rpscli.records.ground_motion import GroundMotion, Recording
-from rpscli.records.quantities import hint
-from rpscli.records.source import Source
+from rpscli.records.source import Source, hint
 
 _SETS = {
     "farfield": range(1, 23),

@@ -13,14 +13,21 @@ All others are those of what reads or makes the motion, as `dt`, `units` and `ch
 
 from __future__ import annotations
 
+import math
 import os
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path, PurePath
 from typing import Self
 
+from rpscli import errors
 from rpscli.errors import RecordError
-from rpscli.records.quantities import Query, hint, options_in, query_of
+from rpscli.records.quantities import (
+    ACCELERATIONS,
+    NUMBER_PATTERN,
+    canonical_unit,
+    to_float,
+)
 
 FILE, LIST, SET = "", "list", "fema_p695"
 SCHEMES = (SET, "pulse", "synthetic", LIST)
@@ -38,8 +45,122 @@ _FILE_OPTIONS = re.compile(rf"(.+?)\?({_OPTION}(?:&{_OPTION})*)", re.DOTALL)
 
 Values = Mapping[str, str | None]
 
+_QUANTITY = re.compile(rf"\s*({NUMBER_PATTERN})\s*(.*?)\s*")
+_UNITS = {
+    "time": {"": 1.0, "s": 1.0, "sec": 1.0, "ms": 1e-3},
+    "frequency": {"": 1.0, "hz": 1.0},
+    "velocity": {"": 1.0, "m/s": 1.0, "cm/s": 0.01, "mm/s": 0.001},
+    "angle": {"": 1.0, "rad": 1.0, "deg": math.pi / 180.0},
+    "direction": {"": 1.0, "deg": 1.0, "rad": 180.0 / math.pi},
+    "ratio": {"": 1.0, "%": 0.01},
+    "acceleration": {"": 1.0, **ACCELERATIONS},
+}
 
-class Source(str):  # noqa: SLOT000 -- parts are kept beside the text
+
+EXAMPLES = {
+    "tl": "8 s",
+    "sds": "1 g",
+    "sd1": "0.6 g",
+    "ag": "0.2 g",
+    "amplitude": "0.3g",
+    "period": "0.8",
+}
+"""Examples of options."""
+
+LIKENESS = 0.5  # of a name to the one that was meant: names of records are long, and made of parts
+SOME = 12  # known words that are listed where there are more than twice as many
+
+
+def hint(word: str, known: Sequence[str]) -> str:
+    """The nearest known word that might have been meant, or else all of them, or some of many."""
+    rest = f" and {len(known) - SOME} more" if len(known) > 2 * SOME else ""
+    some = ", ".join(known[:SOME] if rest else known)
+    return errors.hint(word, known, f"known: {some}{rest}", LIKENESS)
+
+
+class Query(str):  # noqa: SLOT000 -- values are kept beside the text
+    """A text with options: their values by name, None without `=`.
+
+    Each accessor turns one into a number in SI.
+    """
+
+    values: Values
+
+    def quantity(
+        self, key: str, kind: str, default: float | None = None, *, bare: bool = True
+    ) -> float:
+        """A number with a unit, which may be left out where it may be `bare`, in SI."""
+        value = self.values.get(key)
+        if value is None:
+            if default is not None:
+                return default
+            raise RecordError(f"{self}: {key} is missing; add {key}={EXAMPLES.get(key, '...')}")
+        match = _QUANTITY.fullmatch(value)
+        number, unit = match.groups() if match else ("nan", "")
+        known = canonical_unit(unit) or unit if kind == "acceleration" else unit.lower()
+        factor = _UNITS[kind].get(known)
+        if not re.fullmatch(NUMBER_PATTERN, number) or not math.isfinite(to_float(number)):
+            fault = f"{key} = {value[:40]!r} is not a number; write {key}=0.5"
+        elif not (unit or bare):
+            fault = f"say the unit: {key}={number} g, or {key}={number} m/s2"
+        elif factor is None:
+            units = ", ".join(filter(None, _UNITS[kind]))
+            fault = f"{key} = {value!r} is no {kind} in {units}"
+        else:
+            return to_float(number) * factor
+        raise RecordError(f"{self}: {fault}")
+
+    def acceleration(self, key: str, *, bare: bool = True) -> float:
+        """An acceleration [m/s2]: `0.4g`, `3.9 m/s2`, or a number in m/s2 where it may be bare."""
+        return self.quantity(key, "acceleration", bare=bare)
+
+    def choice(self, key: str, usual: str, known: Sequence[str]) -> str:
+        """One of the known words, whatever their case."""
+        value = self.values.get(key) or usual
+        found = next((word for word in (usual, *known) if word.lower() == value.lower()), None)
+        if found is None:
+            raise RecordError(f"{self}: {key} = {value!r} is not known; {hint(value, known)}")
+        return found
+
+    def integer(self, key: str) -> int:
+        """A whole number that is not negative."""
+        value = self.values.get(key)
+        if value is None or not re.fullmatch("[0-9]{1,18}", value):
+            found = "is missing" if value is None else f"= {value[:40]!r} is not one"
+            raise RecordError(f"{self}: {key} {found}; give a whole number, {key}=1")
+        return int(value)
+
+    def require(
+        self, allowed: Sequence[str], flags: Sequence[str] = (), values: Values | None = None
+    ) -> Self:
+        """Refuse options, or some of them, that are not allowed, or have no value."""
+        for key, value in (self.values if values is None else values).items():
+            if key not in allowed:
+                raise RecordError(f"{self}: option {key!r} is not known; {hint(key, allowed)}")
+            if not value and key not in flags:
+                raise RecordError(f"{self}: {key} has no value; write {key}=...")
+        return self
+
+
+def parse_query(text: str, source: str, allowed: Sequence[str]) -> Query:
+    """The options `key=value&key=value` of a source."""
+    query = Query(source)
+    query.values = options_in(text, source)
+    return query.require(allowed)
+
+
+def options_in(text: str, source: str) -> dict[str, str | None]:
+    """Values of `key=value&flag` by names; a value is None without `=`, and none comes twice."""
+    found: dict[str, str | None] = {}
+    for item in filter(None, map(str.strip, text.split("&"))):
+        name, mark, value = map(str.strip, item.partition("="))
+        if name in found:
+            raise RecordError(f"{source}: {name} is given twice; keep one")
+        found[name] = value if mark else None
+    return found
+
+
+class Source(Query):
     """A source taken apart; its text reads the same.
 
     The `scheme` is empty for files, folders and globs of them, the `place` for synthetic motions.
@@ -48,7 +169,6 @@ class Source(str):  # noqa: SLOT000 -- parts are kept beside the text
 
     scheme: str
     place: str
-    values: Values
 
     def __new__(cls, scheme: str, place: str, values: Values) -> Self:
         """The parts, and the text that they are written as."""
@@ -102,14 +222,9 @@ class Source(str):  # noqa: SLOT000 -- parts are kept beside the text
             )
         if fault:
             raise RecordError(f"{source}: {fault}")
-        query_of({n: given[n] for n in COMMON if n in given}, source, COMMON, FLAGS)
+        source.require(COMMON, FLAGS, {name: given[name] for name in COMMON if name in given})
         _ = source.rotation, source.angle, source.factor  # which refuse what is no number
         return source
-
-    def number(self, name: str, kind: str, usual: float | None = None) -> float:
-        """The value of an option in SI."""
-        given = {key: value or "" for key, value in self.values.items()}
-        return Query(self, given).quantity(name, kind, usual)
 
     @property
     def both(self) -> bool:
@@ -119,17 +234,17 @@ class Source(str):  # noqa: SLOT000 -- parts are kept beside the text
     @property
     def rotation(self) -> float:
         """Of both from x towards y [deg]."""
-        return self.number("rotation", "direction", 0.0)
+        return self.quantity("rotation", "direction", 0.0)
 
     @property
     def angle(self) -> float | None:
         """Of one direction, from the first component towards the second [deg]."""
-        return self.number("angle", "direction", 0.0) if "angle" in self.values else None
+        return self.quantity("angle", "direction", 0.0) if "angle" in self.values else None
 
     @property
     def factor(self) -> float:
         """On the values."""
-        return self.number("factor", "ratio", 1.0)
+        return self.quantity("factor", "ratio", 1.0)
 
     @property
     def of_pair(self) -> bool:
@@ -142,10 +257,9 @@ class Source(str):  # noqa: SLOT000 -- parts are kept beside the text
         second = self.values.get("second")
         return None if second is None else str(PurePath(self.place).parent / second)
 
-    def query(self, *allowed: str) -> Query:
-        """The options of what reads or makes it: raises RecordError for others than the allowed."""
-        own = query_of(self.values, self, (*allowed, *COMMON), FLAGS)
-        return Query(self, {name: own.values[name] for name in allowed if name in own.values})
+    def query(self, *allowed: str) -> Self:
+        """Refuse other options than the allowed ones of what reads or makes it."""
+        return self.require((*allowed, *COMMON), FLAGS)
 
     def without(self, *names: str) -> Source:
         """The same without some options."""

@@ -11,7 +11,7 @@ import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import cast, get_args
+from typing import Literal, NamedTuple, cast, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,12 +20,28 @@ from rpscli.constants import STANDARD_GRAVITY
 from rpscli.csv_text import csv_rows
 from rpscli.errors import RecordError, beginning, stem_of
 from rpscli.records.measures import Of
-from rpscli.records.quantities import KNOWN_UNITS, canonical_unit, hint, parse_query, unit_factor
-from rpscli.records.requirements import NOT_VERIFIED, Component
+from rpscli.records.quantities import KNOWN_UNITS, canonical_unit, unit_factor
+from rpscli.records.source import hint, parse_query
 from rpscli.registry import Registry
 
 Array = NDArray[np.float64]
 Shape = Callable[[Array], Array]  # periods (n,) [s] to pseudo-accelerations (n,) [m/s2]
+
+
+Component = Of | Literal["srss"]
+"""Kinds of spectra: measures of pairs, or the root of the sum of both squared spectra."""
+
+NOT_VERIFIED = "NOT VERIFIED"  # the beginning of statements that nothing was found to check
+COMPONENTS: dict[Component, str] = {
+    "component": "single components",
+    "rotd50": "RotD50 of pairs",
+    "rotd100": "RotD100 of pairs, the maximum direction",
+    "geomean": "geometric means of pairs",
+    "larger": "larger components of pairs",
+    "x": "first components of pairs",
+    "srss": "SRSS of both components of pairs",
+}
+"""As readers see them."""
 
 
 @dataclass(frozen=True)
@@ -36,7 +52,7 @@ class TargetSpectrum:
     peaks of the ground that go with it, None where the code gives none, the PGA that of a spectrum
     that does not begin with it, and `pgv_by` the origin of the PGV. `edition`, `parameters` (with
     units) and `level` (of shaking) are those of a code, `checked` says against what its formulae
-    were compared, `rules` are its name in `requirements.RULES`. `damping` is a share of critical
+    were compared, `rules` are its name in `RULES`. `damping` is a share of critical
     damping, `of` the kind of the ordinates, None if it is not said. `deviation` is the standard
     deviation of ln Sa over the period, None if motions need not scatter, and `pinned` [s] the
     conditioning period, at which that is zero.
@@ -334,7 +350,7 @@ def _table(path: Path, options: str, source: str) -> TargetSpectrum:
         damping=damping,
         span=(first, last),
         of=cast("Of", of) if of else None,
-        level=query.values.get("level", ""),
+        level=query.values.get("level") or "",
         deviation=deviation if scatters else None,
         pga=factor * float(rigid[0, 1]) if len(rigid) else None,
         pinned=float(cells[np.argmin(cells[:, 2]), 0]) if pinned else None,
@@ -354,3 +370,118 @@ def _cells(row: list[str], width: int, place: str) -> list[float]:
             f" acceleration > 0{also}"
         )
     return found
+
+
+class Periods(NamedTuple):
+    """Periods of a structure [s]: the first one on a fixed base, and the secant one on bearings."""
+
+    fixed: float | None
+    secant: float
+
+
+class Rule(NamedTuple):
+    """One requirement beside what a set has; met is None where it cannot be told."""
+
+    rule: str
+    required: str
+    found: str
+    met: bool | None
+
+    @property
+    def word(self) -> str:
+        """As tables say it."""
+        return "not checked" if self.met is None else ("met" if self.met else "NOT MET")
+
+
+@dataclass(frozen=True)
+class Requirements:
+    """The demands of a code on a set: at least `count` motions or pairs, `least` of the target.
+
+    `span` are multiples of T1, or of T_M where it is `isolated`, between which that is.
+    """
+
+    clause: str
+    checked: str
+    count: int = 1
+    least: float = 0.9
+    mean_pga: bool = False
+    of: Component | None = None
+    level: str = ""
+    span: tuple[float, float] | None = None
+    isolated: bool = False
+
+    def judged(
+        self,
+        number: int,
+        of: Component,
+        level: str,
+        pga_ratio: float,
+        least_ratio: float,
+        looked_at: tuple[float, float],
+        structure: Periods | None,
+    ) -> tuple[Rule, ...]:
+        """Every requirement; ratios are the mean over the target, within the periods looked at."""
+        noun, (low, high) = "motions" if of == "component" else "pairs", looked_at
+        span = f"{low:.3g} to {high:.3g} s"
+        # 1e-6 of the ratios are for factors of six digits.
+        found = [Rule(f"number of {noun}", f">= {self.count}", f"{number}", number >= self.count)]
+        if self.of is not None:
+            texts = COMPONENTS[self.of], COMPONENTS[of]
+            found.append(Rule("component", *texts, of == self.of))
+        if self.level:
+            same = level.lower() == self.level.lower() if level else None
+            found.append(Rule("level", self.level, level or "not said by the target", same))
+        if self.mean_pga:
+            known = not math.isnan(pga_ratio)
+            text = f"{pga_ratio:.3f}" if known else "the target has no value at T = 0"
+            met = pga_ratio >= 1.0 - 1e-6 if known else None
+            found.append(Rule("mean PGA over the target's", ">= 1", text, met))
+        met = least_ratio >= self.least - 1e-6
+        found.append(Rule(f"mean/target, {span}", f">= {self.least:g}", f"{least_ratio:.3f}", met))
+        if self.span is not None:
+            name = "T_M" if self.isolated else "T1"
+            text = " to ".join(f"{factor:g} {name}" for factor in self.span)
+            period = structure and (structure.secant if self.isolated else structure.fixed)
+            if period is None:
+                unknown = f"{span}; {name} is not known: give --case"
+                return (*found, Rule("range of periods", text, unknown, None))
+            ends = self.span[0] * period, self.span[1] * period
+            covers = low <= ends[0] * (1.0 + 1e-6) and ends[1] * (1.0 - 1e-6) <= high
+            text = f"{text} = {ends[0]:.3g} to {ends[1]:.3g} s"
+            found.append(Rule("range of periods", text, span, covers))
+        return tuple(found)
+
+
+RULES = {
+    "en1998": Requirements(
+        "EN 1998-1:2004, 3.2.3.1.2(4)",
+        "compared with a public implementation (PEUSP-beta), not with the text",
+        3,
+        mean_pga=True,
+        span=(0.2, 2.0),
+    ),
+    "asce7-ch16": Requirements(
+        "ASCE/SEI 7-16, chapter 16",
+        "number, direction, level and 0.9 compared with the manual of QuakeManager, not with the"
+        f" text; the range of periods {NOT_VERIFIED}",
+        11,
+        of="rotd100",
+        level="MCE_R",
+        span=(0.2, 2.0),
+    ),
+    "asce7-ch17": Requirements(
+        "ASCE/SEI 7-16, 17.3.3 (isolated structures)",
+        f"{NOT_VERIFIED}: from memory",
+        7,
+        1.0,
+        of="srss",
+        level="MCE_R",
+        span=(0.75, 1.25),
+        isolated=True,
+    ),
+    "mean90": Requirements(
+        "the 0.9 that EN 1998-1:2004 and ASCE/SEI 7-16 share",
+        "compared with public implementations of both",
+    ),
+}
+"""By the names of `--rules`."""

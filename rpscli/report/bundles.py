@@ -22,8 +22,8 @@ from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.trace import Event, sampled
 from rpscli.model.podium import PodiumStructure
 from rpscli.records.ground_motion import GroundMotion
+from rpscli.records.measures import ResponseSpectrum
 from rpscli.records.selection import Selection
-from rpscli.records.spectrum import ResponseSpectrum
 from rpscli.report.figures import (
     bearing,
     devices,

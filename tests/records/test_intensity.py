@@ -14,8 +14,14 @@ from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import RecordError
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.loading import load_record
-from rpscli.records.measures import displacement, intensity_measures, measured, velocity
-from rpscli.records.spectrum import response_spectrum, spectral_acceleration
+from rpscli.records.measures import (
+    displacement,
+    intensity_measures,
+    measured,
+    response_spectrum,
+    spectral_acceleration,
+    velocity,
+)
 
 SAMPLES = st.lists(st.floats(-10.0, 10.0), min_size=2, max_size=30)
 

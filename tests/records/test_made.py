@@ -12,8 +12,12 @@ from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import RecordError
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.loading import load_record
-from rpscli.records.measures import displacement, intensity_measures, velocity
-from rpscli.records.spectrum import spectral_acceleration
+from rpscli.records.measures import (
+    displacement,
+    intensity_measures,
+    spectral_acceleration,
+    velocity,
+)
 
 T = 1.2
 W = 2.0 * math.pi / T

@@ -13,6 +13,7 @@ from rpscli.errors import RecordError
 from rpscli.records.formats import FORMATS, contents
 from rpscli.records.formats.record_text import read_text
 from rpscli.records.loading import load_record
+from rpscli.records.source import Source
 
 
 @pytest.mark.parametrize(
@@ -70,7 +71,7 @@ def test_a_peak_that_differs_from_the_header_is_a_warning(tmp_path: Path) -> Non
 
 def test_only_one_format_recognises_each_layout(tmp_path: Path) -> None:
     for make in (csmip, cosmos, esm, smc, geonet, knet):
-        text = read_text(Path(write(tmp_path, make(), "rec")), "rec")
+        text = read_text(Path(write(tmp_path, make(), "rec")), Source.parse("rec"))
         matching = [form.name for form in FORMATS.values() if form.recognises(text)]
         assert [name for name in matching if name != "columns"][1:] == []
         assert matching[0] != "columns"

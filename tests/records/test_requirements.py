@@ -12,9 +12,9 @@ from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import RecordError, UsageError
 from rpscli.records.ground_motion import GroundMotion, Recording
 from rpscli.records.loading import load_record
-from rpscli.records.requirements import RULES, Component, Periods, parse_filter
-from rpscli.records.spectrum import response_spectrum
-from rpscli.records.target import load_target
+from rpscli.records.measures import response_spectrum
+from rpscli.records.selection import parse_filter
+from rpscli.records.target import RULES, Component, Periods, load_target
 from rpscli.report.table import csv_text
 from rpscli.report.tables.motions import spectrum_columns
 

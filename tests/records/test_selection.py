@@ -11,15 +11,20 @@ import numpy as np
 import pytest
 
 from rpscli.errors import RecordError
-from rpscli.records import search
+from rpscli.records import selection as module
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.loading import expand_sources, load_record
-from rpscli.records.measures import intensity_measures
-from rpscli.records.requirements import Periods
-from rpscli.records.search import Goal, Pool, best_choice
-from rpscli.records.selection import PERIODS, SelectionRequest, misfit, select
-from rpscli.records.spectrum import response_spectrum
-from rpscli.records.target import load_target
+from rpscli.records.measures import intensity_measures, response_spectrum
+from rpscli.records.selection import (
+    PERIODS,
+    Goal,
+    Pool,
+    SelectionRequest,
+    best_choice,
+    misfit,
+    select,
+)
+from rpscli.records.target import Periods, load_target
 from rpscli.report.tables.motions import selection_list
 
 TARGET = "en1998:?ag=0.3g&soil=C"
@@ -66,8 +71,8 @@ def test_against_all_choices_of_random_spectra(
     monkeypatch: pytest.MonkeyPatch, least: float, per_event: int, *, pga: bool, whole: bool
 ) -> None:
     """The search by exchange is no proof of the best choice, but it finds it in all of these."""
-    monkeypatch.setattr(search, "WHOLE", 1e6 if whole else 0)
-    monkeypatch.setattr(search, "ROUNDS", 2)
+    monkeypatch.setattr(module, "WHOLE", 1e6 if whole else 0)
+    monkeypatch.setattr(module, "ROUNDS", 2)
     rng = np.random.default_rng(7)
     for _ in range(6):
         spectra = np.exp(rng.normal(0.0, 0.4, (10, 26)))

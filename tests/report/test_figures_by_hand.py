@@ -22,9 +22,8 @@ from rpscli.case.conditions import Condition
 from rpscli.case.design import Term
 from rpscli.case.study.observed import OVERTURNED
 from rpscli.records.ground_motion import GroundMotion
-from rpscli.records.requirements import RULES
 from rpscli.records.selection import Candidate, Selection
-from rpscli.records.target import TargetSpectrum
+from rpscli.records.target import RULES, TargetSpectrum
 from rpscli.report.design import region_figure, requirements_figure
 from rpscli.report.figures.motions import selection_figure
 from rpscli.report.figures.style import kept_figure
@@ -196,17 +195,14 @@ def test_maxima_beside_observed_ones(compared: dict[str, Axes]) -> None:
 
 def a_selection() -> Selection:
     """Two motions for a target, the second at the bound of its factor."""
-    periods, wanted = np.array([0.1, 0.5, 2.0]), np.array([3.0, 6.0, 1.5])
+    periods, wanted = np.array([0.1, 0.5, 2.0]), np.array([3.0, 6.0, 1.5]) / 1.01
     target = TargetSpectrum("EN 1998", "", lambda _: wanted, 0.5, 0.2, span=(0.1, 2.0))
     first, second = (GroundMotion(np.ones(2), 0.1, name) for name in ("first", "second"))
     chosen = (
         Candidate((first,), "one", 1.0, 0.2, 0.03, np.array([1.0, 2.0, 0.5]), 2.0),
         Candidate((second,), "two", 1.0, 1.2, 0.5, np.array([8.0, 16.0, 4.0]), 0.5, clamped=True),
     )
-    mean = np.array([3.0, 6.0, 1.5]) * 1.01
-    return Selection(
-        target, "component", periods, wanted, chosen, mean, 0.01, 9, 1, requirements=RULES["en1998"]
-    )
+    return Selection(target, "component", periods, chosen, 9, 1, requirements=RULES["en1998"])
 
 
 def test_a_selection_beside_its_target() -> None:

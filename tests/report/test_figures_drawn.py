@@ -41,7 +41,7 @@ from rpscli.model.devices import FrictionDamper, Stop, Tendon, ViscousDamper
 from rpscli.model.podium import Device
 from rpscli.records import measures
 from rpscli.records.loading import load_record
-from rpscli.records.spectrum import response_spectrum
+from rpscli.records.measures import response_spectrum
 from rpscli.report.figures.animation import Scene, frame_plan, history_film, modes_film
 from rpscli.report.figures.devices import devices_figure
 from rpscli.report.figures.film import FilmRequest

@@ -29,7 +29,7 @@ from rpscli.analyses.modal import modal
 from rpscli.analyses.pushover import pushover
 from rpscli.analyses.result_quantities import LIMITED
 from rpscli.model.devices import FrictionDamper, Stop, Tendon, ViscousDamper
-from rpscli.records.spectrum import drawn_spectrum
+from rpscli.records.measures import drawn_spectrum
 from rpscli.report import bundles
 from rpscli.report.budget import Budget, Row
 from rpscli.report.design import region_figure, requirements_figure

@@ -27,7 +27,7 @@ from rpscli.analyses.pushover import pushover
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.errors import UsageError
 from rpscli.model.devices import ViscousDamper
-from rpscli.records.spectrum import response_spectrum
+from rpscli.records.measures import response_spectrum
 
 MADE = replace(structure(CURVED, 3), devices=(ViscousDamper(2e5),))
 

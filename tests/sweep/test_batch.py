@@ -21,8 +21,7 @@ from rpscli.analyses.timehistory import time_history
 from rpscli.case.study.schema import PerturbSection, RangeSection, SampleSection
 from rpscli.records.ground_motion import MotionComponents
 from rpscli.records.loading import load_components, load_record
-from rpscli.records.measures import intensity_measures
-from rpscli.records.spectrum import spectral_acceleration
+from rpscli.records.measures import intensity_measures, spectral_acceleration
 from rpscli.sweep import steps
 from rpscli.sweep.context import resolved
 from rpscli.sweep.evaluation import SCALARS, PointResults, at_path, run_batch

@@ -7,7 +7,6 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
 
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import PluginError, RecordError
@@ -16,6 +15,7 @@ from rpscli.records.formats.at2 import FORMAT, contents_of_at2, read_at2, recogn
 from rpscli.records.formats.columns import read_columns, recognises_columns
 from rpscli.records.formats.record_text import Contents, RecordText, read_text
 from rpscli.records.ground_motion import UNKNOWN, GroundMotion
+from rpscli.records.source import FILE, Source
 from rpscli.registry import Registry
 
 
@@ -56,15 +56,15 @@ _FINEST, _COARSEST = 1e-4, 0.1  # s
 _OFFSET, _MANY = 0.1, 100  # of the peak, samples
 
 
-def read_record(path: Path, source: str, **stated: Any) -> GroundMotion:
-    """Read one record file of any known format, with the options of `read_text`."""
+def read_record(path: Path, of: Source) -> GroundMotion:
+    """Read one record file of any known format, with the options of its source."""
     extension = path.suffix.lower()
     if quantity := _OTHER_QUANTITIES.get(extension):
         raise RecordError(
             f"{path}: {path.suffix} files hold {quantity}; give the acceleration record of the "
             f"same station, {path.with_suffix('.AT2').name}"
         )
-    text = read_text(path, source, **stated)
+    text = read_text(path, of)
     form = _by_content(text)
     try:
         # By its extension, the format of that name says what is missing.
@@ -106,7 +106,7 @@ def contents(path: Path) -> tuple[Contents, ...]:
 def _contents(path: Path, _changed: int, _size: int) -> tuple[Contents, ...]:
     form = None
     with suppress(RecordError):
-        text = read_text(path, str(path))
+        text = read_text(path, Source(FILE, str(path), {}))
         form = _by_content(text)
     if form is None:
         return ()

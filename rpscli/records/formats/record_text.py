@@ -25,6 +25,7 @@ from rpscli.records.quantities import (
     unit_factor,
     why_no_numbers,
 )
+from rpscli.records.source import Source
 
 Array = NDArray[np.float64]
 Meant = TypeVar("Meant")
@@ -365,18 +366,14 @@ _FOREIGN = {
 _PADDING = re.compile(rb"\0{2,}|\0\Z")  # of old systems, to the ends of their blocks
 
 
-def read_text(
-    path: Path,
-    source: str,
-    *,
-    dt: float | None = None,
-    units: str | None = None,
-    channel: str | None = None,
-) -> RecordText:
-    """Read a record file as text."""
+def read_text(path: Path, of: Source) -> RecordText:
+    """Read a record file as text, with what its source says of it."""
+    of.query("dt", "units", "channel")
+    dt = of.quantity("dt", "time") if "dt" in of.values else None
+    units = of.values.get("units")
     unit = None if units is None else canonical_unit(units)
     if units is not None and unit is None:
-        raise RecordError(f"{source}: units = {units!r} is not known; use one of {KNOWN_UNITS}")
+        raise RecordError(f"{of}: units = {units!r} is not known; use one of {KNOWN_UNITS}")
     try:
         if (size := path.stat().st_size) > _LARGEST_FILE:
             raise RecordError(
@@ -403,7 +400,7 @@ def read_text(
         raise RecordError(
             f"{path}: the file is empty; fetch it again, or export the record as text"
         )
-    return RecordText(path, source, tuple(text.split("\n")), dt, unit, channel)
+    return RecordText(path, of, tuple(text.split("\n")), dt, unit, of.values.get("channel"))
 
 
 _SUMMED = (1e-6, 1e-3)

@@ -11,10 +11,9 @@ import numpy as np
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import UsageError
 from rpscli.records.ground_motion import GroundMotion
-from rpscli.records.measures import displacement, velocity
-from rpscli.records.requirements import COMPONENTS
+from rpscli.records.measures import ResponseSpectrum, displacement, velocity
 from rpscli.records.selection import Selection
-from rpscli.records.spectrum import ResponseSpectrum
+from rpscli.records.target import COMPONENTS
 from rpscli.report.figures import style
 from rpscli.report.figures.history import extremes
 

@@ -19,8 +19,7 @@ from rpscli.errors import listed
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import Superstructure
 from rpscli.records.ground_motion import GroundMotion, MotionComponents
-from rpscli.records.measures import intensity_measures
-from rpscli.records.spectrum import DAMPING, drawn_spectrum
+from rpscli.records.measures import DAMPING, drawn_spectrum, intensity_measures
 from rpscli.report.bundles import bearing_files
 from rpscli.report.documents import direction_note, leaves, versions
 from rpscli.report.figures import style

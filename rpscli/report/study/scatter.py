@@ -355,7 +355,7 @@ def pulse_of(source: str, options: SpectrumOptions) -> PulseSection:
             f"{source} is not a pulse with a period such as pulse:sine?amplitude=1g&period=1; give"
             f" that of a file: pulses: {{{PurePath(source).name}: {{period: 0.8, amplitude: 3.9}}}}"
         )
-    return PulseSection.model_construct(period=of.number("period", "time"))
+    return PulseSection.model_construct(period=of.quantity("period", "time"))
 
 
 def records_without_period(layout: StudyPoints, options: SpectrumOptions) -> Iterator[str]:

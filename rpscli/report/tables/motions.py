@@ -12,11 +12,10 @@ from typing import Any
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.records.formats.record_text import remark
 from rpscli.records.ground_motion import GroundMotion
-from rpscli.records.measures import IntensityMeasures, displacement, velocity
-from rpscli.records.requirements import COMPONENTS, NOT_VERIFIED
-from rpscli.records.selection import Selection
+from rpscli.records.measures import IntensityMeasures, ResponseSpectrum, displacement, velocity
+from rpscli.records.selection import Selection, misfit
 from rpscli.records.source import Source, is_file
-from rpscli.records.spectrum import ResponseSpectrum
+from rpscli.records.target import COMPONENTS, NOT_VERIFIED
 from rpscli.report.table import Column, Part, Table, picked, records, shown
 
 
@@ -101,6 +100,7 @@ def selection_columns(selection: Selection) -> list[Column]:
     """`selection.csv`: one row a motion, its peaks scaled."""
     chosen, three = selection.chosen, partial(shown, digits=3)
     seconds = [one.motions[1].source if len(one.motions) > 1 else None for one in chosen]
+    misfits = [float(misfit(one.scaled[1:], selection.wanted)) for one in chosen]
 
     def column(name: str, *head: Any, unit: str = "-", scaled: bool = False) -> Column:
         values = [getattr(one, name) for one in chosen]
@@ -118,7 +118,7 @@ def selection_columns(selection: Selection) -> list[Column]:
         column("pga", unit="m/s2", scaled=True),
         column("pgv", "PGV [m/s]", three, unit="m/s", scaled=True),
         column("pgd", "PGD [m]", three, unit="m", scaled=True),
-        column("misfit", "misfit", "{:.3f}".format),
+        Column("misfit", "-", misfits, "misfit", "{:.3f}".format),
     ]
 
 
