@@ -28,7 +28,7 @@ from rpscli.sweep.context import resolved
 from rpscli.sweep.evaluation import SCALARS, PointResults, at_path, run_batch
 from rpscli.sweep.points import lay_out
 from rpscli.sweep.run import LARGEST_BATCH, all_keys, batches
-from rpscli.sweep.steps import step_notes
+from rpscli.sweep.statistics.summary import step_notes
 from rpscli.sweep.systems import balance_note, changes, sample
 from sweep.small_studies import BASE, STUDY, WITHOUT_RECORDS, Make
 
