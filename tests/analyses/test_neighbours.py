@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 from paper_structures import block, building, needs_compiled_kernels, podium, waves
 
-from rpscli.analyses import neighbours as module
+from rpscli.analyses import timehistory as module
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import FACTORS, neighbours, time_history
 from rpscli.model.impact import ImpactLaw
