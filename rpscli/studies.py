@@ -60,9 +60,8 @@ from rpscli.report.table import Column, Heading, Part, columns_of, csv_text
 from rpscli.shown import Shown, data_frame, frozen
 from rpscli.sweep.points import StudyPoints, lay_out, reproduction
 from rpscli.sweep.run import Engine, Progress, Start, run, start
-from rpscli.sweep.statistics.summary import Summary, scale_notes, summary
+from rpscli.sweep.statistics.summary import Summary, scale_notes, step_notes, summary
 from rpscli.sweep.statistics.verdicts import Verdict, judged, rate_notes
-from rpscli.sweep.steps import step_notes
 from rpscli.sweep.store import Store
 from rpscli.sweep.systems import Watched, needs_of
 from rpscli.sweep.table import (

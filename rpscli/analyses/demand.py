@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import TypeAlias, TypeVar, overload
+from typing import Any, TypeAlias, overload
 
 import numpy as np
 
@@ -19,7 +19,6 @@ from rpscli.physics.state import LANES
 from rpscli.records.ground_motion import GroundMotion, MotionComponents
 from rpscli.shown import frozen
 
-Item = TypeVar("Item")
 Motion: TypeAlias = GroundMotion | MotionComponents
 
 
@@ -118,35 +117,25 @@ def demand(
 
 
 def _run(requests: Sequence[Request], worth_lanes: int) -> Histories:
-    structures: _Numbered[PodiumStructure] = {}
-    systems: _Numbered[tuple[PodiumStructure, TimeHistorySettings]] = {}
-    motions: _Numbered[MotionComponents] = {}
-    given, of_structure = [], []
-    known: dict[int, int] = {}  # by the object, which most requests share
-    for r in requests:
-        of_structure.append(_number(structures, id(r.structure), r.structure))
-        system = _number(systems, (id(r.structure), r.settings), (r.structure, r.settings))
-        if (motion := known.get(id(r.motion))) is None:
-            motion = _number(motions, tuple(map(id, r.motion.named.values())), r.motion)
-            known[id(r.motion)] = motion
-        given.append(HistoryRequest(system, motion, r.scale))
+    structures, of_structure = _distinct([id(r.structure) for r in requests])
+    firsts, of_system = _distinct([(id(r.structure), id(r.settings)) for r in requests])
+    shaken, of_motion = _distinct([id(r.motion) for r in requests])
+    systems = [(requests[i].structure, requests[i].settings) for i in firsts]
+    motions = [requests[i].motion for i in shaken]
     pairs = requests[0].motion.y is not None
-    stacked = stacked_systems([s for _, s in systems.values()], pairs=pairs)
+    stacked = stacked_systems(systems, pairs=pairs)
     rates = stacked["step_rate"].tolist()[:: len(stacked) // len(systems)]
-    shaken = [motion for _, motion in motions.values()]
-    durations = [motion.duration for motion in shaken]
-    for r, history in zip(requests, given, strict=True):
-        seconds = durations[history.motion] + longest_free_vibration(r.structure, r.settings)
-        refuse_steps(seconds * rates[history.system], r.structure)
-    run = run_of(stacked, shaken, given, pairs=pairs)
+    for r, system in zip(requests, of_system, strict=True):
+        seconds = r.motion.duration + longest_free_vibration(r.structure, r.settings)
+        refuse_steps(seconds * rates[system], r.structure)
+    scales = [r.scale for r in requests]
+    given = [*map(HistoryRequest, of_system, of_motion, scales)]
+    run = run_of(stacked, motions, given, pairs=pairs)
     follow(run, LANES if len(requests) >= worth_lanes else 1)
-    return Histories([st for _, st in structures.values()], of_structure, frozen(run.results))
+    return Histories([requests[i].structure for i in structures], of_structure, frozen(run.results))
 
 
-_Numbered: TypeAlias = dict[Hashable, tuple[int, Item]]
-"""Distinct items in the order of their first use, by what tells them apart."""
-
-
-def _number(items: _Numbered[Item], key: Hashable, item: Item) -> int:
-    """Number of the item with this key, which is added if it is new."""
-    return items.setdefault(key, (len(items), item))[0]
+def _distinct(ids: Sequence[Any]) -> tuple[list[int], list[int]]:
+    """Places where each is met first, and the number of every one among these."""
+    _, first, number = np.unique(ids, axis=0, return_index=True, return_inverse=True)
+    return first.tolist(), number.ravel().tolist()

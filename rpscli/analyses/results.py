@@ -19,8 +19,7 @@ from rpscli.analyses.fixed_base import (
     largest_resultants,
     largest_velocities,
 )
-from rpscli.analyses.largest_demands import Demand
-from rpscli.analyses.outcome import STOOD
+from rpscli.analyses.largest_demands import STOOD, Demand
 from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
 from rpscli.analyses.trace import Event, Trace, sampled
 from rpscli.errors import listed

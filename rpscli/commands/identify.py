@@ -62,8 +62,7 @@ def command(
     `ground_acceleration` as well.
     """
     given = read_case(request, terminal)
-    from rpscli.analyses.identification import LEVEL
-    from rpscli.analyses.identification.identify import identified
+    from rpscli.analyses.identification import LEVEL, identified
 
     columns = measured(data, test, first, last)
     announce_compilation(terminal)
@@ -116,7 +115,7 @@ def measured(source: str, test: str, first: float | None, last: float | None) ->
     """What a test needs, in SI units, in the time that is looked at."""
     import numpy as np
 
-    from rpscli.analyses.identification.identify import TESTS
+    from rpscli.analyses.identification import TESTS
     from rpscli.case.text.files import read_text
     from rpscli.csv_text import csv_rows
     from rpscli.units import si_factor

@@ -12,10 +12,9 @@ from itertools import groupby
 from typing import Any, NamedTuple
 
 from rpscli.analyses.column_forces import OF_COLUMNS, no_bound
-from rpscli.analyses.neighbours import Neighbour, neighbours
 from rpscli.analyses.result_quantities import LIMITED, NEEDS, ResultQuantity
 from rpscli.analyses.results import TimeHistoryResult
-from rpscli.analyses.timehistory import time_history
+from rpscli.analyses.timehistory import Neighbour, neighbours, time_history
 from rpscli.case.conditions import LIMITS, Condition, case_conditions
 from rpscli.case.plausibility import doubts_of_directions
 from rpscli.commands import inputs

@@ -17,9 +17,8 @@ from numpy.typing import NDArray
 from rpscli.analyses import result_quantities as rq
 from rpscli.analyses.demand import Request, histories
 from rpscli.analyses.fixed_base import fixed_base_shears
-from rpscli.analyses.largest_demands import Histories
+from rpscli.analyses.largest_demands import Histories, failure_text
 from rpscli.analyses.modal import modal
-from rpscli.analyses.outcome import failure_text
 from rpscli.analyses.pushover import pushover
 from rpscli.analyses.result_quantities import ResultQuantity
 from rpscli.analyses.timehistory import time_history

@@ -27,10 +27,10 @@ from rpscli.records.source import Source
 from rpscli.sweep.context import (
     SYSTEMS_KEPT,
     Array,
+    Plan,
     RecordRequest,
     StudyContext,
     System,
-    resolved,
     unjudged,
 )
 
@@ -164,7 +164,8 @@ def examined(
         varied = (axis.rows[row] for axis, row in zip(study.axes, rows, strict=False))
         values = (*itertools.chain.from_iterable(varied), *drawn[rows[-1]].tolist())
         try:
-            case = resolved(plan, values)
+            written = _overrides(study, plan, values, rows)
+            case = case_from_mapping(study.base, plan.base_name, study.base_folder, written)
             system = System.of_case(case)
             own = None if study.sources else _own_record(case, of)
             request = own and requests.setdefault(own, own)
@@ -177,7 +178,7 @@ def examined(
             if both and plan.analysis == "timehistory" and (why := case.structure.planar_only):
                 raise CaseError(f"both components together: {why}")  # noqa: TRY301 -- placed below
         except CaseError as error:
-            complaints |= dict.fromkeys(_placed(study, context, values, rows, error))
+            complaints |= dict.fromkeys(str(error).splitlines())
             faulty += 1
             if faulty >= MOST_FAULTY:
                 break
@@ -292,26 +293,18 @@ HAS: dict[str, Callable[[PodiumStructure], bool]] = {
 """True of structures that have what a result needs, by the names of `NEEDS`."""
 
 
-def _placed(
-    study: Study, context: StudyContext, values: Values, rows: Sequence[int], error: CaseError
-) -> list[str]:
-    """The lines of a message, at the places where the study wrote the values."""
-    plan, document = context.plan, study.document
+def _overrides(study: Study, plan: Plan, values: Values, rows: Sequence[int]) -> list[Override]:
+    """The values of a system, at the places where the study wrote them."""
     places: list[Place] = [
         axis.place(key, row)
         for axis, row in zip(study.axes, rows, strict=False)
         for key in range(len(axis.keys))
     ]
     sampled = plan.keys[len(places) :]
-    places += [document.value_place(("sample", "ranges", key)) for key in sampled]
+    places += [study.document.value_place(("sample", "ranges", key)) for key in sampled]
     written = [Override(*item) for item in zip(plan.keys, values, places, strict=True)]
     without = unjudged(dict(zip(plan.keys, values, strict=True)))
-    written += [Override(limit, None, places[-1]) for limit in without]
-    try:
-        case_from_mapping(study.base, plan.base_name, study.base_folder, written)
-    except CaseError as placed:
-        return str(placed).splitlines()
-    return str(error).splitlines()
+    return written + [Override(limit, None, places[-1]) for limit in without]
 
 
 def _refuse_restitution(study: Study, case: Case, members: Sequence[Change]) -> None:

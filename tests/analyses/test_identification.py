@@ -12,9 +12,7 @@ from paper_structures import Array, block, needs_compiled_kernels, podium
 from scipy.integrate import solve_ivp
 from scipy.signal import lsim
 
-from rpscli.analyses.identification import Estimate, Identified
-from rpscli.analyses.identification.rocking import rocking
-from rpscli.analyses.identification.vibration import Vibration, vibration
+from rpscli.analyses.identification import Estimate, Identified, Vibration, rocking, vibration
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.errors import AnalysisError

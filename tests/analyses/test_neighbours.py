@@ -7,10 +7,9 @@ from dataclasses import replace
 import pytest
 from paper_structures import block, building, needs_compiled_kernels, podium, waves
 
-from rpscli.analyses import neighbours as module
-from rpscli.analyses.neighbours import FACTORS, neighbours
+from rpscli.analyses import timehistory as module
 from rpscli.analyses.settings import TimeHistorySettings
-from rpscli.analyses.timehistory import time_history
+from rpscli.analyses.timehistory import FACTORS, neighbours, time_history
 from rpscli.model.impact import ImpactLaw
 from rpscli.report.tables.timehistory import neighbours_texts, restitution_text
 

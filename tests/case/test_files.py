@@ -19,7 +19,7 @@ from rpscli.commands.identify import measured
 from rpscli.errors import CaseError, RecordError, RpsError
 from rpscli.records.loading import expand_sources, load_record
 from rpscli.records.target import load_target
-from rpscli.sweep.fits.hazard import read_hazard
+from rpscli.sweep.statistics.hazard import read_hazard
 
 from .conftest import BUILDING
 

@@ -27,15 +27,14 @@ from rpscli.records.target import RULES, TargetSpectrum
 from rpscli.report.design import region_figure, requirements_figure
 from rpscli.report.figures.motions import selection_figure
 from rpscli.report.figures.style import kept_figure
-from rpscli.report.study.comparison import Compared, Outcomes, comparison_figure
-from rpscli.report.study.fragility import Fragilities, Fragility, LimitState, Observed
+from rpscli.report.study.comparison import Agreement, Compared, Outcomes, comparison_figure, maxima
+from rpscli.report.study.fragility import Binned, Fragilities, Fragility, LimitState
 from rpscli.report.study.heights import Floors, floor_spectra_figure
 from rpscli.report.study.risk import Risk, risk_figure
 from rpscli.sweep.design import Answer, Requirement
-from rpscli.sweep.fits.lognormal import NOTHING, Lognormal
 from rpscli.sweep.statistics.fractiles import share
 from rpscli.sweep.statistics.grouping import Grouping
-from rpscli.sweep.statistics.observations import Agreement, maxima
+from rpscli.sweep.statistics.lognormal import NOTHING, Lognormal
 from rpscli.sweep.table import Indices, Intensity
 
 Array = NDArray[np.float64]
@@ -79,7 +78,7 @@ def test_what_a_rate_comes_from() -> None:
     edges, nothing = np.array([1.0, 2.0, 4.0, 8.0, INF]), np.empty(0)
 
     def risk(place: int, limit: LimitState, rates: list[float], half: float) -> Risk:
-        observed = Observed(nothing, ())
+        observed = Binned(nothing, ())
         counts = (9, 3, 0, 0)
         fit, values = fit_of(nothing), [(0.5,), (0,)][place]
         fragility = Fragility(values, limit, fit, nothing, observed, *counts, place, 0.4, 6.0)
@@ -138,7 +137,7 @@ def test_what_a_rate_comes_from() -> None:
 def compared() -> dict[str, Axes]:
     """A fragility and maxima beside what was observed, by the first line of their titles."""
     binned = [
-        Observed(np.array(levels), [share(number, 4) for number in numbers])
+        Binned(np.array(levels), [share(number, 4) for number in numbers])
         for levels, numbers in (((2.0, 5.0), (0, 4)), ((3.0, 8.0), (1, 3)))
     ]
     outcomes = Outcomes(Agreement(1, 2, 1, 0, share(1, 4)), *binned)

@@ -22,12 +22,12 @@ from rpscli.case.study.schema import PerturbSection, RangeSection, SampleSection
 from rpscli.records.ground_motion import MotionComponents
 from rpscli.records.loading import load_components, load_record
 from rpscli.records.measures import intensity_measures, spectral_acceleration
-from rpscli.sweep import steps
 from rpscli.sweep.context import resolved
 from rpscli.sweep.evaluation import SCALARS, PointResults, at_path, run_batch
 from rpscli.sweep.points import lay_out
 from rpscli.sweep.run import LARGEST_BATCH, all_keys, batches
-from rpscli.sweep.steps import step_notes
+from rpscli.sweep.statistics import summary
+from rpscli.sweep.statistics.summary import step_notes
 from rpscli.sweep.systems import balance_note, changes, sample
 from sweep.small_studies import BASE, STUDY, WITHOUT_RECORDS, Make
 
@@ -320,7 +320,7 @@ def test_points_that_change_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
     (found,) = notes(Points(4))
     assert found.startswith("steps: of 4 points (of 4) computed again")
     assert "1 changed: point 3 (max_rotation " in found
-    monkeypatch.setattr(steps, "MOST", 2)
+    monkeypatch.setattr(summary, "COMPUTED_AGAIN", 2)
     (found,) = notes(Points(4))  # the first and the third
     assert found.startswith("steps: of 2 points (of 4) computed again")
     assert "point 3 (" in found
@@ -336,7 +336,7 @@ def test_what_is_computed_the_same_or_failed_is_not_told() -> None:
 
 @needs_compiled_kernels
 def test_what_was_not_tried_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(steps, "is_ready", lambda *_: False)
+    monkeypatch.setattr(summary, "is_ready", lambda *_: False)
     (found,) = notes(Points(4))
     assert "steps of half the length was not tried" in found
     assert "the kernel that computes them is not compiled yet" in found

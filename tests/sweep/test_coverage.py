@@ -11,8 +11,8 @@ from paper_structures import needs_recorded_motions
 
 import rpscli
 from rpscli.records.recordings import clusters
-from rpscli.sweep.fits.lognormal import Bootstrap, Lognormal, lognormal_fit
 from rpscli.sweep.statistics.fractiles import clustered
+from rpscli.sweep.statistics.lognormal import Bootstrap, Lognormal, lognormal_fit
 
 pytestmark = pytest.mark.evidence("statistics and fragilities", "exact")
 

@@ -17,7 +17,7 @@ from rpscli.report.study.scatter import (
     overturning_spectrum,
     records_without_period,
 )
-from rpscli.sweep.fits.lognormal import (
+from rpscli.sweep.statistics.lognormal import (
     Bootstrap,
     Lognormal,
     band,

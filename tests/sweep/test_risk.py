@@ -14,7 +14,7 @@ from scipy.special import ndtr
 from rpscli.case.conditions import parse_condition
 from rpscli.errors import CaseError
 from rpscli.report.study.statistics import verdict_lines
-from rpscli.sweep.fits.hazard import (
+from rpscli.sweep.statistics.hazard import (
     Hazard,
     annual_rate,
     exceeded,

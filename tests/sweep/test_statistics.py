@@ -11,9 +11,8 @@ from rpscli.report.study.against import RotationOptions, rotation
 from rpscli.report.study.heights import StoreyShearOptions, storey_shear, unlike_buildings
 from rpscli.report.study.ida import IdaOptions, ida
 from rpscli.report.study.lines import LinesOptions, lines
-from rpscli.report.study.scatter import DemandOptions, ScatterOptions, demand, scatter
+from rpscli.report.study.scatter import DemandOptions, ScatterOptions, bilinear_fit, demand, scatter
 from rpscli.report.study.table import OVERTURNING, TABLE, OverturningOptions, TableOptions
-from rpscli.sweep.fits.bilinear import bilinear_fit
 from rpscli.sweep.points import lay_out
 from sweep.made_up import (
     ALPHA,

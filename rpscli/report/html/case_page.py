@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from rpscli.analyses.column_design import WITHOUT_IMPULSE
-from rpscli.analyses.neighbours import Neighbour
 from rpscli.analyses.results import STEEL_ROTATION, TimeHistoryResult
+from rpscli.analyses.timehistory import Neighbour
 from rpscli.case.case import Case
 from rpscli.case.schema.keys import unit
 from rpscli.errors import listed

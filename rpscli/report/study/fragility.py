@@ -28,10 +28,10 @@ from rpscli.report.study.labels import keyed, labels
 from rpscli.report.study.report import Found, Report
 from rpscli.report.study.statistics import counted_columns, share_columns
 from rpscli.report.table import Column
-from rpscli.sweep.fits.lognormal import Bootstrap, Lognormal, band, lognormal_fit
 from rpscli.sweep.points import StudyPoints
 from rpscli.sweep.statistics.fractiles import CONFIDENCE, Share, share_of
 from rpscli.sweep.statistics.grouping import INTENSITY, Grouping, Histories, grouping
+from rpscli.sweep.statistics.lognormal import Bootstrap, Lognormal, band, lognormal_fit
 from rpscli.sweep.statistics.verdicts import exceeds
 from rpscli.sweep.table import Array, Indices, Intensity, StudyResults, Table
 
@@ -162,7 +162,7 @@ class FragilityOptions(MeasureOptions):
         return {name: float(bounds.read(value)) for name, value in self.at.items()}
 
 
-class Observed(NamedTuple):
+class Binned(NamedTuple):
     """Points that exceed the limit within a bin of intensities, each (bins,)."""
 
     intensity: Array
@@ -182,7 +182,7 @@ class Fragility:
     limit: LimitState
     fit: Lognormal
     grid: Array
-    observed: Observed
+    observed: Binned
     counted: int
     exceeded: int
     overturned: int  # of those that exceed the limit
@@ -306,7 +306,7 @@ def _fragility(
     return Fragility(group.values, limit, fit, grid, seen, *counts, failed, place, total, largest)
 
 
-def binned(table: Table, kept: Indices, intensity: Array, beyond: NDArray[np.bool_]) -> Observed:
+def binned(table: Table, kept: Indices, intensity: Array, beyond: NDArray[np.bool_]) -> Binned:
     """Shares at each intensity, or in bins of equal numbers of points if there are too many."""
     levels, place = np.unique(intensity, return_inverse=True)
     if len(levels) > 2 * MOST_BINS:
@@ -314,7 +314,7 @@ def binned(table: Table, kept: Indices, intensity: Array, beyond: NDArray[np.boo
         place = order * MOST_BINS // len(intensity)
         levels = np.exp([np.log(intensity[place == i]).mean() for i in range(MOST_BINS)])
     bins = [np.flatnonzero(place == i) for i in range(len(levels))]
-    return Observed(levels, tuple(share_of(table, kept[of], beyond[of]) for of in bins))
+    return Binned(levels, tuple(share_of(table, kept[of], beyond[of]) for of in bins))
 
 
 def measure_without_period(layout: StudyPoints, options: MeasureOptions) -> Iterator[str]:

@@ -20,10 +20,10 @@ from rpscli.report.study import panels
 from rpscli.report.study.fragility import MOST_BANDS, Fragilities, Fragility
 from rpscli.report.study.labels import keyed
 from rpscli.report.study.report import Found, Report, with_band
-from rpscli.sweep.fits import hazard as rates
-from rpscli.sweep.fits.hazard import Hazard, annual_rate
-from rpscli.sweep.fits.lognormal import NOTHING, Band, band
 from rpscli.sweep.points import StudyPoints
+from rpscli.sweep.statistics import hazard as rates
+from rpscli.sweep.statistics.hazard import Hazard, annual_rate
+from rpscli.sweep.statistics.lognormal import NOTHING, Band, band
 from rpscli.sweep.statistics.verdicts import component_notes
 from rpscli.sweep.table import Array, StudyResults
 

@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 
 from rpscli.analyses.column_design import WITHOUT_IMPULSE, no_line
 from rpscli.analyses.column_forces import AMPLE
-from rpscli.analyses.neighbours import OTHER_LOSS, Neighbour
 from rpscli.analyses.result_quantities import HISTORY, PAIR, SAMPLED, YIELDING
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
+from rpscli.analyses.timehistory import OTHER_LOSS, Neighbour
 from rpscli.errors import listed
 from rpscli.model.podium import PodiumStructure
 from rpscli.report.limits import limits_table

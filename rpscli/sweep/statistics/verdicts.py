@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 from rpscli.case.conditions import EVENTS, NOT_SHOWN, RATE, Condition
 from rpscli.case.text.document import Fault
 from rpscli.records.measures import SHOWN, Of
-from rpscli.sweep.fits.hazard import exceeded, rate_of_shares, read_hazard
 from rpscli.sweep.points import StudyPoints
 from rpscli.sweep.statistics.fractiles import ROUNDING, Share, share_of, shown_by
+from rpscli.sweep.statistics.hazard import exceeded, rate_of_shares, read_hazard
 from rpscli.sweep.statistics.summary import Records, Summary
 from rpscli.sweep.table import Array, Indices, Outcomes, Table
 

@@ -1,26 +1,211 @@
-"""Restitution and rolling resistance from free rocking, by times and amplitudes of its swings.
+"""Measurements on a standing structure, and what they say about its case, with intervals.
 
+Restitution and rolling resistance come from free rocking, by times and amplitudes of its swings.
 The model is read as the measurement is, so that what the reading does to a swing does not count.
 Where releases within the error of measurement part ways, as under buildings that vibrate, means of
-ensembles are fitted, and what swings scatter about them, together, counts as error.
+ensembles are fitted, and what swings scatter about them, together, counts as error. First period
+and damping before uplift come from accelerations of a floor.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from rpscli.analyses.identification import Estimate, Identified, estimate
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
-from rpscli.errors import AnalysisError
+from rpscli.errors import AnalysisError, UsageError
+from rpscli.model.contact import Contact
 from rpscli.model.devices import RollingResistance
 from rpscli.model.podium import Array, PodiumStructure
 from rpscli.records.ground_motion import GroundMotion
+
+LEVEL = 0.90
+"""Of every interval."""
+
+
+class Estimate(NamedTuple):
+    """A parameter with its interval of 90 %."""
+
+    value: float
+    low: float
+    high: float
+
+    @property
+    def determined(self) -> bool:
+        """Whether its interval has a width, and one below the value."""
+        return 0.0 < self.high - self.low < abs(self.value)
+
+
+class Identified(NamedTuple):
+    """Estimates, and what they are in a case."""
+
+    estimates: dict[tuple[str, str], Estimate]  # by name and unit
+    keys: dict[str, str]  # values of keys, as written
+    misfit: float  # distance of the model over the errors
+    remarks: str
+    ensembles: bool = False  # true if means of many motions were fitted
+    residuals: tuple[dict[str, float], ...] = ()  # of each swing
+
+
+def estimate(value: float, error: float, freedoms: int) -> Estimate:
+    """From a standard error whose own size was estimated: Student's t."""
+    from scipy.stats import t
+
+    wide = float(t.ppf(0.5 + 0.5 * LEVEL, freedoms)) * error
+    return Estimate(float(value), float(value - wide), float(value + wide))
+
+
+BAND = (0.6, 1.5)
+"""Frequencies about the first one that are looked at, over it."""
+LOOKED_FOR = (0.85, 3.0)
+"""Periods that are looked for, over the one on a fixed base."""
+DAMPED = (1e-4, 0.5)
+"""Damping ratios of structures."""
+LEFT, SCATTER = (0.0, 0.7), (0.3, 3.0)
+"""Misfits of a model that holds: of what is fitted, and of an ambient spectrum."""
+UNKNOWN = 3.0
+"""Standard error of a logarithm that says nothing."""
+
+
+class Vibration(NamedTuple):
+    """First period [s] and damping ratio."""
+
+    period: Estimate
+    damping: Estimate
+    misfit: float  # scatter about the spectrum, 1 where it holds; or the part that is not fitted
+
+
+def vibration(
+    expected: float, dt: float, floor: Array, ground: Array | None = None, *, free: bool = False
+) -> Vibration:
+    """First period and damping before uplift from a floor's acceleration, in any unit.
+
+    With the ground's in the same unit the floor's answer to it is fitted; else a free decay if
+    `free`, else the spectrum. `expected` is the first period on a fixed base [s].
+
+    Notes
+    -----
+    Ambient: Whittle's likelihood of the periodogram, S = a f^c/((f^2 - f1^2)^2 + (2 zeta f1 f)^2) +
+    b, P. Whittle, Ark. Mat. 2, 1953; intervals from Fisher's information. Else least squares of the
+    transform in the band, linear in all but period and damping.
+    """
+    for name, record in (("floor", floor), ("ground", ground)):
+        if record is not None and not np.ptp(record) > 0.0:
+            raise AnalysisError(f"the acceleration of the {name} is constant")
+    n = len(floor)
+    if n * dt < 10.0 * expected:
+        raise AnalysisError(
+            f"{n * dt:.3g} s are fewer than ten periods of {expected:.3g} s; a longer record is"
+            " needed"
+        )
+    f = np.fft.rfftfreq(n, dt)
+    Y = np.fft.rfft(floor - floor.mean())
+    X = None if ground is None else np.fft.rfft(ground)
+    power = np.abs(Y) ** 2
+    if X is not None:
+        power /= np.abs(X) ** 2 + np.median(np.abs(X) ** 2)
+    width = max(3, round(0.05 * n * dt / expected))
+    smooth = np.convolve(power, np.ones(width) / width, "same")
+    looked = (f > 1.0 / (LOOKED_FOR[1] * expected)) & (f < 1.0 / (LOOKED_FOR[0] * expected))
+    peak = float(f[looked][np.argmax(smooth[looked])])
+    inside = (f > BAND[0] * peak) & (f < BAND[1] * peak)
+    f, Y = f[inside], Y[inside]
+    if len(f) < 12:
+        raise AnalysisError(f"{len(f)} frequencies about {peak:.3g} Hz; a longer record is needed")
+    if X is None and not free:
+        return _ambient(f, np.abs(Y) ** 2 / n, peak, expected)
+    time = np.arange(n) * dt
+
+    def columns(q: Array) -> Array:
+        """What period and damping make of unit amplitudes."""
+        w, zeta = np.exp(q)
+        decay = np.exp((-zeta + 1j * math.sqrt(1.0 - min(zeta, 0.9) ** 2)) * w * time)
+        made = [np.fft.rfft(part)[inside] for part in (decay.real, decay.imag)]
+        # Higher modes are slow and smooth here: what begins in them, and what the ground does.
+        s = 2j * np.pi * f / w
+        made += [np.ones_like(s), s]
+        if X is not None:
+            parts = (1.0, s**2, s**2 / (s**2 + 2.0 * zeta * s + 1.0))
+            made += [X[inside] * part for part in parts]
+        return np.column_stack(made)
+
+    def misses(q: Array) -> Array:
+        C = columns(q)
+        stacked, y = np.concatenate([C.real, C.imag]), np.concatenate([Y.real, Y.imag])
+        return np.asarray(y - stacked @ np.linalg.lstsq(stacked, y, rcond=None)[0])
+
+    from scipy.optimize import least_squares
+
+    best = least_squares(misses, [math.log(2.0 * math.pi * peak), math.log(0.03)], x_scale=0.01)
+    freedoms = 2 * len(f) - (6 if X is None else 9)
+    variance = 2.0 * float(best.cost) / freedoms
+    J = np.asarray(best.jac)
+    covariance = variance * np.linalg.pinv(J.T @ J)
+    share = 2.0 * float(best.cost) / float(np.sum(np.abs(Y) ** 2))
+    return _of_logarithms(best.x, covariance, freedoms, math.sqrt(share), expected, LEFT)
+
+
+def _ambient(f: NDArray[Any], power: NDArray[Any], peak: float, expected: float) -> Vibration:
+    """From the periodogram, whose values are exponential about the spectrum."""
+
+    def spectrum(p: Array) -> Array:
+        first, zeta, a, b, c = np.exp(p[0]), np.exp(p[1]), np.exp(p[2]), np.exp(p[3]), p[4]
+        x = f / first
+        return np.asarray(a * x**c / ((x**2 - 1.0) ** 2 + (2.0 * zeta * x) ** 2) + b)
+
+    def unlikely(p: Array) -> float:
+        S = spectrum(p)
+        return float(np.sum(np.log(S) + power / S))
+
+    from scipy.optimize import minimize
+
+    sizes = peak, 0.03, 4e-3 * power.max(), power.min() + 1e-3 * power.mean()
+    options: Any = {"maxiter": 4000, "xatol": 1e-6, "fatol": 1e-6}
+    start = np.array([*map(math.log, sizes), 0.0])
+    p = np.asarray(minimize(unlikely, start, method="Nelder-Mead", options=options).x)
+    S, h = spectrum(p), 1e-5
+    J = np.array([(spectrum(p + h * d) - spectrum(p - h * d)) / (2.0 * h * S) for d in np.eye(5)])
+    covariance, misfit = np.linalg.pinv(J @ J.T), float((power / S).std())
+    q = np.array([p[0] + math.log(2.0 * math.pi), p[1]])
+    return _of_logarithms(q, covariance, len(f) - 5, misfit, expected, SCATTER)
+
+
+@np.errstate(invalid="ignore")  # variances below 0, of what is not determined
+def _of_logarithms(
+    q: Array,
+    covariance: Array,
+    freedoms: int,
+    misfit: float,
+    expected: float,
+    usual: tuple[float, float],
+) -> Vibration:
+    """Period and damping from logarithms of circular frequency and damping; refuse a bad fit."""
+    T, zeta = 2.0 * math.pi * np.exp(-q[0]), np.exp(q[1])
+    errors, why = np.sqrt(np.diag(covariance)[:2]), ""
+    if not (LOOKED_FOR[0] * expected < T < LOOKED_FOR[1] * expected):
+        reach = f"from {LOOKED_FOR[0]:g} to {LOOKED_FOR[1]:g} times that of the case"
+        why = f"its period of {T:.4g} s is not {reach}, {expected:.4g} s"
+    elif not DAMPED[0] < zeta < DAMPED[1]:
+        why = f"its damping ratio of {zeta:.3g} is none of a structure"
+    elif not usual[0] < misfit < usual[1]:
+        why = f"its misfit of {misfit:.3g} is not from {usual[0]:g} to {usual[1]:g}"
+    elif not np.all(errors < UNKNOWN):
+        why = "the motion does not determine it"
+    if why:
+        raise AnalysisError(
+            f"no vibration before uplift fits: {why}; choose a part of the motion by --from and"
+            " --to, or check the case and the units"
+        )
+    w, ratio = (estimate(value, error, freedoms) for value, error in zip(q, errors, strict=False))
+    period = Estimate(*(2.0 * math.pi * math.exp(-value) for value in (w.value, w.high, w.low)))
+    return Vibration(period, Estimate(*(math.exp(value) for value in ratio)), misfit)
+
 
 MOST_SWINGS = 12
 SEEN = 20.0
@@ -277,3 +462,69 @@ def _fitted(
             break
     variance = float(np.sum(misses(q) ** 2)) / (len(measured) - len(q))
     return q, inverse @ (J * steps).T / errors, math.sqrt(variance)
+
+
+_ROTATION = (("rotation", "rad"), ("cap_beam_displacement", "m"))
+_FLOOR, _GROUND = (("floor_acceleration", "m/s2"),), (("ground_acceleration", "m/s2"),)
+TESTS = {
+    "rocking": (_ROTATION,),
+    "ambient": (_FLOOR,),
+    "release": (_FLOOR,),
+    "earthquake": (_FLOOR, _GROUND),
+}
+"""Columns that each test needs besides the time, one of each group, and their SI units."""
+
+
+def identified(structure: PodiumStructure, test: str, columns: Mapping[str, Array]) -> Identified:
+    """What one of the `TESTS` says of a structure, from columns (n,) in SI units by name."""
+    found = (_rocking if test == "rocking" else _vibration)(structure, test, columns)
+    for (name, _), value in found.estimates.items():
+        if not value.determined:
+            unknown = f"; {name} is not determined: its interval is not narrower than its value"
+            found = found._replace(remarks=found.remarks + unknown)
+    return found
+
+
+def _rocking(structure: PodiumStructure, _: str, columns: Mapping[str, Array]) -> Identified:
+    rotation = columns.get("rotation")
+    if rotation is None:
+        beam = columns["cap_beam_displacement"]
+        x = np.linspace(0.0, structure.critical_rotation, 2001)
+        rotation = np.sign(beam) * np.interp(np.abs(beam), structure.path(x)[1], x)
+    return rocking(structure, columns["time"], rotation)
+
+
+def _vibration(structure: PodiumStructure, test: str, columns: Mapping[str, Array]) -> Identified:
+    building = structure.superstructure
+    if building is None:
+        raise UsageError(f"{test}: without storeys there is no period before uplift; use rocking")
+    time, fixed = columns["time"], float(building.periods[0])
+    step = float(time[-1] - time[0]) / (len(time) - 1)
+    ground = columns.get("ground_acceleration")
+    found = vibration(fixed, step, columns["floor_acceleration"], ground, free=test == "release")
+    ratio = Estimate(*(value / fixed for value in found.period))
+    estimates = {("period", "s"): found.period, ("damping", "-"): found.damping}
+    estimates["period_ratio", "-"] = ratio
+    remarks = f"period_ratio is over {fixed:.4g} s, the period of the case on a fixed base"
+    if ground is not None:
+        remarks += "; noise in the record of the ground is not in the intervals, which are too"
+        remarks += " narrow by it"
+    keys: dict[str, str] = {}
+    if not ratio.low > 1.0:
+        remarks += "; 1, which is rigid contact, is not excluded"
+        return Identified(estimates, keys, found.misfit, remarks)
+    try:
+        soft = [replace(structure, contact=Contact("plane", each)).bed for each in ratio]
+    except ValueError as error:
+        raise AnalysisError(f"period_ratio = {ratio.value:.4g}: {error}") from None
+    best, stiffest, softest = (bed for bed in soft if bed is not None)
+    both = (best.stiffness, softest.stiffness, stiffest.stiffness)
+    estimates["stiffness", "N/m"] = Estimate(*both)
+    sunk = [bed.settlement for bed in (best, stiffest, softest) if bed.settlement is not None]
+    if len(sunk) == 3:
+        estimates["settlement", "m"] = Estimate(*sunk)
+    keys["podium.contact.period_ratio"] = f"{ratio.value:.4g}"
+    keys["podium.contact.kind"] = "plane"
+    remarks += "; stiffness of the storey in full contact; a period does not show whether ends are"
+    remarks += " `plane`, which the settlement is for, or `edges`: try both"
+    return Identified(estimates, keys, found.misfit, remarks)

@@ -1,1 +1,0 @@
-"""Curves through data, each by one published method."""
