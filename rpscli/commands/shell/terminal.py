@@ -14,7 +14,6 @@ import traceback
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, ExitStack, contextmanager, nullcontext
 from dataclasses import dataclass, field
-from itertools import chain
 from pathlib import Path
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any, Literal, TextIO
@@ -87,87 +86,70 @@ class Terminal:
         leave(error)
 
 
-def fitting(table: Table, console: Console) -> Iterator[RichTable]:
+def _fitting(table: Table, console: Console) -> Iterator[RichTable]:
     """The parts of a table that is wider than the terminal: its keys begin each."""
     columns = list(range(len(table.columns)))
     keys, others = columns[: table.keys], columns[table.keys :]
     while others:
         for count in range(len(others), 0, -1):
             shown = [*keys, *others[:count]]
-            # rich takes from all columns what is missing, and then gives numbers back what they
-            # need: where that is too much, all of the room is to come from words, and heads of
-            # numbers break into as few lines as do.
-            ways = (None, 2, 3, MOST_LINES, *[ALL_FOLD] * (count == 1))
-            made = chain(
-                (_made(table, shown, lines) for lines in ways),
-                (_squeezed(table, shown, room) for room in [console.width]),
-            )
-            part = next((each for each in made if _width(each, console) <= console.width), None)
-            if part is not None:
+            widths = _widths(table, shown, console.width, fold=count == 1)
+            if widths:
                 break
         others = others[count:]
-        yield part or _made(table, shown)
+        yield _made(table, shown, widths)
 
 
-def _squeezed(table: Table, columns: Sequence[int], room: int) -> RichTable:
-    """The widest columns give all that is missing, down to their longest word."""
-    made = _made(table, columns, MOST_LINES)
-    texts = [[table.heads[i], *(row[i] for row in table.rows)] for i in columns]
-    widths = [max(map(len, column), default=1) for column in texts]
-    least = [column.width or column.min_width or 1 for column in made.columns]
-    while sum(widths) > room - GAP * (len(widths) - 1):
-        free = [i for i, width in enumerate(widths) if width > least[i]]
-        if not free:
-            return made
-        widths[max(free, key=widths.__getitem__)] -= 1
-    for column, width in zip(made.columns, widths, strict=True):
-        column.width = width
-    return made
+def _widths(table: Table, columns: Sequence[int], room: int, *, fold: bool) -> list[int]:
+    """Widths that fit, or none: heads of numbers break into as few lines as do, then words fold.
+
+    Numbers never do, but where one column beside the keys is too wide.
+    """
+    heads, rows = [visible(table.heads[i]) for i in columns], table.rows
+    cells = [[visible(row[i]) for row in rows] for i in columns]
+    wide = [max(map(len, [head, *own])) for head, own in zip(heads, cells, strict=True)]
+    in_head = [min(max(map(len, head.split()), default=1), LONGEST_HEAD) for head in heads]
+    for lines in (1, 2, 3, MOST_LINES, *[ALL_FOLD] * fold):
+        widths, least = [], []
+        for index, head, own, most, word in zip(columns, heads, cells, wide, in_head, strict=True):
+            if index < table.words:
+                longest = max((len(part) for cell in own for part in cell.split()), default=0)
+                least.append(max(min(longest, LONGEST_WORD), word))
+                widths.append(most)
+                continue
+            number = max([word, *map(len, own)])
+            broken = (w for w in range(number, most + 1) if len(wrap(head, w)) <= lines)
+            widths.append(next(broken, most))
+            least.append(1 if lines == ALL_FOLD else widths[-1])
+        missing = sum(widths) + GAP * (len(widths) - 1) - room
+        for _ in range(missing):
+            free = [i for i, width in enumerate(widths) if width > least[i]]
+            if not free:
+                break
+            widths[max(free, key=widths.__getitem__)] -= 1
+        else:
+            return widths
+    return []
 
 
-def _width(made: RichTable, console: Console) -> int:
-    """Columns of the terminal that a table takes, or would if its numbers were not broken."""
-    from rich.segment import Segment
-
-    needed = sum(column.width or column.min_width or 1 for column in made.columns)
-    needed += GAP * (len(made.columns) - 1)
-    lines = Segment.split_lines(console.render(made))
-    widths = (sum(segment.cell_length for segment in line) for line in lines)
-    return max(needed if made.show_header else 0, *widths, 0)
-
-
-def _made(table: Table, columns: Sequence[int], lines: int | None = None) -> RichTable:
-    """Some columns of a table: words fold where it is narrow, numbers stand right and never do."""
+def _made(table: Table, columns: Sequence[int], widths: Sequence[int]) -> RichTable:
+    """Some columns of a table: words stand left, numbers right; a listing has no heads."""
     from rich import box
     from rich.table import Table as RichTable
 
-    heads = [visible(head) for head in table.heads]
-    rows = [[visible(cell) for cell in row] for row in table.rows]
-    if not any(heads):
+    if listing := not any(table.heads):
         made = RichTable(box=None, show_header=False, pad_edge=False, padding=(0, 2, 0, 0))
     else:
         made = RichTable(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False)
-    for index in columns:
-        cells, head = [row[index] for row in rows], heads[index]
+    for index, width in zip(columns, widths or [None] * len(columns), strict=True):
         justify: Literal["left", "right"] = "left" if index < table.words else "right"
-        in_head = min(max(map(len, head.split()), default=0), LONGEST_HEAD)
-        if not any(heads):
+        if listing:
             made.add_column(overflow="fold" if index else "ellipsis")
-        elif lines == ALL_FOLD:
-            made.add_column(head, justify=justify, overflow="fold")
-        elif index < table.words:
-            word = max((len(word) for cell in cells for word in cell.split()), default=0)
-            least = max(min(word, LONGEST_WORD), in_head, 1)
-            made.add_column(head, overflow="fold", min_width=least)
         else:
-            least = max(in_head, *map(len, cells), 1)
-            width = None
-            if lines is not None:
-                wide = range(least, max(least, len(head)) + 1)
-                width = next(w for w in wide if len(wrap(head, w)) <= lines or w == wide[-1])
-            made.add_column(head, justify=justify, overflow="fold", width=width, min_width=least)
-    for row in rows:
-        made.add_row(*(row[index] for index in columns))
+            head = visible(table.heads[index])
+            made.add_column(head, justify=justify, overflow="fold", width=width)
+    for row in table.rows:
+        made.add_row(*(visible(row[index]) for index in columns))
     return made
 
 
@@ -202,7 +184,7 @@ def _parts(tables: Iterable[Part], console: Console) -> Iterator[RichTable | Tex
 
     for part in tables:
         if isinstance(part, Table):
-            yield from fitting(part, console)
+            yield from _fitting(part, console)
         else:
             yield Text(visible(part), style="bold" if isinstance(part, Heading) else "")
 
