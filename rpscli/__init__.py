@@ -43,29 +43,24 @@ if TYPE_CHECKING:
     __version__: str
 
 _HOMES = {
-    "rpscli.analyses.demand": ("demand",),
-    "rpscli.analyses.floor_spectra": ("fixed_base_floor_spectra", "isolated_floor_spectra"),
-    "rpscli.analyses.largest_demands": ("Demand",),
-    "rpscli.analyses.modal": ("ModalResult", "modal"),
-    "rpscli.analyses.pushover": ("PushoverResult", "pushover"),
-    "rpscli.analyses.results": ("TimeHistoryResult",),
-    "rpscli.analyses.settings": ("TimeHistorySettings",),
-    "rpscli.analyses.timehistory": ("time_history",),
-    "rpscli.case.case": ("Case", "load_case"),
-    "rpscli.errors": ("RpsError",),
-    "rpscli.model.bearing": ("Bearing",),
-    "rpscli.model.impact": ("ImpactLaw",),
-    "rpscli.model.podium": ("PodiumStructure",),
-    "rpscli.model.superstructure": (
-        "ModalDamping",
-        "RayleighDamping",
-        "Superstructure",
-        "profile_stiffnesses",
-    ),
-    "rpscli.records.ground_motion": ("GroundMotion", "MotionComponents"),
-    "rpscli.records.measures": ("response_spectrum",),
-    "rpscli.records.loading": ("load_components", "load_record"),
-    "rpscli.studies": ("Study", "StudyResult", "load_study"),
+    "analyses.demand": "demand",
+    "analyses.floor_spectra": "fixed_base_floor_spectra isolated_floor_spectra",
+    "analyses.largest_demands": "Demand",
+    "analyses.modal": "ModalResult modal",
+    "analyses.pushover": "PushoverResult pushover",
+    "analyses.results": "TimeHistoryResult",
+    "analyses.settings": "TimeHistorySettings",
+    "analyses.timehistory": "time_history",
+    "case.case": "Case load_case",
+    "errors": "RpsError",
+    "model.bearing": "Bearing",
+    "model.impact": "ImpactLaw",
+    "model.podium": "PodiumStructure",
+    "model.superstructure": "ModalDamping RayleighDamping Superstructure profile_stiffnesses",
+    "records.ground_motion": "GroundMotion MotionComponents",
+    "records.measures": "response_spectrum",
+    "records.loading": "load_components load_record",
+    "studies": "Study StudyResult load_study",
 }
 
 __all__ = [
@@ -113,8 +108,8 @@ def __getattr__(name: str) -> Any:
     if name in {"figures", "plugins"}:
         return import_module(f"rpscli.{name}")
     for module, names in _HOMES.items():
-        if name in names:
-            return getattr(import_module(module), name)
+        if name in names.split():
+            return getattr(import_module(f"rpscli.{module}"), name)
     raise AttributeError(f"module 'rpscli' has no attribute {name!r}")
 
 

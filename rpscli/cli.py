@@ -5,11 +5,12 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Sequence
+from importlib import import_module
 from typing import Any, NoReturn
 
 import click
 
-from rpscli.commands.shell.lazy import LazyGroup, Member
+from rpscli.commands.shell import Group
 from rpscli.version import VERSION
 
 SECTIONS = {
@@ -36,18 +37,35 @@ SECTIONS = {
     },
 }
 """Lines of the help."""
-OF_INIT = ("schema", "completion")
-COMMANDS = {
-    name: Member("rpscli.commands.init", summary, name, section)
-    if name in OF_INIT
-    else Member(f"rpscli.commands.{name}", summary, section=section)
-    for section, commands in SECTIONS.items()
-    for name, summary in commands.items()
-}
+COMMANDS = {name: summary for lines in SECTIONS.values() for name, summary in lines.items()}
+HOMES = {"schema": "init", "completion": "init", "design": "sweep"}
+"""Modules of `rpscli.commands` that hold a command besides their own."""
 
 
-class Program(LazyGroup):
-    """The program itself: whatever happens in a command ends here, as an exit code."""
+class Program(Group):
+    """The program itself: it imports a command when that is used, and ends with an exit code."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """Names in the order of the help."""
+        del ctx
+        return list(COMMANDS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        """The command of a name, imported now."""
+        del ctx
+        if cmd_name not in COMMANDS:
+            return None
+        home = HOMES.get(cmd_name)
+        module = import_module(f"rpscli.commands.{home or cmd_name}")
+        command: click.Command = getattr(module, cmd_name if home else "command")
+        return command
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """The list of commands in the help."""
+        del ctx
+        for section, lines in SECTIONS.items():
+            with formatter.section(section):
+                formatter.write_dl([*lines.items()])
 
     def main(self, args: Sequence[str] | None = None, *rest: Any, **options: Any) -> NoReturn:
         """Run, report what went wrong, and leave."""
@@ -72,7 +90,6 @@ class Program(LazyGroup):
 
 @click.command(
     cls=Program,
-    members=COMMANDS,
     context_settings={"help_option_names": ["-h", "--help"]},
     epilog="Exit codes: 0 done, 1 internal error or nothing could be written, 2 usage, 3 case or"
     " record invalid, 4 analysis failed, 5 study with failed points, 6 verification mismatch,"

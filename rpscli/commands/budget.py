@@ -15,8 +15,7 @@ import click
 from rpscli.analyses.result_quantities import LIMITED
 from rpscli.commands import inputs
 from rpscli.commands.shell import options
-from rpscli.commands.shell.terminal import Terminal
-from rpscli.commands.shell.waiting import announce_compilation, counted
+from rpscli.commands.shell.terminal import Terminal, announce_compilation, counted
 from rpscli.errors import AnalysisError, RpsError, all_made
 from rpscli.report.figures.look import Look
 
@@ -95,10 +94,7 @@ def _row(
 
     if isinstance(motion, str):
         return Row(cause, "", "", "", {}, "", motion)
-    words = [word for text in (*given.request.overrides, *sets) for word in ("--set", text)]
-    for name in ("record", "vertical", "scale", "scale_to"):
-        if (value := getattr(motion, name)) is not None:
-            words += [f"--{name.replace('_', '-')}", str(value)]
+    words = [*options.set_words((*given.request.overrides, *sets)), *motion.words]
     change = re.sub(r"^[\w.]*\.|contact=|kind: |[{}]", "", sets[0]) if sets else " ".join(words)
     row, case = Row(cause, change, shlex.join(words), "", {}, "", ""), given.case
     try:

@@ -11,7 +11,7 @@ import click
 from rpscli.case.conditions import Condition, conditions_of
 from rpscli.commands import inputs
 from rpscli.commands.shell import options
-from rpscli.commands.shell.terminal import Terminal, concluded, leave
+from rpscli.commands.shell.terminal import Terminal
 from rpscli.errors import CaseError, RecordError, RpsError, UsageError
 from rpscli.report.documents import heading
 from rpscli.report.figures.look import USUAL, Look
@@ -103,8 +103,7 @@ def command(
     limits = conditions_of(given.case.limits, "limits of the case")
     others = device_tables(structure), strength_tables(structure)
     tables = chain(check_tables(document, limits, _unknown(structure, record)), *others)
-    terminal.result(concluded(document, error), tables)
-    leave(error)
+    terminal.finish(document, tables, error)
 
 
 def _record(case: Case) -> tuple[dict[str, Any] | None, RpsError | None]:

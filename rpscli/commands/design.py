@@ -1,48 +1,168 @@
-"""`rps design`: the values of a case that meet its requirements and minimise an objective."""
+"""A design from its file to its files: searched for, judged as a study, validated."""
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Iterator
+from typing import Any, NamedTuple
 
-import click
+from rpscli.case.design import parse_design
+from rpscli.case.text.files import opened
+from rpscli.commands.inputs import RESULTS, write
+from rpscli.commands.shell.options import CaseRequest, OutputRequest, RunChoices
+from rpscli.commands.shell.terminal import Terminal, concluded, leave
+from rpscli.commands.study import computed, show_dry_run, study_heading
+from rpscli.errors import LimitExceeded, RpsError, StudyIncomplete
+from rpscli.report.design import (
+    answer_document,
+    answer_notes,
+    answer_tables,
+    design_columns,
+    figures,
+    nothing_passes,
+)
+from rpscli.report.documents import heading
+from rpscli.report.figures.look import Look, figure_files
+from rpscli.report.files import OutputFolder
+from rpscli.report.limits import VERDICT, verdict_texts
+from rpscli.report.study.shown import note_of_directions, of_first_system
+from rpscli.report.study.statistics import verdict_columns, verdict_document, verdict_lines
+from rpscli.report.table import Heading, Part, Table, csv_text
+from rpscli.studies import Collected, Study, StudyResult, collected, error_of
+from rpscli.sweep.design import Answer, Search
+from rpscli.sweep.points import StudyPoints, lay_out
+from rpscli.sweep.store import Store
+from rpscli.sweep.table import Table as Points
 
-from rpscli.commands.inputs import write
-from rpscli.commands.shell import options
-from rpscli.commands.shell.terminal import Terminal, leave
-from rpscli.report.figures.look import Look
 
+class Design(NamedTuple):
+    """A design that was searched for, the studies that it rests on, and its files.
 
-@click.command("design")
-@click.argument("design", metavar="DESIGN", type=options.FILE)
-@options.overrides_option("Override a value of the file (--set search.most=64) or of its base case")
-@options.run_options
-@options.result_options
-def command(
-    design: str,
-    overrides: tuple[str, ...],
-    output: options.OutputRequest,
-    terminal: Terminal,
-    look: Look,
-    **choices: Any,
-) -> None:
-    """Find the values of DESIGN that meet its limits and minimise its objective.
-
-    The file has a base case, `variables`, records and `limits` as a study, and `minimise`. The
-    search starts from an even sample and continues where the verdict changes. The answer is the
-    best design that passes in 90 % of the resamples of the records, if any does, and is validated
-    on records that the search did not see.
-
-    Every point is stored at once: after an interruption the same command continues. The exit
-    code is 10 if no design passes, or if the best one fails the limits in its validation.
+    `run` has all valid designs, of which `found` tells; `judged` has the best or least violated one
+    under the records of the search, `validated` the best one under others.
     """
-    from rpscli.commands.design_run import designed
-    from rpscli.commands.study import SweepChoices
 
-    done = designed(design, overrides, SweepChoices(**choices), output, look, terminal)
-    if done is None:
-        return
-    write(done.folder, terminal)
-    document = done.document
-    terminal.warn_first(document["warnings"], "with --json")
-    terminal.result(document, done.tables)
-    leave(done.error)
+    search: Search
+    answer: Answer
+    run: StudyResult
+    found: Collected
+    judged: StudyResult
+    validated: StudyResult | None
+    folder: OutputFolder
+
+    @property
+    def keeps_limits(self) -> bool | None:
+        """True if the best design does so in the validation; None without one."""
+        if self.validated is None:
+            return None
+        verdicts = self.validated.judgements
+        return bool(verdicts) and not any(verdict.exceeded for verdict in verdicts)
+
+    @property
+    def error(self) -> RpsError | None:
+        """Points that failed, no design that passes, or a validation that failed."""
+        # Designs that exceed limits are what was looked for, not what went wrong.
+        if error := error_of(self.run, self.found, limits=False):
+            return error
+        if self.answer.best is None:
+            return LimitExceeded(nothing_passes(self.answer))
+        if self.validated is None:
+            return None
+        if messages := dict.fromkeys(self.validated.table.messages.values()):
+            return StudyIncomplete("\n".join(f"validation: {text}" for text in messages))
+        lines = verdict_lines(self.validated.keys, self.validated.judgements, "validation: ")
+        return LimitExceeded("\n".join(lines)) if lines else None
+
+    @property
+    def document(self) -> dict[str, Any]:
+        """The answer in JSON."""
+        layout, unseen = self.run.layout, self.validated
+        notes = [*answer_notes(self.answer, self.search.faults)]
+        if self.keeps_limits is False:
+            notes.append("the best design does not keep its limits under the records of `validate`")
+        validation = unseen and [verdict_document(unseen.keys, v) for v in unseen.judgements]
+        document = {
+            **heading("design"),
+            "study": study_heading(layout),
+            "note": note_of_directions(layout) or None,
+            "points": {"total": len(self.run.table), "failed": len(self.found.failures)},
+            **answer_document(self.answer, self.judged.judgements),
+            "validated": self.keeps_limits,
+            "validation": validation or [],
+            "warnings": [*notes, *self.found.notes, *self.run.study.warnings],
+            "files": [str(self.run.results.store.path), *self.folder.files],
+        }
+        return concluded(document, self.error)
+
+    @property
+    def tables(self) -> Iterator[Part]:
+        """The answer for readers, then its validation."""
+        layout, judgements = self.run.layout, self.judged.judgements
+        yield Heading(layout.study.title)
+        counts = answer_document(self.answer, judgements)["designs"]
+        listing = [(name.replace("_", " "), str(number)) for name, number in counts.items()]
+        yield Table.listing([*listing, ("records scaled to", layout.scaled_to)])
+        yield from answer_tables(self.answer, judgements)
+        if self.validated is not None:
+            unseen = len(self.answer.task.unseen)
+            yield Heading(f"validation with {unseen} records that were not used")
+            yield Table.of_texts(VERDICT, map(verdict_texts, self.validated.judgements), words=4)
+        yield of_first_system(self.judged.layout)
+        yield from filter(None, [note_of_directions(layout)])
+
+    def conclude(self, terminal: Terminal) -> None:
+        """Write the files, and give the answer."""
+        write(self.folder, terminal)
+        document = self.document
+        terminal.warn_first(document["warnings"], "with --json")
+        terminal.result(document, self.tables)
+        leave(self.error)
+
+
+def designed(
+    request: CaseRequest,
+    choices: RunChoices,
+    output: OutputRequest,
+    look: Look,
+    terminal: Terminal,
+) -> Design | None:
+    """Search, judge what is best, and collect the files; None after a dry run."""
+    task = parse_design(**opened(request.source), overrides=request.overrides)
+    search, rounds, validated = Search(task), 0, None
+    first = Study(search.layout, request.overrides)
+    first.require_results()
+    terminal.warn(task.study.notes)  # doubts about systems come with those of all rounds
+    if choices.dry_run:
+        terminal.note(f"the first of at most {search.most} designs:")
+        show_dry_run(first, choices, terminal)
+        return None
+    place = output.place or RESULTS / task.study.name / "design"
+    folder = first.output(place, "design", force=output.force)
+    records = search.layout.context.records  # read once
+    with Store(folder.folder, fresh=choices.fresh) as store:
+
+        def run(layout: StudyPoints) -> StudyResult:
+            layout.context.records = records
+            return computed("design", Study(layout, request.overrides), store, choices, terminal)
+
+        def evaluated(layout: StudyPoints) -> Points:
+            nonlocal rounds
+            rounds += 1
+            terminal.note(f"round {rounds}: {len(layout.properties)} designs")
+            return run(layout).table
+
+        answer = search.run(evaluated)
+        best = answer.values[[answer.closest]]
+        if task.unseen and answer.best is not None:
+            terminal.note("validation of the best design")
+            validated = run(lay_out(task.study_of(best, task.unseen)))
+        judged = run(lay_out(task.study_of(best)))
+        every = run(lay_out(task.study_of(answer.values[answer.valid])))
+        found = collected(every, look)
+        folder.add_all(found.files.items())
+        folder.add("designs.csv", csv_text(design_columns(answer)))
+        if validated is not None:
+            columns = verdict_columns(validated.keys, validated.judgements)
+            folder.add("validation.csv", csv_text(columns))
+        folder.add_all(figure_files(figures(answer, task.study.title), look).items())
+        store.require()
+    return Design(search, answer, every, found, judged, validated, folder)

@@ -14,8 +14,9 @@ from typing import Any
 
 import click
 
+from rpscli.commands.init import shipped_cases
 from rpscli.commands.shell.options import terminal_options
-from rpscli.commands.shell.terminal import Terminal, concluded, leave
+from rpscli.commands.shell.terminal import Terminal
 from rpscli.errors import VerificationMismatch
 from rpscli.machine import available_cores
 from rpscli.registry import Registry
@@ -23,7 +24,6 @@ from rpscli.report.documents import heading, installed
 from rpscli.report.figures.film import ENCODER
 from rpscli.report.figures.look import font_file
 from rpscli.report.table import Table
-from rpscli.shipped import shipped_cases
 from rpscli.user_cache import VARIABLE, cache_places, user_cache
 from rpscli.version import VERSION
 
@@ -51,8 +51,7 @@ def command(terminal: Terminal) -> None:
     error = VerificationMismatch(lacking) if lacking else None
     document = {**heading("doctor"), "findings": findings}
     # Without rich there are no tables: then the errors say it.
-    terminal.result(concluded(document, error), [table] if installed("rich") else ())
-    leave(error)
+    terminal.finish(document, [table] if installed("rich") else (), error)
 
 
 def _surroundings() -> list[tuple[str, str, str]]:

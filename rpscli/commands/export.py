@@ -9,7 +9,7 @@ import click
 
 from rpscli.commands import inputs
 from rpscli.commands.shell import options
-from rpscli.commands.shell.terminal import Terminal
+from rpscli.commands.shell.terminal import Terminal, announce_compilation
 from rpscli.errors import AnalysisError, UsageError, visible
 
 if TYPE_CHECKING:
@@ -42,7 +42,6 @@ def command(
     from rpscli.analyses.result_quantities import plain
     from rpscli.analyses.timehistory import time_history
     from rpscli.analyses.trace import prolonged
-    from rpscli.commands.shell.waiting import announce_compilation
     from rpscli.report.bundles import history_columns
     from rpscli.report.table import Column, csv_lines
 

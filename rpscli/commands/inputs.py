@@ -4,24 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from rpscli.commands.shell import options
-from rpscli.commands.shell.terminal import Terminal
-from rpscli.commands.shell.waiting import passing_time
+from rpscli.commands.shell.terminal import Terminal, counted, passing_time
 from rpscli.errors import CaseError, UsageError
 from rpscli.report.documents import heading
-from rpscli.report.files import OutputFolder, Run
+from rpscli.report.figures.film import FilmRequest
+from rpscli.report.figures.look import Look, drawn_with
+from rpscli.report.files import Drawing, OutputFolder, Run
 from rpscli.report.table import Part
 from rpscli.units import as_written
 
 if TYPE_CHECKING:
     from rpscli.case.case import Case
     from rpscli.case.schema.scale_to import ScaleToSection
-    from rpscli.records.ground_motion import MotionComponents
+    from rpscli.records.ground_motion import GroundMotion, MotionComponents
     from rpscli.records.recordings import Pair
 
 
@@ -82,6 +84,23 @@ def write(folder: OutputFolder, terminal: Terminal) -> None:
         terminal.note(f"removed, of an earlier run: {', '.join(sorted(folder.removed))}")
 
 
+def add_film(
+    folder: OutputFolder,
+    film: FilmRequest,
+    look: Look,
+    draw: Callable[[Callable[[int, int], None]], bytes],
+    terminal: Terminal,
+) -> None:
+    """Collect an animation, which is told how many of its frames are drawn."""
+
+    def drawn() -> bytes:
+        with counted("drawing the animation", terminal) as tell:
+            return draw(tell)
+
+    make = partial(drawn_with, look, film.ending, drawn)
+    folder.add_at(film.file, Drawing(film.file.name, make))
+
+
 def conclude(
     given: CaseInput,
     folder: OutputFolder,
@@ -137,6 +156,18 @@ class MotionRequest:
         if self.scale is not None and self.scale_to is not None:
             raise UsageError("--scale and --scale-to both fix the factor; keep one of them")
 
+    @property
+    def words(self) -> list[str]:
+        """The motion on a command line."""
+        known = {
+            "--record": self.record,
+            "--vertical": self.vertical,
+            "--scale": self.scale,
+            "--scale-to": self.scale_to,
+        }
+        given = [(name, str(value)) for name, value in known.items() if value not in (None, "")]
+        return [word for option in given for word in option]
+
 
 motion_options = options.gathered(
     "motion",
@@ -176,7 +207,7 @@ def single_motions(
     tell(f"--record {text}" for text in notes)
     if len(single) > 1 and request.vertical not in {None, OWN}:
         raise UsageError(f"--vertical {request.vertical}: belongs to one record, not {len(single)}")
-    of = None if request.scale_to is None else _parsed_target(request.scale_to).of
+    of = None if request.scale_to is None else parsed_target(request.scale_to).of
     for source, pair in zip(single, pairs(single, of), strict=True):
         yield replace(request, record=source, pair=pair)
 
@@ -211,77 +242,56 @@ def load_motion(case: Case, request: MotionRequest) -> MotionComponents:
     elif given is None:
         raise UsageError(f"{case.source}: the case names no record; give one with --record")
     else:
-        own = given.vertical if request.vertical is None else None
-        own = OWN if request.vertical == OWN else own
+        own = {None: given.vertical, OWN: OWN}.get(request.vertical)
         how = {"folder": case.folder, "dt": given.dt, "units": given.units}
-        rotation = given.rotation or 0.0
-        motion = load_components(case.record_source, own, given.y, rotation, **how)
+        motion = load_components(case.record_source, own, given.y, given.rotation or 0.0, **how)
         if request.vertical is not None and request.vertical != OWN:
             motion = replace(motion, vertical=load_record(request.vertical))
     if motion.y is not None and (why := case.structure.planar_only):
         raise CaseError(f"{case.source}: both components of {motion.horizontal.source}: {why}")
-    if (aim := _target(case, request)) is not None:
-        return _scaled_to(case, request, motion, *aim, how)
-    scale = request.scale
+    scale, asker = request.scale, f"{case.source}: record.scale_to"
+    aim = given.scale_to if given is not None else None
+    if request.scale_to is not None:
+        aim, asker = parsed_target(request.scale_to), f"--scale-to {request.scale_to}"
+    if scale is None and aim is not None:
+        pair = request.pair if given is None else case.record_pair(aim.of)
+        of = [load_record(each, **how) for each in pair or ()] or [motion.horizontal]
+        return _scaled_to(case, motion, of, aim, asker)
     if scale is None:
         scale = 1.0 if given is None else given.scale
     return motion if scale == 1.0 else motion.scaled(scale)
 
 
-def _target(case: Case, request: MotionRequest) -> tuple[ScaleToSection, str] | None:
-    """The measure to scale to, and who asks for it: command line or case."""
-    if request.scale is not None:
-        return None
-    if request.scale_to is not None:
-        return _parsed_target(request.scale_to), f"--scale-to {request.scale_to}"
-    own = case.record if request.record is None else None
-    if own is None or own.scale_to is None:
-        return None
-    return own.scale_to, f"{case.source}: record.scale_to"
-
-
 def _scaled_to(
     case: Case,
-    request: MotionRequest,
     motion: MotionComponents,
+    of: Sequence[GroundMotion],
     target: ScaleToSection,
-    source: str,
-    how: dict[str, Any],
+    asker: str,
 ) -> MotionComponents:
-    """A motion by the factor that brings a measure of it, or of its pair, to a value."""
-    from rpscli.records.loading import load_record
-    from rpscli.records.measures import (
-        MEASURES,
-        USUAL,
-        factor_to,
-        measure_label,
-        measured,
-        needs_period,
-        pair_measure,
-    )
+    """A motion by the factor that brings a measure of one component or a pair to a value."""
+    from rpscli.records import measures
 
     measure, period = target.measure, target.period
-    if needs_period(measure) and period is None:
+    at_period = measures.needs_period(measure)
+    if at_period and period is None:
         building = case.structure.superstructure
         if building is None:
-            raise UsageError(f"{source}: without storeys {measure} has no T1 to be taken at")
+            raise UsageError(f"{asker}: without storeys {measure} has no T1 to be taken at")
         period = float(building.periods[0])
-    pair = request.pair
-    if request.record is None and case.record is not None:
-        pair = case.record_pair(target.of)
-    if pair is None:
-        unscaled, of = measured(motion.horizontal, measure, period, target.damping), None
+    (one, *others), how = of, None
+    if others:
+        how = target.of or measures.USUAL
+        unscaled = measures.pair_measure(one, others[0], measure, how, period, target.damping)
     else:
-        of = target.of or USUAL
-        one, other = (load_record(each, **how) for each in pair)
-        unscaled = pair_measure(one, other, measure, of, period, target.damping)
-    factor = factor_to(target.value, unscaled, measure, motion.horizontal.source)
-    name = measure_label(measure, of, f"{period:g} s" if needs_period(measure) else "")
-    aim = f"{name} = {as_written(target.value, MEASURES[measure].unit)}"
+        unscaled = measures.measured(one, measure, period, target.damping)
+    factor = measures.factor_to(target.value, unscaled, measure, motion.horizontal.source)
+    name = measures.measure_label(measure, how, f"{period:g} s" if at_period else "")
+    aim = f"{name} = {as_written(target.value, measures.MEASURES[measure].unit)}"
     return replace(motion.scaled(factor), scaled_to=aim)
 
 
-def _parsed_target(text: str) -> ScaleToSection:
+def parsed_target(text: str) -> ScaleToSection:
     """Target of `--scale-to`: ``PGA=0.4g``, ``PGV=0.5 m/s``, or ``Sa(0.6 s)=1 g``."""
     from rpscli.case.schema.scale_to import scale_to_of
 

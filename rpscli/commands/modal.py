@@ -8,14 +8,12 @@ from typing import TYPE_CHECKING
 
 import click
 
-from rpscli.commands.inputs import case_folder, conclude, read_case
+from rpscli.commands.inputs import add_film, case_folder, conclude, read_case
 from rpscli.commands.shell import options
 from rpscli.commands.shell.terminal import Terminal
-from rpscli.commands.shell.waiting import filmed
 from rpscli.errors import listed
 from rpscli.report.figures.film import FilmRequest
-from rpscli.report.figures.look import Look, drawn_with
-from rpscli.report.files import Drawing
+from rpscli.report.figures.look import Look
 from rpscli.report.table import Heading, Part, Table, measured, shown
 
 if TYPE_CHECKING:
@@ -50,9 +48,8 @@ def command(
     if film is not None:
         from rpscli.report.figures.animation import modes_film
 
-        moving = partial(filmed, partial(modes_film, result, given.case.title, film), terminal)
-        draw = partial(drawn_with, look, film.ending, moving)
-        folder.add_at(film.file, Drawing(film.file.name, draw))
+        draw = partial(modes_film, result, given.case.title, film)
+        add_film(folder, film, look, draw, terminal)
     tables = _tables(result, given.case.title, () if paper else (FIRST_ORDER,))
     conclude(given, folder, result.results(), tables, terminal)
 

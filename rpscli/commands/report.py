@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from datetime import datetime
 from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from rpscli.case.conditions import Condition
-from rpscli.commands import inputs, report_case
+from rpscli.commands import inputs
 from rpscli.commands.shell import options
 from rpscli.commands.shell.terminal import Terminal, leave
 from rpscli.errors import Refused, UsageError
@@ -18,6 +19,12 @@ from rpscli.report.figures.look import Look
 from rpscli.report.figures.style import drawable_style
 from rpscli.report.files import require_writable, write_whole
 from rpscli.version import VERSION
+
+if TYPE_CHECKING:
+    from rpscli.commands.report_page import PageDone
+
+PEOPLE = {"project": "project", "author": "made by", "checker": "checked by"}
+"""Options with which a page is signed, and their words there."""
 
 
 @click.command("report")
@@ -69,51 +76,49 @@ def command(
     """
     if place is not None and place.suffix.lower() not in {".html", ".htm"}:
         raise UsageError(f"-o {place}: the page is HTML; name a file that ends with .html")
+    from rpscli.commands import report_page as pages
+    from rpscli.commands.study import read
+
     look = Look(style={} if style_file is None else drawable_style(style_file))
-    request, asked = options.CaseRequest(subject, overrides), motion
-    earlier = report_case.earlier_results(Path(subject)) if Path(subject).is_dir() else None
-    kind = report_case.kind_of(subject) if earlier is None else earlier.run["command"]
+    request = options.CaseRequest(subject, overrides)
+    earlier = pages.earlier_results(Path(subject)) if Path(subject).is_dir() else None
+    kind = pages.kind_of(subject) if earlier is None else earlier.run["command"]
+    why = ""
     if earlier is not None and overrides:
-        raise UsageError(f"{subject}: stored results keep the values they have; leave --set out")
-    if (kind != report_case.HISTORY or earlier) and (records or asked != inputs.MotionRequest()):
-        reason = f"a {'study' if kind == report_case.SWEEP else 'design'} has records of its own"
-        reason = "a stored history has its record" if kind == report_case.HISTORY else reason
-        raise UsageError(f"{subject}: {reason}; leave --record, --vertical and --scale out")
-    if with_budget and kind != report_case.HISTORY:
-        raise UsageError(f"{subject}: --budget is about one history; name a case")
-    if conditions and kind == report_case.DESIGN:
-        raise UsageError(f"{subject}: a design has limits of its own; leave --fail-on out")
-    name: str
-    make: Callable[[], report_case.PageDone]
-    if kind == report_case.DESIGN:
-        from rpscli.commands.report_study import design_page
-
+        why = "stored results keep the values they have; leave --set out"
+    elif (kind != pages.HISTORY or earlier) and (records or motion != inputs.MotionRequest()):
+        of = {pages.SWEEP: "a study has records", pages.DESIGN: "a design has records"}
+        owner = f"{of[kind]} of its own" if kind in of else "a stored history has its record"
+        why = f"{owner}; leave --record, --vertical and --scale out"
+    elif with_budget and kind != pages.HISTORY:
+        why = "--budget is about one history; name a case"
+    elif conditions and kind == pages.DESIGN:
+        why = "a design has limits of its own; leave --fail-on out"
+    if why:
+        raise UsageError(f"{subject}: {why}")
+    make: Callable[[], PageDone]
+    if kind == pages.DESIGN:
         name = Path(subject).stem if earlier is None else earlier.run["name"]
-        make = partial(design_page, subject, overrides, earlier, look, terminal)
-    elif kind == report_case.SWEEP:
-        from rpscli.commands.report_study import study_page
-        from rpscli.commands.study import read
-
-        folder = None if earlier is None else earlier.folder
-        made = read(earlier.subject if earlier else request, conditions, terminal)
-        name = made.layout.study.name
-        make = partial(study_page, made, folder, look, terminal)
+        make = partial(pages.design_page, request, earlier, look, terminal)
+    elif kind == pages.SWEEP:
+        study = read(earlier.subject if earlier else request, conditions, terminal)
+        name, folder = study.layout.study.name, None if earlier is None else earlier.folder
+        make = partial(pages.study_page, study, folder, look, terminal)
     else:
         if earlier is None:
             given = inputs.read_case(request, terminal)
-            motions = [*inputs.single_motions(records, asked, terminal.warn)]
-            typed: list[report_case.Asked] = [(records, asked)]
+            motions = [*inputs.single_motions(records, motion, terminal.warn)]
+            asked: list[pages.Asked] = [(records, motion)]
         else:
-            given, motions = report_case.earlier_case(earlier)
-            typed = report_case.typed_together(given.case, motions)
+            given, motions = earlier.case()
+            asked = pages.typed_together(given.case, motions)
         name = given.case.name
-        told = (given, motions, typed, conditions, look, earlier, terminal)
-        make = partial(report_case.case_page, *told, with_budget=with_budget)
+        told = (given, motions, asked, conditions, look, earlier, terminal)
+        make = partial(pages.history_page, *told, with_budget=with_budget)
     file = place or inputs.RESULTS / name / "report.html"
     _require_free(file, name, force=force)
     done = make()
-    names = {"project": "project", "author": "made by", "checker": "checked by"}
-    signed = {name: people[key] or getattr(done.signed, key) for key, name in names.items()}
+    signed = {word: people[key] or getattr(done.signed, key) for key, word in PEOPLE.items()}
     _write(file, name, done, signed, terminal)
     leave(done.error)
 
@@ -137,11 +142,7 @@ def _require_free(file: Path, name: str, *, force: bool) -> None:
 
 
 def _write(
-    file: Path,
-    name: str,
-    done: report_case.PageDone,
-    signed: dict[str, str | None],
-    terminal: Terminal,
+    file: Path, name: str, done: PageDone, signed: Mapping[str, str | None], terminal: Terminal
 ) -> None:
     from rpscli.report.html.page import MOST_BYTES, Picture, page
 

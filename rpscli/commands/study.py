@@ -1,61 +1,78 @@
-"""What `rps sweep`, `rps design` and `rps report` share: a study is read, tried and computed."""
+"""A study for `rps sweep`, `rps design` and `rps report`: read, tried, computed and shown."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from itertools import groupby
+from typing import Any, NamedTuple
 
 import click
 
+from rpscli.analyses.kernels import compilation
 from rpscli.case.conditions import Condition
-from rpscli.commands.shell import waiting
-from rpscli.commands.shell.options import CaseRequest
-from rpscli.commands.shell.terminal import INTERRUPTED, Terminal
-from rpscli.errors import Refused, UsageError
+from rpscli.commands.inputs import RESULTS, write
+from rpscli.commands.shell.options import CaseRequest, OutputRequest, RunChoices
+from rpscli.commands.shell.terminal import (
+    INTERRUPTED,
+    Terminal,
+    announce_compilation,
+    concluded,
+    duration,
+    leave,
+    passing_time,
+    progress_report,
+    rendered,
+    watched,
+)
+from rpscli.errors import LimitExceeded, Refused, RpsError
+from rpscli.machine import available_cores
+from rpscli.physics.state import LANES
 from rpscli.report.documents import failure_document, heading
+from rpscli.report.figures.look import Look
+from rpscli.report.files import OutputFolder
+from rpscli.report.limits import counts_of_limits, verdicts_in_short
+from rpscli.report.study.labels import label
+from rpscli.report.study.shown import (
+    asked,
+    cut,
+    note_of_directions,
+    of_first_system,
+    summary_tables,
+    verdict_table,
+)
+from rpscli.report.study.statistics import summary_document, verdict_document
 from rpscli.report.table import Heading, Part, Table
-
-if TYPE_CHECKING:
-    from rpscli.studies import Study, StudyResult
-    from rpscli.sweep.points import StudyPoints
-    from rpscli.sweep.run import Progress, Start
-    from rpscli.sweep.store import Store
+from rpscli.studies import (
+    Collected,
+    Study,
+    StudyInterrupted,
+    StudyResult,
+    collected,
+    error_of,
+    load_study,
+    run_in,
+)
+from rpscli.sweep.points import StudyPoints
+from rpscli.sweep.run import Progress, Start, estimated_seconds
+from rpscli.sweep.store import Store
+from rpscli.sweep.systems import balance_note
 
 POINTS_SHOWN = 3
 """At each end of a study."""
 GUESSED_POINT_SECONDS = 0.01
 """Where trying would mean compiling first: some 40 s of motion of a few storeys."""
-
-
-@dataclass(frozen=True)
-class SweepChoices:
-    """How a study is run."""
-
-    jobs: int | None = None
-    scheduler: str | None = None
-    dry_run: bool = False
-    fresh: bool = False
-    retry_failed: bool = False
-    report_only: bool = False
-
-    def __post_init__(self) -> None:
-        if self.report_only and (self.fresh or self.retry_failed or self.scheduler):
-            raise UsageError(
-                "--report-only computes no points; remove --fresh, --retry-failed and --scheduler"
-            )
-        if self.scheduler and self.jobs:
-            raise UsageError("--jobs counts threads of this machine; --scheduler has its own")
+OF_A_REPORT = 12
+"""Warnings that are shown at most."""
+FEWER = (40, 30, 22, 16, 12, 9, 6, 4, 2, 1)
+"""Rows of a table: the most of them that fit."""
+ALL = "; --all prints them"
 
 
 def read(request: CaseRequest, conditions: Iterable[Condition], terminal: Terminal) -> Study:
     """Read and check a study and all its systems."""
-    from rpscli.studies import load_study
-    from rpscli.sweep.systems import balance_note
-
-    examined = partial(waiting.watched, "systems examined", terminal)
+    examined = partial(watched, "systems examined", terminal)
     study = load_study(request.source, request.overrides, conditions=conditions, watched=examined)
     if (section := study.layout.study.file.sample) and (note := balance_note(section)):
         terminal.warn([note])
@@ -63,11 +80,9 @@ def read(request: CaseRequest, conditions: Iterable[Condition], terminal: Termin
 
 
 def computed(
-    command: str, study: Study, store: Store, choices: SweepChoices, terminal: Terminal
+    command: str, study: Study, store: Store, choices: RunChoices, terminal: Terminal
 ) -> StudyResult:
     """A study whose points are in a store; what goes on is said, and an interruption ends it."""
-    from rpscli.studies import StudyInterrupted, run_in
-
     layout = study.layout
 
     @contextmanager
@@ -83,8 +98,8 @@ def computed(
         if pending and begin.kept:
             terminal.note(f"continuing: {begin.kept} of {total} points are stored already")
         if pending and layout.plan.analysis == "timehistory" and not choices.scheduler:
-            waiting.announce_compilation(terminal)
-        with waiting.progress_report(terminal, begin.kept, begin.kept + pending) as report:
+            announce_compilation(terminal)
+        with progress_report(terminal, begin.kept, begin.kept + pending) as report:
             yield report
 
     def announce() -> None:
@@ -107,9 +122,7 @@ def computed(
     if count := result.done.computed:
         seconds = result.done.seconds
         rate = count / seconds if seconds else 0.0
-        terminal.note(
-            f"computed {count} points in {waiting.duration(seconds)}, {rate:.3g} points/s"
-        )
+        terminal.note(f"computed {count} points in {duration(seconds)}, {rate:.3g} points/s")
     return result
 
 
@@ -120,13 +133,140 @@ def study_heading(layout: StudyPoints) -> dict[str, str]:
     return {**own, "scaled_to": layout.scaled_to}
 
 
-def show_dry_run(study: Study, choices: SweepChoices, terminal: Terminal) -> None:
-    """Count, first and last points, and an estimate of the time."""
-    from rpscli.analyses.kernels.compilation import is_ready
-    from rpscli.machine import available_cores
-    from rpscli.physics.state import LANES
-    from rpscli.sweep.run import estimated_seconds
+class Swept(NamedTuple):
+    """A study that was computed, and the files and tables of its reports."""
 
+    result: StudyResult
+    found: Collected
+    error: RpsError | None
+    folder: OutputFolder
+
+    @property
+    def notes(self) -> list[str]:
+        """Warnings about the study, its statistics and reports, and figures."""
+        return [*self.result.study.warnings, *self.found.notes, *self.folder.undrawn]
+
+    def document(self, command: str) -> dict[str, Any]:
+        """All of it in JSON."""
+        result, found, layout = self.result, self.found, self.result.layout
+        statistics: dict[str, Any] = {}
+        if (rows := result.summary) is not None:
+            statistics = {
+                "pooled": rows.pooled,
+                "statistics": summary_document(rows),
+                "verdicts": [verdict_document(rows.keys, each) for each in result.judgements],
+            }
+        document = {
+            **heading(command),
+            "study": study_heading(layout),
+            "note": (result.summary and note_of_directions(layout)) or None,
+            "points": {
+                "total": len(result),
+                "computed": result.done.computed,
+                "kept": result.begin.kept,
+                "failed": len(found.failures),
+                "unused": result.begin.unused,
+            },
+            "outcomes": result.outcomes,
+            **statistics,
+            "reports": found.documents,
+            "failures": [failure._asdict() for failure in found.failures],
+            "notes": list(result.begin.notes),
+            "warnings": self.notes,
+            "files": [str(result.results.store.path), *self.folder.files],
+        }
+        return concluded(document, self.error)
+
+    def tables(self, most: int = 0) -> list[Part]:
+        """All, or as many rows of each as fit into some lines: statistics are cut first."""
+        result, judged, told = self.result, self.result.judgements, list(self._told())
+        head: list[Part] = [Heading(result.study.title)]
+        counts = {"points": len(result), **result.outcomes}
+        listing = [(name, str(count)) for name, count in counts.items()]
+        if aim := result.layout.scaled_to:
+            listing.append(("records scaled to", aim))
+        head.append(Table.listing(listing))
+        if not most:
+            return [*head, *summary_tables(result.summary), *told]
+        statistics = list(summary_tables(result.summary, asked(result.layout)))
+        elsewhere, few = f"statistics are in statistics.csv{ALL}", head
+        for rows, of_reports in [(n, FEWER[0]) for n in FEWER] + [(0, n) for n in FEWER]:
+            some = cut(statistics, rows, ALL) if rows else [elsewhere]
+            limits = [counts_of_limits(judged)] if len(judged) > of_reports else []
+            few = [*head, *some, *limits, *cut(told, of_reports, ALL)]
+            if rendered(few).count("\n") <= most:
+                break
+        return few
+
+    def _told(self) -> Iterator[Part]:
+        """What counts as overturned, verdicts, reports; a remark of several is said once."""
+        result = self.result
+        if result.summary is not None:
+            yield of_first_system(result.layout)
+            if result.judgements:
+                yield verdict_table(result.summary, result.judgements)
+        remarks = set[Part]()
+        for part in self.found.parts:
+            if isinstance(part, Table):
+                yield part
+                continue
+            if isinstance(part, Heading) or part not in remarks:
+                yield part
+            remarks.add(part)
+        if result.summary and (note := note_of_directions(result.layout)):
+            yield note
+
+
+def swept(
+    command: str,
+    study: Study,
+    folder: OutputFolder,
+    choices: RunChoices,
+    look: Look,
+    terminal: Terminal,
+) -> Swept:
+    """Compute what is not stored yet; only a sweep writes into the folder of the store."""
+    with Store(folder.folder, fresh=choices.fresh) as store:
+        result = computed(command, study, store, choices, terminal)
+        with passing_time("making reports", terminal):
+            found = collected(result, look)
+        if command == "sweep":
+            folder.add_all(found.files.items())
+            store.require()
+            write(folder, terminal)
+    return Swept(result, found, error_of(result, found), folder)
+
+
+def sweep(
+    request: CaseRequest,
+    conditions: Iterable[Condition],
+    choices: RunChoices,
+    output: OutputRequest,
+    look: Look,
+    terminal: Terminal,
+    most: int,
+) -> None:
+    """Compute, write and show a study, in so many lines; 0 shows all."""
+    study = read(request, conditions, terminal)
+    if choices.dry_run:
+        show_dry_run(study, choices, terminal)
+        return
+    place = output.place or RESULTS / study.layout.study.name / "sweep"
+    folder = study.output(place, force=output.force)
+    done = swept("sweep", study, folder, choices, look, terminal)
+    # Of each report: what one has to say takes no room from the next.
+    for _, of_one in groupby(done.notes, lambda note: note.partition(": ")[0]):
+        terminal.warn_first(list(of_one), "with --json", OF_A_REPORT)
+    terminal.result(done.document("sweep"), done.tables(most))
+    error = done.error
+    if isinstance(error, LimitExceeded) and not (terminal.as_json or terminal.quiet):
+        # The table has them one by one.
+        error = LimitExceeded(verdicts_in_short(done.result.judgements))
+    leave(error)
+
+
+def show_dry_run(study: Study, choices: RunChoices, terminal: Terminal) -> None:
+    """Count, first and last points, and an estimate of the time."""
     terminal.warn(study.warnings)  # first: trying points may take long where the case is at fault
     layout, count = study.layout, len(study)
     jobs, histories = choices.jobs or available_cores(), layout.plan.analysis == "timehistory"
@@ -138,45 +278,37 @@ def show_dry_run(study: Study, choices: SweepChoices, terminal: Terminal) -> Non
             points[number + 1]["scale"] = point.scale * point.scale_change
     listed = [{"point": number, **varied} for number, varied in points.items()]
     ways = 2 if any(record and record.is_pair for record in layout.records) else 1
-    if histories and not is_ready(ways, LANES):
+    if histories and not compilation.is_ready(ways, LANES):
         seconds = GUESSED_POINT_SECONDS * count / jobs
         source = "a guess, since the kernel is not compiled yet"
     else:
-        with waiting.passing_time("trying some of the points", terminal):
+        with passing_time("trying some of the points", terminal):
             seconds = estimated_seconds(layout, jobs)
         source = "trying some of the points"
-    document: dict[str, Any] = {
-        **heading("sweep"),
-        "study": study_heading(layout),
-        "dry_run": True,
-        "analysis": layout.plan.analysis,
+    counts = {
         "points": count,
         "systems": len(layout.properties),
         "records": len(layout.records),
         "scales": len(layout.scales),
         "members": len(layout.members),
+    }
+    document: dict[str, Any] = {
+        **heading("sweep"),
+        "study": study_heading(layout),
+        "dry_run": True,
+        "analysis": layout.plan.analysis,
+        **counts,
         "first_points": listed[:POINTS_SHOWN],
         "last_points": listed[-POINTS_SHOWN:],
         "estimate": {"seconds": seconds, "jobs": jobs, "source": source},
         "warnings": study.warnings,
     }
-    terminal.result(document, _dry_run_tables(document, points.items()))
+    time = f"about {duration(seconds)} on {jobs} cores, by {source}"
+    listing = [*((name, str(number)) for name, number in counts.items()), ("time", time)]
+    shown = [(f"point {number}", _labels(varied)) for number, varied in points.items()]
+    parts = (Heading(study.title), Table.listing(listing), Table.listing(shown))
+    terminal.result(document, parts)
 
 
-def _dry_run_tables(
-    document: dict[str, Any], points: Iterable[tuple[int, dict[str, Any]]]
-) -> Iterator[Part]:
-    from rpscli.report.study.labels import label
-
-    yield Heading(document["study"]["title"])
-    names = ("points", "systems", "records", "scales", "members")
-    expected = document["estimate"]
-    text = f"about {waiting.duration(expected['seconds'])} on {expected['jobs']} cores"
-    counts = [(name, str(document[name])) for name in names]
-    yield Table.listing([*counts, ("time", f"{text}, by {expected['source']}")])
-    yield Table.listing(
-        [
-            (f"point {number}", ", ".join(label(key, value) for key, value in varied.items()))
-            for number, varied in points
-        ]
-    )
+def _labels(values: Mapping[str, Any]) -> str:
+    return ", ".join(label(key, value) for key, value in values.items())

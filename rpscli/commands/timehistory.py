@@ -10,8 +10,7 @@ from rpscli.analyses.result_quantities import LIMITED
 from rpscli.case.conditions import Condition
 from rpscli.commands.inputs import MotionRequest, motion_options, read_case, single_motions
 from rpscli.commands.shell import options
-from rpscli.commands.shell.terminal import Terminal
-from rpscli.commands.shell.waiting import announce_compilation
+from rpscli.commands.shell.terminal import Terminal, announce_compilation
 from rpscli.errors import CaseError, UsageError, all_made
 from rpscli.report.figures.film import FilmRequest
 from rpscli.report.figures.look import Look

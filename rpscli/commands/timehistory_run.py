@@ -19,16 +19,15 @@ from rpscli.case.conditions import LIMITS, Condition, case_conditions
 from rpscli.case.plausibility import doubts_of_directions
 from rpscli.commands import inputs
 from rpscli.commands.shell.options import OutputRequest
-from rpscli.commands.shell.terminal import Terminal, concluded, leave
-from rpscli.commands.shell.waiting import filmed, patience
+from rpscli.commands.shell.terminal import Terminal, concluded, leave, patience
 from rpscli.errors import AnalysisError, LimitExceeded, RecordError, RpsError, UsageError, all_made
 from rpscli.records.ground_motion import MotionComponents
 from rpscli.report.bundles import floor_spectra_files, timehistory_files
 from rpscli.report.documents import direction_note, heading, json_text, timehistory_document
 from rpscli.report.figures.animation import history_film
 from rpscli.report.figures.film import FilmRequest
-from rpscli.report.figures.look import Look, drawn_with
-from rpscli.report.files import Drawing, OutputFolder
+from rpscli.report.figures.look import Look
+from rpscli.report.files import OutputFolder
 from rpscli.report.limits import VERDICT, excess_text, verdict_texts, worst_text
 from rpscli.report.study import statistics
 from rpscli.report.table import Heading, Part, Table, csv_text, headed, large, shown, standing
@@ -205,9 +204,8 @@ def run_one(
     done, result = compute(request, conditions, look, terminal)
     beside = look_beside(done, result)
     if film is not None:
-        moving = partial(filmed, partial(history_film, result, title, film), terminal)
-        draw = partial(drawn_with, look, film.ending, moving)
-        request.folder.add_at(film.file, Drawing(film.file.name, draw))
+        draw = partial(history_film, result, title, film)
+        inputs.add_film(request.folder, film, look, draw, terminal)
     inputs.write(_add_summary(done), terminal)
     done.document["warnings"] += request.folder.undrawn
     terminal.warn(done.document["warnings"])

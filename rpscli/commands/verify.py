@@ -12,8 +12,7 @@ import click
 
 from rpscli.commands.inputs import MotionRequest, load_motion
 from rpscli.commands.shell.options import FILE, FiniteRange, terminal_options
-from rpscli.commands.shell.terminal import Terminal, concluded, leave
-from rpscli.commands.shell.waiting import announce_compilation
+from rpscli.commands.shell.terminal import Terminal, announce_compilation
 from rpscli.errors import Refused, UsageError, VerificationMismatch
 from rpscli.report.documents import heading
 from rpscli.report.files import write_whole
@@ -110,8 +109,7 @@ def _conclude(
     right = [line.digits for line in compared if line.digits is not None]
     remarks = [f"{sum(right) / len(right):.1f} digits in the mean"] if right else []
     remarks += [f"not answered: {', '.join(left)}"] if left else []
-    terminal.result(concluded(document, error), (*_tables(compared), *remarks))
-    leave(error)
+    terminal.finish(document, (*_tables(compared), *remarks), error)
 
 
 def _write_problems(folder: Path, terminal: Terminal) -> None:

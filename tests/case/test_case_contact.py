@@ -14,7 +14,7 @@ from rpscli.analyses.modal import modal
 from rpscli.analyses.pushover import pushover
 from rpscli.case.case import Case, parse_case
 from rpscli.cli import program
-from rpscli.commands.report_case import ends
+from rpscli.commands.report_page import ends
 from rpscli.model.podium import PodiumStructure
 from rpscli.report.figures.bearing import draw_end
 from rpscli.report.figures.structure import draw_mode

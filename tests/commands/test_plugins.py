@@ -21,7 +21,7 @@ from shown_commands import ROOT, command, of_blocks, run_in_shell
 import rpscli
 from rpscli import registry
 from rpscli.case.schema.scale_to import scale_to_of
-from rpscli.commands.record_select import command as select
+from rpscli.commands.record import select
 from rpscli.errors import CaseError, PluginError, RecordError
 from rpscli.records.formats import FORMATS
 from rpscli.records.measures import MEASURES

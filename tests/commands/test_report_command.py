@@ -181,7 +181,7 @@ def test_a_study_is_computed_once(rps: Invoke, study: str, rps_json: Callable[..
     assert first.exit_code in {0, 10}, first.stderr
     assert "computed 4 points" in first.stderr
     document = rps_json("report", study, "-o", "out.html", exit_code=first.exit_code)
-    assert document["points"] == {"total": 4, "failed": 0}
+    assert document["points"] == {"total": 4, "computed": 0, "kept": 4, "failed": 0, "unused": 0}
     text = text_of("out.html")
     assert "The first of 2 systems: ρ = 0.5." in text
     for part in ("Statistics", "synthetic:?pga=0.5g", "at most 0.5 in every record", "rps sweep"):

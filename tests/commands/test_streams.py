@@ -10,9 +10,8 @@ from pathlib import Path
 import pytest
 
 from rpscli.cli import COMMANDS
-from rpscli.commands.record import MEMBERS
-from rpscli.commands.shell.terminal import Terminal, rendered
-from rpscli.commands.shell.waiting import MANY, counted, watched
+from rpscli.commands.record import command as record
+from rpscli.commands.shell.terminal import MANY, Terminal, counted, rendered, watched
 from rpscli.report.table import Table
 
 from .conftest import Invoke, InvokeJson, Shell
@@ -247,7 +246,7 @@ def test_ascii_output_is_no_obstacle(shell: Shell) -> None:
 
 
 def test_every_command_has_a_help(rps: Invoke) -> None:
-    for path in [(name,) for name in COMMANDS] + [("record", name) for name in MEMBERS]:
+    for path in [(name,) for name in COMMANDS] + [("record", name) for name in record.commands]:
         result = rps(*path, "--help")
         assert result.exit_code == 0
         assert result.stdout.startswith(f"Usage: program {' '.join(path)}")

@@ -24,9 +24,13 @@ from rpscli.analyses.result_quantities import YIELDING
 from rpscli.analyses.timehistory import time_history
 from rpscli.case.case import load_case
 from rpscli.cli import program
-from rpscli.commands.shell import waiting as sweep_progress
-from rpscli.commands.shell.terminal import Terminal
-from rpscli.commands.shell.waiting import announce_compilation, progress_line, progress_report
+from rpscli.commands.shell import terminal as sweep_progress
+from rpscli.commands.shell.terminal import (
+    Terminal,
+    announce_compilation,
+    progress_line,
+    progress_report,
+)
 from rpscli.records.loading import load_record
 from rpscli.report.study.labels import key_cells, key_columns, label
 from rpscli.report.study.registry import REPORTS as REPORT_KINDS

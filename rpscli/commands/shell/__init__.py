@@ -1,1 +1,26 @@
-"""Parts that every command shares: options, streams, tables, errors and exit codes."""
+"""Parts that every command shares: groups, options, streams, tables, errors and exit codes."""
+
+from __future__ import annotations
+
+import click
+
+from rpscli.errors import hint
+
+
+class Group(click.Group):
+    """Commands in the order in which they were given; an unknown one is told the nearest name."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """Names in that order."""
+        del ctx
+        return list(self.commands)
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """The command that is called, or a refusal."""
+        known = self.list_commands(ctx)
+        if args and args[0] not in known and not args[0].startswith("-"):
+            meant = hint(args[0], known, f"there are {', '.join(known)}", 0.6)
+            ctx.fail(f"no such command: {args[0]}; {meant}")
+        return super().resolve_command(ctx, args)

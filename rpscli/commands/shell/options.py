@@ -113,7 +113,17 @@ class CaseRequest:
     """The case that a command works on: a file or ``-``, and values put over it."""
 
     source: str
-    overrides: tuple[str, ...]
+    overrides: tuple[str, ...] = ()
+
+    @property
+    def words(self) -> list[str]:
+        """The case on a command line, with what is put over it."""
+        return [self.source, *set_words(self.overrides)]
+
+
+def set_words(settings: Iterable[str]) -> list[str]:
+    """Values that are put over a case, on a command line."""
+    return [word for setting in settings for word in ("--set", setting)]
 
 
 @dataclass(frozen=True)
@@ -303,7 +313,30 @@ film_options = gathered("film", _film, *_FILM)
 history_film_options = gathered("film", _film, *_PART, *_FILM)
 """--animate and its options, with speed and part of a history, as `film`."""
 
-run_options = in_order(
+
+@dataclass(frozen=True)
+class RunChoices:
+    """How a study is run."""
+
+    jobs: int | None = None
+    scheduler: str | None = None
+    dry_run: bool = False
+    fresh: bool = False
+    retry_failed: bool = False
+    report_only: bool = False
+
+    def __post_init__(self) -> None:
+        if self.report_only and (self.fresh or self.retry_failed or self.scheduler):
+            raise UsageError(
+                "--report-only computes no points; remove --fresh, --retry-failed and --scheduler"
+            )
+        if self.scheduler and self.jobs:
+            raise UsageError("--jobs counts threads of this machine; --scheduler has its own")
+
+
+run_options = gathered(
+    "choices",
+    RunChoices,
     click.option(
         "--jobs",
         type=click.IntRange(1, MOST_JOBS),
@@ -321,7 +354,7 @@ run_options = in_order(
     click.option("--fresh", is_flag=True, help="Discard stored results."),
     click.option("--retry-failed", is_flag=True, help="Recompute failed points."),
 )
-"""Choices for the points of a study, as the keywords of `SweepChoices`."""
+"""The choices for the points of a study, as `choices`."""
 
 
 def _case_requests(cases: tuple[str, ...], overrides: tuple[str, ...]) -> list[CaseRequest]:

@@ -1,32 +1,37 @@
-"""Streams of a command: results on the standard output, all else on the standard error; errors."""
+"""Streams of a command: results on the standard output, all else on the standard error; errors.
+
+What takes long says on the standard error how far it is: in a line that comes and goes where
+somebody looks at a terminal.
+"""
 
 from __future__ import annotations
 
 import io
 import os
+import re
 import sys
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+import traceback
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager, ExitStack, contextmanager, nullcontext
 from dataclasses import dataclass, field
-from itertools import chain
+from pathlib import Path
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any, Literal, TextIO
 
-from rpscli.errors import OutputError, visible
-from rpscli.report.documents import json_text
+import click
+
+from rpscli.errors import LimitExceeded, OutputError, RpsError, visible
+from rpscli.report.documents import failure_document, json_text
 from rpscli.report.table import Heading, Part, Table
+from rpscli.user_cache import VARIABLE
 
 if TYPE_CHECKING:
     from rich.console import Console
     from rich.table import Table as RichTable
     from rich.text import Text
-import re
-import traceback
-from pathlib import Path
 
-import click
-
-from rpscli.errors import LimitExceeded, RpsError
-from rpscli.report.documents import failure_document
+    from rpscli.case.case import Case
+    from rpscli.sweep.run import Progress
 
 WARNINGS_SHOWN = 5
 PLAIN_WIDTH = 100
@@ -73,88 +78,79 @@ class Terminal:
         elif not self.quiet:
             emit(rendered(tables), sys.stdout)
 
+    def finish(
+        self, document: Mapping[str, Any], tables: Iterable[Part], error: RpsError | None
+    ) -> None:
+        """The result, with the error that belongs to it and ends the command."""
+        self.result(concluded(document, error), tables)
+        leave(error)
 
-def fitting(table: Table, console: Console) -> Iterator[RichTable]:
+
+def _fitting(table: Table, console: Console) -> Iterator[RichTable]:
     """The parts of a table that is wider than the terminal: its keys begin each."""
     columns = list(range(len(table.columns)))
     keys, others = columns[: table.keys], columns[table.keys :]
     while others:
         for count in range(len(others), 0, -1):
             shown = [*keys, *others[:count]]
-            # rich takes from all columns what is missing, and then gives numbers back what they
-            # need: where that is too much, all of the room is to come from words, and heads of
-            # numbers break into as few lines as do.
-            ways = (None, 2, 3, MOST_LINES, *[ALL_FOLD] * (count == 1))
-            made = chain(
-                (_made(table, shown, lines) for lines in ways),
-                (_squeezed(table, shown, room) for room in [console.width]),
-            )
-            part = next((each for each in made if _width(each, console) <= console.width), None)
-            if part is not None:
+            widths = _widths(table, shown, console.width, fold=count == 1)
+            if widths:
                 break
         others = others[count:]
-        yield part or _made(table, shown)
+        yield _made(table, shown, widths)
 
 
-def _squeezed(table: Table, columns: Sequence[int], room: int) -> RichTable:
-    """The widest columns give all that is missing, down to their longest word."""
-    made = _made(table, columns, MOST_LINES)
-    texts = [[table.heads[i], *(row[i] for row in table.rows)] for i in columns]
-    widths = [max(map(len, column), default=1) for column in texts]
-    least = [column.width or column.min_width or 1 for column in made.columns]
-    while sum(widths) > room - GAP * (len(widths) - 1):
-        free = [i for i, width in enumerate(widths) if width > least[i]]
-        if not free:
-            return made
-        widths[max(free, key=widths.__getitem__)] -= 1
-    for column, width in zip(made.columns, widths, strict=True):
-        column.width = width
-    return made
+def _widths(table: Table, columns: Sequence[int], room: int, *, fold: bool) -> list[int]:
+    """Widths that fit, or none: heads of numbers break into as few lines as do, then words fold.
+
+    Numbers never do, but where one column beside the keys is too wide.
+    """
+    heads, rows = [visible(table.heads[i]) for i in columns], table.rows
+    cells = [[visible(row[i]) for row in rows] for i in columns]
+    wide = [max(map(len, [head, *own])) for head, own in zip(heads, cells, strict=True)]
+    in_head = [min(max(map(len, head.split()), default=1), LONGEST_HEAD) for head in heads]
+    for lines in (1, 2, 3, MOST_LINES, *[ALL_FOLD] * fold):
+        widths, least = [], []
+        for index, head, own, most, word in zip(columns, heads, cells, wide, in_head, strict=True):
+            if index < table.words:
+                longest = max((len(part) for cell in own for part in cell.split()), default=0)
+                least.append(max(min(longest, LONGEST_WORD), word))
+                widths.append(most)
+                continue
+            number = max([word, *map(len, own)])
+            broken = (w for w in range(number, most + 1) if len(wrap(head, w)) <= lines)
+            widths.append(next(broken, most))
+            least.append(1 if lines == ALL_FOLD else widths[-1])
+        missing = sum(widths) + GAP * (len(widths) - 1) - room
+        for _ in range(missing):
+            free = [i for i, width in enumerate(widths) if width > least[i]]
+            if not free:
+                break
+            widths[max(free, key=widths.__getitem__)] -= 1
+        else:
+            return widths
+    return []
 
 
-def _width(made: RichTable, console: Console) -> int:
-    """Columns of the terminal that a table takes, or would if its numbers were not broken."""
-    from rich.segment import Segment
-
-    needed = sum(column.width or column.min_width or 1 for column in made.columns)
-    needed += GAP * (len(made.columns) - 1)
-    lines = Segment.split_lines(console.render(made))
-    widths = (sum(segment.cell_length for segment in line) for line in lines)
-    return max(needed if made.show_header else 0, *widths, 0)
-
-
-def _made(table: Table, columns: Sequence[int], lines: int | None = None) -> RichTable:
-    """Some columns of a table: words fold where it is narrow, numbers stand right and never do."""
+def _made(table: Table, columns: Sequence[int], widths: Sequence[int]) -> RichTable:
+    """Some columns of a table: words stand left, numbers right; a listing has no heads."""
     from rich import box
     from rich.table import Table as RichTable
 
-    heads = [visible(head) for head in table.heads]
-    rows = [[visible(cell) for cell in row] for row in table.rows]
-    if not any(heads):
+    if listing := not any(table.heads):
         made = RichTable(box=None, show_header=False, pad_edge=False, padding=(0, 2, 0, 0))
     else:
         made = RichTable(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False)
-    for index in columns:
-        cells, head = [row[index] for row in rows], heads[index]
+    usual: Sequence[int | None] = widths or [None] * len(columns)
+    for index, width in zip(columns, usual, strict=True):
         justify: Literal["left", "right"] = "left" if index < table.words else "right"
-        in_head = min(max(map(len, head.split()), default=0), LONGEST_HEAD)
-        if not any(heads):
+        if listing:
             made.add_column(overflow="fold" if index else "ellipsis")
-        elif lines == ALL_FOLD:
-            made.add_column(head, justify=justify, overflow="fold")
-        elif index < table.words:
-            word = max((len(word) for cell in cells for word in cell.split()), default=0)
-            least = max(min(word, LONGEST_WORD), in_head, 1)
-            made.add_column(head, overflow="fold", min_width=least)
         else:
-            least = max(in_head, *map(len, cells), 1)
-            width = None
-            if lines is not None:
-                wide = range(least, max(least, len(head)) + 1)
-                width = next(w for w in wide if len(wrap(head, w)) <= lines or w == wide[-1])
-            made.add_column(head, justify=justify, overflow="fold", width=width, min_width=least)
-    for row in rows:
-        made.add_row(*(row[index] for index in columns))
+            head = visible(table.heads[index])
+            made.add_column(head, justify=justify, overflow="fold", width=width)
+    for row in table.rows:
+        made.add_row(*(visible(row[index]) for index in columns))
     return made
 
 
@@ -189,7 +185,7 @@ def _parts(tables: Iterable[Part], console: Console) -> Iterator[RichTable | Tex
 
     for part in tables:
         if isinstance(part, Table):
-            yield from fitting(part, console)
+            yield from _fitting(part, console)
         else:
             yield Text(visible(part), style="bold" if isinstance(part, Heading) else "")
 
@@ -290,3 +286,145 @@ def _lines(error: BaseException) -> str:
     if isinstance(error, click.UsageError) and error.ctx is not None:
         usage = f"{error.ctx.get_usage()}\ntry {error.ctx.command_path} --help\n"
     return usage + "".join(f"error: {line}\n" for line in visible(message(error)).splitlines())
+
+
+MANY = 5000
+"""Of what takes a millisecond each."""
+LONG = 10.0
+"""Time that is worth a word [s]."""
+USUALLY = "half a minute, some minutes on a busy machine"
+FIRST_LINE, GROWTH = 2.0, 1.6
+"""Seconds until the first plain line; the next ones come after ever longer times."""
+
+_bars: list[Any] = []
+"""The one on the terminal; work inside other work becomes a line of it."""
+
+
+@contextmanager
+def _line(what: str, terminal: Terminal) -> Iterator[Callable[[int, int, str], None] | None]:
+    """A line until the work is done, and a function for how far it is; None if nobody looks."""
+    if terminal.quiet or sys.stderr is None or not sys.stderr.isatty():
+        yield None
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+    with ExitStack() as opened:
+        if not _bars:
+            columns = BarColumn(20), TextColumn("{task.description}"), TimeElapsedColumn()
+            bar = Progress(*columns, console=Console(stderr=True), transient=True)
+            _bars.append(opened.enter_context(bar))
+            opened.callback(_bars.clear)
+        else:
+            opened.callback(lambda: bar.remove_task(task))
+        bar = _bars[0]
+        task = bar.add_task(what, total=None)
+
+        def tell(done: int, total: int, text: str) -> None:
+            bar.update(task, completed=done, total=total, description=f"{done}/{total}{text}")
+
+        yield tell
+
+
+@contextmanager
+def passing_time(what: str, terminal: Terminal) -> Iterator[None]:
+    """A line with the work in progress and the time that has passed, where somebody looks."""
+    with _line(what, terminal):
+        yield
+
+
+@contextmanager
+def counted(what: str, terminal: Terminal) -> Iterator[Callable[[int, int], None]]:
+    """A function that shows how many of how many are done: a bar on a terminal, else one line."""
+    with _line(what, terminal) as tell:
+        if tell is None:
+            terminal.note(what)
+        yield lambda done, total: tell(done, total, f", {what}") if tell else None
+
+
+def watched(what: str, terminal: Terminal, numbers: range, *, many: int = MANY) -> Iterator[int]:
+    """The numbers; how many are done is shown where they are many."""
+    if len(numbers) < many:
+        yield from numbers
+        return
+    with counted(f"{len(numbers)} {what}", terminal) as tell:
+        for number in numbers:
+            tell(number, len(numbers))
+            yield number
+
+
+def patience(case: Case, duration: float, terminal: Terminal) -> AbstractContextManager[None]:
+    """Around a history under a record of a duration [s]: what a long one costs is said before."""
+    from rpscli.analyses.kernels.systems import most_seconds, most_steps
+
+    seconds = most_seconds(case.structure, case.analysis, duration)
+    if seconds < LONG:
+        return nullcontext()
+    steps = most_steps(case.structure, case.analysis, duration)
+    terminal.note(
+        f"a long history: up to {steps:.2g} steps of {case.structure.storeys} modes, {seconds:.0f}"
+        " s if it does not come to rest before; analysis.free_vibration shortens it"
+    )
+    return passing_time("computing", terminal)
+
+
+def announce_compilation(terminal: Terminal) -> None:
+    """Say so if a kernel has to be compiled, and how long that takes."""
+    from rpscli.analyses.kernels.compilation import announce_to
+    from rpscli.physics.compile import cache_folder
+
+    @contextmanager
+    def announced(kernel: str) -> Iterator[None]:
+        nowhere = f"each time: no folder that is yours alone can be written; name one in {VARIABLE}"
+        often = "once for this version" if cache_folder() else nowhere
+        terminal.note(f"compiling the {kernel}, {often}: {USUALLY}")
+        with passing_time(f"compiling the {kernel} ({USUALLY})", terminal):
+            yield
+
+    announce_to(announced)
+
+
+@contextmanager
+def progress_report(
+    terminal: Terminal, kept: int, total: int
+) -> Iterator[Callable[[Progress], None]]:
+    """A function that shows how far a study is: a bar on a terminal, else a line now and then."""
+    due = FIRST_LINE
+    with nullcontext() if kept == total else _line("", terminal) as tell:
+
+        def report(progress: Progress) -> None:
+            nonlocal due  # later and later: logs stay short
+            if tell is not None:
+                tell(progress.done, total, "".join(f", {text}" for text in _pace(progress)))
+            elif progress.seconds >= due and progress.done < progress.total:
+                due = progress.seconds * GROWTH
+                terminal.note(progress_line(progress))
+
+        if tell is not None:
+            tell(kept, total, "")
+        yield report
+
+
+def progress_line(progress: Progress) -> str:
+    """Points done, rate and time left in one line."""
+    return ", ".join((f"{progress.done} of {progress.total} points", *_pace(progress)))
+
+
+def _pace(progress: Progress) -> Iterator[str]:
+    """Failures, rate and time left, as far as they are known."""
+    if progress.failed:
+        yield f"{progress.failed} failed"
+    if progress.rate:
+        yield f"{progress.rate:.3g} points/s"
+    if progress.seconds_left is not None:
+        yield f"{duration(progress.seconds_left)} left"
+
+
+def duration(seconds: float) -> str:
+    """A time as people say it."""
+    whole = round(seconds)
+    if whole < 60:
+        return f"{whole} s"
+    if whole < 3600:
+        return f"{whole // 60} min {whole % 60} s"
+    return f"{whole // 3600} h {whole % 3600 // 60} min"

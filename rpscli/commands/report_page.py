@@ -1,0 +1,469 @@
+"""Pages of `rps report`: of a case and its histories, a study, a design, and of stored results."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from math import isnan
+from pathlib import Path
+from typing import Any, NamedTuple, TypeAlias
+
+from rpscli.analyses.result_quantities import plain
+from rpscli.case.case import Case, parse_case
+from rpscli.case.conditions import Condition
+from rpscli.case.schema.case_file import DocumentSection
+from rpscli.case.text.document import is_design
+from rpscli.case.text.files import read_text
+from rpscli.case.text.yaml_text import read_yaml
+from rpscli.commands import timehistory_run as run
+from rpscli.commands.budget import case_budget
+from rpscli.commands.design import designed
+from rpscli.commands.inputs import RESULTS, CaseInput, MotionRequest, case_heading
+from rpscli.commands.shell.options import CaseRequest, OutputRequest, RunChoices
+from rpscli.commands.shell.terminal import Terminal, announce_compilation, concluded
+from rpscli.commands.study import swept
+from rpscli.errors import RecordError, RpsError, UsageError
+from rpscli.records.ground_motion import GroundMotion
+from rpscli.records.source import Source
+from rpscli.report.documents import as_text, heading, read_json, results_of
+from rpscli.report.figures.history import record_name
+from rpscli.report.figures.look import Look
+from rpscli.report.files import RUN_FILE, RUN_KINDS
+from rpscli.report.html import case_page as parts
+from rpscli.report.html.page import Block, Notice, Picture, Section, page_look, pictures
+from rpscli.report.limits import verdicts_in_short
+from rpscli.report.study.labels import labels
+from rpscli.report.study.shown import cut, of_first_system, summary_tables, verdict_table
+from rpscli.report.table import Heading, Table
+from rpscli.studies import Study, StudyResult
+from rpscli.sweep.context import resolved
+
+SUMMARY, STORE = "summary.json", "study.sqlite"
+HISTORY, SWEEP, DESIGN = "timehistory", "sweep", "design"
+_COMPONENT = {"source": str, "sha256": str}
+_MOTION = {"scale": float, "horizontal": _COMPONENT, "vertical": (_COMPONENT,), "y": (_COMPONENT,)}
+HISTORY_INPUTS = {
+    "overrides": [str], "case": dict, "record": (_MOTION,), "records": ([_MOTION],)
+}  # fmt: skip
+"""Of one history, or of several."""
+FAILURES_SHOWN = 20
+
+Asked: TypeAlias = tuple[Sequence[str], MotionRequest]
+"""Sources of records as they were typed, and what else the command line said of them."""
+
+
+@dataclass(frozen=True)
+class Earlier:
+    """A folder of earlier results, and what its `run.json` says."""
+
+    folder: Path
+    run: Mapping[str, Any]
+
+    def __post_init__(self) -> None:
+        """Refuse what would be written elsewhere, or cannot be computed again."""
+        if (name := self.run["name"]) != Path(name).name:
+            raise ValueError("name must be that of a file, without folders")
+        if self.run["command"] == HISTORY and None in self.records:
+            raise ValueError("inputs must have a record, or records")
+
+    @property
+    def file(self) -> Path | None:
+        """The case or the study, as seen from the working folder if it is inside."""
+        if self.run["file"] is None:
+            return None
+        absolute, here = self.folder.joinpath(self.run["file"]).resolve(), Path.cwd()
+        return absolute.relative_to(here) if absolute.is_relative_to(here) else absolute
+
+    @property
+    def subject(self) -> CaseRequest:
+        """The study or the design as it is on the disk, which has to be there, and overrides."""
+        if self.file is None or not self.file.exists():
+            raise UsageError(f"{self.folder}: its file {self.file or ''} is not there; give it")
+        return CaseRequest(str(self.file), tuple(self.run["inputs"]["overrides"]))
+
+    @property
+    def records(self) -> list[dict[str, Any]]:
+        """The motions of one history, or of several."""
+        inputs = self.run["inputs"]
+        return inputs["records"] or [inputs["record"]]
+
+    def case(self) -> tuple[CaseInput, list[MotionRequest]]:
+        """The case and the motions, as they were then."""
+        file, inputs = self.file, self.run["inputs"]
+        folder = self.folder if file is None else file.parent
+        name = str(file or f"{self.run['name']}.yaml")
+        # JSON is YAML too.
+        case = parse_case(json.dumps(inputs["case"]), name=name, folder=folder)
+        case = replace(case, digest=self.run["sha256"], written={})
+        own, motions = case.record, []
+        for given in self.records:
+            horizontal, vertical = (
+                given[name] and str(given[name]["source"]) for name in ("horizontal", "vertical")
+            )
+            if own and own.source == horizontal and (own.y is None or given["y"]):
+                horizontal, vertical = None, None if vertical == own.vertical else vertical
+            motions.append(MotionRequest(horizontal, vertical, given["scale"]))
+        return CaseInput(case, CaseRequest(name, tuple(inputs["overrides"]))), motions
+
+
+def earlier_results(folder: Path) -> Earlier:
+    """Results that a folder holds."""
+    place, what = folder / RUN_FILE, f"has no {RUN_FILE} of rps"
+    try:
+        command = read_json(place, RUN_KINDS)["command"]
+        if command in {HISTORY, SWEEP, DESIGN}:
+            inputs = HISTORY_INPUTS if command == HISTORY else {"overrides": [str]}
+            return Earlier(folder, read_json(place, RUN_KINDS | {"inputs": inputs}))
+        what = f"holds results of `rps {command}`"
+    except FileNotFoundError:
+        if (folder / STORE).exists():
+            raise UsageError(
+                f"{folder}: {STORE} has points of a study that has not ended; `rps sweep STUDY -o"
+                f" {folder}` goes on with it"
+            ) from None
+    except ValueError as error:
+        what = f"holds a {RUN_FILE} of which {error}"
+    inside = sorted(path.parent for path in folder.glob(f"*/{RUN_FILE}"))
+    hint = f"; name one of the folders in it, such as {inside[0]}" if inside else ""
+    raise UsageError(
+        f"{folder}: {what}, and a report is made of time histories of one case, of one study or of"
+        f" one design{hint}"
+    )
+
+
+def kind_of(source: str) -> str:
+    """The command that runs a file: studies and designs have a case at their base."""
+    if source == "-":
+        return HISTORY
+    document = read_yaml(read_text(source), source)
+    if is_design(document):
+        return DESIGN
+    return SWEEP if "base" in document.content else HISTORY
+
+
+class PageDone(NamedTuple):
+    """A page's title and sections, what was found for JSON, its error, and who answers for it."""
+
+    title: str
+    subtitle: str
+    sections: Sequence[Section]
+    document: dict[str, Any]
+    error: RpsError | None
+    signed: DocumentSection
+
+
+def ends(case: Case) -> str:
+    """The kind of compliant ends, to follow in a heading."""
+    kind = case.structure.contact.kind
+    return "" if kind == "rigid" else f", {kind} contact"
+
+
+class _Histories(NamedTuple):
+    """Histories on a page; `worst` is the place of the one that turns the columns most."""
+
+    title: str
+    short: Iterable[Block]
+    results: list[Section]
+    document: dict[str, Any]
+    error: RpsError | None
+    worst: int = 0
+
+
+NO_MOTION = "The case names no ground motion: this page has only the results that need none."
+
+
+def history_page(
+    given: CaseInput,
+    motions: Sequence[MotionRequest],
+    asked: Sequence[Asked],
+    conditions: Sequence[Condition],
+    look: Look,
+    earlier: Earlier | None,
+    terminal: Terminal,
+    *,
+    with_budget: bool = False,
+) -> PageDone:
+    """Compute what belongs to a case, and put it in order."""
+    case, stored, requests = given.case, list[Block](), list[run.HistoryRequest]()
+    if case.record is not None or motions[0].record is not None:
+        # A place for the files, which are not written there.
+        requests = run.history_requests([given], motions, OutputRequest(Path(), force=True))
+        announce_compilation(terminal)
+        made = (_several if len(requests) > 1 else _single)(requests, conditions, look, terminal)
+        terminal.warn(made.document["warnings"])
+        if earlier is not None:
+            stored = [*_compared(earlier, requests, made.document)]
+        if with_budget:
+            order = sorted(range(len(motions)), key=lambda n: n != made.worst)
+            grounds = [requests[n].ground for n in order]
+            budget = case_budget(given, [motions[n] for n in order], grounds, terminal)
+            made.results.append(budget.section(look, requests[made.worst].label))
+    elif with_budget:
+        raise UsageError(f"{case.source}: --budget needs a ground motion; add --record")
+    else:
+        document = {**heading(), "case": case_heading(given), "warnings": list(case.warnings)}
+        made = _Histories("Structure", [NO_MOTION], [], concluded(document, None), None)
+        terminal.warn(case.warnings)
+    sections = parts.page_sections(
+        case,
+        case.title,
+        look,
+        short=made.short,
+        warnings=made.document["warnings"],
+        inputs=parts.case_input(case, given.request.overrides, [each.ground for each in requests]),
+        results=made.results,
+        commands=_commands(given, asked, earlier, with_budget=with_budget),
+        stored=stored,
+        both=any(request.ground.y is not None for request in requests),
+    )
+    title, signed = f"{made.title}{ends(case)}", case.file.document
+    return PageDone(case.title, title, sections, made.document, made.error, signed)
+
+
+def _single(
+    requests: Sequence[run.HistoryRequest],
+    conditions: Sequence[Condition],
+    look: Look,
+    terminal: Terminal,
+) -> _Histories:
+    """One history, and histories beside it."""
+    request = requests[0]
+    done, result = run.compute(request, conditions, page_look(look), terminal)
+    short = parts.history_short(result, done.verdicts, run.look_beside(done, result))
+    files = [(path.name, content) for path, content in request.folder.contents.items()]
+    ground = parts.ground_section(request.ground, result.structure, look)
+    response = parts.response_section(result, files)
+    results = [ground, response, *parts.column_sections(result, files)]
+    title = f"Time history under {record_name(result)}"
+    return _Histories(title, short, results, done.document, done.error)
+
+
+def _several(
+    requests: Sequence[run.HistoryRequest],
+    conditions: Sequence[Condition],
+    look: Look,
+    terminal: Terminal,
+) -> _Histories:
+    """Histories under several records, with the response to the one that turns columns most."""
+    quiet = replace(look, formats=())
+    found = run.computed_set(requests, conditions, quiet, terminal, None, written=False)
+    error = run.set_error([found])
+    # That of a history that failed is none, and counts as 0.
+    turned = [each.demands["rotation_ratio"] for each in found.histories]
+    worst = max(range(len(turned)), key=lambda n: 0.0 if isnan(turned[n]) else turned[n])
+    _, result = run.compute(requests[worst], conditions, page_look(look), terminal)
+    files = [(path.name, content) for path, content in requests[worst].folder.contents.items()]
+    motions = parts.horizontal(*(request.ground for request in requests))
+    response = (
+        f"Response to the record with the largest rotation of the columns, {record_name(result)}"
+    )
+    results = [
+        parts.motions_section(motions, [], f"{len(motions)} records", look, "as they were scaled"),
+        parts.response_section(result, files, response, ("orbit", "rotation", "storey_shears")),
+        *parts.column_sections(result, files),
+    ]
+    title = f"Time histories under {len(requests)} records"
+    short = [verdicts_in_short(found.verdicts), *[*run.set_tables([found])][1:]]
+    return _Histories(title, short, results, run.all_document([found], error), error, worst)
+
+
+def typed_together(case: Case, motions: Sequence[MotionRequest]) -> list[Asked]:
+    """Motions as they may be typed, those that differ in their record alone together."""
+    own, alike = case.record, dict[MotionRequest, list[str]]()
+    plain = own and Source.parse(own.source).scheme and not (own.y or own.rotation or own.vertical)
+    for motion in motions:
+        record = motion.record or (own.source if own and plain and len(motions) > 1 else None)
+        key = replace(motion, record=None if record is None else "")
+        alike.setdefault(key, []).extend([record] if record else [])
+    return [(records, motion) for motion, records in alike.items()]
+
+
+def _commands(
+    given: CaseInput, asked: Sequence[Asked], earlier: Earlier | None, *, with_budget: bool
+) -> list[list[str]]:
+    """Commands that make the histories and the page again, which may be that of a folder."""
+    histories = [
+        [
+            *given.request.words,
+            *(word for record in records for word in ("--record", record)),
+            *replace(motion, record=None).words,
+        ]
+        for records, motion in asked
+    ]
+    subjects = histories if earlier is None else [[str(earlier.folder)]]
+    pages = [["rps", "report", *each, *["--budget"] * with_budget] for each in subjects]
+    without = given.case.record is None and not any(records for records, _ in asked)
+    return pages if without else [*(["rps", HISTORY, *each] for each in histories), *pages]
+
+
+def _compared(
+    earlier: Earlier, requests: Sequence[run.HistoryRequest], document: Mapping[str, Any]
+) -> Iterator[Block]:
+    """Differences of case, records and results from the stored ones."""
+    for request, record in zip(requests, earlier.records, strict=True):
+        named = request.ground.named
+        if any(record[n]["sha256"] != named[n].digest for n in ("horizontal", "y") if record[n]):
+            yield Notice(f"The record {request.label} is no longer that of the stored results.")
+    if (file := earlier.file) is not None:
+        digest = hashlib.sha256(file.read_bytes()).hexdigest() if file.is_file() else ""
+        if digest != earlier.run["sha256"]:
+            state = "has changed since" if digest else "is not there any more"
+            yield Notice(f"{file} {state}; this page keeps to the case in run.json.")
+    folder, summary = earlier.folder, earlier.folder / SUMMARY
+    if not summary.exists():
+        return
+    try:
+        before = results_of(read_json(summary, {}))
+    except (OSError, ValueError) as error:
+        yield Notice(f"{summary} cannot be read, so nothing was compared: {error}")
+        return
+    if len(requests) > 1:  # the summary of a set is that of its only case
+        (document,) = document["sets"]
+    now = results_of(plain(document))
+    # By what the record was scaled is a result; the aim that asked for it is computed once.
+    names = [name for name in before if name in now and name != "record.scaled_to"]
+    differing = [(n, as_text(before[n]), as_text(now[n])) for n in names if before[n] != now[n]]
+    text = (
+        f"The results in {folder} were computed again from what {folder / RUN_FILE} says:"
+        f" {len(names) - len(differing)} of {len(names)} stored results are the same to the last"
+        " digit."
+    )
+    if not differing:
+        yield text
+        return
+    yield Notice(f"{text} Different: {len(differing)}; this page shows what was computed again.")
+    yield Table.of_texts(("result", "stored", "computed anew"), differing, words=1)
+
+
+def study_page(study: Study, place: Path | None, look: Look, terminal: Terminal) -> PageDone:
+    """Compute the points that are not stored yet, and put all in order."""
+    look, layout = page_look(look), study.layout
+    folder = study.output(place or RESULTS / layout.study.name / "sweep")
+    # What is in a folder is shown, not added to.
+    choices = RunChoices(report_only=place is not None)
+    done = swept("report", study, folder, choices, look, terminal)
+    terminal.warn(done.notes)
+    result, found = done.result, done.found
+    varied = any(key.startswith("podium.contact") for key in layout.plan.keys)
+    first = resolved(layout.plan, layout[0].values)
+    contact = ", contact varied" if varied else ends(first)
+    results = [_figures(found.files, study)]
+    if result.summary:
+        statistics = [*summary_tables(result.summary), of_first_system(layout), *found.parts]
+        motions = parts.motions_section(*_motions_of(study), study.title, look)
+        results = [motions, Section("Statistics", [*cut(statistics)]), *results]
+    which = []
+    if (systems := len(layout.properties)) > 1:
+        named = labels(layout.plan.keys, layout[0].values)
+        which = [f"The first of {systems} systems: {named}."]
+    words = CaseRequest(layout.study.source, study.overrides).words
+    warnings = [*done.notes, *(str(error) for error in found.broken)]
+    warnings += [f"Point {f.point} failed: {f.message}" for f in found.failures[:FAILURES_SHOWN]]
+    if (failed := len(found.failures)) > FAILURES_SHOWN:
+        warnings.append(f"{failed} points failed; these are the first of them")
+    stored = (
+        f"Every point is stored in {folder.folder}; points.csv there has them all, failed.csv the"
+        " command that computes each failed point alone."
+    )
+    sections = parts.page_sections(
+        first,
+        study.title,
+        look,
+        short=_in_short(result),
+        warnings=warnings,
+        inputs=_study_input(study, first, "The case" if systems == 1 else "Its first system"),
+        results=results,
+        commands=[["rps", "sweep", *words], ["rps", "report", *words]],
+        stored=[stored],
+        both=all(layout.pairs),
+        which=which,
+    )
+    subtitle = f"Study of {len(result)} points{contact}"
+    signed = layout.study.file.document
+    return PageDone(study.title, subtitle, sections, done.document("report"), done.error, signed)
+
+
+def _in_short(run: StudyResult) -> Iterator[Block]:
+    counts = {"points": len(run), **run.outcomes}
+    yield Table.of_texts(tuple(counts), [tuple(map(str, counts.values()))], words=0)
+    if aim := run.layout.scaled_to:
+        yield f"Records are scaled to {aim}."
+    if run.summary is not None:
+        yield verdicts_in_short(run.judgements, " of a system at an intensity")
+        if run.judgements:
+            yield from cut([verdict_table(run.summary, run.judgements)])
+
+
+def _motions_of(study: Study) -> tuple[list[GroundMotion], list[str]]:
+    """The records before they are scaled, and why some cannot be read."""
+    layout, motions, reasons = study.layout, [], []
+    own = [properties.record for properties in layout.properties if None in layout.records]
+    for request in filter(None, dict.fromkeys((*layout.records, *own))):
+        try:
+            motions.append(layout.context.records.motion(request).horizontal)
+        except RecordError as error:
+            reasons.append(str(error))
+    return motions, reasons
+
+
+def _figures(files: Mapping[str, object], study: Study) -> Section:
+    """All of them, with the kind and the title of the report that each is of."""
+    drawn = []
+    for stem, each in pictures(files.items()).items():
+        request = study.reports.get(stem)
+        kind, title = (request.kind, request.options.title) if request else (stem, None)
+        caption = f"{kind.replace('_', ' ').capitalize()}{f': {title}' if title else ''}."
+        drawn.append(Picture(each, caption))
+    return Section("Figures", drawn)
+
+
+def _study_input(study: Study, first: Case, which: str) -> Iterator[Block]:
+    """The file as it is written, and a case of it."""
+    checked, plan = study.layout.study, study.layout.plan
+    yield parts.listing([
+        ("file", checked.source),
+        ("SHA-256 of its text", checked.digest),
+        ("case at its base", str(checked.base_file) if checked.base_file else "in the study"),
+        ("overridden values", ", ".join(study.overrides)),
+        ("solver", plan.solver),
+    ])  # fmt: skip
+    yield "What it says:"
+    yield parts.input_table(checked.document.content)
+    yield f"{which}, as it is written and in SI units, with all defaults:"
+    yield parts.input_table(first.document, first.written)
+
+
+def design_page(
+    asked: CaseRequest, earlier: Earlier | None, look: Look, terminal: Terminal
+) -> PageDone:
+    """Search, or go on from the points that are stored, and put all in order."""
+    request = asked if earlier is None else earlier.subject
+    folder = None if earlier is None else earlier.folder
+    output, look = OutputRequest(folder, force=folder is not None), page_look(look)
+    done = designed(request, RunChoices(), output, look, terminal)
+    assert done is not None, "it is no dry run"
+    document, study, at = done.document, done.run.study, done.judged.layout
+    terminal.warn(notes := document["warnings"])
+    case = resolved(at.plan, at[0].values)
+    named = {path.name: content for path, content in done.folder.contents.items()}
+    title = "the best design" if document["best"] else "the least violated design"
+    sections = parts.page_sections(
+        case,
+        study.title,
+        look,
+        short=[part for part in done.tables if part != Heading(study.title)],
+        warnings=notes,
+        inputs=_study_input(study, case, f"The case of {title}"),
+        results=[
+            parts.motions_section(*_motions_of(study), study.title, look), _figures(named, study)
+        ],
+        commands=[["rps", command, *asked.words] for command in ("design", "report")],
+        stored=[f"Every point is stored in {done.folder.folder}."],
+        both=all(study.layout.pairs),
+        which=[f"Of {title}."],
+    )  # fmt: skip
+    subtitle = f"Design: {len(done.answer.places)} examined{ends(case)}"
+    signed = done.search.task.file.document
+    return PageDone(study.title, subtitle, sections, document, done.error, signed)
