@@ -234,11 +234,11 @@ def motion_of(reference: dict[str, Any], fema_record: RecordLoader) -> MotionCom
             for a, period, start in of["sines"]
         )
         return pair(x, y, of["dt"])
-    x, y = (
+    along, across = (
         part(fema_record(f"farfield/{of['fema']}/{way}"), of["t0"], reference["T"], of["scale"])
         for way in "ab"
     )
-    return MotionComponents(x, y=y)
+    return MotionComponents(along, y=across)
 
 
 @pytest.mark.evidence("both components", "program")

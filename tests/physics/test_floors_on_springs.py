@@ -211,9 +211,9 @@ def test_stiff_springs_are_floors_that_ride_on_the_beam() -> None:
     assert off[0] > 1.5 * off[1] > 2.25 * off[2]
 
 
-SPRINGS = {"vertical_period": 0.1}
+SPRINGS: dict[str, Any] = {"vertical_period": 0.1}
 STRENGTHS = np.array([1.15e6, 9.0e5, 4.8e5])
-BOTH_KINDS = {**SPRINGS, "strengths": STRENGTHS, "hardening": 0.05}
+BOTH_KINDS: dict[str, Any] = {**SPRINGS, "strengths": STRENGTHS, "hardening": 0.05}
 
 
 def shaken(seed: int) -> MotionComponents:

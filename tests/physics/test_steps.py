@@ -106,7 +106,8 @@ def observed(structure: PodiumStructure, record: GroundMotion) -> Orders:
 
     def last(result: TimeHistoryResult) -> Array:
         t = result.trace
-        return np.r_[t.rotation[-1], t.rotation_rate[-1], t.drifts[-1], t.storey_shears[-1]]
+        ends = t.rotation[-1:], t.rotation_rate[-1:], t.drifts[-1], t.storey_shears[-1]
+        return np.concatenate(ends)
 
     reference = run(REFERENCE)
     assert reference.trace.phase[-1] > 0
