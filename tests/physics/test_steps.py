@@ -1,9 +1,8 @@
-"""Steps: their rule, the orders that are observed, where they are halved, and how many it takes."""
+"""Steps: the orders that are observed, where they are halved, and how many it takes."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -20,7 +19,6 @@ from paper_structures import (
 )
 
 from rpscli.analyses.kernels import systems
-from rpscli.analyses.kernels.systems import LOSS
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
@@ -28,49 +26,7 @@ from rpscli.model.bearing import Bearing
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import RayleighDamping
-from rpscli.physics.tableau import A2, END, ERROR, USED, A, C
 from rpscli.records.ground_motion import GroundMotion
-
-SIXTH, FIFTH = A[END], A[END] - ERROR
-
-
-def missed(b: Array) -> Iterator[float]:
-    """What weights miss of the conditions of orders 1 to 5 (Butcher's trees)."""
-    Ac, Ac2 = A @ C, A @ C**2
-    yield float(b.sum() - 1.0)
-    for k in range(1, 5):
-        yield float(b @ C**k - 1.0 / (k + 1))
-    for tree, value in (
-        (Ac, 6), (C * Ac, 8), (Ac2, 12), (A @ Ac, 24), (C**2 * Ac, 10), (Ac**2, 20), (C * Ac2, 15),
-        (A @ C**3, 20), (C * (A @ Ac), 30), (A @ (C * Ac), 40), (A @ Ac2, 60), (A @ (A @ Ac), 120),
-    ):  # fmt: skip
-        yield float(b @ tree - 1.0 / value)
-
-
-@pytest.mark.parametrize("b", [SIXTH, FIFTH], ids=["6", "5"])
-def test_conditions_up_to_order_five(b: Array) -> None:
-    # weights of up to 176 multiply rounding
-    assert max(map(abs, missed(b))) < 1e-10
-
-
-def test_one_rule_is_of_order_six_and_the_other_is_not() -> None:
-    assert pytest.approx(1.0 / 6.0, abs=1e-10) == SIXTH @ C**5
-    assert abs(FIFTH @ C**5 - 1.0 / 6.0) > 1e-4
-
-
-def test_positions_follow_by_the_squared_tableau() -> None:
-    assert np.array_equal(A2, A @ A)
-    assert pytest.approx(0.5, abs=1e-10) == SIXTH @ C
-    assert not np.any(np.where(USED, 0.0, A))
-
-
-@pytest.mark.parametrize("z", [0.5, 0.7, 0.9])
-def test_what_a_step_takes_from_a_vibration(z: float) -> None:
-    """Of its energy LOSS z^8: what the lengths of steps are bounded by."""
-    stages = np.linalg.solve(np.eye(END + 1) - 1j * z * A, np.ones(END + 1))
-    grown = abs(1.0 + 1j * z * (SIXTH @ stages))
-    assert 1.0 - grown**2 == pytest.approx(LOSS * z**8, rel=0.06)
-
 
 ACCURACIES = (0.8, 1.6, 3.2)
 REFERENCE = 48.0

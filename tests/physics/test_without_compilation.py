@@ -19,7 +19,7 @@ from rpscli.analyses.kernels.systems import stacked_systems
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.model.devices import FrictionDamper, RollingResistance, Stop, Tendon, ViscousDamper
 from rpscli.model.impact import ImpactLaw
-from rpscli.physics.compile import OPTIONS, fma, kernel
+from rpscli.physics.compile import OPTIONS
 from rpscli.physics.fields import fields_of
 from rpscli.physics.follow import integrate
 from rpscli.physics.run import Run
@@ -152,17 +152,6 @@ def test_the_histories_compared_are_not_trivial(interpreted: Histories) -> None:
 def test_python_and_machine_code_agree_under_both_components(tmp_path: Path) -> None:
     assert as_python("digest_of_a_pair", RPS_CACHE_DIR=str(tmp_path)) == digest_of_a_pair()
     assert not [*tmp_path.rglob("*.compiled")]  # which would tell others that they have it
-
-
-@kernel
-def fused(a: float, b: float, c: float) -> float:
-    return fma(a, b, c)
-
-
-def test_a_product_and_a_sum_are_rounded_once() -> None:
-    for a, b, c in ((1.0 + 2.0**-30, 1.0 - 2.0**-30, -1.0), (0.1, 10.0, -1.0), (3.0, 4.0, 5.0)):
-        assert fma(a, b, c) == fused(a, b, c)
-    assert fused(1.0 + 2.0**-30, 1.0 - 2.0**-30, -1.0) == -(2.0**-60)
 
 
 @needs_compiled_kernels
