@@ -16,10 +16,10 @@ from hypothesis import settings
 # each other, a thousand times as long as a matrix exponential of four rows takes.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-from kernel_locks import locked
 from paper_structures import RecordLoader
 
 from rpscli.analyses.kernels.compilation import KERNELS, compiled, is_ready
+from rpscli.physics.compile import cache_folder
 from rpscli.physics.prepare import can_prepare, compile_whole, garbage_kept
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.loading import load_record
@@ -45,6 +45,23 @@ def pytest_runtest_setup(item: pytest.Item) -> None:
     """Windows has no forks and signals."""
     if os.name != "posix" and item.get_closest_marker("posix"):
         pytest.skip("needs a POSIX system")
+
+
+@contextlib.contextmanager
+def locked(name: str, *, wait: bool = True) -> Iterator[bool]:
+    """Whether no other process that uses the same cache has this lock; Windows has none."""
+    if os.name != "posix" or (folder := cache_folder()) is None:
+        yield True
+        return
+    import fcntl
+
+    with (folder / f"{name}.lock").open("w") as file:
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX if wait else fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            yield False
+        else:
+            yield True
 
 
 @contextlib.contextmanager

@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import math
+import os
+import subprocess
+import sys
 from collections.abc import Callable
 from dataclasses import replace
 from importlib.util import find_spec
+from pathlib import Path
 from typing import Any, TypeVar
 
 import numba
@@ -149,6 +153,16 @@ def part(record: GroundMotion, start: float, seconds: float, factor: float = 1.0
     """From an instant on, for a time [s], times a factor."""
     first, count = round(start / record.dt), round(seconds / record.dt) + 1
     return ground(factor * record.acceleration[first : first + count], record.dt)
+
+
+def printed_by(*arguments: str, **environment: str) -> str:
+    """What Python prints in another process, which imports the tests as this one does."""
+    here = Path(__file__).parent
+    places = {"PYTHONPATH": os.pathsep.join([str(here), str(here.parent), *sys.path])}
+    command = [sys.executable, *arguments]
+    variables = os.environ | places | environment
+    done = subprocess.run(command, env=variables, capture_output=True, text=True, check=True)
+    return done.stdout
 
 
 def bisected(

@@ -18,7 +18,7 @@ import yaml
 from oracles.second_integrator import simulate
 from oracles.test_second_integrator import ROWS
 from paper_structures import RecordLoader, block, needs_compiled_kernels, oracle_system, podium
-from physics.test_overturning_pulses import SINE, least_amplitude
+from physics.test_free_rocking import SINE, least_amplitude
 from reproduction.test_histories import PRINTED
 
 import rpscli

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from paper_structures import Array, RecordLoader, ground
+from paper_structures import Array, RecordLoader, ground, part
 
 from rpscli.analyses.kernels.history import Request, follow, longest_history, run_of
 from rpscli.analyses.kernels.systems import stacked_systems
@@ -71,13 +71,12 @@ def pair(x: Array, y: Array, dt: float, up: Array | None = None) -> MotionCompon
 
 def part_of_pair(given: Mapping[str, Any], record: RecordLoader) -> MotionComponents:
     """A far-field pair of FEMA P695 times `scale` from `t0` on for `T` seconds, from rest."""
-    both = [record(f"farfield/{given['pair']}/{way}") for way in "ab"]
-    dt = both[0].dt
-    first = round(given["t0"] / dt)
-    last = first + round(given["T"] / dt) + 1
-    x, y = (given["scale"] * each.acceleration[first:last] for each in both)
-    x[0] = y[0] = 0.0
-    return pair(x, y, dt)
+    x, y = (
+        part(record(f"farfield/{given['pair']}/{way}"), given["t0"], given["T"], given["scale"])
+        for way in "ab"
+    )
+    at_rest = np.arange(x.npts) > 0
+    return pair(at_rest * x.acceleration, at_rest * y.acceleration, x.dt)
 
 
 def two_pulses(seconds: float = 6.0, dt: float = 0.01) -> Array:

@@ -39,30 +39,18 @@ ALONE = 1_000_000_000
 CLOSE = 1e-4
 """Relative error in max|theta| that counts as the same history: single ones are chaotic."""
 COLUMNS = (
-    "storeys",
-    "program",
-    "over rps, one",
-    "over rps, lanes",
-    "ms/history",
-    "max theta to 1e-4",
+    "storeys", "program", "over rps, one", "over rps, lanes", "ms/history", "max theta to 1e-4",
     "impacts",
-)
+)  # fmt: skip
 _CONSOLE = Console(width=132, highlight=False)
 
 
 def installed(module: str) -> bool:
-    """Whether a peer can be imported; says so at once if not, with the first cause.
-
-    Some answer a missing system library by a RuntimeError that does not name it.
-    """
+    """Whether a peer can be imported; says so at once if not."""
     try:
         importlib.import_module(module)
-    except (ImportError, OSError, RuntimeError) as error:
-        cause: BaseException = error
-        while cause.__context__ is not None:
-            cause = cause.__context__
-        left_out = f"{module} is left out: {cause} (pip install -e '.[bench]' brings all)"
-        _CONSOLE.print(left_out, soft_wrap=True, markup=False)
+    except (ImportError, OSError, RuntimeError) as error:  # of system libraries that are missing
+        _CONSOLE.print(f"{module} is left out: {error} (pip install -e '.[bench]' brings all)")
         return False
     return True
 

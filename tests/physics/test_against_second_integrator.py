@@ -15,6 +15,7 @@ from paper_structures import (
     needs_compiled_kernels,
     oracle_devices,
     oracle_system,
+    part,
     podium,
     waves,
 )
@@ -31,14 +32,7 @@ from rpscli.records.ground_motion import GroundMotion
 pytestmark = needs_compiled_kernels
 
 DT = 0.02
-FLEXIBLE = ImpactLaw("flexible")
-
-
-def piece_of(whole: GroundMotion) -> GroundMotion:
-    """Two seconds around the largest acceleration of a recorded motion."""
-    peak = int(np.argmax(np.abs(whole.acceleration)))
-    piece = whole.acceleration[max(peak - 100, 0) : peak + 100]
-    return GroundMotion(piece, whole.dt, "piece", "made", "made")
+RIGID, FLEXIBLE = ImpactLaw("rigid"), ImpactLaw("flexible")
 
 
 class Case(NamedTuple):
@@ -191,17 +185,12 @@ def test_both_roads_with_devices(names: str) -> None:
     assert ("tendon_slack" in kinds) >= ("loose" in names)
 
 
+MODAL = building(2, damping=ModalDamping(0.03))
 SOON_AT_REST = [
     podium(0, 0.15, FLAT, law=ImpactLaw("value", 0.4)),
     podium(1, 0.15, 0.5, law=ImpactLaw("rigid", factor=0.6)),
     podium(3, 0.15, FLAT, law=ImpactLaw("flexible", factor=0.6)),
-    podium(
-        2,
-        0.15,
-        0.5,
-        law=ImpactLaw("value", 0.4),
-        superstructure=building(2, damping=ModalDamping(0.03)),
-    ),
+    podium(2, 0.15, 0.5, law=ImpactLaw("value", 0.4), superstructure=MODAL),
 ]
 
 
@@ -219,13 +208,15 @@ def test_both_roads_lock_alike(structure: PodiumStructure) -> None:
 @pytest.mark.evidence("vertical motion", "program")
 @pytest.mark.evidence("buildings on bearings under earthquakes", "program")
 @pytest.mark.parametrize(
-    ("rho", "law"), [(FLAT, "rigid"), (0.26, "flexible"), (0.5, "rigid"), (1.5, "flexible")]
+    ("rho", "law"), [(FLAT, RIGID), (0.26, FLEXIBLE), (0.5, RIGID), (1.5, FLEXIBLE)]
 )
 def test_both_roads_under_a_piece_of_an_earthquake(
-    rho: float, law: str, fema_record: RecordLoader
+    rho: float, law: ImpactLaw, fema_record: RecordLoader
 ) -> None:
-    record = piece_of(fema_record("farfield/1/b"))
-    structure = podium(3, 0.10, rho, law=ImpactLaw("rigid" if law == "rigid" else "flexible"))
+    whole = fema_record("farfield/1/b")
+    peak = int(np.argmax(np.abs(whole.acceleration))) * whole.dt
+    record = part(whole, max(peak - 100 * whole.dt, 0.0), 199 * whole.dt)
+    structure = podium(3, 0.10, rho, law=law)
     assert agree(structure, record, None, 0.5, 1e-7).impacts >= 1
 
 
@@ -242,7 +233,7 @@ def test_both_roads_for_random_structures(seed: int) -> None:
         tan_alpha,
         float(rng.choice([FLAT, 0.26, 0.5, 1.5])),
         R=float(rng.choice([0.5, 1.5, 5.0])),
-        law=rng.choice(np.array([ImpactLaw("rigid"), FLEXIBLE], dtype=object)),
+        law=rng.choice(np.array([RIGID, FLEXIBLE], dtype=object)),
         superstructure=building(n, period, damping) if n else None,
     )
     peak = rng.uniform(1.5, 5.0) * structure.uplift_acceleration

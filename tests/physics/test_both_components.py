@@ -26,6 +26,7 @@ from paper_structures import (
     needs_compiled_kernels,
     oracle_devices,
     oracle_system,
+    part,
     waves,
 )
 from two_components import History, followed, frame, pair, part_of_pair, released, two_pulses
@@ -233,11 +234,11 @@ def motion_of(reference: dict[str, Any], fema_record: RecordLoader) -> MotionCom
             for a, period, start in of["sines"]
         )
         return pair(x, y, of["dt"])
-    both = [fema_record(f"farfield/{of['fema']}/{way}") for way in "ab"]
-    dt = both[0].dt
-    first, count = round(of["t0"] / dt), round(reference["T"] / dt) + 1
-    x, y = (of["scale"] * each.acceleration[first : first + count] for each in both)
-    return pair(x, y, dt)
+    along, across = (
+        part(fema_record(f"farfield/{of['fema']}/{way}"), of["t0"], reference["T"], of["scale"])
+        for way in "ab"
+    )
+    return MotionComponents(along, y=across)
 
 
 @pytest.mark.evidence("both components", "program")

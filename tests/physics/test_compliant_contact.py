@@ -170,39 +170,6 @@ def test_a_sine_sweep_is_that_of_the_modes() -> None:
     np.testing.assert_allclose(floors, states[:, 1:4], atol=1e-8 * np.abs(floors).max())
 
 
-def slope(f: Array, x: Array) -> Array:
-    """Fourth-order differences on a geometric grid of steps 1e-4 x: rows -2 to 2."""
-    return np.asarray((f[0] - 8.0 * f[1] + 8.0 * f[3] - f[4]) / (12.0 * 1e-4 * x))
-
-
-@pytest.mark.evidence("compliant ends", "exact")
-@pytest.mark.parametrize("kind", ["plane", "edges"])
-@pytest.mark.parametrize("rho", [0.0, RHO, 0.8])
-def test_moments_are_slopes_of_the_potential(kind: str, rho: float) -> None:
-    structure = podium(2, Contact(kind, stiffness=8e8), rho=rho)  # type: ignore[arg-type]
-    bed, b = known(structure.bed), structure.bearing
-    ends = [bed.uplift_rotation, bed.full_rotation or 1.0, b.beta or 1.0]
-    x = np.geomspace(0.1 * bed.uplift_rotation, 0.9 * structure.critical_rotation, 60)
-    x = x[np.all(np.abs(x[:, None] / np.array(ends) - 1.0) > 1e-3, axis=1)]
-    grid = [bed.path(x * (1.0 + k * 1e-4)) for k in range(-2, 3)]
-    there = grid[2]
-    for whole, part in (
-        ("potential", "arm"), ("lift", "lift_arm"), ("displacement", "height"),
-        ("lift_arm", "lift_bend"),
-    ):  # fmt: skip
-        values = np.array([getattr(path, whole) for path in grid])
-        scale = np.abs(getattr(there, part)).max()
-        found = slope(values, x)
-        # Rounding of the differences: 1e-12 of what is differenced, over 1e-4 x.
-        allowed = 2e-12 * (1.0 + np.abs(values[2])) / (1e-4 * x) + 1e-9 * scale
-        assert np.all(np.abs(found - getattr(there, part)) < allowed)
-    for end in ends[: 2 if bed.full_rotation else 1]:
-        below, above = (bed.path(np.array([end * (1.0 + h)])) for h in (-1e-12, 1e-12))
-        for name in ("arm", "height", "displacement", "lift", "potential"):
-            one, other = getattr(below, name)[0], getattr(above, name)[0]
-            assert one == pytest.approx(other, rel=1e-9, abs=1e-11)
-
-
 STRIPS = 4000
 """Of a plane end: where its contact ends is known to a strip, 5e-4 of the half width."""
 

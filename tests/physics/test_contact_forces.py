@@ -4,25 +4,25 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from oracles.storey_lagrangian import StoreyLagrangian
 from paper_structures import (
     FLAT,
-    Array,
     block,
     building,
     ground,
     needs_compiled_kernels,
+    oracle_system,
     podium,
     stillness,
     waves,
 )
 
-from rpscli.analyses.kernels.history import SampledHistory, sampled_history
+from rpscli.analyses.kernels.history import sampled_history
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import denser_trace, time_history
 from rpscli.analyses.trace import trace_of
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import ModalDamping, RayleighDamping
-from rpscli.physics.geometry import path_along
 from rpscli.physics.state import FULL_CONTACT, IMPACT
 from rpscli.records.ground_motion import MotionComponents
 
@@ -30,78 +30,52 @@ DT = 0.005
 RECORD, VERTICAL = waves(1.5, DT, 4.0, seed=2), waves(1.5, DT, 3.0, seed=3)
 
 
-def stored_samples(structure: PodiumStructure) -> SampledHistory:
-    """The kernel's samples under both components, and its demands."""
-    settings = TimeHistorySettings(free_vibration=0.0)
-    run = sampled_history(structure, MotionComponents(RECORD, VERTICAL), settings)
-    assert run.history.events[IMPACT] > 0
-    return run
-
-
-def base_accelerations(structure: PodiumStructure, run: SampledHistory) -> tuple[Array, Array]:
-    """u_b'' and v_b'' by the chain rule on u_b(theta), v_b(theta) (Theory, section 8)."""
-    bearing, samples = structure.bearing, run.samples
-    theta, rate, acceleration = samples.theta, samples.theta_dot, samples.theta_ddot
-    side, x = np.sign(theta), np.abs(theta)
-    B, C, _, _ = path_along(bearing.rolling, bearing.rocking, bearing.beta, x)
-    falls = np.where(x < bearing.beta, bearing.rolling.c, 0.0) - C
-    lean = side + (theta == 0.0) * np.sign(acceleration)
-    diameter = 2.0 * bearing.semi_diagonal
-    moving = samples.phase != FULL_CONTACT
-    u = diameter * (C * acceleration + lean * B * rate**2)
-    v = diameter * (lean * B * acceleration + falls * rate**2)
-    return u * moving, v * moving
-
-
 @pytest.mark.evidence("forces in columns, friction", "exact")
 @pytest.mark.parametrize(
     "structure", [podium(0, 0.15, 0.5), podium(2, 0.15, FLAT), podium(3, 0.15, 0.5)], ids=str
 )
 def test_demands_are_newtons_sums_over_all_masses(structure: PodiumStructure) -> None:
-    run = stored_samples(structure)
+    settings = TimeHistorySettings(free_vibration=0.0)
+    run = sampled_history(structure, MotionComponents(RECORD, VERTICAL), settings)
     samples, history, above = run.samples, run.history, structure.superstructure
-    u_b, v_b = base_accelerations(structure, run)
+    assert history.events[IMPACT] > 0
+    # u_b and v_b, their rates and accelerations by the chain rule (Theory, section 8)
+    lagrangian = StoreyLagrangian(oracle_system(structure))
+    rate, acceleration = samples.theta_dot, samples.theta_ddot
+    side = np.sign(samples.theta) + (samples.theta == 0.0) * np.sign(acceleration)
+    w, slope, bend = np.array([
+        lagrangian.cap_beam(abs(x), rolling=abs(x) < structure.bearing.beta) for x in samples.theta
+    ]).T  # fmt: skip
+    moved = (slope * acceleration + side * bend * rate**2) * (samples.phase != FULL_CONTACT)
+    u_b, v_b = moved.real, side * moved.imag
     a_h, a_v = RECORD.acceleration, VERTICAL.acceleration
     beam, columns, g = structure.cap_beam_mass, structure.columns_mass, structure.gravity
     floors = np.zeros(len(samples))
     if above is not None:
-        bearing = structure.bearing
-        _, C, path, _ = path_along(
-            bearing.rolling, bearing.rocking, bearing.beta, np.abs(samples.theta)
-        )
-        base = 2.0 * bearing.semi_diagonal * np.sign(samples.theta) * path
-        base_rate = 2.0 * bearing.semi_diagonal * C * samples.theta_dot
-        base_rate *= samples.phase != FULL_CONTACT
-        u, du = run.floors[:, 0], run.floors[:, 1]
-        pull = (u - base[:, None]) @ above.stiffness_matrix
-        pull += (du - base_rate[:, None]) @ above.damping_matrix
-        absolute = -pull / above.masses  # u'' + a_g of each floor by itself
-        floors = absolute @ above.masses
+        base_rate = slope.real * rate * (samples.phase != FULL_CONTACT)
+        pull = (run.floors[:, 0] - (side * w.real)[:, None]) @ above.stiffness_matrix
+        pull += (run.floors[:, 1] - base_rate[:, None]) @ above.damping_matrix
+        floors = -pull.sum(axis=1)  # masses times u'' + a_g of each floor by itself
     shear_top = floors + beam * (u_b + a_h)
     shear_bottom = shear_top + columns * (0.5 * u_b + a_h)
-    normal_top = (beam + structure.superstructure_mass) * (g + a_v + v_b)
+    carried = beam + structure.superstructure_mass
+    normal_top = carried * (g + a_v + v_b)
     normal_bottom = normal_top + columns * (g + a_v + 0.5 * v_b)
-    weight = (beam + structure.superstructure_mass) * g
-    friction = [
-        np.max(np.abs(shear_top) / normal_top),
-        np.max(np.abs(shear_bottom) / normal_bottom),
-    ]
-    normal = [np.min(normal_top) / weight, np.min(normal_bottom) / (weight + columns * g)]
+    ends = ((shear_top, normal_top, carried), (shear_bottom, normal_bottom, carried + columns))
+    friction = np.array([np.max(np.abs(shear) / normal) for shear, normal, _ in ends])
+    normal = np.array([np.min(normal) / (mass * g) for _, normal, mass in ends])
     found = np.array([history.friction_top, history.friction_bottom])
     least = np.array([history.normal_top, history.normal_bottom])
     # sums in another order, sines of |theta| by another series; between samples there is more
-    assert np.all(found >= (1.0 - 1e-11) * np.array(friction))
-    assert np.all(least <= (1.0 + 1e-11) * np.array(normal))
+    assert np.all(found >= (1.0 - 1e-11) * friction)
+    assert np.all(least <= (1.0 + 1e-11) * normal)
     assert found == pytest.approx(friction, rel=0.02)
     assert least == pytest.approx(normal, rel=0.05)
     trace = trace_of(structure, run)
-    for ours, known in (
-        (trace.shear_top, shear_top),
-        (trace.shear_bottom, shear_bottom),
-        (trace.normal_top, normal_top),
-        (trace.normal_bottom, normal_bottom),
-    ):
-        assert ours == pytest.approx(known, abs=1e-11 * weight)
+    for where, (shear, pressure, _) in zip(("top", "bottom"), ends, strict=True):
+        for kind, known in (("shear", shear), ("normal", pressure)):
+            ours = getattr(trace, f"{kind}_{where}")
+            assert ours == pytest.approx(known, abs=1e-11 * carried * g)
 
 
 @pytest.mark.evidence("forces in columns, friction", "exact")

@@ -19,13 +19,15 @@ import pytest
 from paper_structures import (
     Array,
     RecordLoader,
+    building,
     ground,
     known,
+    let_go,
     needs_compiled_kernels,
+    part,
     podium,
     waves,
 )
-from paper_structures import building as paper_building
 
 from rpscli.analyses.demand import Request, demands
 from rpscli.analyses.results import TimeHistoryResult
@@ -47,6 +49,7 @@ from rpscli.records.ground_motion import GroundMotion, MotionComponents
 REFERENCES: dict[str, list[dict[str, Any]]] = json.loads(
     (Path(__file__).parents[1] / "oracles" / "floors_references.json").read_text()
 )
+FLEXIBLE = ImpactLaw()
 PLANE = {each["name"]: each for each in REFERENCES["plane"]}
 BOTH = {each["name"]: each for each in REFERENCES["both"]}
 
@@ -75,10 +78,9 @@ def structure_of(given: dict[str, Any]) -> PodiumStructure:
 
 def window(record: GroundMotion, given: dict[str, Any], scale: float) -> GroundMotion:
     """A part of a record, its first sample zero."""
-    first, count = round(given["from_s"] / record.dt), round(given["seconds"] / record.dt) + 1
-    part = scale * record.acceleration[first : first + count]
-    part[0] = 0.0
-    return ground(part, record.dt)
+    found = part(record, given["from_s"], given["seconds"], scale).acceleration.copy()
+    found[0] = 0.0
+    return ground(found, record.dt)
 
 
 def motion_of(given: dict[str, Any], fema_record: RecordLoader) -> MotionComponents:
@@ -97,7 +99,9 @@ def motion_of(given: dict[str, Any], fema_record: RecordLoader) -> MotionCompone
     return MotionComponents(x, vertical=above)
 
 
-def run(given: dict[str, Any], fema_record: RecordLoader, accuracy: float = 1.0) -> Any:
+def run(
+    given: dict[str, Any], fema_record: RecordLoader, accuracy: float = 1.0
+) -> TimeHistoryResult:
     """A history of the references, by this program."""
     motion = motion_of(given, fema_record)
     free = max(given["seconds"] - motion.horizontal.duration, 0.0)
@@ -117,7 +121,7 @@ def run(given: dict[str, Any], fema_record: RecordLoader, accuracy: float = 1.0)
 def test_histories_of_another_program(name: str, fema_record: RecordLoader) -> None:
     given, found = PLANE[name]["given"], PLANE[name]["found"]
     # towards its end one parts from its double with half the step in the fifth digit
-    result: TimeHistoryResult = run(given, fema_record, 2.0 if name == "vy3" else 1.0)
+    result = run(given, fema_record, 2.0 if name == "vy3" else 1.0)
     left, structure, n = result.history, result.structure, given["n"]
     assert structure.restitution == pytest.approx(found["e"], abs=1e-9)
     assert left["max_theta"] == pytest.approx(found["max_rotation"], rel=1e-7)
@@ -162,7 +166,7 @@ def test_histories_of_another_program(name: str, fema_record: RecordLoader) -> N
 @pytest.mark.parametrize("name", BOTH)
 def test_pairs_of_another_program(name: str, fema_record: RecordLoader) -> None:
     given, found = BOTH[name]["given"], BOTH[name]["found"]
-    result: TimeHistoryResult = run(given, fema_record)
+    result = run(given, fema_record)
     left = result.history
     assert left["max_theta"] == pytest.approx(found["max_rotation"], rel=1e-5)
     azimuth = math.remainder(left["max_azimuth"] - found["azimuth_of_it"], 2.0 * math.pi)
@@ -188,42 +192,28 @@ def test_pairs_of_another_program(name: str, fema_record: RecordLoader) -> None:
     assert energy.impact == pytest.approx(spent["lost"], abs=1e-5 * spent["input"])
 
 
-def sprung(period: float, damping: float = 0.05, storeys: int = 3, rho: float = 0.5) -> Any:
-    """The usual podium under floors on vertical springs."""
-    above = replace(
-        paper_building(storeys, 0.1 * storeys), vertical_period=period, vertical_damping=damping
-    )
-    return podium(storeys, 0.15, rho, superstructure=above, law=ImpactLaw())
+def usual(law: ImpactLaw = FLEXIBLE, **of_building: Any) -> PodiumStructure:
+    """Three storeys whose floors may stand on springs, and that may yield."""
+    above = replace(building(3), **of_building)
+    return podium(3, 0.15, 0.5, superstructure=above, law=law)
 
 
 @needs_compiled_kernels
 @pytest.mark.evidence("floors on vertical springs", "exact")
 def test_stiff_springs_are_floors_that_ride_on_the_beam() -> None:
     """Damped within an impact, they give back its whole impulse: the limit of (14.7) is (4.8)."""
-    settings = TimeHistorySettings(initial_rotation=0.06, free_vibration=2.4)
-    still = ground(np.zeros(2), 0.01)
-    riding = sprung(0.1)
-    riding = replace(riding, superstructure=replace(riding.superstructure, vertical_period=None))
-    expected = time_history(riding, still, settings).trace.rotation
-    off = [
-        np.max(np.abs(time_history(sprung(T, 0.3), still, settings).trace.rotation - expected))
-        for T in (0.02, 0.01, 0.005)
-    ]
+    riding, *stiff = (
+        let_go(usual(vertical_period=T, vertical_damping=0.3), 0.06, 2.4).trace.rotation
+        for T in (None, 0.02, 0.01, 0.005)
+    )
+    off = [np.max(np.abs(each - riding)) for each in stiff]
     assert off[2] < 2e-3 * 0.06
     assert off[0] > 1.5 * off[1] > 2.25 * off[2]
 
 
-STRENGTHS, HARDENING = np.array([1.15e6, 9.0e5, 4.8e5]), 0.05
-
-
-def usual(kind: str) -> PodiumStructure:
-    """Three storeys on springs, that yield, or both."""
-    above = paper_building(3)
-    if kind != "yields":
-        above = replace(above, vertical_period=0.1)
-    if kind != "springs":
-        above = replace(above, strengths=STRENGTHS, hardening=HARDENING)
-    return podium(3, 0.15, 0.5, superstructure=above, law=ImpactLaw())
+SPRINGS: dict[str, Any] = {"vertical_period": 0.1}
+STRENGTHS = np.array([1.15e6, 9.0e5, 4.8e5])
+BOTH_KINDS: dict[str, Any] = {**SPRINGS, "strengths": STRENGTHS, "hardening": 0.05}
 
 
 def shaken(seed: int) -> MotionComponents:
@@ -237,10 +227,10 @@ def shaken(seed: int) -> MotionComponents:
 @pytest.mark.evidence("storeys that yield", "exact")
 def test_the_path_of_plastic_drifts() -> None:
     """Karush-Kuhn-Tucker at every sample: within the range, and moved by its ends only."""
-    result = time_history(usual("both"), shaken(5), TimeHistorySettings(free_vibration=1.0))
+    result = time_history(usual(**BOTH_KINDS), shaken(5), TimeHistorySettings(free_vibration=1.0))
     trace, above = denser_trace(result, 5e-4), known(result.structure.superstructure)
     drifts, slips = trace.drifts, known(trace.plastic_drifts)
-    k, F, h = above.stiffnesses, STRENGTHS, HARDENING
+    k, F, h = above.stiffnesses, STRENGTHS, above.hardening
     off = k * (drifts - slips / (1.0 - h))
     assert np.max(np.abs(off) / F) < 1.0 + 1e-9
     moved = np.diff(slips, axis=0)
@@ -255,10 +245,8 @@ def test_the_path_of_plastic_drifts() -> None:
 
 @needs_compiled_kernels
 def test_a_building_that_never_yields_keeps_its_bits() -> None:
-    elastic, strong = usual("springs"), usual("both")
-    above = replace(known(strong.superstructure), strengths=np.full(3, 1e9))
-    strong = replace(strong, superstructure=above)
-    one, other = (time_history(each, shaken(5)).history for each in (elastic, strong))
+    never = {**BOTH_KINDS, "strengths": np.full(3, 1e9)}
+    one, other = (time_history(usual(**of), shaken(5)).history for of in (SPRINGS, never))
     for name in ("max_theta", "storey_shear", "heavy_top", "energy_lost"):
         assert np.array_equal(one[name], other[name]), name
     assert other["ductility"][0, :3] == pytest.approx(other["storey_shear"][:3] / 1e9, rel=1e-12)
@@ -272,18 +260,14 @@ def test_a_building_that_never_yields_keeps_its_bits() -> None:
 def test_forces_of_columns_under_recorded_pairs(fema_record: RecordLoader) -> None:
     """Of 22 pairs, 40 s: another program's medians of N/W and base shear; no number of t_c."""
     forty = [
-        [GroundMotion(r.acceleration[: round(40.0 / r.dt) + 1], r.dt, "", "", "") for r in pair]
-        for pair in ([fema_record(f"farfield/{i}/{way}") for way in "ab"] for i in range(1, 23))
+        [part(fema_record(f"farfield/{i}/{way}"), 0.0, 40.0) for way in "ab"] for i in range(1, 23)
     ]
     motions = [MotionComponents(x, y=y) for x, y in forty]
     settings = TimeHistorySettings(free_vibration=0.0)
 
     def of_pairs(period: float | None, contact_time: float) -> tuple[Array, Array, Any]:
-        above = replace(paper_building(3), vertical_period=period)
-        law = ImpactLaw(contact_time=contact_time)
-        usual = podium(3, 0.15, 0.5, superstructure=above, law=law)
-        bearing = replace(usual.bearing, inertia_ratio_axial=0.011)
-        structure = replace(usual, bearing=bearing)
+        made = usual(ImpactLaw(contact_time=contact_time), vertical_period=period)
+        structure = replace(made, bearing=replace(made.bearing, inertia_ratio_axial=0.011))
         found = [d.history for d in demands([Request(structure, m, settings) for m in motions])]
         mass = structure.cap_beam_mass + structure.superstructure_mass + structure.columns_mass
         heavy = np.array([left["heavy_bottom"] for left in found])
@@ -309,7 +293,7 @@ def test_forces_of_columns_under_recorded_pairs(fema_record: RecordLoader) -> No
 @needs_compiled_kernels
 def test_contact_that_is_lost_asks_for_friction_without_bound() -> None:
     """Floors on springs lift the beam for instants; a moderate demand is told with its time."""
-    strong = replace(usual("springs"), friction=0.5)
+    strong = replace(usual(**SPRINGS), friction=0.5)
     peaks = [time_history(strong, shaken(seed)) for seed in (5, 8, 11)]
     lost = [result for result in peaks if result.history["normal_top"] <= 0.0]
     assert lost

@@ -9,7 +9,6 @@ import shutil
 import signal
 import sqlite3
 import stat
-import subprocess
 import sys
 import tempfile
 import time
@@ -19,7 +18,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from paper_structures import known, needs_compiled_kernels
+from paper_structures import known, needs_compiled_kernels, printed_by
 
 from rpscli.physics import compile as compilation
 from rpscli.physics import prepare
@@ -69,8 +68,7 @@ def test_the_place_is_that_of_the_user_then_of_the_system_then_none(
         folder = cache_folder()
         assert (folder and folder.parent) == parent
         assert folder is None or folder.is_dir()
-    double = kernel(twice)
-    assert double(3.0) == 6.0
+    assert kernel(twice)(3.0) == 6.0
 
 
 owners = pytest.mark.skipif(not hasattr(os, "getuid"), reason="folders have no owner here")
@@ -194,16 +192,13 @@ def test_code_of_one_record_is_not_called_for_another(tmp_path: Path) -> None:
         f"total += np.cos(total) * np.sin({i}.0 * record.y) * 0.0" for i in range(60)
     )
     program.write_text(TWO_RECORDS.replace("BULK", bulk))
-    environment = {**os.environ, "RPS_CACHE_DIR": str(tmp_path / "cache")}
-
-    def run(*kinds: str) -> list[str]:
-        command = [sys.executable, str(program), *kinds]
-        done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
-        return done.stdout.splitlines()
-
-    assert run("small") == ["12.0 0"]
-    assert run("large") == ["28.0 0"]
-    assert run("small", "large") == ["12.0 1", "28.0 2"]
+    for kinds, printed in (
+        (("small",), "12.0 0\n"),
+        (("large",), "28.0 0\n"),
+        (("small", "large"), "12.0 1\n28.0 2\n"),
+    ):
+        found = printed_by(str(program), *kinds, RPS_CACHE_DIR=str(tmp_path / "cache"))
+        assert found == printed
 
 
 @needs_compiled_kernels
@@ -253,19 +248,9 @@ for seed in range(200):
 @needs_compiled_kernels
 def test_right_after_the_compilation_bits_are_those_of_later(tmp_path: Path) -> None:
     """Parts of the kernel in memory took the places of its own, with other last bits."""
-    places = [str(Path(__file__).parents[1]), *sys.path]
-    environment = {"RPS_CACHE_DIR": str(tmp_path), "PYTHONPATH": os.pathsep.join(places)}
-
-    def run() -> list[str]:
-        command = [sys.executable, "-c", HISTORIES]
-        done = subprocess.run(
-            command, env=os.environ | environment, capture_output=True, text=True, check=True
-        )
-        return done.stdout.splitlines()
-
-    first = run()
-    assert len(first) > 100
-    assert first == run()
+    first, later = (printed_by("-c", HISTORIES, RPS_CACHE_DIR=str(tmp_path)) for _ in range(2))
+    assert first.count("\n") > 100
+    assert first == later
 
 
 @needs_compiled_kernels
@@ -273,7 +258,6 @@ def test_a_full_disk_keeps_nothing_and_stops_nothing(
     fresh_folder: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     fresh_folder.setenv("RPS_CACHE_DIR", str(tmp_path))
-
     made = kernel(twice)
 
     def full(*_: object) -> None:
@@ -282,10 +266,6 @@ def test_a_full_disk_keeps_nothing_and_stops_nothing(
     fresh_folder.setattr("numba.core.caching.IndexDataCacheFile.save", full)
     with pytest.warns(UserWarning, match=rf"{tmp_path}.*No space left.*make room"):
         assert made(2.0) == 4.0
-
-
-class Interrupted(BaseException):
-    """What Ctrl-C is."""
 
 
 @pytest.mark.posix
@@ -300,12 +280,12 @@ def test_an_interruption_waits_for_the_end_of_the_kernel() -> None:
         ended.append(True)
 
     def interrupt(number: int, frame: object) -> None:
-        raise Interrupted
+        raise KeyboardInterrupt
 
     before = signal.signal(signal.SIGALRM, interrupt)
     signal.setitimer(signal.ITIMER_REAL, 0.15)
     try:
-        with pytest.raises(Interrupted):
+        with pytest.raises(KeyboardInterrupt):
             hear(slow_to_hear, state)
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0.0)

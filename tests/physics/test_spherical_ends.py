@@ -12,16 +12,15 @@ from oracles.storey_lagrangian import StoreyLagrangian
 from paper_structures import (
     building,
     ground,
+    let_go,
     needs_compiled_kernels,
     oracle_devices,
     oracle_system,
-    stillness,
     waves,
 )
 
 from rpscli.analyses.demand import demand
 from rpscli.analyses.pushover import pushover
-from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.model.bearing import Bearing
@@ -88,12 +87,6 @@ def test_motion_is_that_of_the_second_integrator(
     assert abs(result.energy.residual) < 1e-7 * abs(result.energy.input)
 
 
-def swing(structure: PodiumStructure, start: float, seconds: float) -> TimeHistoryResult:
-    """Released from rest at a tilt on a ground that stands still."""
-    settings = TimeHistorySettings(free_vibration=seconds, initial_rotation=start)
-    return time_history(structure, stillness(0.01), settings, with_fixed_base=False)
-
-
 @pytest.mark.evidence("spherical ends", "exact")
 @needs_compiled_kernels
 def test_small_swings_have_the_period_of_height_and_radius() -> None:
@@ -102,7 +95,7 @@ def test_small_swings_have_the_period_of_height_and_radius() -> None:
     stiffness = (0.5 * COLUMNS + BEAM) * G * (2.0 * RADIUS - h) / h**2
     known = 2.0 * math.pi * math.sqrt((COLUMNS / 3.0 + BEAM) / stiffness)
     assert frame.rolling_period == pytest.approx(known, rel=1e-14)
-    back = swing(frame, 1e-5, 2.0 * known).trace
+    back = let_go(frame, 1e-5, 2.0 * known).trace
     assert np.interp(known, back.time, back.rotation) == pytest.approx(1e-5, rel=1e-5)
     pendulum = 2.0 * math.pi * math.sqrt(h**2 / (2.0 * RADIUS - h) / G)
     assert replace(frame, columns_mass=1.0).rolling_period == pytest.approx(pendulum, rel=1e-5)
@@ -121,7 +114,7 @@ def test_friction_takes_the_same_from_each_swing_and_then_holds(holds: type[Devi
         FrictionDamper(F) if holds is FrictionDamper else RollingResistance(F * H / frame.weight)
     )
     structure = on_spheres(0, device)
-    result = swing(structure, start, 40.0)
+    result = let_go(structure, start, 40.0)
     # 1, -0.74, 0.48, -0.22 and, before it is upright again, -0.04 of the start
     assert result.trace.rotation[-1] == pytest.approx(start - 8.0 * step, rel=1e-5)
     assert result.events[-1].time == pytest.approx(2.0 * (frame.rolling_period or 0.0), rel=1e-6)

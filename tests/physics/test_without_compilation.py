@@ -4,9 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import os
-import subprocess
-import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -14,7 +11,7 @@ from typing import Any, TypeAlias
 import numba
 import numpy as np
 import pytest
-from paper_structures import FLAT, needs_compiled_kernels, podium, waves
+from paper_structures import FLAT, needs_compiled_kernels, podium, printed_by, waves
 from two_components import followed, frame, pair, two_pulses
 
 from rpscli.analyses.kernels.history import Request, run_of
@@ -22,7 +19,7 @@ from rpscli.analyses.kernels.systems import stacked_systems
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.model.devices import FrictionDamper, RollingResistance, Stop, Tendon, ViscousDamper
 from rpscli.model.impact import ImpactLaw
-from rpscli.physics.compile import OPTIONS, fma, kernel
+from rpscli.physics.compile import OPTIONS
 from rpscli.physics.fields import fields_of
 from rpscli.physics.follow import integrate
 from rpscli.physics.run import Run
@@ -45,36 +42,24 @@ from rpscli.records.ground_motion import MotionComponents
 
 Histories: TypeAlias = dict[str, list[dict[str, Any]]]
 
-STOREYS = 2
 DT = 0.02
 ONE, TWO = waves(0.7, DT, 4.0, seed=5), waves(0.7, DT, 3.0, seed=8)
-MOTIONS = [
-    MotionComponents(ONE),
-    MotionComponents(TWO),
-    MotionComponents(ONE, TWO),
-    MotionComponents(TWO, ONE),
-]
+MOTIONS = [MotionComponents(*of) for of in ((ONE,), (TWO,), (ONE, TWO), (TWO, ONE))]
 SETTINGS = TimeHistorySettings(free_vibration=0.3, recontact_tolerance=1e-3)
+DEVICES = (
+    FrictionDamper(6e5),
+    Tendon(1e4, 2e6, 2e4),
+    ViscousDamper(5e4, 0.5),
+    Stop(0.02, 1e7, 1e5),
+    RollingResistance(1e-4),
+)
+PLAIN = podium(2, 0.10, 0.5, R=0.4)
 STRUCTURES = [
-    podium(STOREYS, 0.10, 0.5, R=0.4),
-    podium(STOREYS, 0.15, FLAT, R=0.4, law=ImpactLaw("flexible")),
-    replace(
-        podium(STOREYS, 0.10, 0.5, R=0.4),
-        devices=(
-            FrictionDamper(6e5),
-            Tendon(1e4, 2e6, 2e4),
-            ViscousDamper(5e4, 0.5),
-            Stop(0.02, 1e7, 1e5),
-            RollingResistance(1e-4),
-        ),
-        columns=4,
-    ),
+    PLAIN,
+    podium(2, 0.15, FLAT, R=0.4, law=ImpactLaw("flexible")),
+    replace(PLAIN, devices=DEVICES, columns=4),
 ]
-REQUESTS = [
-    Request(0, 2),
-    Request(0, 1, scale=0.35),
-    Request(1, 3, scale=0.3),
-]
+REQUESTS = [Request(0, 2), Request(0, 1, scale=0.35), Request(1, 3, scale=0.3)]
 ROWS = 256
 
 
@@ -130,15 +115,10 @@ def digest_of_a_pair() -> str:
 
 def as_python(function: str, **environment: str) -> Any:
     """What a function of this module gives where nothing is compiled."""
-    paths = [str(Path(__file__).parents[1]), str(Path(__file__).parents[2]), *sys.path]
-    variables = {"NUMBA_DISABLE_JIT": "1", "PYTHONPATH": os.pathsep.join(paths)} | environment
     script = f"import json; from physics import {__name__.rpartition('.')[2]} as here\n"
     script += f"print(json.dumps(here.{function}()))"
-    command = [sys.executable, "-P", "-W", "error", "-c", script]
-    done = subprocess.run(
-        command, env=os.environ | variables, check=True, capture_output=True, text=True
-    )
-    return json.loads(done.stdout)
+    options = ("-P", "-W", "error", "-c", script)
+    return json.loads(printed_by(*options, **{"NUMBA_DISABLE_JIT": "1"} | environment))
 
 
 @pytest.fixture(scope="module")
@@ -172,17 +152,6 @@ def test_the_histories_compared_are_not_trivial(interpreted: Histories) -> None:
 def test_python_and_machine_code_agree_under_both_components(tmp_path: Path) -> None:
     assert as_python("digest_of_a_pair", RPS_CACHE_DIR=str(tmp_path)) == digest_of_a_pair()
     assert not [*tmp_path.rglob("*.compiled")]  # which would tell others that they have it
-
-
-@kernel
-def fused(a: float, b: float, c: float) -> float:
-    return fma(a, b, c)
-
-
-def test_a_product_and_a_sum_are_rounded_once() -> None:
-    for a, b, c in ((1.0 + 2.0**-30, 1.0 - 2.0**-30, -1.0), (0.1, 10.0, -1.0), (3.0, 4.0, 5.0)):
-        assert fma(a, b, c) == fused(a, b, c)
-    assert fused(1.0 + 2.0**-30, 1.0 - 2.0**-30, -1.0) == -(2.0**-60)
 
 
 @needs_compiled_kernels

@@ -71,7 +71,7 @@ def finished(folder: Path) -> dict[str, int]:
     return points
 
 
-@pytest.mark.long  # tests/hunt/test_damaged_stores.py kills in every run
+@pytest.mark.long  # tests/hunt/test_hostile_edges.py kills in every run
 @pytest.mark.posix
 def test_kill_9_and_resume_end_in_the_same_bytes(workplace: Path) -> None:
     code, _, _ = interrupted(signal.SIGKILL, workplace)
