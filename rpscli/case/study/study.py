@@ -16,7 +16,6 @@ from pydantic import ValidationError
 from rpscli.case.overrides import apply_overrides
 from rpscli.case.schema.case_file import CaseFile
 from rpscli.case.schema.check import checked
-from rpscli.case.schema.fields import is_finite
 from rpscli.case.schema.keys import field_at, fields_of, is_whole, unit, unknown_key
 from rpscli.case.schema.scale_to import ScaleToSection
 from rpscli.case.study.observed import Observed, read_observed
@@ -42,14 +41,12 @@ from rpscli.case.text.document import (
     Fault,
     Path,
     dotted,
-    is_case,
-    is_design,
-    is_study,
+    format_of,
     shown,
 )
 from rpscli.case.text.files import read_text
 from rpscli.case.text.yaml_text import read_yaml
-from rpscli.errors import CaseError, RecordError, RpsError, listed, stem_of
+from rpscli.errors import CaseError, RecordError, RpsError, is_number, listed, stem_of
 from rpscli.records.loading import expanded, repeated
 from rpscli.registry import Registry
 from rpscli.units import in_si
@@ -124,12 +121,12 @@ def parse_study(
 ) -> Study:
     """A study from its text."""
     document = read_yaml(text, name)
-    if is_case(document):
+    if (kind := format_of(document)) == "case":
         raise CaseError(
             f"{name}: this is a case, but a study is needed here; `rps timehistory {name}` computes"
             " it, `rps init --study` writes a study"
         )
-    if is_design(document):
+    if kind == "design":
         raise CaseError(
             f"{name}: this is a design, but a study is needed here; use `rps design {name}`"
         )
@@ -201,9 +198,9 @@ def _base(document: Document, folder: Folder) -> tuple[Document, Folder | None]:
     except CaseError as error:
         raise CaseError(f"{here}: {error}") from None
     base = read_yaml(text, str(path))
-    if is_study(base):
+    if (kind := format_of(base)) in ("study", "design"):
         raise CaseError(f"{here} is a study, and a base is a case; name the case that it varies")
-    if "rps" not in base.content and not is_case(base):
+    if "rps" not in base.content and kind != "case":
         raise CaseError(f"{here} has neither `rps` nor `superstructure`; name a case")
     return base, path
 
@@ -256,7 +253,7 @@ def _with_linked(
             raise document.refusal([Fault(path, f"{text} has; sums are of keys of one axis")])
         columns = [(axis.keys.index(name), unit(name)) for name in names]
         rows: list[list[Any]] = [[in_si(row[at], si) for at, si in columns] for row in axis.rows]
-        if not all(map(is_finite, itertools.chain(*rows))):
+        if not all(map(is_number, itertools.chain(*rows))):
             text = f"linked.{key} is a sum of numbers; {names} are not"
             raise document.refusal([Fault(path, text)])
         sums = (linked_value(key, terms, row) for row in rows)
