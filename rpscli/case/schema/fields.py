@@ -31,7 +31,7 @@ from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from rpscli.errors import LARGEST, SMALLEST, PluginError, hint, is_number, listed, nearest
 from rpscli.registry import Registry
-from rpscli.units import KINDS, si_value
+from rpscli.units import KINDS, Written, si_value
 
 
 class Section(BaseModel):
@@ -118,9 +118,10 @@ class Quantity(Mark):
     def read(self, value: object) -> float | str:
         """The SI value, or the word; raises pydantic's error if it is neither."""
         unit = "" if self.unit == PLAIN else f" {self.unit}"
+        text = value if isinstance(value, str) else ""
+        if text in self.words:
+            return text
         if isinstance(value, str):
-            if value in self.words:
-                return value
             value = self._with_unit(value)
         if isinstance(value, bool) or not isinstance(value, Real):
             refuse(self._not_a_number)
@@ -133,7 +134,7 @@ class Quantity(Mark):
             refuse(f"must be {self.rule}{unit}{symbol}{remedy}")
         if x and not SMALLEST <= abs(x) <= LARGEST:
             refuse(f"is outside {SMALLEST:g} ... {LARGEST:g}{unit}; check the unit")
-        return x
+        return Written(x, text) if text else x
 
     @property
     def _not_a_number(self) -> str:

@@ -7,15 +7,14 @@ Results of which small values are bad have `at_least` in place of `at_most`.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import cache
 from typing import Annotated, Any, Self
 
-from pydantic import Discriminator, Field, Tag, WrapValidator, create_model, model_validator
+from pydantic import Discriminator, Field, Tag, create_model, model_validator
 
 from rpscli.analyses.result_quantities import LIMITED, ResultQuantity
 from rpscli.case.schema.fields import PLAIN, Quantity, Section, refuse
-from rpscli.units import KINDS, Written
+from rpscli.units import KINDS
 
 Admissible = Annotated[float, Quantity(at_least=0, below=1, remedy="10 % is 0.1")]
 Fractile = Annotated[float, Quantity(above=0, below=1, remedy="84 % is 0.84")]
@@ -38,11 +37,6 @@ class LimitRule(Section, use_attribute_docstrings=False):
         return self
 
 
-def _as_written(value: object, number: Callable[[object], float]) -> float:
-    """A number in SI that knows the text with which it was given."""
-    return Written(number(value), value) if isinstance(value, str) else number(value)
-
-
 def _form(value: object) -> str:
     return "rule" if isinstance(value, dict | LimitRule) else "number"
 
@@ -56,8 +50,7 @@ def _limit(quantity: ResultQuantity) -> Any:
 
 @cache
 def _limit_of(unit: str, zero: bool, key: str) -> Any:  # noqa: FBT001 -- whether 0 is admissible
-    bounds = Quantity(unit, at_least=0) if zero else Quantity(unit, above=0)
-    number = Annotated[float, bounds, WrapValidator(_as_written)]
+    number = Annotated[float, Quantity(unit, at_least=0) if zero else Quantity(unit, above=0)]
     fields: Any = {key: (number, Field(description="admissible value"))}
     rule = create_model(f"Limit_{unit}_{key}{zero:d}", __base__=LimitRule, **fields)
     return Annotated[

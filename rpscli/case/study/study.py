@@ -36,14 +36,7 @@ from rpscli.case.study.schema import (
     StudyParts,
     Values,
 )
-from rpscli.case.text.document import (
-    Document,
-    Fault,
-    Path,
-    dotted,
-    format_of,
-    shown,
-)
+from rpscli.case.text.document import Document, Fault, Path, dotted, format_of, shown
 from rpscli.case.text.files import read_text
 from rpscli.case.text.yaml_text import read_yaml
 from rpscli.errors import CaseError, RecordError, RpsError, is_number, listed, stem_of
