@@ -280,7 +280,7 @@ class ColumnSection(Section):
 
 
 class PodiumSection(Section):
-    """Columns and cap beam, whose masses are given directly or as ratios."""
+    """Columns and cap beam."""
 
     cap_beam_mass_ratio: Ratio | None = None
     """gamma = m_b/(N m_c); 0 = no cap beam, free-standing columns"""
