@@ -393,25 +393,22 @@ def _report_faults(
 
 def _size_faults(file: StudyFile, axes: Sequence[Axis], sources: Sequence[str]) -> Iterator[Fault]:
     """A study that is too large, at its largest part."""
-    systems: dict[Path, int] = {("vary", i): len(axis.rows) for i, axis in enumerate(axes)}
+    parts: dict[Path, int] = {("vary", i): len(axis.rows) for i, axis in enumerate(axes)}
     if file.sample is not None:
-        systems["sample", "size"] = file.sample.size
-    others: dict[Path, int] = {("records",): max(len(sources), 1)}
-    if file.scale is not None:
-        values = file.scale.values if isinstance(file.scale, MeasureScale) else file.scale
-        others["scale",] = len(values)
-    if file.perturb is not None:
-        others["perturb", "members"] = file.perturb.members
-    for parts, most, name in (
-        (systems, MOST_SYSTEMS, "systems"),
-        (systems | others, MOST_POINTS, "points"),
-    ):
-        if (count := math.prod(parts.values())) > most:
-            product = " x ".join(str(part) for part in parts.values() if part > 1)
-            largest = max(parts, key=lambda path: parts[path])
-            yield Fault(
-                largest,
-                f"the study has {count} {name} ({product}), which must not be more than {most};"
-                " use fewer values, or several studies",
-            )
-            return
+        parts["sample", "size"] = file.sample.size
+    most, name = MOST_SYSTEMS, "systems"
+    if math.prod(parts.values()) <= most:
+        most, name = MOST_POINTS, "points"
+        parts["records",] = max(len(sources), 1)
+        if file.scale is not None:
+            values = file.scale.values if isinstance(file.scale, MeasureScale) else file.scale
+            parts["scale",] = len(values)
+        if file.perturb is not None:
+            parts["perturb", "members"] = file.perturb.members
+    if (count := math.prod(parts.values())) > most:
+        product = " x ".join(str(part) for part in parts.values() if part > 1)
+        yield Fault(
+            max(parts, key=lambda path: parts[path]),
+            f"the study has {count} {name} ({product}), which must not be more than {most}; use"
+            " fewer values, or several studies",
+        )
