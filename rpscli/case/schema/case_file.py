@@ -52,11 +52,9 @@ class DeviceSection(Section):
     """tendon: P_0 of one, while the structure stands"""
     yield_force: Annotated[float | None, Quantity("N", symbol="P_y", above=0)] = None
     """tendon: P_y of one; left out: it never yields"""
-    lever: Annotated[float | None, Quantity("m", symbol="f", above=0)] = Field(
-        None,
-        description="rolling_resistance: f, lever by which the normal force lies ahead of the"
-        " contact; a moment f N at either end of the columns",
-    )
+    lever: Annotated[float | None, Quantity("m", symbol="f", above=0)] = None
+    """rolling_resistance: f, lever by which the normal force lies ahead of the contact; a moment f
+    N at either end of the columns"""
 
 
 OWN_DAMPERS = OwnLaws("kind", DAMPERS, DeviceSection)

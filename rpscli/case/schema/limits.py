@@ -20,15 +20,17 @@ Admissible = Annotated[float, Quantity(at_least=0, below=1, remedy="10 % is 0.1"
 Fractile = Annotated[float, Quantity(above=0, below=1, remedy="84 % is 0.84")]
 
 
-class LimitRule(Section, use_attribute_docstrings=False):
+_WITHOUT_SOURCE = {"use_attribute_docstrings": False}
+"""Option of models that no class statement defines: looking for their source takes long."""
+
+
+class LimitRule(Section):
     """A limit for the records of a study together; a single history must keep it anyway."""
 
-    share: Admissible | None = Field(
-        None, description="share of the records that may exceed the limit; 0 by default"
-    )
-    fractile: Fractile | None = Field(
-        None, description="fractile of the demand that must meet the limit, in place of a share"
-    )
+    share: Admissible | None = None
+    """share of the records that may exceed the limit; 0 by default"""
+    fractile: Fractile | None = None
+    """fractile of the demand that must meet the limit, in place of a share"""
 
     @model_validator(mode="after")
     def _one_rule(self) -> Self:
@@ -52,7 +54,9 @@ def _limit(quantity: ResultQuantity) -> Any:
 def _limit_of(unit: str, zero: bool, key: str) -> Any:  # noqa: FBT001 -- whether 0 is admissible
     number = Annotated[float, Quantity(unit, at_least=0) if zero else Quantity(unit, above=0)]
     fields: Any = {key: (number, Field(description="admissible value"))}
-    rule = create_model(f"Limit_{unit}_{key}{zero:d}", __base__=LimitRule, **fields)
+    rule = create_model(
+        f"Limit_{unit}_{key}{zero:d}", __base__=LimitRule, __cls_kwargs__=_WITHOUT_SOURCE, **fields
+    )
     return Annotated[
         Annotated[rule, Tag("rule")] | Annotated[number, Tag("number")], Discriminator(_form)
     ]
@@ -68,33 +72,27 @@ _FIELDS: Any = {
     quantity.name: (_limit(quantity) | None, Field(None, description=described(quantity)))
     for quantity in LIMITED
 }
-_WITHOUT_SOURCE = {"use_attribute_docstrings": False}
-"""Option of models that no class statement defines: looking for their source takes long."""
+_LIMITS = create_model("Limits", __base__=Section, __cls_kwargs__=_WITHOUT_SOURCE, **_FIELDS)
 
 
-class LimitsSection(
-    create_model("Limits", __base__=Section, __cls_kwargs__=_WITHOUT_SOURCE, **_FIELDS)  # type: ignore[misc]
-):
+class LimitsSection(_LIMITS, use_attribute_docstrings=True):
     """Acceptance limits."""
 
-    overturning: Admissible | None = Field(
-        None, description="share of the records that may overturn; 0 = none"
-    )
-    uplift: Admissible | None = Field(
-        None, description="share of the records that may uplift; 0 = none"
-    )
+    overturning: Admissible | None = None
+    """share of the records that may overturn; 0 = none"""
+    uplift: Admissible | None = None
+    """share of the records that may uplift; 0 = none"""
 
 
 class StudyLimits(LimitsSection):
     """Limits of studies and designs, which may be on the reliability; it needs a `hazard`."""
 
-    annual_rate: Annotated[float, Quantity(symbol="1/year", above=0)] | None = Field(
-        None,
-        description="how often a year the structure may overturn, from shares at all intensities",
-    )
+    annual_rate: Annotated[float, Quantity(symbol="1/year", above=0)] | None = None
+    """how often a year the structure may overturn, from shares at all intensities"""
     probability_in_50_years: (
         Annotated[float, Quantity(above=0, below=1, remedy="1 % is 0.01")] | None
-    ) = Field(None, description="probability of overturning in 50 years, in place of the rate")
+    ) = None
+    """probability of overturning in 50 years, in place of the rate"""
 
     @model_validator(mode="after")
     def _one_of_both(self) -> Self:

@@ -258,11 +258,11 @@ class PerturbSection(Section):
 class HazardSection(Section):
     """A hazard curve: how often a year each intensity is exceeded at the site."""
 
-    file: Text = Field(
-        description="CSV with the header `PGV [cm/s],rate [1/year]`, and fractiles behind it,"
-        " `0.16 [1/year]`; seen from the study's folder"
-    )
-    measure: MeasureName = Field(description="of its first column")
+    file: Text
+    """CSV with the header `PGV [cm/s],rate [1/year]`, and fractiles behind it, `0.16 [1/year]`;
+    seen from the study's folder"""
+    measure: MeasureName
+    """of its first column"""
     component: Of | None = None
     """what of a pair of components it is of, as `of` in `scale`; said if it is not the same"""
 
@@ -311,11 +311,9 @@ class StudyParts(TitledFile):
     independent: By = "recordings"
     """what intervals, bootstraps and held-out parts take as a whole: recordings, of which all
     components and angles are one, or events"""
-    whole_histories: bool = Field(
-        default=False,
-        description="follow each history by itself, with all its samples: roof displacement, floor"
-        " velocity, forces of a column, base shear over that of the fixed base; far slower",
-    )
+    whole_histories: bool = False
+    """follow each history by itself, with all its samples: roof displacement, floor velocity,
+    forces of a column, base shear over that of the fixed base; far slower"""
     perturb: PerturbSection | None = None
     """small perturbations around every point"""
     limits: StudyLimits | None = None
