@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from numbers import Real
 from pathlib import PurePath
-from typing import TypeVar
+from typing import TypeGuard, TypeVar
 
 Item = TypeVar("Item")
 Made = TypeVar("Made")
@@ -159,7 +159,7 @@ def stem_of(path: PurePath) -> str:
     return path.stem if path.stem.strip(". ") else path.name
 
 
-def is_number(value: object) -> bool:
+def is_number(value: object) -> TypeGuard[float]:
     """True of finite real numbers."""
     if not isinstance(value, Real) or isinstance(value, bool):
         return False
@@ -174,7 +174,7 @@ SMALLEST, LARGEST = 1e-15, 1e15
 
 def is_size(value: object) -> bool:
     """Whether a value is a number above zero that follows from what a building may have."""
-    return is_number(value) and SMALLEST**2 <= value <= LARGEST**2  # type: ignore[operator]
+    return is_number(value) and SMALLEST**2 <= value <= LARGEST**2
 
 
 def told(value: object) -> str:

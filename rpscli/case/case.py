@@ -18,7 +18,7 @@ from rpscli.case.schema.case_file import CaseFile, RecordSection
 from rpscli.case.schema.check import checked
 from rpscli.case.schema.fields import Section
 from rpscli.case.schema.limits import LimitsSection
-from rpscli.case.text.document import Document, is_design, is_study, text_of_values
+from rpscli.case.text.document import Document, format_of, text_of_values
 from rpscli.case.text.files import opened
 from rpscli.case.text.yaml_text import read_yaml
 from rpscli.errors import CaseError, RecordError, require_kind, stem_of
@@ -166,8 +166,8 @@ def parse_case(
 ) -> Case:
     """A case from its text."""
     document = read_yaml(text, name)
-    if is_study(document):
-        kind, command = ("design", "design") if is_design(document) else ("study", "sweep")
+    if (kind := format_of(document)) in ("study", "design"):
+        command = "sweep" if kind == "study" else kind
         raise CaseError(
             f"{name}: this is a {kind}, but a case is needed here; `rps {command} {name}` runs it"
         )

@@ -26,7 +26,7 @@ from rpscli.case.study.schema import (
     Seed,
     Sources,
     StudyParts,
-    is_number,
+    is_moderate,
     with_keys,
 )
 from rpscli.case.study.study import (
@@ -38,7 +38,7 @@ from rpscli.case.study.study import (
     study_of,
     varying,
 )
-from rpscli.case.text.document import Document, Fault, is_case, is_design
+from rpscli.case.text.document import Document, Fault, format_of
 from rpscli.case.text.yaml_text import read_yaml
 from rpscli.errors import LARGEST, CaseError, hint, listed
 from rpscli.records.recordings import clusters
@@ -128,7 +128,7 @@ def _unknown(given: tuple[str, object]) -> Unknown:
     """The range of a key, in SI units."""
     key, bounds = given
     si = in_si(bounds, unit(key))
-    if not isinstance(si, list) or len(si) != 2 or not all(map(is_number, si)):
+    if not isinstance(si, list) or len(si) != 2 or not all(map(is_moderate, si)):
         words = "numbers" if unit(key) == "-" else f"numbers in {unit(key)} or with a unit"
         refuse(f"must be two {words}, [least, largest], up to {LARGEST:g}")
     if not si[0] < si[1]:
@@ -259,11 +259,10 @@ def parse_design(
     """A design task from its text."""
     folder = folder or Path()
     document = read_yaml(text, name)
-    if not is_design(document):
-        kind = "case" if is_case(document) else "study" if "base" in document.content else "file"
+    if (kind := format_of(document)) != "design":
         raise CaseError(
-            f"{name}: this is a {kind} without `variables`, but a design is needed here: a base"
-            " case, variables, records, limits and minimise; see `rps explain variables`"
+            f"{name}: this is a {kind or 'file'} without `variables`, but a design is needed here:"
+            " a base case, variables, records, limits and minimise; see `rps explain variables`"
         )
     document.refuse(
         Fault((word,), f"{word} is gone: {now}", at_key=True)

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Iterator, Mapping, Sequence
+import json
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -11,7 +12,16 @@ from pydantic import BaseModel
 
 from rpscli.case.schema.case_file import CaseFile
 from rpscli.case.schema.keys import field_at, section_at, unknown_key
-from rpscli.case.text.document import Document, Fault, Path, Place, dotted, path_of, shown
+from rpscli.case.text.document import (
+    Document,
+    Fault,
+    Path,
+    Place,
+    dotted,
+    path_of,
+    shown,
+    text_of_values,
+)
 from rpscli.case.text.yaml_text import read_value
 from rpscli.errors import CaseError
 
@@ -51,12 +61,14 @@ def apply_overrides(
 
 
 def _parsed(overrides: Overrides, label: str) -> Iterator[Override]:
-    items = overrides.items() if isinstance(overrides, Mapping) else overrides
+    items: Iterable[Any] = overrides
+    if isinstance(overrides, Mapping):
+        items = json.loads(text_of_values(overrides, label)).items()
     for rank, item in enumerate(items, start=1):
         if isinstance(item, Override):
             yield item
         elif isinstance(item, tuple):
-            key, value = item[0], _plain(item[1])
+            key, value = item
             written = value if isinstance(value, str) else shown(value)
             yield Override(key, value, Place(f"{label} {key}={written}", rank=rank))
         else:
@@ -65,14 +77,6 @@ def _parsed(overrides: Overrides, label: str) -> Iterator[Override]:
             if not sign or not key.strip():
                 raise CaseError(f"{place}: write {label} dotted.key=value, as in podium.columns=4")
             yield Override(key.strip(), read_value(text, str(place)), place)
-
-
-def _plain(value: Any) -> Any:
-    """A Python value as YAML would have given it: lists for tuples, no numpy."""
-    value = value.tolist() if hasattr(value, "tolist") else value
-    if isinstance(value, Mapping):
-        return {key: _plain(item) for key, item in value.items()}
-    return [_plain(item) for item in value] if isinstance(value, list | tuple) else value
 
 
 def _unknown(path: Path, model: type[BaseModel]) -> str:

@@ -14,7 +14,7 @@ from rpscli.analyses.result_quantities import plain
 from rpscli.case.case import Case, parse_case
 from rpscli.case.conditions import Condition
 from rpscli.case.schema.case_file import DocumentSection
-from rpscli.case.text.document import is_design
+from rpscli.case.text.document import format_of
 from rpscli.case.text.files import read_text
 from rpscli.case.text.yaml_text import read_yaml
 from rpscli.commands import timehistory_run as run
@@ -138,7 +138,7 @@ def kind_of(source: str) -> str:
     if source == "-":
         return HISTORY
     document = read_yaml(read_text(source), source)
-    if is_design(document):
+    if format_of(document) == "design":
         return DESIGN
     return SWEEP if "base" in document.content else HISTORY
 

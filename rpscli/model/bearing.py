@@ -185,19 +185,14 @@ class Bearing:
         >>> round(bearing.rotation_at(0.5), 6), bearing.rotation_at(5.0)
         (0.166459, inf)
         """
-        low, high = 0.0, self.largest_rotation
+        from scipy.optimize import brentq  # slow
 
-        def short(rotation: float) -> bool:
-            at = np.array([rotation])
-            path = geometry.path_along(self.rolling, self.rocking, self.beta, at)
-            return bool(2.0 * self.semi_diagonal * path[2][0] < displacement)
+        def beyond(rotation: float) -> float:
+            path = geometry.path_along(self.rolling, self.rocking, self.beta, np.array([rotation]))
+            return float(2.0 * self.semi_diagonal * path[2][0] - displacement)
 
-        if short(high):
-            return math.inf
-        for _ in range(60):  # halving, to the last digits: it grows up to where the model ends
-            middle = 0.5 * (low + high)
-            low, high = (middle, high) if short(middle) else (low, middle)
-        return high
+        end = self.largest_rotation  # up to which it grows
+        return math.inf if beyond(end) < 0.0 else float(brentq(beyond, 0.0, end, xtol=1e-15))
 
     @cached_property
     def largest_rotation(self) -> float:

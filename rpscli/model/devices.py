@@ -26,7 +26,7 @@ class ViscousDamper(Device):
     results = ("max_damper_force",)
 
     def __post_init__(self) -> None:
-        _require_positive(coefficient=self.coefficient)
+        _require("> 0", coefficient=self.coefficient)
         if not 0.2 <= self.exponent <= 2.0:
             raise ValueError("exponent must be >= 0.2 and <= 2")
 
@@ -56,7 +56,7 @@ class FrictionDamper(Device):
     results = ("max_damper_force",)
 
     def __post_init__(self) -> None:
-        _require_positive(force=self.force)
+        _require("> 0", force=self.force)
 
     def at_rest(self, structure: PodiumStructure, rotation: Array, farthest: float) -> AtRest:
         return AtRest(held=self.force)
@@ -83,8 +83,8 @@ class Stop(Device):
     results = ("max_stop_force",)
 
     def __post_init__(self) -> None:
-        _require_none_below_zero(gap=self.gap, damping=self.damping)
-        _require_positive(stiffness=self.stiffness)
+        _require(">= 0", gap=self.gap, damping=self.damping)
+        _require("> 0", stiffness=self.stiffness)
 
     def at_rest(self, structure: PodiumStructure, rotation: Array, farthest: float) -> AtRest:
         beyond = np.maximum(self.stroke(structure, rotation) - self.gap, 0.0)
@@ -122,8 +122,8 @@ class Tendon(Device):
     in_each_column = True
 
     def __post_init__(self) -> None:
-        _require_none_below_zero(prestress=self.prestress)
-        _require_positive(stiffness=self.stiffness)
+        _require(">= 0", prestress=self.prestress)
+        _require("> 0", stiffness=self.stiffness)
         if not self.yield_force > self.prestress:
             raise ValueError(
                 f"yield_force = {self.yield_force:g} N must be > prestress = {self.prestress:g} N;"
@@ -197,7 +197,7 @@ class RollingResistance(Device):
     results = ()
 
     def __post_init__(self) -> None:
-        _require_positive(lever=self.lever)
+        _require("> 0", lever=self.lever)
 
     def constants(self, structure: PodiumStructure) -> tuple[float, ...]:
         return (2.0 * structure.weight * self.lever,)
@@ -261,16 +261,10 @@ def own_laws(structure: PodiumStructure) -> dict[str, OwnLaw]:
     return laws if own is None else {**laws, structure.impact_law.kind: own}
 
 
-def _require_positive(**values: float) -> None:
+def _require(rule: str, **values: float) -> None:
     for name, value in values.items():
-        if not 0.0 < value < math.inf:
-            raise ValueError(f"{name} must be > 0 and finite")
-
-
-def _require_none_below_zero(**values: float) -> None:
-    for name, value in values.items():
-        if not 0.0 <= value < math.inf:
-            raise ValueError(f"{name} must be >= 0 and finite")
+        if not 0.0 <= value < math.inf or (rule == "> 0" and value == 0.0):
+            raise ValueError(f"{name} must be {rule} and finite")
 
 
 def _force_growth(bearing: Bearing, moment: float, growth: float) -> float:

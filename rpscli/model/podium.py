@@ -423,27 +423,22 @@ class Device(ABC):
 
     def constants(self, structure: PodiumStructure) -> tuple[float, ...]:
         """Numbers of its law, as the kernels read them."""
-        del structure
         return astuple(self)
 
     def at_rest(self, structure: PodiumStructure, rotation: Array, farthest: float) -> AtRest:
         """Forces at rest at |theta|, after it was drawn to the farthest rotation [rad]."""
-        del structure, rotation, farthest
         return AtRest()
 
     def stiffness_after_uplift(self, structure: PodiumStructure) -> float:
         """Its part of dF/du_b at u_b = 0+, on the way out [N/m], exact."""
-        del structure
         return 0.0
 
     def bounds(self, structure: PodiumStructure) -> tuple[float, float]:
         """Stiffness [N/m] and damping [N s/m] that it adds at most against u_b, for time steps."""
-        del structure
         return 0.0, 0.0
 
     def consequences(self, structure: PodiumStructure) -> Iterator[Consequence]:
         """Numbers that follow from it before any analysis."""
-        del structure
         return iter(())
 
     def stroke(self, structure: PodiumStructure, rotation: Array) -> Array:
@@ -452,7 +447,6 @@ class Device(ABC):
 
     def remaining_prestress(self, permanent: float) -> float | None:
         """Prestress of one, upright, after a permanent elongation [m]; None without [N]."""
-        del permanent
         return None
 
     def reached_at(self, structure: PodiumStructure, length: float) -> float | None:

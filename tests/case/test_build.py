@@ -3,29 +3,35 @@
 from __future__ import annotations
 
 import math
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from paper_structures import podium
 
 from rpscli.analyses.demand import demand
 from rpscli.analyses.kernels.systems import DEVICE_KINDS
+from rpscli.analyses.result_quantities import HISTORY
+from rpscli.case.build import DEVICE_KEYS
 from rpscli.case.case import Case, load_case, parse_case
 from rpscli.case.plausibility import doubts_of_directions
+from rpscli.case.schema.case_file import DeviceSection
 from rpscli.case.schema.keys import unit
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import CaseError
-from rpscli.model.bearing import Bearing
+from rpscli.model.bearing import Bearing, uplifted_state
 from rpscli.model.devices import (
     DEVICES,
     FrictionDamper,
+    OwnDamper,
     RollingResistance,
     Stop,
     Tendon,
     ViscousDamper,
 )
-from rpscli.model.podium import PodiumStructure
+from rpscli.model.podium import Device, PodiumStructure
 from rpscli.model.superstructure import (
     ModalDamping,
     RayleighDamping,
@@ -34,6 +40,7 @@ from rpscli.model.superstructure import (
 )
 from rpscli.physics import state
 from rpscli.records.loading import load_record
+from rpscli.report.figures.devices import DRAWN
 
 from .conftest import BUILDING, EQUIPPED, FRAME
 
@@ -375,3 +382,52 @@ def test_a_moat_counts_as_overturning(share: float, overturns: bool) -> None:
     reached = demand(free.structure, record, free.analysis).max_cap_beam_displacement
     moat = load_case(RIGID_FRAME, [f"analysis.overturning_displacement={share * reached!r}"])
     assert demand(moat.structure, record, moat.analysis).overturned == overturns
+
+
+EXAMPLES: tuple[Device, ...] = (
+    ViscousDamper(1e5),
+    ViscousDamper(1e5, 0.5),
+    FrictionDamper(1.2e5),
+    Stop(0.15, 2e6, 1e5),
+    Stop(0.0, 3e4),
+    Tendon(3e4, 5e5, 4e4),
+    Tendon(0.0, 2e5),
+    RollingResistance(0.02),
+)
+
+
+def with_device(device: Device) -> PodiumStructure:
+    return replace(podium(2, 0.15, 0.5), devices=(device,), columns=6)
+
+
+@pytest.mark.parametrize("device", EXAMPLES, ids=repr)
+def test_answers_fit_together(device: Device) -> None:
+    """Friction, gaps and powers either stand in the modes, or are named as left out."""
+    structure, x = with_device(device), np.linspace(0.0, 0.3, 7)
+    assert all(np.all(np.asarray(force) >= 0.0) for force in device.at_rest(structure, x, 0.0))
+    assert device.stroke(structure, x).shape == x.shape
+    assert set(device.results) <= {quantity.name for quantity in HISTORY}
+    assert 1 <= len(device.constants(structure)) <= 4
+    assert [*device.consequences(structure)]
+    found = device.linear(structure, uplifted_state(structure.bearing, rolling=True))
+    assert found.left_out or found.stiffness or found.damping
+
+
+@pytest.mark.parametrize("device", EXAMPLES, ids=repr)
+def test_bounds_cover_the_stiffness_at_rest(device: Device) -> None:
+    structure = with_device(device)
+    x = np.linspace(0.0, structure.critical_rotation, 2001)
+    force = np.broadcast_to(device.at_rest(structure, x, 0.0).restoring, x.shape)
+    slope = np.diff(force) / np.diff(structure.path(x)[1])
+    prestress = 0.0 if device.remaining_prestress(0.0) is None else 6.0 * 3e4
+    curvature = prestress / structure.bearing.half_height  # what a constant tension adds
+    assert np.max(slope) <= device.bounds(structure)[0] * (1.0 + 1e-9) + curvature
+
+
+@pytest.mark.parametrize("name", DEVICES)
+def test_a_law_can_be_written_and_drawn(name: str) -> None:
+    assert {device.kind: type(device) for device in EXAMPLES} == DEVICES
+    assert DRAWN.keys() == {*DEVICES.values(), OwnDamper}
+    needed, optional = DEVICE_KEYS[name]
+    assert {*needed, *optional} == {field.name for field in fields(DEVICES[name])}
+    assert {*needed, *optional} <= set(DeviceSection.model_fields)

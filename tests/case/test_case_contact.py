@@ -14,7 +14,6 @@ from rpscli.analyses.modal import modal
 from rpscli.analyses.pushover import pushover
 from rpscli.case.case import Case, parse_case
 from rpscli.cli import program
-from rpscli.commands.report_page import ends
 from rpscli.model.podium import PodiumStructure
 from rpscli.report.figures.bearing import draw_end
 from rpscli.report.figures.structure import draw_mode
@@ -134,12 +133,6 @@ def test_moments_of_plane_joints_end_before_the_critical_rotation() -> None:
     step = 1.0 / 200  # of the curve's points, and what is of second order
     assert last == pytest.approx(end, abs=2.0 * step)
     assert curve.force[-1] < 0.0
-
-
-def test_headings_of_reports_name_the_kind() -> None:
-    assert ends(case_of(PLANE)) == ", plane contact"
-    assert ends(case_of(EDGES)) == ", edges contact"
-    assert ends(case_of()) == ""
 
 
 def test_the_picture_of_modes_has_the_cap_beam_that_moves_in_full_contact() -> None:

@@ -9,6 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from rpscli.case.schema.fields import ValueRange
+from rpscli.case.schema.scale_to import scale_to_of
+from rpscli.case.study.observed import comparable
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.units import FOOT, INCH, KINDS, POUND, POUND_FORCE, si_factor, si_value
 
@@ -146,3 +149,20 @@ def test_unusual_units_are_those_of_pint(unit: str, written: dict[str, float]) -
 @pytest.mark.parametrize("unit", KINDS)
 def test_units_that_messages_propose_are_common(unit: str) -> None:
     assert set(KINDS[unit][1]) <= set(FACTORS[unit])
+
+
+def test_values_at_equal_spaces() -> None:
+    assert ValueRange(low=0.1, high=0.3, count=3).values == (0.1, 0.2, 0.3)
+    assert ValueRange(low=0.1, high=10.0, count=3, spacing="log").values == (0.1, 1.0, 10.0)
+
+
+def test_what_a_record_is_scaled_to() -> None:
+    assert (scale_to_of("PGV=50 cm/s").value, scale_to_of("Sa(0.6 s)=0.5 g").period) == (0.5, 0.6)
+    assert scale_to_of("PGV(RotD100)=0.5").of == "rotd100"
+    assert scale_to_of("Sa(0.6 s, geomean)=1 g").of == "geomean"
+
+
+def test_values_of_observed_systems() -> None:
+    diagonal = "podium.bearing.semi_diagonal"
+    assert comparable(diagonal, "1500 mm") == comparable(diagonal, 1.5) == "1.5"
+    assert (comparable("title", "tower A"), comparable("scale", "0.50")) == ("tower A", "0.5")

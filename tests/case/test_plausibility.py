@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from rpscli.case.case import parse_case
+from rpscli.case.plausibility import Doubt, doubts_of_many
 
 CASE = """\
 rps: 1
@@ -75,3 +76,10 @@ def test_the_first_period_is_looked_at() -> None:
     )
     (doubt,) = parse_case(text, name="c.yaml").warnings
     assert "T1 = 93.66 s is unusual: 0.02 to 5 s is" in doubt
+
+
+def test_doubts_of_many_systems() -> None:
+    wide = Doubt("the width {0} is unusual", 9.0)
+    assert doubts_of_many(
+        [[wide], [], [wide._replace(value=7.5)], [Doubt("it is odd{1}", None, "!")]]
+    ) == ["2 of 4 systems: the width 7.5 to 9 is unusual", "1 of 4 systems: it is odd"]

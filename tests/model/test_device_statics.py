@@ -1,12 +1,9 @@
-"""Devices at rest against the second integrator's generalised forces and closed forms.
-
-Every law answers every question, and can be written and drawn.
-"""
+"""Devices at rest against the second integrator's generalised forces and closed forms."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import fields, replace
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -16,14 +13,9 @@ from paper_structures import FLAT, known, oracle_devices, oracle_system, podium
 
 from rpscli.analyses.modal import linearised_matrices, modal
 from rpscli.analyses.pushover import pushover
-from rpscli.analyses.result_quantities import HISTORY
-from rpscli.case.build import DEVICE_KEYS
-from rpscli.case.schema.case_file import DeviceSection
 from rpscli.model.bearing import uplifted_state
 from rpscli.model.devices import (
-    DEVICES,
     FrictionDamper,
-    OwnDamper,
     RollingResistance,
     Stop,
     Tendon,
@@ -31,8 +23,8 @@ from rpscli.model.devices import (
 )
 from rpscli.model.podium import Device, PodiumStructure
 from rpscli.model.statics import device_consequences, returns, secant_period, uplift_force
-from rpscli.report.figures.devices import DRAWN
 
+pytestmark = [pytest.mark.evidence("devices", "exact"), pytest.mark.evidence("devices", "program")]
 EQUIPMENT: tuple[Device, ...] = (
     FrictionDamper(1.2e5),
     RollingResistance(0.02),
@@ -48,8 +40,6 @@ def equipped(rho: float, *devices: Device, tan_alpha: float = 0.15) -> PodiumStr
     return replace(podium(2, tan_alpha, rho), devices=devices, columns=6)
 
 
-@pytest.mark.evidence("devices", "exact")
-@pytest.mark.evidence("devices", "program")
 @pytest.mark.parametrize("rho", [FLAT, 0.26, 0.5, 1.5])
 def test_both_branches_of_the_storey_curve(rho: float) -> None:
     structure = equipped(rho, *EQUIPMENT)
@@ -74,8 +64,6 @@ def test_both_branches_of_the_storey_curve(rho: float) -> None:
         assert curve.unloading_force[index] == pytest.approx(back, rel=1e-11)
 
 
-@pytest.mark.evidence("devices", "exact")
-@pytest.mark.evidence("devices", "program")
 @pytest.mark.parametrize("rho", [FLAT, 0.5, 1.5])
 def test_uplift_force_and_the_stiffness_after_it(rho: float) -> None:
     structure = equipped(rho, *EQUIPMENT)
@@ -94,15 +82,11 @@ def test_uplift_force_and_the_stiffness_after_it(rho: float) -> None:
     )
 
 
-@pytest.mark.evidence("devices", "exact")
-@pytest.mark.evidence("devices", "program")
 def test_without_devices_the_way_back_is_the_way_out() -> None:
     curve = pushover(podium(2, 0.15, 0.4)).curve
     assert np.array_equal(curve.force, curve.unloading_force)
 
 
-@pytest.mark.evidence("devices", "exact")
-@pytest.mark.evidence("devices", "program")
 def test_a_slender_storey_recentres_below_its_constant_force() -> None:
     base = equipped(0.5, tan_alpha=1e-3)
     base = replace(base, bearing=replace(base.bearing, wedge_slenderness=0.5))
@@ -119,8 +103,6 @@ def test_a_slender_storey_recentres_below_its_constant_force() -> None:
     assert not returns(replace(base, devices=(RollingResistance(1.01 * lever),)))[0].recentres
 
 
-@pytest.mark.evidence("devices", "exact")
-@pytest.mark.evidence("devices", "program")
 def test_consequences_by_hand() -> None:
     structure = equipped(FLAT, Stop(0.1, 1e6), Tendon(3e4, 5e5, 4e4), ViscousDamper(4e4, 2.0))
     stop, tendon, viscous = device_consequences(structure)["devices"]
@@ -140,8 +122,6 @@ def test_consequences_by_hand() -> None:
     assert device_consequences(far)["devices"][0]["met_rotation"] is None
 
 
-@pytest.mark.evidence("devices", "exact")
-@pytest.mark.evidence("devices", "program")
 @pytest.mark.parametrize("rolling", [True, False])
 def test_linearised_tendons_are_the_slope_of_their_moment(rolling: bool) -> None:
     structure = equipped(0.7, Tendon(3e4, 5e5), tan_alpha=1e-3)
@@ -161,8 +141,6 @@ def test_linearised_tendons_are_the_slope_of_their_moment(rolling: bool) -> None
     assert added == pytest.approx(slope, abs=3e-3 * size)
 
 
-@pytest.mark.evidence("devices", "exact")
-@pytest.mark.evidence("devices", "program")
 @pytest.mark.parametrize("c", [0.0, 2e5, 3e6])
 @pytest.mark.parametrize("stiffness", [0.0, 3e7])
 def test_the_own_mode_of_a_rigid_frame_with_damper_and_tendons(c: float, stiffness: float) -> None:
@@ -187,8 +165,6 @@ def test_the_own_mode_of_a_rigid_frame_with_damper_and_tendons(c: float, stiffne
     assert result.left_out[0] == "friction"
 
 
-@pytest.mark.evidence("devices", "exact")
-@pytest.mark.evidence("devices", "program")
 @pytest.mark.parametrize("c", [2e5, 5e6])
 def test_a_damper_leaves_each_building_mode_a_pair(c: float) -> None:
     structure = equipped(0.4, ViscousDamper(c))
@@ -199,8 +175,6 @@ def test_a_damper_leaves_each_building_mode_a_pair(c: float) -> None:
         assert np.all(modes.damping > 0.0)
 
 
-@pytest.mark.evidence("devices", "exact")
-@pytest.mark.evidence("devices", "program")
 @pytest.mark.parametrize("ratio", [0.2, 0.5, 0.8])
 def test_the_secant_period_of_flat_ends(ratio: float) -> None:
     """Of angles that are small u = 2 R theta and F = W (alpha - theta), whatever the masses are."""
@@ -214,52 +188,3 @@ def test_the_secant_period_of_flat_ends(ratio: float) -> None:
     stiffness = structure.restoring_mass * (2.0 * math.pi / wanted) ** 2
     held = replace(structure, devices=(Stop(0.0, stiffness),))
     assert secant_period(held, rotation) == pytest.approx(wanted / math.sqrt(2.0), rel=1e-3)
-
-
-EXAMPLES: tuple[Device, ...] = (
-    ViscousDamper(1e5),
-    ViscousDamper(1e5, 0.5),
-    FrictionDamper(1.2e5),
-    Stop(0.15, 2e6, 1e5),
-    Stop(0.0, 3e4),
-    Tendon(3e4, 5e5, 4e4),
-    Tendon(0.0, 2e5),
-    RollingResistance(0.02),
-)
-
-
-def with_device(device: Device) -> PodiumStructure:
-    return replace(podium(2, 0.15, 0.5), devices=(device,), columns=6)
-
-
-@pytest.mark.parametrize("device", EXAMPLES, ids=repr)
-def test_answers_fit_together(device: Device) -> None:
-    """Friction, gaps and powers either stand in the modes, or are named as left out."""
-    structure, x = with_device(device), np.linspace(0.0, 0.3, 7)
-    assert all(np.all(np.asarray(force) >= 0.0) for force in device.at_rest(structure, x, 0.0))
-    assert device.stroke(structure, x).shape == x.shape
-    assert set(device.results) <= {quantity.name for quantity in HISTORY}
-    assert 1 <= len(device.constants(structure)) <= 4
-    assert [*device.consequences(structure)]
-    found = device.linear(structure, uplifted_state(structure.bearing, rolling=True))
-    assert found.left_out or found.stiffness or found.damping
-
-
-@pytest.mark.parametrize("device", EXAMPLES, ids=repr)
-def test_bounds_cover_the_stiffness_at_rest(device: Device) -> None:
-    structure = with_device(device)
-    x = np.linspace(0.0, structure.critical_rotation, 2001)
-    force = np.broadcast_to(device.at_rest(structure, x, 0.0).restoring, x.shape)
-    slope = np.diff(force) / np.diff(structure.path(x)[1])
-    prestress = 0.0 if device.remaining_prestress(0.0) is None else 6.0 * 3e4
-    curvature = prestress / structure.bearing.half_height  # what a constant tension adds
-    assert np.max(slope) <= device.bounds(structure)[0] * (1.0 + 1e-9) + curvature
-
-
-@pytest.mark.parametrize("name", DEVICES)
-def test_a_law_can_be_written_and_drawn(name: str) -> None:
-    assert {device.kind: type(device) for device in EXAMPLES} == DEVICES
-    assert DRAWN.keys() == {*DEVICES.values(), OwnDamper}
-    needed, optional = DEVICE_KEYS[name]
-    assert {*needed, *optional} == {field.name for field in fields(DEVICES[name])}
-    assert {*needed, *optional} <= set(DeviceSection.model_fields)

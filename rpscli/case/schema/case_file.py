@@ -52,11 +52,9 @@ class DeviceSection(Section):
     """tendon: P_0 of one, while the structure stands"""
     yield_force: Annotated[float | None, Quantity("N", symbol="P_y", above=0)] = None
     """tendon: P_y of one; left out: it never yields"""
-    lever: Annotated[float | None, Quantity("m", symbol="f", above=0)] = Field(
-        None,
-        description="rolling_resistance: f, lever by which the normal force lies ahead of the"
-        " contact; a moment f N at either end of the columns",
-    )
+    lever: Annotated[float | None, Quantity("m", symbol="f", above=0)] = None
+    """rolling_resistance: f, lever by which the normal force lies ahead of the contact; a moment f
+    N at either end of the columns"""
 
 
 OWN_DAMPERS = OwnLaws("kind", DAMPERS, DeviceSection)
@@ -234,26 +232,6 @@ class ContactSection(Section):
     """damping ratio of the storey's own vibration in full contact"""
 
 
-class PodiumMasses(Section):
-    """Masses of columns and cap beam, directly or as ratios."""
-
-    cap_beam_mass_ratio: Ratio | None = None
-    """gamma = m_b/(N m_c); 0 = no cap beam, free-standing columns"""
-    superstructure_mass_ratio: PositiveRatio | None = None
-    """eta = M_tot/m_b, building over cap beam"""
-    cap_beam_mass: Annotated[float | None, Quantity("kg", symbol="m_b", at_least=0)] = None
-    """m_b; in place of a ratio"""
-    column_mass: Mass | None = None
-    """m_c of one column; in place of cap_beam_mass_ratio"""
-    columns: Annotated[int, Whole(1, 100_000)] | None = None
-    """their number N"""
-
-    @property
-    def without_cap_beam(self) -> bool:
-        """Whether the columns stand free."""
-        return self.cap_beam_mass_ratio == 0.0 or self.cap_beam_mass == 0.0
-
-
 class PlanSection(Section):
     """Where columns stand along the motion."""
 
@@ -299,9 +277,19 @@ class ColumnSection(Section):
     """plates under and over the columns; left out: like the column"""
 
 
-class PodiumSection(PodiumMasses):
+class PodiumSection(Section):
     """Columns and cap beam."""
 
+    cap_beam_mass_ratio: Ratio | None = None
+    """gamma = m_b/(N m_c); 0 = no cap beam, free-standing columns"""
+    superstructure_mass_ratio: PositiveRatio | None = None
+    """eta = M_tot/m_b, building over cap beam"""
+    cap_beam_mass: Annotated[float | None, Quantity("kg", symbol="m_b", at_least=0)] = None
+    """m_b; in place of a ratio"""
+    column_mass: Mass | None = None
+    """m_c of one column; in place of cap_beam_mass_ratio"""
+    columns: Annotated[int, Whole(1, 100_000)] | None = None
+    """their number N"""
     bearing: BearingSection
     """shape of one column"""
     impact: Annotated[ImpactSection, OWN_IMPACTS, BeforeValidator(_law_alone)] = ImpactSection()
@@ -319,6 +307,11 @@ class PodiumSection(PodiumMasses):
     """section and material of a column; give its moment and the pressure under its ends"""
     devices: tuple[Annotated[DeviceSection, OWN_DAMPERS], ...] = ()
     """dampers, stops and tendons between ground and cap beam, at most 8"""
+
+    @property
+    def without_cap_beam(self) -> bool:
+        """Whether the columns stand free."""
+        return self.cap_beam_mass_ratio == 0.0 or self.cap_beam_mass == 0.0
 
 
 def _record_schema(schema: dict[str, Any]) -> None:

@@ -6,14 +6,13 @@ that bounds, unit and meaning stand once, beside the field.
 
 from __future__ import annotations
 
-import math
 import operator
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cached_property
 from numbers import Integral, Real
-from typing import Annotated, Any, Literal, NoReturn, Self, TypeGuard
+from typing import Annotated, Any, Literal, NoReturn, Self
 
 import numpy as np
 from pydantic import (
@@ -30,9 +29,9 @@ from pydantic import (
 )
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
-from rpscli.errors import LARGEST, SMALLEST, PluginError, hint, listed, nearest
+from rpscli.errors import LARGEST, SMALLEST, PluginError, hint, is_number, listed, nearest
 from rpscli.registry import Registry
-from rpscli.units import KINDS, si_value
+from rpscli.units import KINDS, Written, si_value
 
 
 class Section(BaseModel):
@@ -70,16 +69,6 @@ def refuse(reason: str) -> NoReturn:
     raise PydanticCustomError("rps", "{reason}", {"reason": reason})
 
 
-def is_finite(value: object) -> TypeGuard[float]:
-    """Whether it is a number; one with hundreds of digits counts as infinite."""
-    if isinstance(value, bool) or not isinstance(value, Real):
-        return False
-    try:
-        return math.isfinite(value)
-    except OverflowError:
-        return False
-
-
 BOUNDS: dict[str, tuple[str, Callable[[float, float], bool], str]] = {
     "above": (">", operator.gt, "exclusiveMinimum"),
     "at_least": (">=", operator.ge, "minimum"),
@@ -96,11 +85,9 @@ class Mark:
     json_schema: Callable[..., dict[str, Any]]
 
     def __get_pydantic_core_schema__(self, *_: object) -> CoreSchema:
-        """The check, for pydantic."""
         return core_schema.no_info_plain_validator_function(self.read)
 
     def __get_pydantic_json_schema__(self, *_: object) -> dict[str, Any]:
-        """The description, for pydantic."""
         return self.json_schema()
 
 
@@ -131,13 +118,14 @@ class Quantity(Mark):
     def read(self, value: object) -> float | str:
         """The SI value, or the word; raises pydantic's error if it is neither."""
         unit = "" if self.unit == PLAIN else f" {self.unit}"
+        text = value if isinstance(value, str) else ""
+        if text in self.words:
+            return text
         if isinstance(value, str):
-            if value in self.words:
-                return value
             value = self._with_unit(value)
         if isinstance(value, bool) or not isinstance(value, Real):
             refuse(self._not_a_number)
-        if not is_finite(value):
+        if not is_number(value):
             refuse("must be a finite number")
         x = float(value)
         if not all(BOUNDS[name][1](x, bound) for name, bound in self._bounds.items()):
@@ -146,7 +134,7 @@ class Quantity(Mark):
             refuse(f"must be {self.rule}{unit}{symbol}{remedy}")
         if x and not SMALLEST <= abs(x) <= LARGEST:
             refuse(f"is outside {SMALLEST:g} ... {LARGEST:g}{unit}; check the unit")
-        return x
+        return Written(x, text) if text else x
 
     @property
     def _not_a_number(self) -> str:
@@ -325,7 +313,6 @@ class Several:
     least: int = 1
 
     def __get_pydantic_core_schema__(self, _: object, handler: GetCoreSchemaHandler) -> CoreSchema:
-        """The check, for pydantic."""
         item = handler.generate_schema(self.item)
         after = core_schema.no_info_after_validator_function
         each = core_schema.tuple_schema([item], variadic_item_index=0, min_length=self.least)
@@ -373,8 +360,6 @@ class OneOf:
         return name
 
     def __get_pydantic_core_schema__(self, _: object, handler: GetCoreSchemaHandler) -> CoreSchema:
-        """The check, for pydantic."""
-
         def inside(value: Any) -> object:
             (options,) = value.values()
             if not isinstance(options, dict):
@@ -392,7 +377,6 @@ class OneOf:
     def __get_pydantic_json_schema__(
         self, schema: Any, handler: GetJsonSchemaHandler
     ) -> dict[str, Any]:
-        """The JSON schema."""
         kinds = schema["schema"]["choices"].items()
         one = {
             "type": "object",
@@ -435,8 +419,6 @@ class OwnLaws:
     def __get_pydantic_core_schema__(
         self, source: Any, handler: GetCoreSchemaHandler
     ) -> CoreSchema:
-        """The check, for pydantic."""
-
         def checked(value: Any, ours: Any) -> object:
             name = value.get(self.key) if isinstance(value, dict) else None
             if not isinstance(name, str) or name in self.registry:
@@ -449,7 +431,6 @@ class OwnLaws:
     def __get_pydantic_json_schema__(
         self, schema: Any, handler: GetJsonSchemaHandler
     ) -> dict[str, Any]:
-        """The JSON schema."""
         own = []
         for name, _ in self.registry.theirs():
             with suppress(PluginError):  # told where it is asked for

@@ -224,8 +224,8 @@ def key_references(model: type[BaseModel]) -> Iterator[KeyReference]:
 def _reference(key: str, field: FieldInfo) -> KeyReference:
     parents = [key.rsplit(".", depth)[0] for depth in range(key.count(".") + 1)]
     marks = list(inside(field))
-    quantity = next((mark for mark in marks if isinstance(mark, Quantity)), None)
-    whole = next((mark for mark in marks if isinstance(mark, Whole)), None)
+    number = next((mark for mark in marks if isinstance(mark, Quantity | Whole)), None)
+    quantity = number if isinstance(number, Quantity) else None
     literals = (get_args(part) for part in marks if get_origin(part) is Literal)
     listed_names = (mark.names for mark in marks if isinstance(mark, NameOf))
     words = (word for each in (*literals, *listed_names) for word in each if isinstance(word, str))
@@ -238,7 +238,7 @@ def _reference(key: str, field: FieldInfo) -> KeyReference:
         meaning=field.description or "",
         symbol=quantity.symbol if quantity and single else "",
         unit=quantity.unit.replace(PLAIN, "-") if quantity and single else "",
-        bounds=(quantity.rule if quantity and single else "") or (whole.rule if whole else ""),
+        bounds=number.rule if number and (single or number is not quantity) else "",
         words=tuple(dict.fromkeys([*(quantity.words if quantity else ()), *words])),
         default=default if isinstance(default, str | int | float) else None,
         required=field.is_required(),

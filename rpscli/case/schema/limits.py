@@ -7,40 +7,36 @@ Results of which small values are bad have `at_least` in place of `at_most`.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import cache
 from typing import Annotated, Any, Self
 
-from pydantic import Discriminator, Field, Tag, WrapValidator, create_model, model_validator
+from pydantic import Discriminator, Field, Tag, create_model, model_validator
 
 from rpscli.analyses.result_quantities import LIMITED, ResultQuantity
 from rpscli.case.schema.fields import PLAIN, Quantity, Section, refuse
-from rpscli.units import KINDS, Written
+from rpscli.units import KINDS
 
 Admissible = Annotated[float, Quantity(at_least=0, below=1, remedy="10 % is 0.1")]
 Fractile = Annotated[float, Quantity(above=0, below=1, remedy="84 % is 0.84")]
 
 
-class LimitRule(Section, use_attribute_docstrings=False):
+_WITHOUT_SOURCE = {"use_attribute_docstrings": False}
+"""Option of models that no class statement defines: looking for their source takes long."""
+
+
+class LimitRule(Section):
     """A limit for the records of a study together; a single history must keep it anyway."""
 
-    share: Admissible | None = Field(
-        None, description="share of the records that may exceed the limit; 0 by default"
-    )
-    fractile: Fractile | None = Field(
-        None, description="fractile of the demand that must meet the limit, in place of a share"
-    )
+    share: Admissible | None = None
+    """share of the records that may exceed the limit; 0 by default"""
+    fractile: Fractile | None = None
+    """fractile of the demand that must meet the limit, in place of a share"""
 
     @model_validator(mode="after")
     def _one_rule(self) -> Self:
         if self.share is not None and self.fractile is not None:
             refuse("must have a share or a fractile, not both")
         return self
-
-
-def _as_written(value: object, number: Callable[[object], float]) -> float:
-    """A number in SI that knows the text with which it was given."""
-    return Written(number(value), value) if isinstance(value, str) else number(value)
 
 
 def _form(value: object) -> str:
@@ -56,10 +52,11 @@ def _limit(quantity: ResultQuantity) -> Any:
 
 @cache
 def _limit_of(unit: str, zero: bool, key: str) -> Any:  # noqa: FBT001 -- whether 0 is admissible
-    bounds = Quantity(unit, at_least=0) if zero else Quantity(unit, above=0)
-    number = Annotated[float, bounds, WrapValidator(_as_written)]
+    number = Annotated[float, Quantity(unit, at_least=0) if zero else Quantity(unit, above=0)]
     fields: Any = {key: (number, Field(description="admissible value"))}
-    rule = create_model(f"Limit_{unit}_{key}{zero:d}", __base__=LimitRule, **fields)
+    rule = create_model(
+        f"Limit_{unit}_{key}{zero:d}", __base__=LimitRule, __cls_kwargs__=_WITHOUT_SOURCE, **fields
+    )
     return Annotated[
         Annotated[rule, Tag("rule")] | Annotated[number, Tag("number")], Discriminator(_form)
     ]
@@ -75,33 +72,27 @@ _FIELDS: Any = {
     quantity.name: (_limit(quantity) | None, Field(None, description=described(quantity)))
     for quantity in LIMITED
 }
-_WITHOUT_SOURCE = {"use_attribute_docstrings": False}
-"""Option of models that no class statement defines: looking for their source takes long."""
+_LIMITS = create_model("Limits", __base__=Section, __cls_kwargs__=_WITHOUT_SOURCE, **_FIELDS)
 
 
-class LimitsSection(
-    create_model("Limits", __base__=Section, __cls_kwargs__=_WITHOUT_SOURCE, **_FIELDS)  # type: ignore[misc]
-):
+class LimitsSection(_LIMITS, use_attribute_docstrings=True):
     """Acceptance limits."""
 
-    overturning: Admissible | None = Field(
-        None, description="share of the records that may overturn; 0 = none"
-    )
-    uplift: Admissible | None = Field(
-        None, description="share of the records that may uplift; 0 = none"
-    )
+    overturning: Admissible | None = None
+    """share of the records that may overturn; 0 = none"""
+    uplift: Admissible | None = None
+    """share of the records that may uplift; 0 = none"""
 
 
 class StudyLimits(LimitsSection):
     """Limits of studies and designs, which may be on the reliability; it needs a `hazard`."""
 
-    annual_rate: Annotated[float, Quantity(symbol="1/year", above=0)] | None = Field(
-        None,
-        description="how often a year the structure may overturn, from shares at all intensities",
-    )
+    annual_rate: Annotated[float, Quantity(symbol="1/year", above=0)] | None = None
+    """how often a year the structure may overturn, from shares at all intensities"""
     probability_in_50_years: (
         Annotated[float, Quantity(above=0, below=1, remedy="1 % is 0.01")] | None
-    ) = Field(None, description="probability of overturning in 50 years, in place of the rate")
+    ) = None
+    """probability of overturning in 50 years, in place of the rate"""
 
     @model_validator(mode="after")
     def _one_of_both(self) -> Self:

@@ -17,7 +17,6 @@ from pydantic import (
 from rpscli.case.schema.fields import DampingRatio, NameOf, Quantity, Section, refuse
 from rpscli.errors import hint
 from rpscli.records.measures import MEASURES, OF, Measure, Of, needs_period
-from rpscli.units import Written
 
 _TARGET = re.compile(r"\s*([A-Za-z][\w-]*)\s*(?:\(([^)]*)\))?\s*=\s*(.+?)\s*")
 
@@ -41,7 +40,7 @@ def measured_value(value: object, info: ValidationInfo) -> float:
     bounds = Quantity(MEASURES[measure].unit, symbol=measure, above=0) if measure else Quantity()
     number = bounds.read(value)
     assert isinstance(number, float), "there are no words in place of the number"
-    return Written(number, value) if isinstance(value, str) else number
+    return number
 
 
 MeasuredValue = Annotated[

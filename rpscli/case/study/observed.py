@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from pathlib import Path as Folder
 from typing import NamedTuple
 
@@ -54,6 +55,10 @@ class _Column(NamedTuple):
     name: str
     unit: str
 
+    @property
+    def si_unit(self) -> str:
+        return _UNITS.get(self.name) or key_unit(self.name)
+
     def value(self, cell: str) -> float:
         """The observed value, in SI units; NaN for an empty cell."""
         if not cell:
@@ -62,19 +67,14 @@ class _Column(NamedTuple):
             if cell.lower() not in _YES:
                 raise ValueError("must be 1 or 0, true or false, yes or no; empty: not seen")
             return _YES[cell.lower()]
-        try:
+        value = math.nan
+        with suppress(ValueError):
             value = float(cell)
-        except ValueError:
-            value = math.nan
-        if not (math.isfinite(value) and value >= 0.0):
+        if not 0.0 <= value < math.inf:
             raise ValueError(
                 "must be a number >= 0: the largest value without its sign; empty: not measured"
             )
-        return value * si_value(f"1 {self.unit}", _si_unit(self.name)) if self.unit else value
-
-
-def _si_unit(name: str) -> str:
-    return _UNITS.get(name) or key_unit(name)
+        return value * si_value(f"1 {self.unit}", self.si_unit) if self.unit else value
 
 
 def comparable(key: str, value: object) -> str:
@@ -92,15 +92,13 @@ def read_observed(
     """The observations that a study names; the document refuses what is wrong with them."""
     if name is None:
         return None
-    rows: list[tuple[int, list[str]]] = []
     try:
-        rows = csv_rows(read_text(folder / name), name)
+        (first, heads), *rest = csv_rows(read_text(folder / name), name) or [(0, [])]
     except CaseError as error:
-        document.refuse([Fault(PATH, f"observed: {error}")])
-    if len(rows) < 2:
+        raise document.refusal([Fault(PATH, f"observed: {error}")]) from None
+    if not rest:
         text = f"observed: {name} must have a line of titles and more lines"
-        document.refuse([Fault(PATH, text)])
-    (first, heads), *rest = rows
+        raise document.refusal([Fault(PATH, text)])
     columns = []
     for head in heads:
         match = _TITLE.fullmatch(head)
@@ -108,17 +106,21 @@ def read_observed(
         columns.append(_Column(title, "" if unit in ("-", "1") else unit))
     known = [RECORD, "scale", *(key for axis in axes for key in axis.keys)]
     document.refuse(_fault(name, first, text) for text in _title_faults(columns, known))
-    faults, seen = [], []
+    faults, seen = [], dict[tuple[object, ...], Observation]()
     for line, row in rest:
         try:
-            seen.append(_observation(line, columns, row))
+            new = _observation(line, columns, row)
+            before = seen.setdefault((new.record, new.system), new)
+            if before is not new:
+                text = f"{shown(new.record)} of this system is already in line {before.line}"
+                raise ValueError(f"{text}; remove one, or add a column that differs")  # noqa: TRY301
         except ValueError as error:
             faults.append(_fault(name, line, str(error)))
-    document.refuse([*faults, *_twice(name, seen)])
+    document.refuse(faults)
     names = [column.name for column in columns]
     quantities = tuple(each for each in names if each in _UNITS)
     keys = tuple(each for each in names if each not in {RECORD, *quantities})
-    return Observed(name, keys, quantities, tuple(seen))
+    return Observed(name, keys, quantities, tuple(seen.values()))
 
 
 def _fault(name: str, line: int, text: str) -> Fault:
@@ -143,7 +145,7 @@ def _title_faults(columns: Sequence[_Column], known: Sequence[str]) -> Iterator[
             yield f"the column {shown(column.name)} {text}; {suggestion}"
         elif column.unit:
             try:
-                if (si := _si_unit(column.name)) not in KINDS:
+                if (si := column.si_unit) not in KINDS:
                     raise ValueError("must have no unit; remove it")  # noqa: TRY301
                 si_value(f"1 {column.unit}", si)
             except ValueError as error:
@@ -166,13 +168,3 @@ def _observation(line: int, columns: Sequence[_Column], row: Sequence[str]) -> O
         else:
             system.append(comparable(column.name, f"{cell} {column.unit}".strip()))
     return Observation(line, record, tuple(system), tuple(values))
-
-
-def _twice(name: str, rows: Iterable[Observation]) -> Iterator[Fault]:
-    """Lines of the same record and system."""
-    seen: dict[tuple[object, ...], int] = {}
-    for row in rows:
-        before = seen.setdefault((row.record, row.system), row.line)
-        if before != row.line:
-            text = f"{shown(row.record)} of this system is already in line {before}"
-            yield _fault(name, row.line, f"{text}; remove one, or add a column that differs")

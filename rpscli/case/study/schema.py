@@ -7,7 +7,7 @@ that join several keys stand in `study`.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated, Any, Literal, Self, TypeGuard
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import (
     BeforeValidator,
@@ -32,7 +32,6 @@ from rpscli.case.schema.fields import (
     Several,
     Text,
     Whole,
-    is_finite,
     must_be,
     refuse,
 )
@@ -40,7 +39,7 @@ from rpscli.case.schema.keys import unit
 from rpscli.case.schema.limits import StudyLimits
 from rpscli.case.schema.scale_to import MeasuredValue, MeasureName, at_period, measured_value
 from rpscli.case.text.document import Place, shown
-from rpscli.errors import LARGEST
+from rpscli.errors import LARGEST, is_number
 from rpscli.records.measures import Of
 from rpscli.records.recordings import By
 from rpscli.units import in_si
@@ -115,9 +114,9 @@ PLUS = "plus"
 """What is added to a linear sum."""
 
 
-def is_number(value: object) -> TypeGuard[float]:
+def is_moderate(value: object) -> bool:
     """A number whose sums and products with others stay finite."""
-    return is_finite(value) and abs(value) <= LARGEST
+    return is_number(value) and abs(value) <= LARGEST
 
 
 def with_keys(value: object) -> object:
@@ -129,7 +128,7 @@ def _linear(given: tuple[str, object]) -> dict[str, float]:
     key, terms = given
     if isinstance(terms, dict) and PLUS in terms:
         terms = terms | {PLUS: in_si(terms[PLUS], unit(key))}
-    if not isinstance(terms, dict) or not all(map(is_number, terms.values())):
+    if not isinstance(terms, dict) or not all(map(is_moderate, terms.values())):
         refuse(f"must be a linear sum, {{key: factor, plus: number}}, of numbers up to {LARGEST:g}")
     return terms
 
@@ -259,11 +258,11 @@ class PerturbSection(Section):
 class HazardSection(Section):
     """A hazard curve: how often a year each intensity is exceeded at the site."""
 
-    file: Text = Field(
-        description="CSV with the header `PGV [cm/s],rate [1/year]`, and fractiles behind it,"
-        " `0.16 [1/year]`; seen from the study's folder"
-    )
-    measure: MeasureName = Field(description="of its first column")
+    file: Text
+    """CSV with the header `PGV [cm/s],rate [1/year]`, and fractiles behind it, `0.16 [1/year]`;
+    seen from the study's folder"""
+    measure: MeasureName
+    """of its first column"""
     component: Of | None = None
     """what of a pair of components it is of, as `of` in `scale`; said if it is not the same"""
 
@@ -312,11 +311,9 @@ class StudyParts(TitledFile):
     independent: By = "recordings"
     """what intervals, bootstraps and held-out parts take as a whole: recordings, of which all
     components and angles are one, or events"""
-    whole_histories: bool = Field(
-        default=False,
-        description="follow each history by itself, with all its samples: roof displacement, floor"
-        " velocity, forces of a column, base shear over that of the fixed base; far slower",
-    )
+    whole_histories: bool = False
+    """follow each history by itself, with all its samples: roof displacement, floor velocity,
+    forces of a column, base shear over that of the fixed base; far slower"""
     perturb: PerturbSection | None = None
     """small perturbations around every point"""
     limits: StudyLimits | None = None

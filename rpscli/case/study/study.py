@@ -16,7 +16,6 @@ from pydantic import ValidationError
 from rpscli.case.overrides import apply_overrides
 from rpscli.case.schema.case_file import CaseFile
 from rpscli.case.schema.check import checked
-from rpscli.case.schema.fields import is_finite
 from rpscli.case.schema.keys import field_at, fields_of, is_whole, unit, unknown_key
 from rpscli.case.schema.scale_to import ScaleToSection
 from rpscli.case.study.observed import Observed, read_observed
@@ -37,19 +36,10 @@ from rpscli.case.study.schema import (
     StudyParts,
     Values,
 )
-from rpscli.case.text.document import (
-    Document,
-    Fault,
-    Path,
-    dotted,
-    is_case,
-    is_design,
-    is_study,
-    shown,
-)
+from rpscli.case.text.document import Document, Fault, Path, dotted, format_of, shown
 from rpscli.case.text.files import read_text
 from rpscli.case.text.yaml_text import read_yaml
-from rpscli.errors import CaseError, RecordError, RpsError, listed, stem_of
+from rpscli.errors import CaseError, RecordError, RpsError, is_number, listed, stem_of
 from rpscli.records.loading import expanded, repeated
 from rpscli.registry import Registry
 from rpscli.units import in_si
@@ -124,12 +114,12 @@ def parse_study(
 ) -> Study:
     """A study from its text."""
     document = read_yaml(text, name)
-    if is_case(document):
+    if (kind := format_of(document)) == "case":
         raise CaseError(
             f"{name}: this is a case, but a study is needed here; `rps timehistory {name}` computes"
             " it, `rps init --study` writes a study"
         )
-    if is_design(document):
+    if kind == "design":
         raise CaseError(
             f"{name}: this is a design, but a study is needed here; use `rps design {name}`"
         )
@@ -201,9 +191,9 @@ def _base(document: Document, folder: Folder) -> tuple[Document, Folder | None]:
     except CaseError as error:
         raise CaseError(f"{here}: {error}") from None
     base = read_yaml(text, str(path))
-    if is_study(base):
+    if (kind := format_of(base)) in ("study", "design"):
         raise CaseError(f"{here} is a study, and a base is a case; name the case that it varies")
-    if "rps" not in base.content and not is_case(base):
+    if "rps" not in base.content and kind != "case":
         raise CaseError(f"{here} has neither `rps` nor `superstructure`; name a case")
     return base, path
 
@@ -256,7 +246,7 @@ def _with_linked(
             raise document.refusal([Fault(path, f"{text} has; sums are of keys of one axis")])
         columns = [(axis.keys.index(name), unit(name)) for name in names]
         rows: list[list[Any]] = [[in_si(row[at], si) for at, si in columns] for row in axis.rows]
-        if not all(map(is_finite, itertools.chain(*rows))):
+        if not all(map(is_number, itertools.chain(*rows))):
             text = f"linked.{key} is a sum of numbers; {names} are not"
             raise document.refusal([Fault(path, text)])
         sums = (linked_value(key, terms, row) for row in rows)
@@ -403,25 +393,22 @@ def _report_faults(
 
 def _size_faults(file: StudyFile, axes: Sequence[Axis], sources: Sequence[str]) -> Iterator[Fault]:
     """A study that is too large, at its largest part."""
-    systems: dict[Path, int] = {("vary", i): len(axis.rows) for i, axis in enumerate(axes)}
+    parts: dict[Path, int] = {("vary", i): len(axis.rows) for i, axis in enumerate(axes)}
     if file.sample is not None:
-        systems["sample", "size"] = file.sample.size
-    others: dict[Path, int] = {("records",): max(len(sources), 1)}
-    if file.scale is not None:
-        values = file.scale.values if isinstance(file.scale, MeasureScale) else file.scale
-        others["scale",] = len(values)
-    if file.perturb is not None:
-        others["perturb", "members"] = file.perturb.members
-    for parts, most, name in (
-        (systems, MOST_SYSTEMS, "systems"),
-        (systems | others, MOST_POINTS, "points"),
-    ):
-        if (count := math.prod(parts.values())) > most:
-            product = " x ".join(str(part) for part in parts.values() if part > 1)
-            largest = max(parts, key=lambda path: parts[path])
-            yield Fault(
-                largest,
-                f"the study has {count} {name} ({product}), which must not be more than {most};"
-                " use fewer values, or several studies",
-            )
-            return
+        parts["sample", "size"] = file.sample.size
+    most, name = MOST_SYSTEMS, "systems"
+    if math.prod(parts.values()) <= most:
+        most, name = MOST_POINTS, "points"
+        parts["records",] = max(len(sources), 1)
+        if file.scale is not None:
+            values = file.scale.values if isinstance(file.scale, MeasureScale) else file.scale
+            parts["scale",] = len(values)
+        if file.perturb is not None:
+            parts["perturb", "members"] = file.perturb.members
+    if (count := math.prod(parts.values())) > most:
+        product = " x ".join(str(part) for part in parts.values() if part > 1)
+        yield Fault(
+            max(parts, key=lambda path: parts[path]),
+            f"the study has {count} {name} ({product}), which must not be more than {most}; use"
+            " fewer values, or several studies",
+        )

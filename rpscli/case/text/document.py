@@ -154,19 +154,14 @@ class Document:
         return CaseError("\n".join(lines))
 
 
-def is_study(document: Document) -> bool:
-    """Whether a document is a study rather than a case."""
-    return "base" in document.content and "superstructure" not in document.content
-
-
-def is_design(document: Document) -> bool:
-    """Whether a document is a design rather than a study."""
-    return "base" in document.content and bool({"variables", "find"} & document.content.keys())
-
-
-def is_case(document: Document) -> bool:
-    """Whether a document is a case rather than a study."""
-    return "superstructure" in document.content and "base" not in document.content
+def format_of(document: Document) -> str:
+    """The kind of file that a document is: case, study or design; empty if neither."""
+    keys = document.content.keys()
+    if "base" not in keys:
+        return "case" if "superstructure" in keys else ""
+    if {"variables", "find"} & keys:
+        return "design"
+    return "" if "superstructure" in keys else "study"
 
 
 def text_of_values(values: Mapping[str, Any], name: str) -> str:
