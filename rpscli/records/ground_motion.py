@@ -23,16 +23,14 @@ if TYPE_CHECKING:
 class Recording(NamedTuple):
     """An earthquake and a station; empty or None where the source does not say.
 
-    `event` is the earthquake with its year, `number` that of the record in the NGA-West databases
-    of PEER, `distance` the closest one to the rupture [m], `vs30` [m/s] that of the ground,
-    `usable_period` the longest that the filters of the record leave [s], `pulse` whether it was
-    found to have a velocity pulse, `origin` the time of the earthquake, `direction` that of the
-    component, and `start` that of its first sample, as the source states them.
+    `event` is the earthquake with its year, `distance` the closest one to the rupture [m], `vs30`
+    [m/s] that of the ground, `usable_period` the longest that the filters of the record leave [s],
+    `pulse` whether it was found to have a velocity pulse, `origin` the time of the earthquake,
+    `direction` that of the component, and `start` that of its first sample, as the source states.
     """
 
     event: str = ""
     station: str = ""
-    number: int | None = None
     magnitude: float | None = None
     distance: float | None = None
     vs30: float | None = None

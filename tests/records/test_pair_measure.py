@@ -11,8 +11,8 @@ import pytest
 from scipy.integrate import cumulative_trapezoid
 
 from rpscli.errors import RecordError
-from rpscli.records.formats.record_text import Contents
-from rpscli.records.ground_motion import UNKNOWN, GroundMotion, rotated
+from rpscli.records.formats.record_text import Channel
+from rpscli.records.ground_motion import GroundMotion, rotated
 from rpscli.records.loading import expand_sources, load_components, load_record
 from rpscli.records.measures import (
     Measure,
@@ -298,7 +298,7 @@ NAMES = (
 def test_names_tell_both_components_of_a_folder(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("rpscli.records.formats.contents", lambda _: (Contents("", UNKNOWN),))
+    monkeypatch.setattr("rpscli.records.formats.contents", lambda _: (Channel(),))
     folder = tmp_path / "all"
     folder.mkdir()
     for name in (*(name for pair in NAMES for name in pair), "RSN953_A_MUL-UP.AT2", "MULV.at2"):

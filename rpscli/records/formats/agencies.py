@@ -15,12 +15,11 @@ from typing import NamedTuple
 from rpscli.records.formats.record_text import (
     MOST_VALUES,
     Channel,
-    Contents,
     RecordText,
     Stated,
     Statement,
 )
-from rpscli.records.ground_motion import UNKNOWN, GroundMotion, Recording
+from rpscli.records.ground_motion import GroundMotion, Recording
 from rpscli.records.quantities import NUMBER_PATTERN, UNIT_PATTERN
 
 Said = dict[str, Statement]  # statements of a header, by the names of `Layout.says`
@@ -78,14 +77,12 @@ class Layout:
             return ""
         return self.refusal.format(text.heads[0].partition("(")[0].strip()[:40])
 
-    def contents(self, text: RecordText) -> list[Contents]:
+    def contents(self, text: RecordText) -> list[Channel]:
         """What the headers of all channels state; of a file without any that can be read why."""
         if refusal := self.refused(text):
-            return [Contents("", UNKNOWN, refusal)]
+            return [Channel(refusal=refusal)]
         channels = self.channels(text)
-        numbers = [f"{each.number}" if len(channels) > 1 else "" for each in channels]
-        found = (self.stated(text, each)[0].recording for each in channels)
-        return [Contents(*each) for each in zip(numbers, found, strict=True)]
+        return [of._replace(recording=self.stated(text, of)[0].recording) for of in channels]
 
     def channels(self, text: RecordText) -> list[Channel]:
         """Those that can be read."""

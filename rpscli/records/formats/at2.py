@@ -14,7 +14,7 @@ from rpscli.constants import STANDARD_GRAVITY
 from rpscli.records.formats.record_text import (
     STATED_PATTERN,
     STEP_PATTERN,
-    Contents,
+    Channel,
     RecordText,
     Stated,
     Statement,
@@ -91,10 +91,10 @@ def read_at2(text: RecordText) -> GroundMotion:
     )
 
 
-def contents_of_at2(text: RecordText) -> list[Contents]:
+def contents_of_at2(text: RecordText) -> list[Channel]:
     """The one channel, with earthquake, date, station and direction as far as titles say them."""
     header = _header(text)
-    return [Contents("", UNKNOWN if header is None else _recording(_title(text, header)))]
+    return [Channel(recording=_recording(_title(text, header)) if header else UNKNOWN)]
 
 
 def _title(text: RecordText, header: _Header) -> list[str]:

@@ -61,21 +61,16 @@ class Statement(NamedTuple):
 
 
 class Channel(NamedTuple):
-    """A channel of a file: its number, the line where it begins, what it calls itself."""
+    """A channel of a file: its number, the line where it begins, what it calls itself.
 
-    number: int
-    line: int
-    label: str
-
-
-class Contents(NamedTuple):
-    """One channel of a file, by its number if there are several, and what its header states.
-
-    `refusal` says why a file of a known format is not used, such as an uncorrected record.
+    Its header states a `recording`; `refusal` says why a file of a known format is not used, such
+    as an uncorrected record.
     """
 
-    channel: str
-    recording: Recording
+    number: int = 1
+    line: int = 0
+    label: str = ""
+    recording: Recording = UNKNOWN
     refusal: str = ""
 
 
