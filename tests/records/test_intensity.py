@@ -19,7 +19,6 @@ from rpscli.records.measures import (
     intensity_measures,
     measured,
     response_spectrum,
-    spectral_acceleration,
     velocity,
 )
 
@@ -186,7 +185,7 @@ def test_steady_resonance_by_formula() -> None:
 def test_sudden_constant_load_overshoots_as_in_textbooks(damping: float) -> None:
     made = motion([2.0, 2.0], 3.0)
     overshoot = 1.0 + math.exp(-damping * math.pi / math.sqrt(1.0 - damping**2))
-    sa = spectral_acceleration(made, 4.0, damping)
+    sa = measured(made, "Sa", 4.0, damping)
     # At least 50 samples a period, so one within 1/100 of it from the peak: 1 - cos(pi/50).
     assert sa == pytest.approx(2.0 * overshoot, rel=2e-3)
 
@@ -209,7 +208,7 @@ def test_linearity_and_definition() -> None:
     np.testing.assert_allclose(twice.total_acceleration, 2.0 * one.total_acceleration, rtol=1e-12)
     stiffness = (2.0 * np.pi / np.array(periods)) ** 2
     np.testing.assert_allclose(one.pseudo_acceleration, stiffness * one.displacement, rtol=1e-14)
-    assert spectral_acceleration(made, 0.7) == one.pseudo_acceleration[1]
+    assert measured(made, "Sa", 0.7) == one.pseudo_acceleration[1]
     undamped = response_spectrum(made, periods, 0.0)
     np.testing.assert_allclose(
         undamped.pseudo_acceleration, undamped.total_acceleration, rtol=1e-9
