@@ -19,7 +19,7 @@ from rpscli.records.formats.record_text import (
     Stated,
     Statement,
     remark,
-    steps_in,
+    statements,
 )
 from rpscli.records.ground_motion import UNKNOWN, GroundMotion, Recording
 from rpscli.records.quantities import NUMBER_PATTERN, UNIT_PATTERN, last_digit, numbers_in
@@ -30,10 +30,10 @@ FORMAT = "PEER AT2"
 _HEADER_LINES = 40
 _NPTS = re.compile(r"\bNPTS\b", re.IGNORECASE)
 _COUNT = re.compile(r"\bNPTS\s*(?:=\s*)?([0-9]+)\b", re.IGNORECASE)
-_STEP = re.compile(rf"\bDT{STEP_PATTERN}", re.IGNORECASE)
+_STEP = rf"\bDT{STEP_PATTERN}"
 # Those that can be nothing else: a title may hold a word such as DT2, or a source with ?dt=.
-_COUNT_GIVEN = re.compile(r"\bNPTS\s*=\s*([0-9]+)\b", re.IGNORECASE)
-_STEP_GIVEN = re.compile(rf"(?<![?&])\bDT(?=\s*=){STEP_PATTERN}", re.IGNORECASE)
+_COUNT_GIVEN = r"\bNPTS\s*=\s*([0-9]+)\b"
+_STEP_GIVEN = rf"(?<![?&])\bDT(?=\s*=){STEP_PATTERN}"
 # Both numbers before both names, or behind them.
 _BOTH = re.compile(
     rf"^\s*([0-9]+)[\s,]+({STATED_PATTERN})[\s,]+NPTS\b[\s,]*(?:AND\s+)?DT\b"
@@ -127,9 +127,9 @@ def _header(text: RecordText) -> _Header | None:
             return _Header(count, step, start)
         number = _COUNT.search(line)
         nearest = (index, *range(index + 1, min(start, _HEADER_LINES)), *range(index))
-        steps = (step for i in nearest for step in steps_in("DT", _STEP, text.heads[i], i))
-        if number and (first := next(steps, None)):
-            return _Header(Statement("NPTS", number[1], index), first, start)
+        steps = statements("DT", _STEP, ((i, text.heads[i]) for i in nearest))
+        if number and steps:
+            return _Header(Statement("NPTS", number[1], index), steps[0], start)
     return None
 
 
@@ -144,8 +144,8 @@ def _stated(text: RecordText, header: _Header) -> tuple[Stated, str]:
                 index,
             )
         if not _BOTH.search(line):
-            counts += [Statement("NPTS", numeral, index) for numeral in _COUNT_GIVEN.findall(line)]
-            steps += steps_in("DT", _STEP_GIVEN, line, index)
+            counts += statements("NPTS", _COUNT_GIVEN, [(index, line)])
+            steps += statements("DT", _STEP_GIVEN, [(index, line)])
     # The line of the units stands next to that of NPTS: titles above may mention other units.
     units: list[Statement] = []
     for index in range(header.start - 1, -1, -1):

@@ -324,11 +324,12 @@ class RecordText:
         )  # fmt: skip
 
 
-def steps_in(name: str, pattern: re.Pattern[str], line: str, place: int) -> list[Statement]:
-    """Time steps that a line states, with their units; the pattern ends as `STEP_PATTERN`."""
+def statements(name: str, pattern: str, lines: Iterable[tuple[int, str]]) -> list[Statement]:
+    """Statements of one thing in numbered lines: a value, and a unit before or behind it."""
     return [
-        Statement(name, f"{match[2]} {match[1] or match[3] or ''}".strip(), place)
-        for match in pattern.finditer(line)
+        Statement(name, " ".join(sorted(filter(None, each.groups()), key=str.isalpha)).strip(), i)
+        for i, line in lines
+        for each in re.finditer(pattern, line, re.IGNORECASE)
     ]
 
 
