@@ -23,16 +23,14 @@ if TYPE_CHECKING:
 class Recording(NamedTuple):
     """An earthquake and a station; empty or None where the source does not say.
 
-    `event` is the earthquake with its year, `number` that of the record in the NGA-West databases
-    of PEER, `distance` the closest one to the rupture [m], `vs30` [m/s] that of the ground,
-    `usable_period` the longest that the filters of the record leave [s], `pulse` whether it was
-    found to have a velocity pulse, `origin` the time of the earthquake, `direction` that of the
-    component, and `start` that of its first sample, as the source states them.
+    `event` is the earthquake with its year, `distance` the closest one to the rupture [m], `vs30`
+    [m/s] that of the ground, `usable_period` the longest that the filters of the record leave [s],
+    `pulse` whether it was found to have a velocity pulse, `origin` the time of the earthquake,
+    `direction` that of the component, and `start` that of its first sample, as the source states.
     """
 
     event: str = ""
     station: str = ""
-    number: int | None = None
     magnitude: float | None = None
     distance: float | None = None
     vs30: float | None = None
@@ -77,14 +75,11 @@ class GroundMotion(Shown):
         Copied, then kept contiguous and read-only.
     dt : float [s]
         Sampling interval.
-    name : str
-        Short; good for titles and file names.
-    source : str
-        The source as the user wrote it.
-    format : str
-        What the samples were read from or made by, such as "PEER AT2" or "pulse".
-    description : str
-        What the reader understood: event, station, units.
+    name, source : str
+        Short, good for titles and file names; the source as the user wrote it.
+    format, description : str
+        What the samples were read from or made by, such as "PEER AT2" or "pulse"; what the reader
+        understood: event, station, units.
     warnings : tuple of str
         What the reader wants a human to look at.
     recording : Recording
@@ -247,8 +242,7 @@ class GroundMotion(Shown):
         """
         from rpscli.records import measures  # which measure motions
 
-        known = measures.MEASURES
-        fault = ""
+        known, fault = measures.MEASURES, ""
         if measure not in known and measure not in (names := known.names()):
             fault = f"{measure} is not a measure; there are {', '.join(names)}"
         elif measures.needs_period(measure) and period is None:
@@ -274,14 +268,10 @@ class MotionComponents(Frozen):
     ----------
     horizontal : GroundMotion
         Along x, where there is a second one.
-    vertical : GroundMotion, optional
-        Positive upwards.
-    scale : float
-        By which all were multiplied since they were read.
-    scaled_to : str
-        What that aimed at, in words.
-    y : GroundMotion, optional
-        The second horizontal component.
+    vertical, y : GroundMotion, optional
+        Positive upwards; the second horizontal component.
+    scale, scaled_to : float, str
+        By which all were multiplied since they were read; what that aimed at, in words.
 
     Raises
     ------
@@ -378,9 +368,8 @@ class MotionComponents(Frozen):
     def warnings(self) -> tuple[str, ...]:
         """Warnings besides those of the horizontal one: of the others, and of the factor."""
         doubts = [text for each in (self.y, self.vertical) if each for text in each.warnings]
-        if self.horizontal.format != "pulse":
-            doubts += scale_doubts(self.horizontal.name, self.scale)
-        return tuple(doubts)
+        made = self.horizontal.format == "pulse"
+        return (*doubts, *(() if made else scale_doubts(self.horizontal.name, self.scale)))
 
 
 def require_one_step(one: GroundMotion, other: GroundMotion, name: str) -> None:

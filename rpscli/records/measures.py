@@ -13,7 +13,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Literal, get_args
+from typing import Literal, NamedTuple, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -164,11 +164,6 @@ def response_spectrum(
     return ResponseSpectrum(wanted, damping, peaks[:, 0], pseudo, peaks[:, 1])
 
 
-def spectral_acceleration(motion: GroundMotion, period: float, damping: float = 0.05) -> float:
-    """Pseudo-acceleration Sa(T) [m/s2] at one period; the PGA at T = 0."""
-    return float(response_spectrum(motion, [period], damping).pseudo_acceleration[0])
-
-
 def pseudo_acceleration_history(motion: GroundMotion, period: float, damping: float) -> Array:
     """Relative displacement of an oscillator times (2 pi/T)^2 [m/s2], on a step of its own."""
     if period == 0.0:
@@ -237,30 +232,25 @@ def filtered_incremental_velocity(motion: GroundMotion, period: float) -> float:
     return float(max(*sums, 0.0))
 
 
-def _averaged_periods(measure: Measure, period: float) -> Array:
-    """Those of the spectrum that AvgSa, at a period, or Housner's intensity averages [s]."""
-    if measure == "AvgSa":
-        return np.linspace(0.2, 3.0, 10) * period
-    return np.linspace(0.1, 2.5, 97)
+def _average_acceleration(spectra: Array, _: Array) -> Array:
+    """AvgSa [m/s2] (...), the geometric mean of Sa (..., 10) at ten periods from 0.2 T to 3 T.
 
-
-def _average(spectra: Array, measure: Measure, periods: Array) -> Array:
-    """AvgSa or Housner's intensity (...) of pseudo-accelerations (..., periods).
-
-    AvgSa [m/s2] is the geometric mean of Sa at ten periods, evenly spaced from 0.2 T to 3 T. The
-    range is that of L. Eads, E. Miranda and D. G. Lignos, Earthq. Eng. Struct. Dyn. 44, 2015, who
-    space the periods by 0.01 s; ten periods are those of the ground motion models that give hazard
-    curves of it. At T = 1 s they give 7 % less to 17 % more, 3 % more in the median, for the
-    far-field records of FEMA P695.
-
-    Housner's spectrum intensity [m] is the integral of the pseudo-velocity over periods of 0.1 to
-    2.5 s, by trapezia every 0.025 s, which is within 0.3 % for recorded motions. G. W. Housner, in
-    Proc. Symposium on Earthquake and Blast Effects on Structures, 1952.
+    The range is that of L. Eads, E. Miranda and D. G. Lignos, Earthq. Eng. Struct. Dyn. 44, 2015,
+    who space the periods by 0.01 s; ten periods, evenly spaced, are those of the ground motion
+    models that give hazard curves of it. At T = 1 s they give 7 % less to 17 % more, 3 % more in
+    the median, for the far-field records of FEMA P695.
     """
-    if measure == "Housner":
-        return np.asarray(np.trapezoid(spectra * periods / (2.0 * math.pi), periods, axis=-1))
     with np.errstate(divide="ignore"):  # a motion of zeros has no logarithm, and measures nothing
         return np.asarray(np.exp(np.mean(np.log(spectra), axis=-1)))
+
+
+def _spectrum_intensity(spectra: Array, periods: Array) -> Array:
+    """Housner's intensity [m] (...), the integral of the pseudo-velocity over 0.1 to 2.5 s.
+
+    It is that of Sa (..., periods) by trapezia every 0.025 s, which is within 0.3 % for recorded
+    motions. G. W. Housner, in Proc. Symposium on Earthquake and Blast Effects on Structures, 1952.
+    """
+    return np.asarray(np.trapezoid(spectra * periods / (2.0 * math.pi), periods, axis=-1))
 
 
 Measure = str  # a name in `MEASURES`
@@ -286,17 +276,32 @@ class IntensityMeasure:
             raise ValueError(f"power = {self.power!r} must be > 0")
 
 
+class _OfSpectrum(NamedTuple):
+    """A measure by pseudo-accelerations at periods, which may be multiples of one [s]."""
+
+    periods: Callable[[float], Array]
+    value: Callable[[Array, Array], Array]
+
+    def of(self, motion: GroundMotion, period: float, damping: float) -> float:
+        at = self.periods(period)
+        return float(self.value(response_spectrum(motion, at, damping).pseudo_acceleration, at))
+
+
+_SPECTRAL: dict[str, _OfSpectrum] = {
+    "Sa": _OfSpectrum(lambda T: np.array([T]), lambda spectra, _: spectra[..., 0]),
+    "AvgSa": _OfSpectrum(lambda T: np.linspace(0.2, 3.0, 10) * T, _average_acceleration),
+    "Housner": _OfSpectrum(lambda _: np.linspace(0.1, 2.5, 97), _spectrum_intensity),
+}
+_HISTORIES: dict[str, Callable[[Array, float], Array]] = {
+    "PGA": lambda a, _dt: a,
+    "PGV": velocity,
+    "PGD": displacement,
+}
+"""Histories, linear in a motion, whose largest magnitudes are measures."""
+
+
 def _summary(name: str) -> Callable[[GroundMotion, float, float], float]:
     return lambda motion, _period, _damping: float(getattr(intensity_measures(motion), name))
-
-
-def _averaged(measure: Measure) -> Callable[[GroundMotion, float, float], float]:
-    def of(motion: GroundMotion, period: float, damping: float) -> float:
-        periods = _averaged_periods(measure, period)
-        spectrum = response_spectrum(motion, periods, damping).pseudo_acceleration
-        return float(_average(spectrum, measure, periods))
-
-    return of
 
 
 MEASURES = Registry(
@@ -305,12 +310,12 @@ MEASURES = Registry(
         "PGA": IntensityMeasure("m/s2", _summary("pga")),
         "PGV": IntensityMeasure("m/s", _summary("pgv")),
         "PGD": IntensityMeasure("m", _summary("pgd")),
-        "Sa": IntensityMeasure("m/s2", spectral_acceleration, at_period=True),
-        "AvgSa": IntensityMeasure("m/s2", _averaged("AvgSa"), at_period=True),
+        "Sa": IntensityMeasure("m/s2", _SPECTRAL["Sa"].of, at_period=True),
+        "AvgSa": IntensityMeasure("m/s2", _SPECTRAL["AvgSa"].of, at_period=True),
         "FIV3": IntensityMeasure(
             "m/s", lambda m, T, _damping: filtered_incremental_velocity(m, T), at_period=True
         ),
-        "Housner": IntensityMeasure("m", _averaged("Housner")),
+        "Housner": IntensityMeasure("m", _SPECTRAL["Housner"].of),
         "Arias": IntensityMeasure("m/s", _summary("arias"), power=2.0),
         "CAV": IntensityMeasure("m/s", _summary("cav")),
     },
@@ -380,12 +385,12 @@ def over_directions(
     damping: float = 0.05,
 ) -> Array:
     """(180,) a measure of the pair turned to each direction, SI units."""
-    if measure in _LINEAR:
-        x, y = (rotated(first, second, angle) for angle in (0.0, 90.0))  # of one length
-        return _peaks(*(_linear(each, measure, period, damping) for each in (x, y)))
-    if measure in ("AvgSa", "Housner"):
-        periods = _averaged_periods(measure, period or 1.0)
-        return _average(spectra_over_directions(first, second, periods, damping), measure, periods)
+    if history := _HISTORIES.get(measure):
+        pair = (rotated(first, second, angle) for angle in (0.0, 90.0))  # of one length
+        return _peaks(*(history(each.acceleration, each.dt) for each in pair))
+    if spectral := _SPECTRAL.get(measure):
+        at = spectral.periods(math.nan if period is None else period)
+        return spectral.value(spectra_over_directions(first, second, at, damping), at)
     turned = (rotated(first, second, angle) for angle in DIRECTIONS.tolist())
     return np.array([measured(each, measure, period, damping) for each in turned])
 
@@ -394,8 +399,9 @@ def spectra_over_directions(
     first: GroundMotion, second: GroundMotion, periods: Sequence[float] | Array, damping: float
 ) -> Array:
     """(180, periods) pseudo-acceleration of the pair turned to each direction [m/s2]."""
-    spectra = (over_directions(first, second, "Sa", float(t), damping) for t in periods)
-    return np.column_stack([*spectra])
+    pair = [rotated(first, second, angle) for angle in (0.0, 90.0)]  # of one length
+    histories = ((pseudo_acceleration_history(m, float(t), damping) for m in pair) for t in periods)
+    return np.column_stack([_peaks(*each) for each in histories])
 
 
 def pair_measure(
@@ -408,18 +414,6 @@ def pair_measure(
 ) -> float:
     """A measure of a pair, SI units."""
     return float(of_directions(over_directions(first, second, measure, period, damping), of))
-
-
-_LINEAR: tuple[Measure, ...] = ("PGA", "PGV", "PGD", "Sa")
-
-
-def _linear(motion: GroundMotion, measure: Measure, period: float | None, damping: float) -> Array:
-    """The history, linear in a motion, whose largest magnitude is the measure."""
-    if measure == "Sa":
-        assert period is not None, "Sa is asked for at a period"
-        return pseudo_acceleration_history(motion, period, damping)
-    integral = {"PGV": velocity, "PGD": displacement}.get(measure)
-    return integral(motion.acceleration, motion.dt) if integral else motion.acceleration
 
 
 def _peaks(x: Array, y: Array) -> Array:

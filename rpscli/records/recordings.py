@@ -36,7 +36,7 @@ from rpscli.records.measures import Of
 from rpscli.records.source import FILE, SET, Source
 
 if TYPE_CHECKING:
-    from rpscli.records.formats.record_text import Contents
+    from rpscli.records.formats.record_text import Channel
 
 By = Literal["recordings", "events"]  # units that statistics take to be independent
 Pair = tuple[str, str]  # sources of two components
@@ -66,10 +66,10 @@ def channels(of: Source, folder: Path | None) -> list[Source]:
     held = _contents(of, folder)
     if len(held) < 2 or "channel" in of.values:
         return [of] * bool(held)
-    return [of.plus(channel=each.channel) for each in held]
+    return [of.plus(channel=f"{each.number}") for each in held]
 
 
-def _contents(of: Source, folder: Path | None) -> tuple[Contents, ...]:
+def _contents(of: Source, folder: Path | None) -> tuple[Channel, ...]:
     from rpscli.records.formats import contents  # sets and pulses are not files
 
     return contents((folder or Path()) / Path(of.place).expanduser())
@@ -84,7 +84,9 @@ def stated(of: Source, folder: Path | None) -> Recording:
             return UNKNOWN
         held = _contents(of, folder)
         channel = (of.values.get("channel") or "").partition(",")[0]
-        return next((c.recording for c in held if c.channel == channel or len(held) == 1), UNKNOWN)
+        return next(
+            (c.recording for c in held if f"{c.number}" == channel or len(held) == 1), UNKNOWN
+        )
     except (RecordError, OSError, ValueError, RuntimeError):
         return UNKNOWN  # told where it is needed
 

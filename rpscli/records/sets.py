@@ -101,7 +101,7 @@ def _component(folder: Path, component: str, source: str, *, normalised: bool) -
             table = file["records/table"][()]
             row = table[table["index"] == int(record)][0]
             names = [text.decode("latin-1").strip() for text in row["values_block_2"]]
-            number, year, vs30 = row["values_block_1"][:3].tolist()
+            _, year, vs30 = row["values_block_1"][:3].tolist()
             # Epicentral distance, to the rupture, two more; frequency below which it is filtered.
             magnitude, _, closest, _, _, usable = row["values_block_0"][:6].tolist()
     except (OSError, KeyError, ValueError, IndexError) as error:
@@ -110,7 +110,7 @@ def _component(folder: Path, component: str, source: str, *, normalised: bool) -
             f'run: pip install --force-reinstall "rpscli[records]"'
         ) from error
     recording = Recording(
-        f"{names[0]} {year}", names[1], number, magnitude, 1e3 * closest, float(vs30), 1.0 / usable,
+        f"{names[0]} {year}", names[1], magnitude, 1e3 * closest, float(vs30), 1.0 / usable,
         {"nearfield_pulse": True, "nearfield_no_pulse": False}.get(name),
     )  # fmt: skip
     kind, trace = "normalised" if normalised else "as recorded", names[-2 if side == "a" else -1]

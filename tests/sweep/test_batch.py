@@ -21,7 +21,7 @@ from rpscli.analyses.timehistory import time_history
 from rpscli.case.study.schema import PerturbSection, RangeSection, SampleSection
 from rpscli.records.ground_motion import MotionComponents
 from rpscli.records.loading import load_components, load_record
-from rpscli.records.measures import intensity_measures, spectral_acceleration
+from rpscli.records.measures import intensity_measures, measured
 from rpscli.sweep.context import resolved
 from rpscli.sweep.evaluation import SCALARS, PointResults, at_path, run_batch
 from rpscli.sweep.points import lay_out
@@ -259,7 +259,7 @@ def test_sa_is_taken_at_the_first_period_of_each_system(study_of: Make) -> None:
         assert point.period == pytest.approx(point.values[2], rel=1e-12)
         motion = load_record(point.record.source).scaled(context.factor(point))
         # The measure is linear in the motion.
-        found = spectral_acceleration(motion, float(point.values[2]), 0.05)
+        found = measured(motion, "Sa", float(point.values[2]), 0.05)
         assert found == pytest.approx(2.0, rel=1e-9)
         periods.add(point.period)
     assert len(periods) == 2

@@ -13,8 +13,8 @@ from rpscli.errors import PluginError, RecordError
 from rpscli.records.formats.agencies import LAYOUTS
 from rpscli.records.formats.at2 import FORMAT, contents_of_at2, read_at2, recognises_at2
 from rpscli.records.formats.columns import read_columns, recognises_columns
-from rpscli.records.formats.record_text import Contents, RecordText, read_text
-from rpscli.records.ground_motion import UNKNOWN, GroundMotion
+from rpscli.records.formats.record_text import Channel, RecordText, read_text
+from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.source import FILE, Source
 from rpscli.registry import Registry
 
@@ -30,7 +30,7 @@ class RecordFormat:
     extensions: tuple[str, ...]
     recognises: Callable[[RecordText], bool]
     read: Callable[[RecordText], GroundMotion]
-    contents: Callable[[RecordText], Sequence[Contents]] | None = None
+    contents: Callable[[RecordText], Sequence[Channel]] | None = None
 
 
 _OURS = (
@@ -42,7 +42,7 @@ _PLAIN = RecordFormat(
     (".txt", ".dat", ".csv", ".tsv"),
     recognises_columns,
     read_columns,
-    lambda _: [Contents("", UNKNOWN)],
+    lambda _: [Channel()],
 )
 """Accepts most, so it comes last."""
 
@@ -91,7 +91,7 @@ def read_record(path: Path, of: Source) -> GroundMotion:
     return replace(motion, warnings=(*motion.warnings, *told))
 
 
-def contents(path: Path) -> tuple[Contents, ...]:
+def contents(path: Path) -> tuple[Channel, ...]:
     """The channels of a file that is recognised as a record; empty for others."""
     if path.suffix.lower() in _OTHER_QUANTITIES:
         return ()
@@ -103,7 +103,7 @@ def contents(path: Path) -> tuple[Contents, ...]:
 
 
 @lru_cache(maxsize=4096)
-def _contents(path: Path, _changed: int, _size: int) -> tuple[Contents, ...]:
+def _contents(path: Path, _changed: int, _size: int) -> tuple[Channel, ...]:
     form = None
     with suppress(RecordError):
         text = read_text(path, Source(FILE, str(path), {}))
@@ -112,9 +112,9 @@ def _contents(path: Path, _changed: int, _size: int) -> tuple[Contents, ...]:
         return ()
     try:
         own = form.contents
-        return tuple(own(text) if own else [Contents("", form.read(text).recording)])
+        return tuple(own(text) if own else [Channel(recording=form.read(text).recording)])
     except RecordError:
-        return (Contents("", UNKNOWN),)  # told where it is read
+        return (Channel(),)  # told where it is read
 
 
 def _in_order() -> Iterator[RecordFormat]:

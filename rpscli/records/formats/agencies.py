@@ -15,12 +15,12 @@ from typing import NamedTuple
 from rpscli.records.formats.record_text import (
     MOST_VALUES,
     Channel,
-    Contents,
     RecordText,
     Stated,
     Statement,
+    statements,
 )
-from rpscli.records.ground_motion import UNKNOWN, GroundMotion, Recording
+from rpscli.records.ground_motion import GroundMotion, Recording
 from rpscli.records.quantities import NUMBER_PATTERN, UNIT_PATTERN
 
 Said = dict[str, Statement]  # statements of a header, by the names of `Layout.says`
@@ -78,14 +78,12 @@ class Layout:
             return ""
         return self.refusal.format(text.heads[0].partition("(")[0].strip()[:40])
 
-    def contents(self, text: RecordText) -> list[Contents]:
+    def contents(self, text: RecordText) -> list[Channel]:
         """What the headers of all channels state; of a file without any that can be read why."""
         if refusal := self.refused(text):
-            return [Contents("", UNKNOWN, refusal)]
+            return [Channel(refusal=refusal)]
         channels = self.channels(text)
-        numbers = [f"{each.number}" if len(channels) > 1 else "" for each in channels]
-        found = (self.stated(text, each)[0].recording for each in channels)
-        return [Contents(*each) for each in zip(numbers, found, strict=True)]
+        return [of._replace(recording=self.stated(text, of)[0].recording) for of in channels]
 
     def channels(self, text: RecordText) -> list[Channel]:
         """Those that can be read."""
@@ -114,13 +112,9 @@ class Layout:
             first = end + 1
             if end < 0:
                 raise text.fault(self.lacks.format("the values"), start)
-        said = Said()
+        said, lines = Said(), [*enumerate(heads[start : end + 1], start)]
         for name, words in self.says.items():
-            found = [
-                Statement(words.name, match[1].strip(), index)
-                for index in range(start, min(end + 1, len(heads)))
-                if (match := re.search(words.pattern, heads[index], re.IGNORECASE))
-            ]
+            found = statements(*words, lines)
             said.update((name, each) for each in found[:1])
             if name not in Recording._fields:
                 text.agreed(found, lambda each: each.value)
@@ -145,8 +139,8 @@ class Layout:
         if self.label:
             known["direction"] = channel.label.partition("(")[0].strip()
         recording = Recording(**known)  # type: ignore[arg-type]
-        magnitude = said.get("magnitude", said.get("other_magnitude"))
-        recording = recording._replace(magnitude=magnitude and text.number(magnitude))
+        if "magnitude" in said:
+            recording = recording._replace(magnitude=text.number(said["magnitude"]))
         return Stated(unit, step, 0.0, said.get("duration"), said.get("peak"), recording=recording)
 
     def read(self, text: RecordText) -> GroundMotion:
@@ -189,6 +183,8 @@ class Layout:
 
 _NUMBER = rf"({NUMBER_PATTERN})"
 _UNIT = rf"({UNIT_PATTERN})"
+_MAGNITUDE = rf"^(?:.*\bM(?:oment Mag|w)|(?!.*\bM(?:oment Mag|w)\s*=).*\bMl)\s*=\s*{_NUMBER}"
+"""That of the moment, or the local one."""
 _UNKNOWN = -999.0  # of COSMOS
 
 
@@ -277,8 +273,7 @@ COSMOS = Layout(
         "event": Words("event", r"^(?:Rcrd|Record) of\s+(\S.*?\bEarthquake\b.*?)\s*$"),
         "origin": Words("Origin", r"^Origin:\s*(\d[\d/, :.]*)"),
         "start": Words("start time", r"^Rcrd start time:\s*(\d[\d/, :.]*)"),
-        "magnitude": Words("Mw", rf"\bMw\s*=\s*{_NUMBER}"),
-        "other_magnitude": Words("ML", rf"\bML\s*=\s*{_NUMBER}"),
+        "magnitude": Words("M", _MAGNITUDE),
     },
     needed=("count",),
     lacks="no line announces acceleration values in a known unit",
@@ -306,8 +301,7 @@ CSMIP = Layout(
         "event": Words("event", r"^((?!UNCORRECTED).*\bEARTHQUAKE\b.*?)\s*$"),
         "origin": Words("ORIGIN", r"\(ORIGIN[^:]*:\s*(\d[\d/, :.]*)"),
         "start": Words("start time", r"(?:TRIGGER|START) TIME:\s*(\d[\d/, :.-]*)"),
-        "magnitude": Words("MW", rf"\bMW\s*=\s*{_NUMBER}"),
-        "other_magnitude": Words("ML", rf"\bML\s*=\s*{_NUMBER}"),
+        "magnitude": Words("M", _MAGNITUDE),
     },
     needed=("count", "step"),
     lacks="no line announces the acceleration data of this channel",
@@ -333,8 +327,7 @@ GEONET = Layout(
         "event": Words("event", r"^(\d+ km [\w-]+ of \S.*?)\s*$"),
         "origin": Words("origin", r"^(\d{4}\s+[A-Z][a-z]+\s+\d+\s+\d+:\d+:\d+)\s+UT"),
         "start": Words("Accelerogram", r"^Accelerogram\s+(\d{8}_\d{6})"),
-        "magnitude": Words("Mw", rf"\bMw\s+{_NUMBER}\s*$"),
-        "other_magnitude": Words("M", rf"\bM[A-Z]?\s+{_NUMBER}\s*$"),
+        "magnitude": Words("M", rf"\bM[A-Z]?\s+{_NUMBER}\s*$"),
     },
     needed=("count", "step", "peak", "unit"),
     lacks="the header lacks the number of points, the interval or the peak acceleration",
@@ -375,9 +368,8 @@ ESM = Layout(
         step="SAMPLING_INTERVAL_S", count="NDATA", unit="UNITS", quantity="DATA_TYPE",
         duration="DURATION_S", peak="PGA_CM/S^2", station="STATION_CODE", direction="STREAM",
         event="EVENT_NAME", origin="EVENT_TIME_HHMMSS", date="EVENT_DATE_YYYYMMDD",
-        start="DATE_TIME_FIRST_SAMPLE_YYYYMMDD_HHMMSS", magnitude="MAGNITUDE_W",
-        other_magnitude="MAGNITUDE_L",
-    ),
+        start="DATE_TIME_FIRST_SAMPLE_YYYYMMDD_HHMMSS",
+    ) | {"magnitude": Words("MAGNITUDE", rf"^MAGNITUDE_[WL]:\s*{_NUMBER}")},
     needed=("step", "count", "unit"),
     width=1,
     numbers=lambda _text, end, _said: end,  # the line behind the keys is the first value
@@ -395,8 +387,7 @@ SMC = Layout(
         "direction": Words("component", r"\bcomponent\s*=\s*(\S.*?)\s*$"),
         "origin": Words("origin", r"^\s*(\d{4}\s+\d+\s+\d+\s+\d{4})\s"),
         "event": Words("event", r"^\s*\d{4}\s+\d+\s+\d+\s+\d{4}\s+(\S.*?)\s*$"),
-        "magnitude": Words("Moment Mag", rf"\bMoment Mag\s*=\s*{_NUMBER}"),
-        "other_magnitude": Words("Ml", rf"\bMl\s*=\s*{_NUMBER}"),
+        "magnitude": Words("M", _MAGNITUDE),
     },
     needed=(),
     unit="cm/s2",

@@ -8,18 +8,17 @@ before or after their numbers, with or without "=", on one line or on two.
 from __future__ import annotations
 
 import re
-from typing import NamedTuple
 
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.records.formats.record_text import (
     STATED_PATTERN,
     STEP_PATTERN,
-    Contents,
+    Channel,
     RecordText,
     Stated,
     Statement,
     remark,
-    steps_in,
+    statements,
 )
 from rpscli.records.ground_motion import UNKNOWN, GroundMotion, Recording
 from rpscli.records.quantities import NUMBER_PATTERN, UNIT_PATTERN, last_digit, numbers_in
@@ -30,10 +29,10 @@ FORMAT = "PEER AT2"
 _HEADER_LINES = 40
 _NPTS = re.compile(r"\bNPTS\b", re.IGNORECASE)
 _COUNT = re.compile(r"\bNPTS\s*(?:=\s*)?([0-9]+)\b", re.IGNORECASE)
-_STEP = re.compile(rf"\bDT{STEP_PATTERN}", re.IGNORECASE)
+_STEP = rf"\bDT{STEP_PATTERN}"
 # Those that can be nothing else: a title may hold a word such as DT2, or a source with ?dt=.
-_COUNT_GIVEN = re.compile(r"\bNPTS\s*=\s*([0-9]+)\b", re.IGNORECASE)
-_STEP_GIVEN = re.compile(rf"(?<![?&])\bDT(?=\s*=){STEP_PATTERN}", re.IGNORECASE)
+_COUNT_GIVEN = r"\bNPTS\s*=\s*([0-9]+)\b"
+_STEP_GIVEN = rf"(?<![?&])\bDT(?=\s*=){STEP_PATTERN}"
 # Both numbers before both names, or behind them.
 _BOTH = re.compile(
     rf"^\s*([0-9]+)[\s,]+({STATED_PATTERN})[\s,]+NPTS\b[\s,]*(?:AND\s+)?DT\b"
@@ -54,10 +53,7 @@ _UNITS = re.compile(
 )
 
 
-class _Header(NamedTuple):
-    npts: Statement
-    step: Statement
-    start: int  # first line of values
+_Header = tuple[Statement, Statement, int]  # of NPTS and of DT, and the first line of values
 
 
 def recognises_at2(text: RecordText) -> bool:
@@ -74,8 +70,9 @@ def read_at2(text: RecordText) -> GroundMotion:
             "no header line gives NPTS and DT, so this is not a PEER AT2 file; for plain columns"
             " of numbers rename it to .txt and give ?dt= and ?units="
         )
-    stated, rounded = _stated(text, header)
-    values, end = text.series(header.start, text.count(header.npts), closed_by="")
+    npts, step, start = header
+    stated, rounded = _stated(text, npts, step, start)
+    values, end = text.series(start, text.count(npts), closed_by="")
     rest = [line for line in text.lines[end:] if line.strip()]
     first = f"first {rest[0].strip()[:40]!r}" if rest else ""
     if any(map(numbers_in, rest)):
@@ -85,20 +82,18 @@ def read_at2(text: RecordText) -> GroundMotion:
             end,
         )
     note = [f"{len(rest)} line(s) of text after the values, {first}"] * bool(rest)
-    title = _title(text, header)
-    return text.motion(
-        stated, values, FORMAT, "; ".join(title) or "no title", *filter(None, (rounded, *note))
-    )
+    words = "; ".join(_title(text, npts)) or "no title"
+    return text.motion(stated, values, FORMAT, words, *filter(None, (rounded, *note)))
 
 
-def contents_of_at2(text: RecordText) -> list[Contents]:
+def contents_of_at2(text: RecordText) -> list[Channel]:
     """The one channel, with earthquake, date, station and direction as far as titles say them."""
     header = _header(text)
-    return [Contents("", UNKNOWN if header is None else _recording(_title(text, header)))]
+    return [Channel(recording=_recording(_title(text, header[0])) if header else UNKNOWN)]
 
 
-def _title(text: RecordText, header: _Header) -> list[str]:
-    lines = (line.strip() for line in text.heads[: header.npts.line])
+def _title(text: RecordText, npts: Statement) -> list[str]:
+    lines = (line.strip() for line in text.heads[: npts.line])
     return [line for line in lines if line and not _UNITS.search(line)]
 
 
@@ -122,21 +117,20 @@ def _header(text: RecordText) -> _Header | None:
         end = len(text.lines)
         start = next((i for i in range(index + 1, end) if _VALUE.match(text.heads[i])), end)
         if both := _BOTH.search(line):
-            count, step = (Statement(name, both[at] or both[at + 2], index)
-                           for name, at in (("NPTS", 1), ("DT", 2)))  # fmt: skip
-            return _Header(count, step, start)
+            count, step = filter(None, both.groups())
+            return Statement("NPTS", count, index), Statement("DT", step, index), start
         number = _COUNT.search(line)
         nearest = (index, *range(index + 1, min(start, _HEADER_LINES)), *range(index))
-        steps = (step for i in nearest for step in steps_in("DT", _STEP, text.heads[i], i))
-        if number and (first := next(steps, None)):
-            return _Header(Statement("NPTS", number[1], index), first, start)
+        steps = statements("DT", _STEP, ((i, text.heads[i]) for i in nearest))
+        if number and steps:
+            return Statement("NPTS", number[1], index), steps[0], start
     return None
 
 
-def _stated(text: RecordText, header: _Header) -> tuple[Stated, str]:
+def _stated(text: RecordText, npts: Statement, dt: Statement, start: int) -> tuple[Stated, str]:
     """Statements of the header, each once or alike, and a note on a step that may be rounded."""
-    counts, steps = [header.npts], [header.step]
-    for index, line in enumerate(text.heads[: header.start]):
+    counts, steps = [npts], [dt]
+    for index, line in enumerate(text.heads[:start]):
         if other := _OTHER_SERIES.search(line):
             raise text.fault(
                 f"this is a {other[1].lower()} record ({line.strip()[:60]!r}); give the "
@@ -144,12 +138,11 @@ def _stated(text: RecordText, header: _Header) -> tuple[Stated, str]:
                 index,
             )
         if not _BOTH.search(line):
-            counts += [Statement("NPTS", numeral, index) for numeral in _COUNT_GIVEN.findall(line)]
-            steps += steps_in("DT", _STEP_GIVEN, line, index)
+            counts += statements("NPTS", _COUNT_GIVEN, [(index, line)])
+            steps += statements("DT", _STEP_GIVEN, [(index, line)])
     # The line of the units stands next to that of NPTS: titles above may mention other units.
     units: list[Statement] = []
-    for index in range(header.start - 1, -1, -1):
-        line = text.heads[index]
+    for index, line in reversed([*enumerate(text.heads[:start])]):
         if spelling := (_UNITS_DECLARED if units else _UNITS).search(line):
             units.insert(0, Statement("UNITS", spelling[1], index))
         elif not units and _UNITS_LINE.search(line):
@@ -158,12 +151,12 @@ def _stated(text: RecordText, header: _Header) -> tuple[Stated, str]:
     text.agreed(counts, text.count)
     text.agreed(steps, text.step)
     # 1/256 s is printed as .0039 by PEER: a whole rate that prints the same, but is not the same.
-    step, numeral = text.step(header.step), header.step.value.partition(" ")[0]
-    resolution = last_digit(numeral) * step / text.number(header.step._replace(value=numeral))
-    stated = Stated(unit, step, resolution, recording=_recording(_title(text, header)))
-    dt = text.agreed_dt(step, 0.51 * resolution / step)
-    rate = max(1, round(1.0 / dt))
-    if abs(rate * dt - 1.0) < 1e-9 or abs(1.0 / rate - dt) > 0.5 * resolution:
+    step, numeral = text.step(dt), dt.value.partition(" ")[0]
+    resolution = last_digit(numeral) * step / text.number(dt._replace(value=numeral))
+    stated = Stated(unit, step, resolution, recording=_recording(_title(text, npts)))
+    agreed = text.agreed_dt(step, 0.51 * resolution / step)
+    rate = max(1, round(1.0 / agreed))
+    if abs(rate * agreed - 1.0) < 1e-9 or abs(1.0 / rate - agreed) > 0.5 * resolution:
         return stated, ""
     return stated, (
         f"DT = {step:g} s is not a whole number of samples a second and may be rounded; taken"

@@ -25,7 +25,7 @@ from rpscli.records.formats.record_text import (
     Stated,
     Statement,
     printed_resolution,
-    steps_in,
+    statements,
     uniform_step,
 )
 from rpscli.records.ground_motion import GroundMotion
@@ -38,16 +38,14 @@ from rpscli.records.quantities import (
     why_no_numbers,
 )
 
-_STEP = re.compile(
+_STEP = (
     r"(?<![?&])\b(?:dt|(?:time|sampling)[\s_]*(?:step|interval|period)"
-    rf"|equally spaced (?:at|intervals of)){STEP_PATTERN}",
-    re.IGNORECASE,
+    rf"|equally spaced (?:at|intervals of)){STEP_PATTERN}"
 )
-_COUNT = re.compile(
-    r"\b(?:npts|ndata|number of (?:data|points|samples|values))\b\s*[=:]\s*([0-9]+)", re.IGNORECASE
-)
-_UNITS_KEY = re.compile(
-    r"(?<![?&])\bunits?\b\s*(?:[=:]|(?:of|in|are|is)\b)\s*([^,;]+)", re.IGNORECASE
+_COUNT = r"\b(?:npts|ndata|number of (?:data|points|samples|values))\b\s*[=:]\s*([0-9]+)"
+_UNITS_KEY = (
+    r"(?<![?&])\bunits?\b\s*(?:[=:]|(?:of|in|are|is)\b)"
+    rf"(?:[\s(\[]*(?:({UNIT_PATTERN}))|\s*([^,;]+))"
 )
 _PEAK = re.compile(
     rf"\b(?:peak|max\w*)\s*(?:ground\s*)?acc\w*\s*[\[(]\s*({UNIT_PATTERN})\s*[\])]"
@@ -212,9 +210,7 @@ def _table(text: RecordText) -> _Table:
             f"record as PEER AT2, or as columns of time and acceleration"
         )
     kept = tuple(line for line in header if line.value)
-    said = [
-        Statement("npts", number, of.line) for of in kept for number in _COUNT.findall(of.value)
-    ]
+    said = statements("npts", _COUNT, ((of.line, of.value) for of in kept))
     if (announced := text.agreed(said, text.count)) not in (None, len(values), len(widths)):
         raise text.fault(
             f"the header announces {announced} values and the file holds {len(widths)} row(s)"
@@ -321,12 +317,8 @@ def _wrapped(text: RecordText, table: _Table) -> str:
 
 def _stated(text: RecordText, table: _Table, title: _Title | None) -> Stated:
     """Statements of the header and of the title; two units, or steps, are refused."""
-    units, steps = list[Statement](), list[Statement]()
-    for _, value, line in table.header:
-        for key in _UNITS_KEY.finditer(value):
-            word = re.match(rf"[\s(\[]*({UNIT_PATTERN})", key[1], re.IGNORECASE)
-            units.append(Statement("units", word[1] if word else key[1], line))
-        steps += steps_in("dt", _STEP, value, line)
+    lines = [(of.line, of.value) for of in table.header]
+    units, steps = statements("units", _UNITS_KEY, lines), statements("dt", _STEP, lines)
     if title and title.unit and (canonical_unit(title.unit) or not _NO_UNIT.fullmatch(title.unit)):
         units.append(Statement(f"the title {title.name}", title.unit, title.line))
     stated = Stated(text.unit(units), text.agreed(steps, text.step))

@@ -61,21 +61,16 @@ class Statement(NamedTuple):
 
 
 class Channel(NamedTuple):
-    """A channel of a file: its number, the line where it begins, what it calls itself."""
+    """A channel of a file: its number, the line where it begins, what it calls itself.
 
-    number: int
-    line: int
-    label: str
-
-
-class Contents(NamedTuple):
-    """One channel of a file, by its number if there are several, and what its header states.
-
-    `refusal` says why a file of a known format is not used, such as an uncorrected record.
+    Its header states a `recording`; `refusal` says why a file of a known format is not used, such
+    as an uncorrected record.
     """
 
-    channel: str
-    recording: Recording
+    number: int = 1
+    line: int = 0
+    label: str = ""
+    recording: Recording = UNKNOWN
     refusal: str = ""
 
 
@@ -329,11 +324,12 @@ class RecordText:
         )  # fmt: skip
 
 
-def steps_in(name: str, pattern: re.Pattern[str], line: str, place: int) -> list[Statement]:
-    """Time steps that a line states, with their units; the pattern ends as `STEP_PATTERN`."""
+def statements(name: str, pattern: str, lines: Iterable[tuple[int, str]]) -> list[Statement]:
+    """Statements of one thing in numbered lines: a value, and a unit before or behind it."""
     return [
-        Statement(name, f"{match[2]} {match[1] or match[3] or ''}".strip(), place)
-        for match in pattern.finditer(line)
+        Statement(name, " ".join(sorted(filter(None, each.groups()), key=str.isalpha)).strip(), i)
+        for i, line in lines
+        for each in re.finditer(pattern, line, re.IGNORECASE)
     ]
 
 
