@@ -22,8 +22,9 @@ from rpscli.records.measures import MEASURES, Of, measure_label, needs_period
 from rpscli.records.recordings import By, clusters, pairs
 from rpscli.records.source import Source
 from rpscli.shown import frozen
-from rpscli.sweep.context import (
+from rpscli.sweep.evaluation import (
     Array,
+    Indices,
     Plan,
     Point,
     RecordRequest,
@@ -32,7 +33,6 @@ from rpscli.sweep.context import (
     resolved,
     solver_version,
 )
-from rpscli.sweep.evaluation import Indices
 from rpscli.sweep.systems import Change, SystemProperties, Watched, changes, examined, sample
 from rpscli.units import as_written
 

@@ -24,7 +24,7 @@ from rpscli.errors import CaseError, RecordError
 from rpscli.model.podium import PodiumStructure
 from rpscli.records.measures import Of, needs_period
 from rpscli.records.source import Source
-from rpscli.sweep.context import (
+from rpscli.sweep.evaluation import (
     SYSTEMS_KEPT,
     Array,
     Plan,
@@ -37,7 +37,7 @@ from rpscli.sweep.context import (
 Watched: TypeAlias = Callable[[range], Iterator[int]]
 """Goes through numbers and may show how far it is."""
 
-KNOWN = (*HISTORY, *YIELDING, *SAMPLED)
+OF_HISTORIES = (*HISTORY, *YIELDING, *SAMPLED)
 """Results of histories, some of which need something."""
 
 MOST_FAULTY = 8
@@ -246,13 +246,13 @@ def _limits(study: Study, case: Case, *, both: bool) -> tuple[Condition, ...]:
 
 def lacking(study: Study, case: Case) -> frozenset[str]:
     """Names of the results that histories of this case will not have."""
-    without = {q.name for q in KNOWN if q.needs and not HAS[q.needs](case.structure)}
+    without = {q.name for q in OF_HISTORIES if q.needs and not HAS[q.needs](case.structure)}
     return frozenset(without | (set() if study.file.whole_histories else {q.name for q in SAMPLED}))
 
 
 def needs_of(name: str, which: str = "not every") -> str:
     """Needs of a result in a study, in words."""
-    needs = {q.name: NEEDS.get(q.needs, "") for q in KNOWN}[name]
+    needs = {q.name: NEEDS.get(q.needs, "") for q in OF_HISTORIES}[name]
     if name in {quantity.name for quantity in SAMPLED}:
         alike = f", and in all systems {needs}" if needs else ""
         return f"{name} needs `whole_histories: true`{alike}"

@@ -23,8 +23,15 @@ from rpscli.records.ground_motion import MotionComponents
 from rpscli.records.measures import MEASURES, Measure, Of, measure_label, needs_period
 from rpscli.records.recordings import By
 from rpscli.shown import Frozen, frozen
-from rpscli.sweep.context import RecordRequest, StudyContext
-from rpscli.sweep.evaluation import FAILED, MISSING, SCALARS, PointResults, reference_shears
+from rpscli.sweep.evaluation import (
+    FAILED,
+    MISSING,
+    SCALARS,
+    PointResults,
+    RecordRequest,
+    StudyContext,
+    reference_shears,
+)
 from rpscli.sweep.points import StudyPoints
 from rpscli.sweep.store import Store
 from rpscli.units import in_si

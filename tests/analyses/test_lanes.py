@@ -11,7 +11,7 @@ from paper_structures import COMPILED, FLAT, building, ground, needs_compiled_ke
 
 from rpscli.analyses.demand import Request, demand, demands
 from rpscli.analyses.kernels.history import sampled_history
-from rpscli.analyses.largest_demands import Demand, Histories
+from rpscli.analyses.largest_demands import Demand, Demands
 from rpscli.analyses.result_quantities import HISTORY, IMPACTS, STOREY_SHEARS
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.errors import CaseError, UsageError
@@ -97,7 +97,7 @@ def ensemble(
 def bits(found: Demand) -> list[object]:
     """Everything that a study keeps, and the accelerations: equal only if every bit is."""
     arrays = (found.storey_shears.tobytes(), found.floor_accelerations.tobytes())
-    alone = Histories.of_one(found.structure, found.history)
+    alone = Demands.of_one(found.structure, found.history)
     columns = alone.columns((*HISTORY, *IMPACTS, STOREY_SHEARS))
     results = [column.tobytes() for column in columns.values()]
     return [found.outcome, found.failure, *results, *arrays]

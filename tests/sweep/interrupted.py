@@ -14,8 +14,7 @@ from collections.abc import Sequence
 
 from rpscli.cli import program
 from rpscli.sweep import run
-from rpscli.sweep.context import Point, StudyContext
-from rpscli.sweep.evaluation import PointResults, run_batch
+from rpscli.sweep.evaluation import Point, PointResults, StudyContext, run_batch
 from rpscli.sweep.store import Store
 
 LAST = 3

@@ -12,7 +12,7 @@ import pytest
 from paper_structures import FLAT, building, needs_compiled_kernels, podium, stillness, waves
 
 from rpscli.analyses.demand import Request, demands, histories
-from rpscli.analyses.largest_demands import Histories
+from rpscli.analyses.largest_demands import Demands
 from rpscli.analyses.modal import modal
 from rpscli.analyses.pushover import pushover
 from rpscli.analyses.result_quantities import SAMPLED
@@ -22,8 +22,7 @@ from rpscli.case.study.schema import PerturbSection, RangeSection, SampleSection
 from rpscli.records.ground_motion import MotionComponents
 from rpscli.records.loading import load_components, load_record
 from rpscli.records.measures import intensity_measures, spectral_acceleration
-from rpscli.sweep.context import resolved
-from rpscli.sweep.evaluation import SCALARS, PointResults, at_path, run_batch
+from rpscli.sweep.evaluation import SCALARS, PointResults, at_path, resolved, run_batch
 from rpscli.sweep.points import lay_out
 from rpscli.sweep.run import LARGEST_BATCH, all_keys, batches
 from rpscli.sweep.statistics import summary
@@ -134,7 +133,7 @@ def test_an_exception_of_the_kernel_is_told_for_its_point_only(
     layout = lay_out(study_of())
     points = list(layout)[:3]
 
-    def fragile(requests: list[Request]) -> Iterator[tuple[list[int], Histories]]:
+    def fragile(requests: list[Request]) -> Iterator[tuple[list[int], Demands]]:
         if any(request.scale == 1.0 for request in requests):
             raise FloatingPointError("boom")
         return histories(requests)

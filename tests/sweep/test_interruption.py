@@ -19,8 +19,7 @@ from click.testing import CliRunner, Result
 from rpscli.cli import program
 from rpscli.records.formats.at2 import at2_text
 from rpscli.records.loading import load_record
-from rpscli.sweep.context import Point, StudyContext
-from rpscli.sweep.evaluation import MISSING, PointResults, run_batch
+from rpscli.sweep.evaluation import MISSING, Point, PointResults, StudyContext, run_batch
 from rpscli.sweep.points import lay_out, reproduction, yaml_scalar
 from rpscli.sweep.run import Engine, Progress, run, start
 from rpscli.sweep.store import Store

@@ -26,8 +26,7 @@ from rpscli.records.formats.at2 import at2_text
 from rpscli.records.ground_motion import MotionComponents
 from rpscli.records.loading import load_components, load_record
 from rpscli.records.measures import pair_measure
-from rpscli.sweep.context import StudyContext
-from rpscli.sweep.evaluation import reference_shears
+from rpscli.sweep.evaluation import StudyContext, reference_shears
 from rpscli.sweep.points import StudyPoints, lay_out, reproduction
 from rpscli.sweep.statistics.grouping import INTENSITY, shown_keys
 from rpscli.sweep.statistics.summary import scale_notes
