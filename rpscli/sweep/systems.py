@@ -73,7 +73,7 @@ def balance_note(section: SampleSection) -> str | None:
 
 def _values(unit: Array, given: RangeSection) -> Array:
     """One parameter from its place in the unit interval."""
-    from scipy.special import ndtri
+    from scipy.stats import lognorm, norm
 
     if given.low is not None and given.high is not None:
         return given.low + (given.high - given.low) * unit
@@ -82,12 +82,12 @@ def _values(unit: Array, given: RangeSection) -> Array:
     deviation = cov * abs(mean)
     if given.distribution == "uniform":
         return mean + math.sqrt(3.0) * deviation * (2.0 * unit - 1.0)
+    kinds = {
+        "normal": norm(mean, deviation),
+        "lognormal": lognorm(math.sqrt(math.log1p(cov**2)), scale=mean / math.sqrt(1.0 + cov**2)),
+    }
     # A scrambled sequence may hit zero, whose quantile is minus infinity.
-    normal = np.asarray(ndtri(np.maximum(unit, 1e-16)))
-    if given.distribution == "normal":
-        return mean + deviation * normal
-    spread = math.sqrt(math.log1p(cov**2))
-    return np.asarray(mean / math.sqrt(1.0 + cov**2) * np.exp(spread * normal))
+    return np.asarray(kinds[given.distribution].ppf(np.maximum(unit, 1e-16)))
 
 
 class Change(NamedTuple):
