@@ -21,14 +21,13 @@ from rpscli.analyses.result_quantities import (
 )
 from rpscli.analyses.trace import DeviceDemand, device_demands
 from rpscli.model.devices import own_laws
-from rpscli.model.podium import Device, PodiumStructure
+from rpscli.model.podium import Array, Device, PodiumStructure
 from rpscli.model.statics import uplift_acceleration
 from rpscli.model.superstructure import Superstructure
 from rpscli.physics import geometry, state
 from rpscli.physics.state import Record, record_type
 from rpscli.shown import Shown, frozen, with_unit
 
-Array = NDArray[np.float64]
 T = TypeVar("T")
 
 

@@ -20,10 +20,10 @@ from rpscli.analyses.pushover import pushover
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
-from rpscli.analyses.trace import Array, Trace
+from rpscli.analyses.trace import Trace
 from rpscli.csv_text import csv_rows
 from rpscli.errors import CaseError, hint
-from rpscli.model.podium import PodiumStructure
+from rpscli.model.podium import Array, PodiumStructure
 from rpscli.records.ground_motion import MotionComponents
 
 FOLDER = Path(__file__).with_name("certified")

@@ -34,7 +34,7 @@ from rpscli.case.case import Case, case_from_mapping
 from rpscli.case.study.schema import Analysis, MeasureScale
 from rpscli.errors import RecordError, RpsError
 from rpscli.model.devices import own_laws
-from rpscli.model.podium import PodiumStructure
+from rpscli.model.podium import Array, PodiumStructure
 from rpscli.records.ground_motion import MotionComponents
 from rpscli.records.loading import load_components
 from rpscli.records.measures import USUAL, Measure, Of, factor_to, measured, pair_measure
@@ -42,7 +42,6 @@ from rpscli.records.recordings import Pair
 from rpscli.records.source import Source
 from rpscli.version import VERSION
 
-Array = NDArray[np.float64]
 Key = TypeVar("Key", bound=Hashable)
 Value = TypeVar("Value")
 

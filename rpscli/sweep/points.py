@@ -17,12 +17,12 @@ from rpscli.case.study.schema import MeasureScale
 from rpscli.case.study.study import Study
 from rpscli.case.text.document import Fault
 from rpscli.errors import RecordError, RpsError
+from rpscli.model.podium import Array
 from rpscli.records.measures import MEASURES, Of, measure_label, needs_period
 from rpscli.records.recordings import By, clusters, pairs
 from rpscli.records.source import Source
 from rpscli.shown import frozen
 from rpscli.sweep.evaluation import (
-    Array,
     Indices,
     Plan,
     Point,

@@ -23,7 +23,8 @@ from typing import Any, Self
 import numpy as np
 
 from rpscli.errors import OutputError, Refused
-from rpscli.sweep.evaluation import FAILED, MISSING, Array, PointResults, at_path
+from rpscli.model.podium import Array
+from rpscli.sweep.evaluation import FAILED, MISSING, PointResults, at_path
 
 FILE = "study.sqlite"
 FORMAT = 4

@@ -21,12 +21,11 @@ from rpscli.case.study.schema import PerturbSection, RangeSection, SampleSection
 from rpscli.case.study.study import Study
 from rpscli.case.text.document import Fault, Place
 from rpscli.errors import CaseError, RecordError
-from rpscli.model.podium import PodiumStructure
+from rpscli.model.podium import Array, PodiumStructure
 from rpscli.records.measures import Of, needs_period
 from rpscli.records.source import Source
 from rpscli.sweep.evaluation import (
     SYSTEMS_KEPT,
-    Array,
     Plan,
     RecordRequest,
     StudyContext,

@@ -7,7 +7,6 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, ExitStack, contextmanager
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from itertools import accumulate
 from threading import Lock
 from typing import NamedTuple
@@ -95,26 +94,15 @@ def run_of(
         requests=given.view(np.recarray),
         acceleration=np.concatenate(samples),
         results=np.zeros(len(requests), record_type(RESULT)).view(np.recarray),
-        output=_output(n * int(first["axes"][0]), devices, rows, events, finer)
-        if rows
-        else _no_output(devices),
+        output=Output(
+            samples=records(SAMPLE, rows),
+            floors=np.empty((rows, 4, n * int(first["axes"][0]) if rows else 0)),
+            log=records(EVENT, events),
+            devices=np.empty((rows, 4, devices)),
+            finer=finer,
+        ),
         ways=2 if pairs else 1,
     )
-
-
-def _output(floors: int, devices: int, rows: int, events: int, finer: int = 1) -> Output:
-    return Output(
-        samples=records(SAMPLE, rows),
-        floors=np.empty((rows, 4, floors)),
-        log=records(EVENT, events),
-        devices=np.empty((rows, 4, devices)),
-        finer=finer,
-    )
-
-
-@lru_cache
-def _no_output(devices: int) -> Output:
-    return _output(0, devices, 0, 0)
 
 
 def follow(run: Run, lanes: int, *, interruptible: bool = False) -> None:
