@@ -147,20 +147,6 @@ def test_lanes_give_the_bits_of_single_histories_of_tall_buildings() -> None:
     check(ensemble([(33, False)], 20))
 
 
-@pytest.mark.skipif(COMPILED, reason="on short records; the long test above does it on long ones")
-def test_lanes_do_what_single_histories_do() -> None:
-    """Interpreted: the same for every number of storeys and either damping, on short records."""
-    short = [waves(0.5, 0.02, 6.0, seed=41), waves(0.3, 0.01, 6.0, seed=42)]
-    settings = TimeHistorySettings(free_vibration=0.1, recontact_tolerance=1e-4)
-    requests = [
-        replace(r, motion=MotionComponents(short[i % 2]), settings=settings, scale=1.0)
-        for i, r in enumerate(ensemble(EVERY_HEIGHT, 3))
-    ]
-    check(requests)
-    assert all_bits(requests, SIDE_BY_SIDE) == all_bits(requests, ALONE)
-    assert any(found.impacts for found in demands(requests))
-
-
 MIXED = ensemble([(0, False), (1, False), (2, True), (3, False), (3, True)], 12, POWERS_OF_TWO)
 
 

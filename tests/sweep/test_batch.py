@@ -89,8 +89,11 @@ def test_results_are_those_of_a_single_time_history(
 
 
 def test_whole_histories_tell_more_and_nothing_else(study_of: Make) -> None:
-    brief = lay_out(study_of())
-    whole = lay_out(study_of(STUDY, ("scale: [", "whole_histories: true\nscale: [")))
+    friction = ("podium.friction=0.12",)  # less than is asked of it: columns slide
+    change = ("scale: [", "whole_histories: true\nscale: [")
+    brief, whole = (
+        lay_out(study_of(STUDY, *changes, overrides=friction)) for changes in ((), (change,))
+    )
     context, more = brief.context, whole.context
     for number in (3, 20):
         (without,) = rows(run_batch(context, [brief[number]]))
@@ -101,17 +104,9 @@ def test_whole_histories_tell_more_and_nothing_else(study_of: Make) -> None:
         single = time_history(history.structure, motion, history.settings)
         told = {quantity.name: getattr(single, quantity.name) for quantity in SAMPLED}
         assert {name: row.get(name) for name in told} == told
+        assert row["sliding_time"] is not None
         assert set(row) - set(without) <= set(told)
     assert all_keys(brief)[3] != all_keys(whole)[3]
-
-
-def test_whole_histories_tell_when_columns_slide(study_of: Make) -> None:
-    changes = ("base: base.yaml", "base: base.yaml\nwhole_histories: true")
-    layout = lay_out(study_of(STUDY, changes, overrides=("podium.friction=0.12",)))
-    point = layout[20]  # tan(alpha) = 0.15 and more than that is asked of the friction
-    results = run_batch(layout.context, [point]).columns
-    assert results["friction_ratio"][0] > 1.0
-    assert 0.0 < results["sliding_time"][0] < results["max_rotation_time"][0]
 
 
 def test_a_point_that_cannot_be_computed_does_not_disturb_the_others(study_of: Make) -> None:

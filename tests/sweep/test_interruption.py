@@ -55,36 +55,12 @@ def ended(*arguments: str, folder: Path, program: str = "-mrpscli") -> tuple[int
     return done.returncode, done.stdout, done.stderr
 
 
-def interrupted(number: signal.Signals, folder: Path) -> tuple[int, str, str]:
-    """A run of the study that gets a signal at its third batch."""
-    program = str(Path(__file__).with_name("interrupted.py"))
-    study = ("sweep", "study.yaml", "--jobs", "1", "--json")
-    return ended(number.name, *study, folder=folder, program=program)
-
-
-def finished(folder: Path) -> dict[str, int]:
-    """Run the study to its end; what it had to do."""
-    code, out, err = ended("sweep", "study.yaml", "--json", folder=folder)
-    assert code == 0, err
-    points: dict[str, int] = json.loads(out)["points"]
-    return points
-
-
-@pytest.mark.long  # tests/hunt/test_damaged_stores.py kills in every run
-@pytest.mark.posix
-def test_kill_9_and_resume_end_in_the_same_bytes(workplace: Path) -> None:
-    code, _, _ = interrupted(signal.SIGKILL, workplace)
-    assert code == -signal.SIGKILL
-    points = finished(workplace)
-    assert (points["kept"], points["computed"]) == (18, 18)
-    code, _, err = ended("sweep", "study.yaml", "--jobs", "1", "-o", "calm", folder=workplace)
-    assert code == 0, err
-    assert (workplace / CSV).read_bytes() == (workplace / "calm/points.csv").read_bytes()
-
-
 @pytest.mark.posix
 def test_the_first_ctrl_c_drains_and_says_how_to_go_on(workplace: Path) -> None:
-    code, out, err = interrupted(signal.SIGINT, workplace)
+    """Killed it is by tests/hunt/test_damaged_stores.py."""
+    study = ("sweep", "study.yaml", "--jobs", "1", "--json")
+    program = str(Path(__file__).with_name("interrupted.py"))
+    code, out, err = ended(*study, folder=workplace, program=program)
     assert code == 130
     assert "Ctrl-C again" in err
     assert "the same command continues" in err
@@ -93,7 +69,9 @@ def test_the_first_ctrl_c_drains_and_says_how_to_go_on(workplace: Path) -> None:
     # The batch under way was finished and stored.
     assert document["points"] == {"total": POINTS, "stored": 27}
     assert not (workplace / CSV).exists()
-    assert finished(workplace)["kept"] == 27
+    code, out, err = ended(*study, folder=workplace)
+    assert code == 0, err
+    assert json.loads(out)["points"]["kept"] == 27
 
 
 def test_one_thread_or_two_give_the_same_bytes(
