@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import math
 from collections import OrderedDict
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -23,7 +22,6 @@ from numpy.typing import NDArray
 
 from rpscli.analyses import result_quantities as rq
 from rpscli.analyses.demand import Request, histories
-from rpscli.analyses.fixed_base import fixed_base_shears
 from rpscli.analyses.largest_demands import Demands, failure_text
 from rpscli.analyses.modal import modal
 from rpscli.analyses.pushover import pushover
@@ -571,14 +569,3 @@ def _attempt(work: Callable[..., Value], *arguments: Any) -> Value | str:
         return str(error)
     except Exception as error:  # noqa: BLE001 -- one point must not take the study down
         return f"{type(error).__name__}: {error}"
-
-
-def reference_shears(structure: PodiumStructure, motion: MotionComponents) -> Array:
-    """Largest storey shears (n,) [N] from the bottom, of a pair resultants, of an unscaled one."""
-    building = structure.superstructure
-    assert building is not None, "only buildings have a response"
-    across = structure.superstructure_y or building
-    # The largest shear after the end of the record comes within a period.
-    after = math.ceil(max(float(each.periods[0]) for each in (building, across)) / motion.dt)
-    shaken = [each.npts for name, each in motion.named.items() if name != "vertical"]
-    return fixed_base_shears(structure, motion, max(shaken) - 1 + after)

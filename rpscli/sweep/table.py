@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from rpscli.analyses.fixed_base import reference_shears
 from rpscli.analyses.result_quantities import STOREY_SHEARS, YIELDING, ResultQuantity
 from rpscli.case.schema.keys import unit as key_unit
 from rpscli.errors import RecordError
@@ -30,7 +31,6 @@ from rpscli.sweep.evaluation import (
     PointResults,
     RecordRequest,
     StudyContext,
-    reference_shears,
 )
 from rpscli.sweep.points import StudyPoints
 from rpscli.sweep.store import Store
