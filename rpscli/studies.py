@@ -556,21 +556,17 @@ def collected(result: StudyResult, look: Look, place: Path | None = None) -> Col
 def error_of(result: StudyResult, found: Collected, *, limits: bool = True) -> RpsError | None:
     """The gravest of what went wrong, whose exit code counts; its text tells of all."""
     errors: list[RpsError] = [*found.broken]
-    if failures := found.failures:
-        lines = [f"{len(failures)} of {len(result)} points failed; they enter no statistic"]
-        for failure in failures[:FAILURES_SHOWN]:
-            lines += [f"point {failure.point}: {failure.message}", f"  {failure.command}"]
-        lines += _and_more(failures, "failed.csv")
-        errors.append(StudyIncomplete("\n".join(lines)))
+    if failed := [f"point {f.point}: {f.message}\n  {f.command}" for f in found.failures]:
+        head = f"{len(failed)} of {len(result)} points failed; they enter no statistic"
+        errors.append(StudyIncomplete("\n".join([head, *_first(failed, "failed.csv")])))
     if limits and (lines := verdict_lines(result.keys, result.judgements)):
-        told = [*lines[:FAILURES_SHOWN], *_and_more(lines, "verdicts.csv")]
-        errors.append(LimitExceeded("\n".join(told)))
+        errors.append(LimitExceeded("\n".join(_first(lines, "verdicts.csv"))))
     return type(errors[0])("\n".join(map(str, errors))) if errors else None
 
 
-def _and_more(items: Sequence[Any], file: str) -> list[str]:
-    more = len(items) - FAILURES_SHOWN
-    return [f"... and {more} more, all in {file}"] if more > 0 else []
+def _first(texts: list[str], file: str) -> list[str]:
+    more = len(texts) - FAILURES_SHOWN
+    return [*texts[:FAILURES_SHOWN], *[f"... and {more} more, all in {file}"] * (more > 0)]
 
 
 class _Temporary:

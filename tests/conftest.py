@@ -18,7 +18,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 from paper_structures import RecordLoader
 
-from rpscli.analyses.kernels.compilation import KERNELS, compiled, is_ready
+from rpscli.analyses.kernels.history import KERNELS, compiled, is_ready
 from rpscli.physics.compile import cache_folder
 from rpscli.physics.prepare import can_prepare, compile_whole, garbage_kept
 from rpscli.records.ground_motion import GroundMotion
@@ -84,7 +84,7 @@ def _compile_another(*but: int) -> None:
         name = f"{other[0]} {other[1]}"
         with locked(name, wait=False) as mine, pytest.MonkeyPatch.context() as patch:
             if mine:
-                patch.setattr("rpscli.analyses.kernels.compilation._listeners", [])
+                patch.setattr("rpscli.analyses.kernels.history._listeners", [])
                 with compiled(*other):
                     return
 

@@ -11,7 +11,7 @@ import numpy as np
 from rpscli.analyses.kernels.history import Request as HistoryRequest
 from rpscli.analyses.kernels.history import follow, refuse_steps, run_of
 from rpscli.analyses.kernels.systems import longest_free_vibration, stacked_systems
-from rpscli.analyses.largest_demands import Demand, Histories
+from rpscli.analyses.largest_demands import Demand, Demands
 from rpscli.analyses.settings import TimeHistorySettings, require_inputs
 from rpscli.errors import UsageError
 from rpscli.model.podium import PodiumStructure
@@ -39,7 +39,7 @@ with the same results. A step of all lanes takes as long as some five of one."""
 
 def histories(
     requests: Sequence[Request], *, worth_lanes: int = WORTH_LANES
-) -> Iterator[tuple[list[int], Histories]]:
+) -> Iterator[tuple[list[int], Demands]]:
     """Numbers of requests alike in storeys and contact, and their results; without the GIL."""
     # From `worth_lanes` on they run side by side; no result depends on the others, or on the order.
     groups: dict[tuple[int, bool, bool, bool], list[int]] = {}
@@ -116,7 +116,7 @@ def demand(
     return demands([Request(structure, motion, chosen) for chosen, motion in inputs])
 
 
-def _run(requests: Sequence[Request], worth_lanes: int) -> Histories:
+def _run(requests: Sequence[Request], worth_lanes: int) -> Demands:
     structures, of_structure = _distinct([id(r.structure) for r in requests])
     firsts, of_system = _distinct([(id(r.structure), id(r.settings)) for r in requests])
     shaken, of_motion = _distinct([id(r.motion) for r in requests])
@@ -132,7 +132,7 @@ def _run(requests: Sequence[Request], worth_lanes: int) -> Histories:
     given = [*map(HistoryRequest, of_system, of_motion, scales)]
     run = run_of(stacked, motions, given, pairs=pairs)
     follow(run, LANES if len(requests) >= worth_lanes else 1)
-    return Histories([requests[i].structure for i in structures], of_structure, frozen(run.results))
+    return Demands([requests[i].structure for i in structures], of_structure, frozen(run.results))
 
 
 def _distinct(ids: Sequence[Any]) -> tuple[list[int], list[int]]:

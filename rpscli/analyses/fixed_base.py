@@ -9,16 +9,13 @@ from functools import lru_cache
 from typing import TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rpscli.analyses.trace import prolonged
-from rpscli.model.podium import PodiumStructure
+from rpscli.model.podium import Array, PodiumStructure
 from rpscli.model.superstructure import Superstructure
 from rpscli.records.ground_motion import GroundMotion, MotionComponents
 from rpscli.records.measures import velocity
 from rpscli.shown import Shown
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -110,13 +107,15 @@ def largest_resultants(both: Sequence[Moving], dt: float) -> Array:
     return np.asarray(np.hypot(*cubics).max(axis=0))
 
 
-def fixed_base_shears(
-    structure: PodiumStructure, motion: MotionComponents, intervals: int
-) -> Array:
-    """Largest storey shears (n,) [N] from the bottom, without all that needs every sample."""
+def reference_shears(structure: PodiumStructure, motion: MotionComponents) -> Array:
+    """Largest storey shears (n,) [N] from the bottom, of a pair resultants."""
     building = structure.superstructure
-    if building is None:
-        raise ValueError("a structure without superstructure has no fixed-base response")
+    assert building is not None, "only buildings have a response"
+    across = structure.superstructure_y or building
+    # The largest shear after the end of the record comes within a period.
+    after = math.ceil(max(float(each.periods[0]) for each in (building, across)) / motion.dt)
+    shaken = [each.npts for name, each in motion.named.items() if name != "vertical"]
+    intervals = max(shaken) - 1 + after
     if motion.y is not None:
         return fixed_base_response(structure, motion, intervals).storey_shears
     return _follow(building, motion.horizontal, intervals)[0]

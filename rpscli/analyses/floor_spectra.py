@@ -6,18 +6,16 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rpscli.analyses.fixed_base import fixed_base_response
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.timehistory import denser_trace
 from rpscli.analyses.trace import Trace
 from rpscli.errors import CaseError
+from rpscli.model.podium import Array
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.measures import response_spectrum
 from rpscli.shown import Shown, frozen
-
-Array = NDArray[np.float64]
 
 PERIODS = frozen(np.geomspace(0.05, 4.0, 50))
 """Periods of equipment [s]."""

@@ -477,21 +477,19 @@ TESTS = {
 
 def identified(structure: PodiumStructure, test: str, columns: Mapping[str, Array]) -> Identified:
     """What one of the `TESTS` says of a structure, from columns (n,) in SI units by name."""
-    found = (_rocking if test == "rocking" else _vibration)(structure, test, columns)
+    if test == "rocking":
+        if (rotation := columns.get("rotation")) is None:
+            beam = columns["cap_beam_displacement"]
+            x = np.linspace(0.0, structure.critical_rotation, 2001)
+            rotation = np.sign(beam) * np.interp(np.abs(beam), structure.path(x)[1], x)
+        found = rocking(structure, columns["time"], rotation)
+    else:
+        found = _vibration(structure, test, columns)
     for (name, _), value in found.estimates.items():
         if not value.determined:
             unknown = f"; {name} is not determined: its interval is not narrower than its value"
             found = found._replace(remarks=found.remarks + unknown)
     return found
-
-
-def _rocking(structure: PodiumStructure, _: str, columns: Mapping[str, Array]) -> Identified:
-    rotation = columns.get("rotation")
-    if rotation is None:
-        beam = columns["cap_beam_displacement"]
-        x = np.linspace(0.0, structure.critical_rotation, 2001)
-        rotation = np.sign(beam) * np.interp(np.abs(beam), structure.path(x)[1], x)
-    return rocking(structure, columns["time"], rotation)
 
 
 def _vibration(structure: PodiumStructure, test: str, columns: Mapping[str, Array]) -> Identified:

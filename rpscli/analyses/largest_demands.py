@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any, Generic, Literal, TypeVar, cast, overload
 
 import numpy as np
@@ -21,21 +21,20 @@ from rpscli.analyses.result_quantities import (
 )
 from rpscli.analyses.trace import DeviceDemand, device_demands
 from rpscli.model.devices import own_laws
-from rpscli.model.podium import Device, PodiumStructure
+from rpscli.model.podium import Array, Device, PodiumStructure
 from rpscli.model.statics import uplift_acceleration
 from rpscli.model.superstructure import Superstructure
 from rpscli.physics import geometry, state
 from rpscli.physics.state import Record, record_type
 from rpscli.shown import Shown, frozen, with_unit
 
-Array = NDArray[np.float64]
 T = TypeVar("T")
 
 
 _PLAIN = record_type(state.RESULT)
 
 
-class Histories:
+class Demands:
     """Results of histories as columns (histories, ...), NaN where a history has none.
 
     The structures have one number of storeys; `number` says which of them a history belongs to.
@@ -50,7 +49,7 @@ class Histories:
         self.storeys = structures[0].storeys
 
     @classmethod
-    def of_one(cls, structure: PodiumStructure, history: Record) -> Histories:
+    def of_one(cls, structure: PodiumStructure, history: Record) -> Demands:
         """A batch of one history."""
         return cls([structure], [0], np.array([history], dtype=_PLAIN))
 
@@ -178,13 +177,18 @@ class Histories:
 
 
 class _Result(Generic[T]):
-    """An attribute of `Demand`, and a column of `Histories`: a field of the kernel's, or made.
+    """An attribute of `Demand`, and a column of `Demands`: a field of the kernel's, or made.
 
-    The table of results has its meaning and its unit.
+    The table of results has its meaning and its unit. Numbers that are not `kept` are None.
     """
 
-    def __init__(self, made: Callable[[Histories], Array] | None = None, doc: str = "") -> None:
-        self.__doc__, self.made = doc, made
+    def __init__(
+        self,
+        made: Callable[[Demands], Array] | None = None,
+        doc: str = "",
+        kept: Callable[[Any], Any] = lambda _: True,
+    ) -> None:
+        self.__doc__, self.made, self._kept = doc, made, kept
 
     def __set_name__(self, owner: type, name: str) -> None:
         self._name = name
@@ -197,25 +201,14 @@ class _Result(Generic[T]):
     def __get__(self, demand: Demand | None, owner: type) -> _Result[T] | T:
         if demand is None:
             return self
-        value: T = self._plain(demand._alone.column(self._name)[0])  # noqa: SLF001 -- of the class below
-        return value
-
-    def _plain(self, value: Any) -> Any:
-        return value.item() if value.ndim == 0 else frozen(value)
-
-
-class _Optional(_Result[float | None]):
-    """One that not every history has: None where it is not finite."""
-
-    def _plain(self, value: Any) -> Any:
-        return float(value) if np.isfinite(value) else None
+        value: Any = demand._alone.column(self._name)[0]  # noqa: SLF001 -- of the class below
+        if value.ndim:
+            return cast("T", frozen(value))
+        return cast("T", value.item() if self._kept(value) else None)
 
 
-class _Unbounded(_Optional):
-    """One that may be infinite: None where it is not a number."""
-
-    def _plain(self, value: Any) -> Any:
-        return None if np.isnan(value) else float(value)
+_Optional = partial(_Result[float | None], kept=np.isfinite)
+"""One that not every history has."""
 
 
 def _largest(values: Array) -> Array:
@@ -223,7 +216,7 @@ def _largest(values: Array) -> Array:
     return np.asarray(values.max(axis=1)) if values.shape[1] else np.full(len(values), np.nan)
 
 
-def _drifts(h: Histories) -> Array:
+def _drifts(h: Demands) -> Array:
     """Of elastic storeys from their shears, of those that yield from their ductility."""
     if not h.yields:
         return _elastic_drifts(h)
@@ -233,7 +226,7 @@ def _drifts(h: Histories) -> Array:
     return np.where(np.isfinite(drifts), drifts, _elastic_drifts(h))
 
 
-def _elastic_drifts(h: Histories) -> Array:
+def _elastic_drifts(h: Demands) -> Array:
     """Resultants over the stiffness; where that differs in y, the lesser of two upper bounds."""
     shears, k = h.column("storey_shears"), h.of_building(lambda b: b.stiffnesses)
     in_y = [structure.superstructure_y for structure in h.structures]
@@ -250,7 +243,7 @@ def _uplift_shear(structure: PodiumStructure) -> float | None:
     return mass * uplift_acceleration(structure) or None
 
 
-def _edge_pressure(histories: Histories) -> Array:
+def _edge_pressure(histories: Demands) -> Array:
     """Of plane flat ends: it grows with the root of the rotation once an edge has lifted."""
     plane = [
         st.bed.uplift_rotation if st.bed and st.bed.root and st.bearing.is_flat else np.nan
@@ -277,15 +270,15 @@ class Demand(Shown):
     structure
         Podium, bearings and building.
     history
-        What its history left behind: a `physics.planar.state.RESULT`.
+        What its history left behind: a `physics.state.RESULT`.
     """
 
     structure: PodiumStructure
     history: Record
 
     @cached_property
-    def _alone(self) -> Histories:
-        return Histories.of_one(self.structure, self.history)
+    def _alone(self) -> Demands:
+        return Demands.of_one(self.structure, self.history)
 
     @property
     def outcome(self) -> Outcome:
@@ -359,8 +352,9 @@ class Demand(Shown):
     friction_demand = _Result[float](
         lambda h: np.maximum(h.left["friction_top"], h.left["friction_bottom"])
     )
-    friction_ratio = _Unbounded(
-        lambda h: h.column("friction_demand") / h.each(lambda structure: structure.friction)
+    friction_ratio = _Optional(  # which may be infinite
+        lambda h: h.column("friction_demand") / h.each(lambda structure: structure.friction),
+        kept=lambda value: not np.isnan(value),
     )
     uplifts = _Result[int](lambda h: h.left["events"][:, state.UPLIFT])
     impacts = _Result[int](lambda h: h.left["events"][:, state.IMPACT])
@@ -454,7 +448,7 @@ OUTCOMES: dict[int, Outcome] = {
 OUTCOME_WORDS = np.array(
     [OUTCOMES.get(code, "failed") for code in range(state.FAILED_RESTITUTION + 1)]
 )
-"""By the codes of `physics.planar.state`, of which RUNNING counts from the end."""
+"""By the codes of `physics.state`, of which RUNNING counts from the end."""
 
 STOOD: tuple[Outcome, ...] = ("survived", "stays_tilted")
 """After uplift: back in full contact or on the way, or held by friction at the end."""

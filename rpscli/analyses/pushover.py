@@ -7,17 +7,15 @@ from dataclasses import asdict, dataclass
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rpscli.analyses.result_quantities import PUSHOVER, STOREY_CURVE, values_of
 from rpscli.analyses.settings import require_structure
 from rpscli.errors import listed
-from rpscli.model.podium import PodiumStructure
+from rpscli.model.podium import Array, PodiumStructure
 from rpscli.model.statics import friction_force, restoring_force, storey_strengths
 from rpscli.model.superstructure import Superstructure
 from rpscli.shown import Shown, with_unit
 
-Array = NDArray[np.float64]
 PatternName = Literal["uniform", "triangular", "first_mode"]
 
 PATTERNS: tuple[PatternName, ...] = ("uniform", "triangular", "first_mode")

@@ -17,11 +17,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.analyses.kernels.history import SampledHistory
-from rpscli.model.podium import PodiumStructure
+from rpscli.model.podium import Array, PodiumStructure
 from rpscli.physics.state import EVENT, Record
 from rpscli.shown import Frozen, Shown
 
-Array = NDArray[np.float64]
 Rows: TypeAlias = slice | NDArray[np.intp]
 """Numbers of samples."""
 

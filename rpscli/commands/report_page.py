@@ -38,7 +38,7 @@ from rpscli.report.study.labels import labels
 from rpscli.report.study.shown import cut, of_first_system, summary_tables, verdict_table
 from rpscli.report.table import Heading, Table
 from rpscli.studies import Study, StudyResult
-from rpscli.sweep.context import resolved
+from rpscli.sweep.evaluation import resolved
 
 SUMMARY, STORE = "summary.json", "study.sqlite"
 HISTORY, SWEEP, DESIGN = "timehistory", "sweep", "design"

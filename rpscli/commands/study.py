@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 import click
 
-from rpscli.analyses.kernels import compilation
+from rpscli.analyses.kernels import history as compilation
 from rpscli.case.conditions import Condition
 from rpscli.commands.inputs import RESULTS, write
 from rpscli.commands.shell.options import CaseRequest, OutputRequest, RunChoices

@@ -71,17 +71,14 @@ class Requirement(NamedTuple):
 
         The value is the share of an event, or the demand that no more than the admissible records
         exceed; the excess is the share of the records beyond the limit less those that may be.
-        `demands` are (designs, records, intensities, members), the members parts of their record.
+        `demands` are (intensities, designs, histories), `weights` (weightings, histories).
         """
-        members = demands.shape[3]
-        weights = np.repeat(weights, members, axis=1) / members
         if self.rates is not None:
-            levels = np.moveaxis(demands, 2, 0).reshape(len(self.rates), len(demands), -1)
             event = Condition(self.result, 0.0, "")
-            value = np.tensordot(self.rates, [_share(at, weights, event) for at in levels], axes=1)
+            value = np.tensordot(self.rates, [_share(at, weights, event) for at in demands], axes=1)
             excess = np.nan_to_num(value[0] / self.condition.limit - 1.0, nan=np.inf)
             return value, value <= self.condition.limit, excess
-        at, condition = demands[:, :, self.intensity].reshape(len(demands), -1), self.condition
+        at, condition = demands[self.intensity], self.condition
         counted = judge(at, weights, condition)
         if condition.name in EVENTS:
             value = _share(at, weights, condition)
@@ -308,26 +305,26 @@ class Search:
         table = None if of.layout is None else evaluate(of.layout)
         scales, members = len(self.layout.scales), len(self.layout.members)
         shape = len(of.valid), self.weights.shape[1], scales, members
+        weights = np.repeat(self.weights, members, axis=1) / members  # parts of their record
 
         def demands(name: str) -> Array:
-            """Of the designs on a limit, larger the worse; NaN where a history failed."""
+            """(intensities, designs, histories), larger the worse; NaN where a history failed."""
             found = np.full(shape, np.nan)
             if table is not None:
                 found[of.valid] = worse(table, name).reshape(-1, *shape[1:])
-            return found
+            return np.moveaxis(found, 2, 0).reshape(scales, len(of.valid), -1)
 
-        judged = [each.judged(demands(each.result), self.weights) for each in self.requirements]
+        judged = [each.judged(demands(each.result), weights) for each in self.requirements]
         results, met, excess = map(np.array, zip(*judged, strict=True))
         columns = dict(zip(self.task.keys, of.values.T, strict=True))
         objectives = np.zeros((len(self.weights), len(of.valid)))
-        weights = np.repeat(self.weights, members, axis=1) / members
         for name, term in self.task.file.minimise.items():
             if name in columns:
                 objectives += term.times * columns[name]
                 continue
             condition = Condition(name, 0.0, "", fractile=term.fractile)
-            at = np.moveaxis(demands(name), 2, 0).reshape(scales, len(of.valid), -1)
-            objectives += term.times * np.max([decisive(d, weights, condition) for d in at], axis=0)
+            found = [decisive(at, weights, condition) for at in demands(name)]
+            objectives += term.times * np.max(found, axis=0)
         objectives = np.nan_to_num(objectives, nan=np.inf, posinf=np.inf, neginf=np.inf)
         known = of.places, of.values, of.valid, results, met, excess, objectives
         return Answer(self.task, self.requirements, *known)

@@ -16,14 +16,14 @@ import numpy as np
 from rpscli.case.study.schema import MeasureScale
 from rpscli.case.study.study import Study
 from rpscli.case.text.document import Fault
-from rpscli.case.text.yaml_text import read_value
 from rpscli.errors import RecordError, RpsError
+from rpscli.model.podium import Array
 from rpscli.records.measures import MEASURES, Of, measure_label, needs_period
 from rpscli.records.recordings import By, clusters, pairs
 from rpscli.records.source import Source
 from rpscli.shown import frozen
-from rpscli.sweep.context import (
-    Array,
+from rpscli.sweep.evaluation import (
+    Indices,
     Plan,
     Point,
     RecordRequest,
@@ -32,7 +32,6 @@ from rpscli.sweep.context import (
     resolved,
     solver_version,
 )
-from rpscli.sweep.evaluation import Indices
 from rpscli.sweep.systems import Change, SystemProperties, Watched, changes, examined, sample
 from rpscli.units import as_written
 
@@ -261,7 +260,7 @@ def reproduction(layout: StudyPoints, point: Point, base_file: Path) -> str:
     # Without a file of its own the base is written with them.
     overrides = [*layout.study.base_overrides] if layout.study.base_file else []
     named = zip(layout.plan.keys, point.values, strict=True)
-    overrides += [f"{key}={yaml_scalar(value)}" for key, value in named]
+    overrides += [f"{key}={json.dumps(value)}" for key, value in named]  # JSON is YAML
     if point.restitution_change != 1.0:
         law = dict(resolved(layout.plan, point.values).document["podium"]["impact"])
         law["factor"] *= point.restitution_change
@@ -287,14 +286,3 @@ def _source(request: RecordRequest) -> str:
         return str(source)
     stated = {"dt": request.dt and repr(request.dt), "units": request.units}
     return str(source.at(str(file)).plus(**{name: text for name, text in stated.items() if text}))
-
-
-def yaml_scalar(value: Any) -> str:
-    """A value as YAML that gives the same value again."""
-    if not isinstance(value, str):
-        return json.dumps(value)
-    try:
-        plain = read_value(value, "value") == value
-    except RpsError:
-        plain = False
-    return value if plain else json.dumps(value)

@@ -30,8 +30,15 @@ import numpy as np
 from rpscli.analyses.kernels.systems import most_seconds
 from rpscli.case.text.document import shown
 from rpscli.errors import Refused, RpsError, UsageError
-from rpscli.sweep.context import Plan, Point, StudyContext, solver_version
-from rpscli.sweep.evaluation import FAILED, PointResults, run_batch
+from rpscli.sweep.evaluation import (
+    FAILED,
+    Plan,
+    Point,
+    PointResults,
+    StudyContext,
+    run_batch,
+    solver_version,
+)
 from rpscli.sweep.points import StudyPoints
 from rpscli.sweep.store import Store
 
@@ -104,7 +111,12 @@ def start(layout: StudyPoints, store: Store, *, retry_failed: bool = False) -> S
         if (solver := before["solver"]) != now["solver"]:
             text = f"the solver changed from {solver} to {now['solver']}: nothing of it applies"
             notes.append(text)
-        if changed := _differences(json.loads(before["study"]), json.loads(now["study"])):
+        old, new = (dict(_leaves(json.loads(facts["study"]))) for facts in (before, now))
+        both = [key for key in new if key in old and old[key] != new[key]]
+        changed = [f"{key}: {shown(old[key])} -> {shown(new[key])}" for key in both]
+        changed += [f"{key} = {shown(new[key])} added" for key in new if key not in old]
+        changed += [f"{key} dropped" for key in old if key not in new]
+        if changed:
             more = "; ..." if changed[6:] else ""
             notes.append(f"the study changed: {'; '.join(changed[:6])}{more}")
         if changed or unused:
@@ -113,15 +125,6 @@ def start(layout: StudyPoints, store: Store, *, retry_failed: bool = False) -> S
             stay = f"they stay in {store.path}"
             notes.append(f"{unused} stored points are no longer in the study; {stay}")
     return Start(keys, pending, kept, unused, tuple(notes), now)
-
-
-def _differences(old: Any, new: Any) -> list[str]:
-    """Differences of two documents, in words."""
-    before, after = dict(_leaves(old)), dict(_leaves(new))
-    dropped = [f"{path} dropped" for path in before if path not in after]
-    added = [f"{path} = {shown(after[path])} added" for path in after if path not in before]
-    both = (path for path in after if path in before and before[path] != after[path])
-    return [*(f"{p}: {shown(before[p])} -> {shown(after[p])}" for p in both), *added, *dropped]
 
 
 def _leaves(value: Any, path: str = "") -> Iterator[tuple[str, Any]]:
@@ -199,10 +202,6 @@ class Threads(Executor):
         return future
 
 
-M_MMAP_THRESHOLD = -3
-"""Of glibc's `mallopt`."""
-
-
 class Engine:
     """Computes batches, several at a time: in threads of this process or on a Dask cluster.
 
@@ -223,7 +222,7 @@ class Engine:
         # Arrays that are freed go back to the system at once. glibc keeps ever larger ones for
         # later use, half of the memory of a study of 100,000 points.
         with suppress(AttributeError, OSError, TypeError):  # no glibc
-            ctypes.CDLL(None).mallopt(M_MMAP_THRESHOLD, 1 << 17)
+            ctypes.CDLL(None).mallopt(-3, 1 << 17)  # M_MMAP_THRESHOLD
 
     def _connect(self, address: str) -> None:
         try:
@@ -280,20 +279,17 @@ class Engine:
                     if error is None:
                         yield points, future.result()
                     elif not isinstance(error, self._deadly):
-                        raise self._told(error)
+                        if not self._deadly or isinstance(error, RpsError):
+                            raise error
+                        raise RpsError(
+                            f"the cluster gave up ({type(error).__name__}: {error}); what was"
+                            " stored is safe, the same command continues"
+                        )
                     elif len(points) == 1:
                         message = "the workers that computed this point died, one after the other"
                         yield points, PointResults.alike(1, FAILED, message)
                     else:  # points of a deadly batch are tried one by one
                         under_way |= {self._submit([point]): [point] for point in points}
-
-    def _told(self, error: BaseException) -> BaseException:
-        if not self._deadly or isinstance(error, RpsError):
-            return error
-        return RpsError(
-            f"the cluster gave up ({type(error).__name__}: {error}); what was stored is safe, the"
-            " same command continues"
-        )
 
 
 _contexts: dict[str, StudyContext] = {}

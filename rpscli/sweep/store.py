@@ -22,8 +22,8 @@ from typing import Any, Self
 
 import numpy as np
 
-from rpscli.errors import OutputError, Refused, RpsError
-from rpscli.sweep.context import Array
+from rpscli.errors import OutputError, Refused
+from rpscli.model.podium import Array
 from rpscli.sweep.evaluation import FAILED, MISSING, PointResults, at_path
 
 FILE = "study.sqlite"
@@ -46,6 +46,17 @@ KEY = 32
 """Bytes of the key of a point."""
 
 FLOAT = "<f8"
+
+TROUBLES = dict.fromkeys(
+    (sqlite3.SQLITE_READONLY, sqlite3.SQLITE_CANTOPEN, sqlite3.SQLITE_PERM),
+    " cannot be written ({}); name another folder with -o",
+) | {
+    sqlite3.SQLITE_FULL: ": the disk is full; what was stored is safe. Make room and run the same"
+    " command again: it continues where it stopped",
+    sqlite3.SQLITE_IOERR: ": the disk cannot be read or written ({}); run the same command again,"
+    " or name another folder with -o",
+}
+"""What is wrong with the file's place, by SQLite's codes."""
 
 
 class Store:
@@ -245,34 +256,20 @@ class Store:
         try:
             yield
         except sqlite3.Error as error:
-            raise _explained(self.path, error) from None
+            code = getattr(error, "sqlite_errorcode", 0) & 0xFF
+            if code in {sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED}:
+                raise Refused(
+                    f"{self.path} is in use: another `rps sweep` works in this folder; wait for it,"
+                    " or name another folder with -o"
+                ) from None
+            if code in TROUBLES:
+                raise OutputError(f"{self.path}{TROUBLES[code].format(error)}") from None
+            raise _damaged(self.path, str(error)) from None
         except UnicodeDecodeError as error:  # names of columns are text in the file as well
             raise _damaged(self.path, str(error)) from None
         except OSError as error:
             reason = error.strerror or str(error)
             raise OutputError(f"{self.path}: {reason}; name another folder with -o") from None
-
-
-def _explained(path: Path, error: sqlite3.Error) -> RpsError:
-    code = getattr(error, "sqlite_errorcode", 0) & 0xFF
-    if code in {sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED}:
-        return Refused(
-            f"{path} is in use: another `rps sweep` works in this folder; wait for it, or name"
-            " another folder with -o"
-        )
-    if code == sqlite3.SQLITE_FULL:
-        return OutputError(
-            f"{path}: the disk is full; what was stored is safe. Make room and run the same"
-            " command again: it continues where it stopped"
-        )
-    if code in {sqlite3.SQLITE_READONLY, sqlite3.SQLITE_CANTOPEN, sqlite3.SQLITE_PERM}:
-        return OutputError(f"{path} cannot be written ({error}); name another folder with -o")
-    if code == sqlite3.SQLITE_IOERR:
-        return OutputError(
-            f"{path}: the disk cannot be read or written ({error}); run the same command again, or"
-            " name another folder with -o"
-        )
-    return _damaged(path, str(error))
 
 
 def _damaged(path: Path, what: str) -> Refused:

@@ -21,12 +21,11 @@ from rpscli.case.study.schema import PerturbSection, RangeSection, SampleSection
 from rpscli.case.study.study import Study
 from rpscli.case.text.document import Fault, Place
 from rpscli.errors import CaseError, RecordError
-from rpscli.model.podium import PodiumStructure
+from rpscli.model.podium import Array, PodiumStructure
 from rpscli.records.measures import Of, needs_period
 from rpscli.records.source import Source
-from rpscli.sweep.context import (
+from rpscli.sweep.evaluation import (
     SYSTEMS_KEPT,
-    Array,
     Plan,
     RecordRequest,
     StudyContext,
@@ -37,7 +36,7 @@ from rpscli.sweep.context import (
 Watched: TypeAlias = Callable[[range], Iterator[int]]
 """Goes through numbers and may show how far it is."""
 
-KNOWN = (*HISTORY, *YIELDING, *SAMPLED)
+OF_HISTORIES = (*HISTORY, *YIELDING, *SAMPLED)
 """Results of histories, some of which need something."""
 
 MOST_FAULTY = 8
@@ -73,7 +72,7 @@ def balance_note(section: SampleSection) -> str | None:
 
 def _values(unit: Array, given: RangeSection) -> Array:
     """One parameter from its place in the unit interval."""
-    from scipy.special import ndtri
+    from scipy.stats import lognorm, norm
 
     if given.low is not None and given.high is not None:
         return given.low + (given.high - given.low) * unit
@@ -82,12 +81,12 @@ def _values(unit: Array, given: RangeSection) -> Array:
     deviation = cov * abs(mean)
     if given.distribution == "uniform":
         return mean + math.sqrt(3.0) * deviation * (2.0 * unit - 1.0)
+    kinds = {
+        "normal": norm(mean, deviation),
+        "lognormal": lognorm(math.sqrt(math.log1p(cov**2)), scale=mean / math.sqrt(1.0 + cov**2)),
+    }
     # A scrambled sequence may hit zero, whose quantile is minus infinity.
-    normal = np.asarray(ndtri(np.maximum(unit, 1e-16)))
-    if given.distribution == "normal":
-        return mean + deviation * normal
-    spread = math.sqrt(math.log1p(cov**2))
-    return np.asarray(mean / math.sqrt(1.0 + cov**2) * np.exp(spread * normal))
+    return np.asarray(kinds[given.distribution].ppf(np.maximum(unit, 1e-16)))
 
 
 class Change(NamedTuple):
@@ -246,13 +245,13 @@ def _limits(study: Study, case: Case, *, both: bool) -> tuple[Condition, ...]:
 
 def lacking(study: Study, case: Case) -> frozenset[str]:
     """Names of the results that histories of this case will not have."""
-    without = {q.name for q in KNOWN if q.needs and not HAS[q.needs](case.structure)}
+    without = {q.name for q in OF_HISTORIES if q.needs and not HAS[q.needs](case.structure)}
     return frozenset(without | (set() if study.file.whole_histories else {q.name for q in SAMPLED}))
 
 
 def needs_of(name: str, which: str = "not every") -> str:
     """Needs of a result in a study, in words."""
-    needs = {q.name: NEEDS.get(q.needs, "") for q in KNOWN}[name]
+    needs = {q.name: NEEDS.get(q.needs, "") for q in OF_HISTORIES}[name]
     if name in {quantity.name for quantity in SAMPLED}:
         alike = f", and in all systems {needs}" if needs else ""
         return f"{name} needs `whole_histories: true`{alike}"

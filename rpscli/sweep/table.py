@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from rpscli.analyses.fixed_base import reference_shears
 from rpscli.analyses.result_quantities import STOREY_SHEARS, YIELDING, ResultQuantity
 from rpscli.case.schema.keys import unit as key_unit
 from rpscli.errors import RecordError
@@ -23,8 +24,14 @@ from rpscli.records.ground_motion import MotionComponents
 from rpscli.records.measures import MEASURES, Measure, Of, measure_label, needs_period
 from rpscli.records.recordings import By
 from rpscli.shown import Frozen, frozen
-from rpscli.sweep.context import RecordRequest, StudyContext
-from rpscli.sweep.evaluation import FAILED, MISSING, SCALARS, PointResults, reference_shears
+from rpscli.sweep.evaluation import (
+    FAILED,
+    MISSING,
+    SCALARS,
+    PointResults,
+    RecordRequest,
+    StudyContext,
+)
 from rpscli.sweep.points import StudyPoints
 from rpscli.sweep.store import Store
 from rpscli.units import in_si

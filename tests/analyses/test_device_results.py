@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from paper_structures import needs_compiled_kernels, podium, waves
 
-from rpscli.analyses.demand import demand
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
@@ -116,12 +115,6 @@ def test_largest_demands_cover_the_samples(result: TimeHistoryResult) -> None:
     assert result.lost_prestress == pytest.approx(1.0 - tendon.remaining_prestress / P)
     assert result.max_stop_force == demands[3].force
     assert result.max_damper_force == max(demands[0].force, demands[2].force)
-
-
-def test_a_study_sees_the_same_numbers(result: TimeHistoryResult) -> None:
-    alone = demand(STRUCTURE, RECORD, SETTINGS)
-    assert alone.scalars() == result.scalars()
-    assert alone.devices == result.devices
 
 
 def test_tables_and_documents(result: TimeHistoryResult) -> None:

@@ -11,7 +11,7 @@ from paper_structures import COMPILED, FLAT, building, ground, needs_compiled_ke
 
 from rpscli.analyses.demand import Request, demand, demands
 from rpscli.analyses.kernels.history import sampled_history
-from rpscli.analyses.largest_demands import Demand, Histories
+from rpscli.analyses.largest_demands import Demand, Demands
 from rpscli.analyses.result_quantities import HISTORY, IMPACTS, STOREY_SHEARS
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.errors import CaseError, UsageError
@@ -97,7 +97,7 @@ def ensemble(
 def bits(found: Demand) -> list[object]:
     """Everything that a study keeps, and the accelerations: equal only if every bit is."""
     arrays = (found.storey_shears.tobytes(), found.floor_accelerations.tobytes())
-    alone = Histories.of_one(found.structure, found.history)
+    alone = Demands.of_one(found.structure, found.history)
     columns = alone.columns((*HISTORY, *IMPACTS, STOREY_SHEARS))
     results = [column.tobytes() for column in columns.values()]
     return [found.outcome, found.failure, *results, *arrays]
@@ -145,20 +145,6 @@ def test_lanes_give_the_bits_of_single_histories_of_any_height() -> None:
 @pytest.mark.long
 def test_lanes_give_the_bits_of_single_histories_of_tall_buildings() -> None:
     check(ensemble([(33, False)], 20))
-
-
-@pytest.mark.skipif(COMPILED, reason="on short records; the long test above does it on long ones")
-def test_lanes_do_what_single_histories_do() -> None:
-    """Interpreted: the same for every number of storeys and either damping, on short records."""
-    short = [waves(0.5, 0.02, 6.0, seed=41), waves(0.3, 0.01, 6.0, seed=42)]
-    settings = TimeHistorySettings(free_vibration=0.1, recontact_tolerance=1e-4)
-    requests = [
-        replace(r, motion=MotionComponents(short[i % 2]), settings=settings, scale=1.0)
-        for i, r in enumerate(ensemble(EVERY_HEIGHT, 3))
-    ]
-    check(requests)
-    assert all_bits(requests, SIDE_BY_SIDE) == all_bits(requests, ALONE)
-    assert any(found.impacts for found in demands(requests))
 
 
 MIXED = ensemble([(0, False), (1, False), (2, True), (3, False), (3, True)], 12, POWERS_OF_TWO)

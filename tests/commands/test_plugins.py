@@ -26,7 +26,7 @@ from rpscli.errors import CaseError, PluginError, RecordError
 from rpscli.records.formats import FORMATS
 from rpscli.records.measures import MEASURES
 from rpscli.records.target import CODES, load_target
-from rpscli.sweep.context import System
+from rpscli.sweep.evaluation import System
 
 from .conftest import Invoke, InvokeJson
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from rpscli.analyses.kernels.compilation import is_ready
+from rpscli.analyses.kernels.history import is_ready
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.timehistory import time_history
 from rpscli.case.case import load_case
@@ -285,11 +285,11 @@ def test_an_animation(rps_json: InvokeJson) -> None:
 def test_the_first_compilation_is_announced(rps: Invoke, monkeypatch: pytest.MonkeyPatch) -> None:
     assert "compiling" not in rps("timehistory", "small.yaml").stderr
     monkeypatch.setattr("rpscli.physics.compile.is_compiled", lambda _: False)
-    monkeypatch.setattr("rpscli.analyses.kernels.compilation._ready", set())
-    monkeypatch.setattr("rpscli.analyses.kernels.compilation._begun", set())
+    monkeypatch.setattr("rpscli.analyses.kernels.history._ready", set())
+    monkeypatch.setattr("rpscli.analyses.kernels.history._begun", set())
     heard = rps("timehistory", "small.yaml").stderr
     assert heard.count("compiling the kernel") == 1
-    monkeypatch.setattr("rpscli.analyses.kernels.compilation._begun", set())
+    monkeypatch.setattr("rpscli.analyses.kernels.history._begun", set())
     assert rps("timehistory", "small.yaml", "--quiet").stderr == ""
 
 
@@ -298,7 +298,7 @@ def test_machine_code_of_another_installation_is_not_ours(
 ) -> None:
     """numba keeps it by the place of the sources: two environments compile, and both say so."""
     assert rps("timehistory", "small.yaml").exit_code == 0
-    ready = "rpscli.analyses.kernels.compilation"
+    ready = "rpscli.analyses.kernels.history"
     monkeypatch.setattr(f"{ready}._ready", set())
     assert is_ready(1, 1)
     monkeypatch.setattr(f"{ready}._ready", set())

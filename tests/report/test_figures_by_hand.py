@@ -27,7 +27,7 @@ from rpscli.records.target import RULES, TargetSpectrum
 from rpscli.report.design import region_figure, requirements_figure
 from rpscli.report.figures.motions import selection_figure
 from rpscli.report.figures.style import kept_figure
-from rpscli.report.study.comparison import Agreement, Compared, Outcomes, comparison_figure, maxima
+from rpscli.report.study.comparison import Agreement, Compared, Endings, comparison_figure, maxima
 from rpscli.report.study.fragility import Binned, Fragilities, Fragility, LimitState
 from rpscli.report.study.heights import Floors, floor_spectra_figure
 from rpscli.report.study.risk import Risk, risk_figure
@@ -140,7 +140,7 @@ def compared() -> dict[str, Axes]:
         Binned(np.array(levels), [share(number, 4) for number in numbers])
         for levels, numbers in (((2.0, 5.0), (0, 4)), ((3.0, 8.0), (1, 3)))
     ]
-    outcomes = Outcomes(Agreement(1, 2, 1, 0, share(1, 4)), *binned)
+    outcomes = Endings(Agreement(1, 2, 1, 0, share(1, 4)), *binned)
     observed = np.array([[1.0, 1.0, 0.0, 0.0, NAN], [0.01, 0.02, 0.04, NAN, 0.03]])
     computed = np.array([[1.0, 0.0, 1.0, 1.0, NAN], [0.02, 0.01, INF, NAN, 0.03]])
     pairs = np.array([0, 1, 2, 3]), np.array([0, 1, 2, 4])

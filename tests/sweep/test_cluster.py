@@ -14,7 +14,7 @@ from typing import Any
 import pytest
 
 from rpscli.errors import RpsError, UsageError
-from rpscli.sweep.context import Plan
+from rpscli.sweep.evaluation import Plan
 from rpscli.sweep.points import lay_out
 from rpscli.sweep.run import Engine, Progress, compute, run, start
 from rpscli.sweep.store import Store

@@ -268,7 +268,7 @@ def test_interrupted_and_resumed_or_in_two_threads_it_ends_in_the_same_bytes(
     assert design(BUILDING, "--jobs", "2", "-o", "calm").exit_code == 0
     interrupting = str(Path(__file__).with_name("interrupted.py"))
     words = ("design", "design.yaml", "--jobs", "1", "--json", "--figures", "none")
-    code, out, _ = ended("SIGINT", *words, folder=workplace, program=interrupting)
+    code, out, _ = ended(*words, folder=workplace, program=interrupting)
     assert code == 130
     assert json.loads(out)["points"]["stored"] > 0
     assert not (workplace / "results/design/design/designs.csv").exists()

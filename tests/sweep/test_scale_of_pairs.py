@@ -16,6 +16,7 @@ from scipy.integrate import cumulative_trapezoid
 from scipy.signal import StateSpace, lsim
 
 import rpscli
+from rpscli.analyses.fixed_base import reference_shears
 from rpscli.case.case import load_case, parse_case
 from rpscli.commands.inputs import MotionRequest, load_motion, motion_inputs, single_motions
 from rpscli.errors import CaseError
@@ -26,8 +27,7 @@ from rpscli.records.formats.at2 import at2_text
 from rpscli.records.ground_motion import MotionComponents
 from rpscli.records.loading import load_components, load_record
 from rpscli.records.measures import pair_measure
-from rpscli.sweep.context import StudyContext
-from rpscli.sweep.evaluation import reference_shears
+from rpscli.sweep.evaluation import StudyContext
 from rpscli.sweep.points import StudyPoints, lay_out, reproduction
 from rpscli.sweep.statistics.grouping import INTENSITY, shown_keys
 from rpscli.sweep.statistics.summary import scale_notes

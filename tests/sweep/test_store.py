@@ -16,8 +16,7 @@ import pytest
 
 import rpscli
 from rpscli.errors import OutputError, Refused, RpsError
-from rpscli.sweep.context import SOLVING, digest_of_sources
-from rpscli.sweep.evaluation import PointResults
+from rpscli.sweep.evaluation import SOLVING, PointResults, digest_of_sources
 from rpscli.sweep.store import FILE, Store
 
 

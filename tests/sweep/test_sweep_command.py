@@ -18,8 +18,8 @@ from click.testing import CliRunner
 from paper_structures import needs_compiled_kernels
 
 from rpscli.analyses.floor_spectra import PERIODS, fixed_base_floor_spectra, isolated_floor_spectra
-from rpscli.analyses.kernels import compilation
-from rpscli.analyses.kernels.compilation import Listener
+from rpscli.analyses.kernels import history as compilation
+from rpscli.analyses.kernels.history import Listener
 from rpscli.analyses.result_quantities import YIELDING
 from rpscli.analyses.timehistory import time_history
 from rpscli.case.case import load_case

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
+import hashlib
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import AbstractContextManager, ExitStack, contextmanager
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from itertools import accumulate
+from threading import Lock
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.analyses.kernels.compilation import compiled
 from rpscli.analyses.kernels.systems import (
     longest_free_vibration,
     most_seconds,
@@ -26,6 +27,7 @@ from rpscli.model.podium import PodiumStructure
 from rpscli.physics.run import Output, Run
 from rpscli.physics.state import (
     EVENT,
+    LANES,
     NO_RECORD,
     REQUEST,
     RESULT,
@@ -92,26 +94,15 @@ def run_of(
         requests=given.view(np.recarray),
         acceleration=np.concatenate(samples),
         results=np.zeros(len(requests), record_type(RESULT)).view(np.recarray),
-        output=_output(n * int(first["axes"][0]), devices, rows, events, finer)
-        if rows
-        else _no_output(devices),
+        output=Output(
+            samples=records(SAMPLE, rows),
+            floors=np.empty((rows, 4, n * int(first["axes"][0]) if rows else 0)),
+            log=records(EVENT, events),
+            devices=np.empty((rows, 4, devices)),
+            finer=finer,
+        ),
         ways=2 if pairs else 1,
     )
-
-
-def _output(floors: int, devices: int, rows: int, events: int, finer: int = 1) -> Output:
-    return Output(
-        samples=records(SAMPLE, rows),
-        floors=np.empty((rows, 4, floors)),
-        log=records(EVENT, events),
-        devices=np.empty((rows, 4, devices)),
-        finer=finer,
-    )
-
-
-@lru_cache
-def _no_output(devices: int) -> Output:
-    return _output(0, devices, 0, 0)
 
 
 def follow(run: Run, lanes: int, *, interruptible: bool = False) -> None:
@@ -229,3 +220,71 @@ def sampled_history(
         output.log[:seen],
         output.devices,
     )
+
+
+Listener = Callable[[str], AbstractContextManager[None]]
+"""Called with the name of a kernel before it is compiled; open while it is."""
+
+_listeners: list[Listener] = []
+_begun: set[str] = set()
+"""Kernels that somebody compiles, or has compiled."""
+_lock = Lock()
+_ready: set[str] = set()
+"""Kernels that are known to be compiled: a file tells, which is looked for once."""
+
+KERNELS = {
+    (1, 1): "kernel",
+    (1, LANES): "kernel for many histories",
+    (2, 1): "kernel for both components",
+    (2, LANES): "kernel for both components of many histories",
+}
+"""By horizontal components and lanes."""
+
+
+def announce_to(listener: Listener) -> None:
+    """Have a compilation told before it begins; the last listener counts."""
+    _listeners[:] = [listener]
+
+
+def is_ready(ways: int, lanes: int) -> bool:
+    """True if the kernel was compiled before, so that calling it starts at once."""
+    from rpscli.physics.compile import is_compiled
+
+    name = KERNELS[ways, lanes]
+    if name not in _ready and is_compiled(_mark(name)):
+        _ready.add(name)
+    return name in _ready
+
+
+def _mark(name: str) -> str:
+    """A kernel of this installation: machine code is kept by the place of its sources."""
+    from rpscli.physics.compile import SOURCES
+
+    return f"{name} {hashlib.sha256(str(SOURCES).encode()).hexdigest()[:8]}"
+
+
+@contextmanager
+def compiled(ways: int, lanes: int) -> Iterator[None]:
+    """Around a call of the kernel: announce the compilation if there is one, and remember it."""
+    from rpscli.physics.compile import cache_folder, remember_compiled
+    from rpscli.physics.prepare import can_prepare, compile_kernel
+
+    name = KERNELS[ways, lanes]
+    if is_ready(ways, lanes):
+        yield
+        return
+    with _lock:
+        first = name not in _begun
+        _begun.add(name)
+    with ExitStack() as told:
+        if first:
+            for listener in _listeners:
+                told.enter_context(listener(name))
+            compile_kernel(ways, lanes)
+            if cache_folder() is not None:  # else the first call compiles
+                told.close()
+        yield
+    if can_prepare():
+        remember_compiled(_mark(name))
+    else:  # there is no machine code that other processes find
+        _ready.add(name)

@@ -370,7 +370,7 @@ def patience(case: Case, duration: float, terminal: Terminal) -> AbstractContext
 
 def announce_compilation(terminal: Terminal) -> None:
     """Say so if a kernel has to be compiled, and how long that takes."""
-    from rpscli.analyses.kernels.compilation import announce_to
+    from rpscli.analyses.kernels.history import announce_to
     from rpscli.physics.compile import cache_folder
 
     @contextmanager

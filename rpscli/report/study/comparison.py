@@ -41,10 +41,10 @@ TOLD = {(1, 1): "both", (0, 1): "computed only", (1, 0): "observed only", (0, 0)
 
 
 class ComparisonOptions(fragility.MeasureOptions):
-    """Outcomes and maxima beside those that were observed."""
+    """Endings and maxima beside those that were observed."""
 
 
-class Outcomes(NamedTuple):
+class Endings(NamedTuple):
     """Counts of outcomes that agree, and the shares that overturned by intensity."""
 
     agreement: Agreement
@@ -57,7 +57,7 @@ class Compared(NamedTuple):
 
     values: tuple[object, ...]
     quantity: str
-    found: Outcomes | Maxima
+    found: Endings | Maxima
     points: Indices  # (m,) that did not fail
     observed: Array  # (m,)
     computed: Array  # (m,)
@@ -79,7 +79,7 @@ def comparison(study: StudyResults, options: ComparisonOptions) -> Found:
             if seen.any():
                 of = system, name, pairs.points[seen], values[seen], intensity
                 compared.append(_compared(*of))
-    kinds = {"": Outcomes, "_maxima": Maxima}
+    kinds = {"": Endings, "_maxima": Maxima}
     shown = [s for s, kind in kinds.items() if any(isinstance(c.found, kind) for c in compared)]
     return Found(
         _tables(systems.keys, compared, intensity, layout),
@@ -98,7 +98,7 @@ def _compared(
     known = ~table.failed[points]
     points, observed = points[known], observed[known]
     computed = np.asarray(results[points], dtype=float)
-    found: Outcomes | Maxima
+    found: Endings | Maxima
     if name != OVERTURNED:
         found = maxima(computed, observed)
     else:
@@ -109,14 +109,14 @@ def _compared(
         )
         fell, clusters = (computed == 1.0, observed == 1.0), table.layout.clusters[points]
         counts = agreement(*fell, clusters)
-        found = Outcomes(counts, seen, told)
+        found = Endings(counts, seen, told)
     return Compared(system.values, name, found, points, observed, computed, int((~known).sum()))
 
 
 def _tables(
     keys: Sequence[str], compared: Sequence[Compared], intensity: Intensity, layout: StudyPoints
 ) -> dict[str, list[Column]]:
-    """Outcomes, maxima, and every pair: hits and misses by record."""
+    """Endings, maxima, and every pair: hits and misses by record."""
     outcomes = (
         "counted", "agreed", "agreed_share", "agreed_low", "agreed_high", "overturned_observed",
         "overturned_computed", "both", "computed_only", "observed_only", "neither", "failed",
@@ -163,7 +163,7 @@ def comparison_figure(
         grid = figure.subplots(down, across, squeeze=False)
         style.blank(grid.flat[len(shown) :])
         for axes, each in zip(grid.flat, shown, strict=False):
-            if isinstance(each.found, Outcomes):
+            if isinstance(each.found, Endings):
                 line = _draw_outcomes(axes, each, each.found, intensity)
             else:
                 line = _draw_maxima(axes, each, each.found)
@@ -174,7 +174,7 @@ def comparison_figure(
     return style.picture(draw, 0.6 + 3.1 * down, style.WIDTH if across > 1 else 0.7 * style.WIDTH)
 
 
-def _draw_outcomes(axes: style.Axes, each: Compared, found: Outcomes, intensity: Intensity) -> str:
+def _draw_outcomes(axes: style.Axes, each: Compared, found: Endings, intensity: Intensity) -> str:
     """Both shares by intensity; below and above, the outcomes that differ."""
     at, counts = intensity.values[each.points], found.agreement
     for name, bins, colour, marker in (

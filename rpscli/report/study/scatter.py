@@ -27,8 +27,7 @@ from rpscli.report.study.fragility import MeasureOptions, measure_name, measure_
 from rpscli.report.study.labels import axis_label, keyed, labels
 from rpscli.report.study.report import Found, Report, without_uplift
 from rpscli.report.table import Column, measured
-from rpscli.sweep.context import RecordRequest
-from rpscli.sweep.evaluation import SCALARS
+from rpscli.sweep.evaluation import SCALARS, RecordRequest
 from rpscli.sweep.points import StudyPoints
 from rpscli.sweep.statistics.grouping import INTENSITY, Histories, grouping, shown_keys
 from rpscli.sweep.table import Array, StudyResults, Table, groups, leading_keys, unit_of

@@ -21,16 +21,14 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rpscli.case.text.document import shown
 from rpscli.case.text.files import read_text
 from rpscli.csv_text import csv_rows
 from rpscli.errors import CaseError
+from rpscli.model.podium import Array
 from rpscli.records.measures import MEASURES, Measure
 from rpscli.units import si_value
-
-Array = NDArray[np.float64]
 
 RATE_UNITS = ("1/year", "1/yr", "1/a")
 USUAL: dict[Measure, str] = {"PGA": "g", "Sa": "g", "PGV": "cm/s"}

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rpscli.analyses.demand import WORTH_LANES, demands
-from rpscli.analyses.kernels.compilation import is_ready
+from rpscli.analyses.kernels.history import is_ready
 from rpscli.analyses.largest_demands import Demand
 from rpscli.analyses.result_quantities import LIMITED, ResultQuantity
 from rpscli.physics.state import LANES

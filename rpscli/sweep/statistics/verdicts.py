@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -118,16 +118,6 @@ def rate_notes(layout: StudyPoints) -> Iterator[str]:
             " taken to overturn the share that the largest does, and those below the least the"
             " share that the least does"
         )
-
-
-def rate_verdict(
-    condition: Condition, rates: Array, shares: Sequence[Share], values: tuple[object, ...] = ()
-) -> Verdict:
-    """From the shares (levels,) that overturned, with the rates of these levels."""
-    ends = np.array([(np.nan if s.fraction is None else s.fraction, s.low, s.high) for s in shares])
-    rate, low, high = (rates @ ends).tolist()
-    over, last = not rate <= condition.limit, shares[-1]
-    return Verdict(condition, values, last, 0, rate, "", None, over, interval=(low, high))
 
 
 class Judgement(NamedTuple):
@@ -268,11 +258,12 @@ def judged(table: Table, summary: Summary, conditions: Iterable[Condition] = ())
         found += verdicts(table, row.points, known, record_of, row.values)
     for condition in on_rates:
         rates, _ = rates_of_levels(layout)
-        shares = [row.overturned for row in summary.rows]
-        for first in range(0, len(shares), len(rates)):  # intensities follow each other
+        for first in range(0, len(summary.rows), len(rates)):  # intensities follow each other
             values = (*summary.rows[first].values[:-1], "all")
-            of_levels = shares[first : first + len(rates)]
-            found.append(
-                replace(rate_verdict(condition, rates, of_levels, values), strictly=strictly)
-            )
+            shares = [row.overturned for row in summary.rows[first : first + len(rates)]]
+            ends = [(np.nan if s.fraction is None else s.fraction, s.low, s.high) for s in shares]
+            rate, low, high = (rates @ np.array(ends)).tolist()
+            over, interval = not rate <= condition.limit, (low, high)
+            what = condition, values, shares[-1], 0, rate, "", None, over, strictly, interval
+            found.append(Verdict(*what))
     return found
