@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import re
 import shlex
 from collections.abc import Iterator, Sequence
@@ -12,12 +11,10 @@ from typing import TYPE_CHECKING
 
 import click
 
-from rpscli.analyses.result_quantities import LIMITED
 from rpscli.commands import inputs
 from rpscli.commands.shell import options
 from rpscli.commands.shell.terminal import Terminal, announce_compilation, counted
 from rpscli.errors import AnalysisError, RpsError, all_made
-from rpscli.report.figures.look import Look
 
 if TYPE_CHECKING:
     from rpscli.case.case import Case
@@ -39,9 +36,7 @@ Wish = tuple[str, tuple[str, ...], inputs.MotionRequest | str]
 def command(
     request: options.CaseRequest,
     records: tuple[str, ...],
-    output: options.OutputRequest,
-    terminal: Terminal,
-    look: Look,
+    out: options.Output,
     motion: inputs.MotionRequest,
 ) -> None:
     """Change of each limited result of CASE for one input at a time, in the unit of its limit.
@@ -51,17 +46,17 @@ def command(
     the far-field set of FEMA P695 at its PGA shows the scatter. Each row names the options with
     which `rps timehistory CASE` gives its numbers. The exit code is 0 whatever the verdicts are.
     """
-    given = inputs.read_case(request, terminal)
-    motions = list(inputs.single_motions(records, motion, terminal.warn))
+    given = inputs.read_case(request, out.terminal)
+    motions = list(inputs.single_motions(records, motion, out.terminal.warn))
     grounds = all_made(partial(inputs.load_motion, given.case), motions, RpsError)
     resolved = {"record": inputs.motion_inputs(grounds[0]), "records": records}
     source = inputs.motion_source(given.case, motions[0])
-    folder = inputs.case_folder(given, output, "budget", record_source=source, **resolved)
-    announce_compilation(terminal)
-    found = case_budget(given, motions, grounds, terminal)
-    folder.add_all(found.files(look))
+    folder = inputs.case_folder(given, out, "budget", record_source=source, **resolved)
+    announce_compilation(out.terminal)
+    found = case_budget(given, motions, grounds, out.terminal)
+    folder.add_all(found.files(out.look))
     plane = grounds[0].y is None
-    inputs.conclude(given, folder, found.document(), found.tables(), terminal, plane=plane)
+    inputs.conclude(given, folder, found.document(), found.tables(), out.terminal, plane=plane)
 
 
 def case_budget(
@@ -90,6 +85,7 @@ def _row(
     """What `rps timehistory` would find; the sentence of a refusal."""
     from rpscli.analyses.timehistory import time_history
     from rpscli.case.case import case_from_mapping
+    from rpscli.commands.timehistory_run import limited
     from rpscli.report.budget import Row
 
     if isinstance(motion, str):
@@ -107,9 +103,8 @@ def _row(
             raise AnalysisError(result.failure)
     except RpsError as error:
         return row._replace(refused=str(error).replace("\n", "; "))
-    found = {q.name: getattr(result, q.name) for q in LIMITED}
-    values = {name: math.nan if v is None else float(v) for name, v in found.items()}
-    return row._replace(outcome=result.outcome, values=values, record=ground.horizontal.source)
+    source = ground.horizontal.source
+    return row._replace(outcome=result.outcome, values=limited(result), record=source)
 
 
 def _wishes(

@@ -11,10 +11,8 @@ import click
 from rpscli.case.conditions import Condition, conditions_of
 from rpscli.commands import inputs
 from rpscli.commands.shell import options
-from rpscli.commands.shell.terminal import Terminal
 from rpscli.errors import CaseError, RecordError, RpsError, UsageError
 from rpscli.report.documents import heading
-from rpscli.report.figures.look import USUAL, Look
 from rpscli.report.table import Heading, Part, Table, large, shown
 from rpscli.report.tables.derived import (
     AT_CRITICAL,
@@ -54,9 +52,7 @@ RECORD = ("name", "source", "format", "description", "npts", "dt", "duration", "
 @options.result_options
 def command(
     request: options.CaseRequest,
-    output: options.OutputRequest,
-    terminal: Terminal,
-    look: Look,
+    out: options.Output,
     *,
     draw: bool,
 ) -> None:
@@ -65,9 +61,9 @@ def command(
     Nothing is analysed, and nothing is written without --draw. A case with mistakes ends with exit
     code 3 and a line for each of them; so does a record that cannot be read.
     """
-    if not draw and (output != options.OutputRequest(None, force=False) or look != USUAL):
+    if not draw and (out != options.Output(out.terminal)):
         raise UsageError("only --draw writes something; options of files and figures go with it")
-    given = inputs.read_case(request, terminal)
+    given = inputs.read_case(request, out.terminal)
     from rpscli.model.statics import device_consequences, storey_strengths
     from rpscli.report.tables.derived import derived_quantities
     from rpscli.report.tables.yielding import strength_tables
@@ -95,15 +91,15 @@ def command(
     if draw:
         from rpscli.report.bundles import bearing_files
 
-        folder = inputs.case_folder(given, output, "check")
-        folder.add_all(bearing_files(structure, given.case.title, look))
-        inputs.write(folder, terminal)
+        folder = inputs.case_folder(given, out, "check")
+        folder.add_all(bearing_files(structure, given.case.title, out.look))
+        inputs.write(folder, out.terminal)
         document["files"] = folder.files
-    terminal.warn(doubts)
+    out.terminal.warn(doubts)
     limits = conditions_of(given.case.limits, "limits of the case")
     others = device_tables(structure), strength_tables(structure)
     tables = chain(check_tables(document, limits, _unknown(structure, record)), *others)
-    terminal.finish(document, tables, error)
+    out.terminal.finish(document, tables, error)
 
 
 def _record(case: Case) -> tuple[dict[str, Any] | None, RpsError | None]:

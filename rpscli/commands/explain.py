@@ -71,10 +71,8 @@ def command(word: str, terminal: Terminal) -> None:
         for name, meaning in glossary()
         if word.lower() in _names(name)
     ]
-    results = [
-        _result(q) for q in EVERY.values() if word == q.name or (word == q.label and not words)
-    ]
-    entries = [*_keys(word), *results, *words]
+    named = [q for q in EVERY.values() if word == q.name or (word == q.label and not words)]
+    entries = [*_keys(word), *map(_result, named), *words]
     offers = [] if entries else list(_offers(word))
     entries += _reports(word, everything=bool(offers), options=not (entries or offers))
     if not (entries or offers or word == PLUGINS):

@@ -15,7 +15,7 @@ from rpscli.commands.shell.terminal import Terminal, counted, passing_time
 from rpscli.errors import CaseError, UsageError
 from rpscli.report.documents import heading
 from rpscli.report.figures.film import FilmRequest
-from rpscli.report.figures.look import Look, drawn_with
+from rpscli.report.figures.look import drawn_with
 from rpscli.report.files import Drawing, OutputFolder, Run
 from rpscli.report.table import Part
 from rpscli.units import as_written
@@ -55,7 +55,7 @@ def read_case(request: options.CaseRequest, terminal: Terminal) -> CaseInput:
 
 def case_folder(
     given: CaseInput,
-    output: options.OutputRequest,
+    out: options.Output,
     command: str,
     *,
     record_source: Path | str | None = None,
@@ -68,8 +68,8 @@ def case_folder(
         **inputs,
     }
     run = Run(command, given.case.name, given.file, given.case.digest, resolved, record_source)
-    place = output.place or RESULTS / given.case.name / command
-    return OutputFolder(place, run, force=output.force)
+    place = out.place or RESULTS / given.case.name / command
+    return OutputFolder(place, run, force=out.force)
 
 
 def write(folder: OutputFolder, terminal: Terminal) -> None:
@@ -87,17 +87,16 @@ def write(folder: OutputFolder, terminal: Terminal) -> None:
 def add_film(
     folder: OutputFolder,
     film: FilmRequest,
-    look: Look,
     draw: Callable[[Callable[[int, int], None]], bytes],
-    terminal: Terminal,
+    out: options.Output,
 ) -> None:
     """Collect an animation, which is told how many of its frames are drawn."""
 
     def drawn() -> bytes:
-        with counted("drawing the animation", terminal) as tell:
+        with counted("drawing the animation", out.terminal) as tell:
             return draw(tell)
 
-    make = partial(drawn_with, look, film.ending, drawn)
+    make = partial(drawn_with, out.look, film.ending, drawn)
     folder.add_at(film.file, Drawing(film.file.name, make))
 
 

@@ -10,9 +10,7 @@ import click
 from rpscli.analyses.result_quantities import PUSHOVER
 from rpscli.commands.inputs import case_folder, conclude, read_case
 from rpscli.commands.shell import options
-from rpscli.commands.shell.terminal import Terminal
 from rpscli.errors import UsageError
-from rpscli.report.figures.look import Look
 from rpscli.report.table import Heading, Part, Table, measured, shown
 
 if TYPE_CHECKING:
@@ -32,9 +30,7 @@ if TYPE_CHECKING:
 @options.result_options
 def command(
     request: options.CaseRequest,
-    output: options.OutputRequest,
-    terminal: Terminal,
-    look: Look,
+    out: options.Output,
     patterns: tuple[str, ...],
 ) -> None:
     """Restoring force of the storey of CASE, and capacity curves of the whole structure.
@@ -42,21 +38,21 @@ def command(
     Writes storey_curve.csv and, for a case with storeys, capacity.csv, a figure of each, and the
     figure bearing: columns at rest, where rolling ends and at the critical rotation.
     """
-    given = read_case(request, terminal)
+    given = read_case(request, out.terminal)
     from rpscli.analyses.pushover import PATTERNS, pushover
     from rpscli.report.bundles import pushover_files
 
     if patterns and given.case.structure.superstructure is None:
         raise UsageError("--pattern: the case has no storeys to push at")
     asked = [_pattern(text, PATTERNS) for text in patterns] or PATTERNS
-    folder = case_folder(given, output, "pushover", patterns=list(asked))
+    folder = case_folder(given, out, "pushover", patterns=list(asked))
     try:
         result = pushover(given.case.structure, patterns=asked)
     except ValueError as error:
         raise UsageError(f"--pattern: {error}") from None
-    folder.add_all(pushover_files(result, given.case.title, look))
+    folder.add_all(pushover_files(result, given.case.title, out.look))
     tables = _tables(result, given.case.title)
-    conclude(given, folder, result.results(), tables, terminal, doubts=result.warnings)
+    conclude(given, folder, result.results(), tables, out.terminal, doubts=result.warnings)
 
 
 def _pattern(text: str, names: Sequence[PatternName]) -> PatternName | list[float]:

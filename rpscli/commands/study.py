@@ -13,7 +13,7 @@ import click
 from rpscli.analyses.kernels import compilation
 from rpscli.case.conditions import Condition
 from rpscli.commands.inputs import RESULTS, write
-from rpscli.commands.shell.options import CaseRequest, OutputRequest, RunChoices
+from rpscli.commands.shell.options import CaseRequest, Output, RunChoices
 from rpscli.commands.shell.terminal import (
     INTERRUPTED,
     Terminal,
@@ -30,7 +30,6 @@ from rpscli.errors import LimitExceeded, Refused, RpsError
 from rpscli.machine import available_cores
 from rpscli.physics.state import LANES
 from rpscli.report.documents import failure_document, heading
-from rpscli.report.figures.look import Look
 from rpscli.report.files import OutputFolder
 from rpscli.report.limits import counts_of_limits, verdicts_in_short
 from rpscli.report.study.labels import label
@@ -222,18 +221,17 @@ def swept(
     study: Study,
     folder: OutputFolder,
     choices: RunChoices,
-    look: Look,
-    terminal: Terminal,
+    out: Output,
 ) -> Swept:
     """Compute what is not stored yet; only a sweep writes into the folder of the store."""
     with Store(folder.folder, fresh=choices.fresh) as store:
-        result = computed(command, study, store, choices, terminal)
-        with passing_time("making reports", terminal):
-            found = collected(result, look)
+        result = computed(command, study, store, choices, out.terminal)
+        with passing_time("making reports", out.terminal):
+            found = collected(result, out.look)
         if command == "sweep":
             folder.add_all(found.files.items())
             store.require()
-            write(folder, terminal)
+            write(folder, out.terminal)
     return Swept(result, found, error_of(result, found), folder)
 
 
@@ -241,19 +239,18 @@ def sweep(
     request: CaseRequest,
     conditions: Iterable[Condition],
     choices: RunChoices,
-    output: OutputRequest,
-    look: Look,
-    terminal: Terminal,
+    out: Output,
     most: int,
 ) -> None:
     """Compute, write and show a study, in so many lines; 0 shows all."""
+    terminal = out.terminal
     study = read(request, conditions, terminal)
     if choices.dry_run:
         show_dry_run(study, choices, terminal)
         return
-    place = output.place or RESULTS / study.layout.study.name / "sweep"
-    folder = study.output(place, force=output.force)
-    done = swept("sweep", study, folder, choices, look, terminal)
+    place = out.place or RESULTS / study.layout.study.name / "sweep"
+    folder = study.output(place, force=out.force)
+    done = swept("sweep", study, folder, choices, out)
     # Of each report: what one has to say takes no room from the next.
     for _, of_one in groupby(done.notes, lambda note: note.partition(": ")[0]):
         terminal.warn_first(list(of_one), "with --json", OF_A_REPORT)

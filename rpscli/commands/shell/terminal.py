@@ -141,8 +141,8 @@ def _made(table: Table, columns: Sequence[int], widths: Sequence[int]) -> RichTa
         made = RichTable(box=None, show_header=False, pad_edge=False, padding=(0, 2, 0, 0))
     else:
         made = RichTable(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False)
-    usual: Sequence[int | None] = widths or [None] * len(columns)
-    for index, width in zip(columns, usual, strict=True):
+    fixed: Sequence[int | None] = widths or [None] * len(columns)
+    for index, width in zip(columns, fixed, strict=True):
         justify: Literal["left", "right"] = "left" if index < table.words else "right"
         if listing:
             made.add_column(overflow="fold" if index else "ellipsis")
