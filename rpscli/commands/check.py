@@ -73,13 +73,13 @@ def command(
     for way, seen in structure.ways.items():
         if strengths := storey_strengths(seen):
             derived[f"storey_strengths{way}"] = [each._asdict() for each in strengths]
-    doubts: tuple[str, ...] = ()
+    doubts: list[str] = []
     if structure.yields:
         from rpscli.analyses.pushover import pushover  # one that most cases do without
 
-        doubts = pushover(structure).warnings
+        doubts += pushover(structure).warnings
     record, error = _record(given.case)
-    doubts += tuple((record or {}).get("warnings", ()))
+    doubts += record["warnings"] if record else []
     document = {
         **heading("check"),
         "case": inputs.case_heading(given),
@@ -169,9 +169,8 @@ def check_tables(
     if limits:
         from rpscli.report.limits import requirement_text
 
-        yield Table.of_texts(
-            ("limit", ""), [(c.name, requirement_text(c)) for c in limits], words=2
-        )
+        asked = [(each.name, requirement_text(each)) for each in limits]
+        yield Table.of_texts(("limit", ""), asked, words=2)
 
 
 def device_tables(structure: PodiumStructure) -> Iterator[Part]:
@@ -180,32 +179,28 @@ def device_tables(structure: PodiumStructure) -> Iterator[Part]:
         return
     from rpscli.model.statics import returns, uplift_acceleration, uplift_force
 
+    acceleration = uplift_acceleration(structure)
     found = [
-        (f"{index} {device.kind}", item.label, item.value, item.unit)
-        for index, device in enumerate(structure.devices)
-        for item in device.consequences(structure)
+        *(
+            (f"{index} {device.kind}", item.label, item.value, item.unit)
+            for index, device in enumerate(structure.devices)
+            for item in device.consequences(structure)
+        ),
+        ("all", "uplift force at the cap beam", uplift_force(structure), "N"),
+        ("all", "uplift acceleration, quasi-static", acceleration, "m/s2"),
     ]
-    found.append(("all", "uplift force at the cap beam", uplift_force(structure), "N"))
-    found.append(
-        ("all", "uplift acceleration, quasi-static", uplift_acceleration(structure), "m/s2")
-    )
     rows = []
     for device, label, value, unit in found:
         number, name = large(value, unit)
         rows.append((device, label, "never" if number is None else shown(number), name))
     yield Table.of_texts(("device", "", "value", "unit"), rows, words=2)
-    if back := returns(structure):
-        yield Table.of_texts(
-            ("from rest at rad", "of theta_cr", "u_b m", "friction kN", "largest kN", "comes back"),
-            [
-                (
-                    shown(row.rotation),
-                    shown(row.rotation / structure.critical_rotation, 2),
-                    shown(row.displacement),
-                    shown(1e-3 * row.friction),
-                    shown(1e-3 * row.largest_friction),
-                    "yes" if row.recentres else "no",
-                )
-                for row in back
-            ],
-        )
+    if not (back := returns(structure)):
+        return
+    swings = []
+    for row in back:
+        forces = shown(1e-3 * row.friction), shown(1e-3 * row.largest_friction)
+        share = shown(row.rotation / structure.critical_rotation, 2)
+        end = "yes" if row.recentres else "no"
+        swings.append((shown(row.rotation), share, shown(row.displacement), *forces, end))
+    heads = "from rest at rad", "of theta_cr", "u_b m", "friction kN", "largest kN", "comes back"
+    yield Table.of_texts(heads, swings)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 import click
@@ -44,7 +44,7 @@ def command(
 
     if patterns and given.case.structure.superstructure is None:
         raise UsageError("--pattern: the case has no storeys to push at")
-    asked = [_pattern(text, PATTERNS) for text in patterns] or PATTERNS
+    asked = [_pattern(text) for text in patterns] or PATTERNS
     folder = case_folder(given, out, "pushover", patterns=list(asked))
     try:
         result = pushover(given.case.structure, patterns=asked)
@@ -55,33 +55,30 @@ def command(
     conclude(given, folder, result.results(), tables, out.terminal, doubts=result.warnings)
 
 
-def _pattern(text: str, names: Sequence[PatternName]) -> PatternName | list[float]:
-    for name in names:
-        if text == name:
-            return name
+def _pattern(text: str) -> PatternName | list[float]:
+    from rpscli.analyses.pushover import PATTERNS
+
     try:
-        return [float(force) for force in text.split(",")]
+        known = next((name for name in PATTERNS if name == text), None)
+        return known or [float(force) for force in text.split(",")]
     except ValueError:
-        raise UsageError(
-            f"--pattern {text}: write {', '.join(names)}, or floor forces from the bottom as in"
-            " 1,2,3"
-        ) from None
+        names = ", ".join(PATTERNS)
+        remedy = f"write {names}, or floor forces from the bottom as in 1,2,3"
+        raise UsageError(f"--pattern {text}: {remedy}") from None
 
 
 def _tables(result: PushoverResult, title: str) -> Iterator[Part]:
     scalars = {q.name: (q.label, measured(getattr(result, q.name), q.unit)) for q in PUSHOVER}
-    rows = [
+    label, stiffness = scalars["initial_stiffness"]
+    yield Heading(title)
+    yield Table.listing([
         scalars["uplift_force"],
-        ("stiffness in full contact", scalars["initial_stiffness"][1])
-        if result.structure.bed
-        else scalars["initial_stiffness"],
+        ("stiffness in full contact" if result.structure.bed else label, stiffness),
         ("largest force", measured(float(result.curve.force.max()), "N")),
         scalars["critical_rotation"],
         scalars["critical_displacement"],
         ("lift at the critical rotation", measured(float(result.curve.lift[-1]), "m")),
-    ]
-    yield Heading(title)
-    yield Table.listing(rows)
+    ])  # fmt: skip
     if result.capacity:
         heads = ("pattern", "roof at uplift m", "largest sum of floor forces kN")
         capacity = []
