@@ -48,7 +48,8 @@ def command(
     motions = list(inputs.single_motions(records, inputs.MotionRequest(), out.terminal.warn))
     if len(motions) > 1:
         raise UsageError(f"--record: a model has one motion, not {len(motions)}; name one of them")
-    ground = inputs.load_motion(given.case, motions[0])
+    motion = inputs.Motion(motions[0], inputs.load_motion(given.case, motions[0]))
+    ground = motion.ground
     structure = given.case.structure
     vertical = ground.vertical if program == "opensees" else None
     left = {"podium.devices": structure.devices, "record.vertical": vertical,
@@ -61,12 +62,8 @@ def command(
     if why:
         text = f"{given.case.source}: {why[0]}, so that both programs compute the same"
         raise UsageError(text)
-    own = inputs.RESULTS / given.case.name / "export" / program
-    resolved = {"program": program, "record": inputs.motion_inputs(ground)}
-    source = inputs.motion_source(given.case, motions[0])
-    folder = inputs.case_folder(
-        given, replace(out, place=out.place or own), "export", record_source=source, **resolved
-    )
+    own = replace(out, place=out.place or inputs.RESULTS / given.case.name / "export" / program)
+    folder = inputs.case_folder(given, own, "export", motion=motion, program=program)
     announce_compilation(out.terminal)
     result = time_history(structure, ground, given.case.analysis)
     if result.failure:

@@ -195,10 +195,10 @@ def history_page(
         if earlier is not None:
             stored = [*_compared(earlier, histories, made.document)]
         if with_budget:
-            order = sorted(range(len(motions)), key=lambda n: n != made.worst)
-            grounds = [histories[n].ground for n in order]
-            budget = case_budget(given, [motions[n] for n in order], grounds, terminal)
-            made.results.append(budget.section(out.look, histories[made.worst].label))
+            worst = histories[made.worst]
+            first = sorted(histories, key=lambda each: each is not worst)
+            budget = case_budget(given, [each.motion for each in first], terminal)
+            made.results.append(budget.section(out.look, worst.label))
     elif with_budget:
         raise UsageError(f"{case.source}: --budget needs a ground motion; add --record")
     else:

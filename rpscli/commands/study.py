@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from functools import partial
 from itertools import groupby
@@ -24,7 +24,7 @@ from rpscli.report.documents import failure_document, heading
 from rpscli.report.files import OutputFolder
 from rpscli.report.limits import counts_of_limits, verdicts_in_short
 from rpscli.report.study import shown
-from rpscli.report.study.labels import label
+from rpscli.report.study.labels import labels
 from rpscli.report.study.statistics import summary_document, verdict_document
 from rpscli.report.table import Heading, Part, Table
 from rpscli.studies import Collected, Study, StudyInterrupted, StudyResult
@@ -277,10 +277,6 @@ def show_dry_run(study: Study, choices: RunChoices, terminal: Terminal) -> None:
     }
     time = f"about {duration(seconds)} on {jobs} cores, by {source}"
     listing = [*((name, str(number)) for name, number in counts.items()), ("time", time)]
-    tried = [(f"point {number}", _labels(varied)) for number, varied in points.items()]
+    tried = [(f"point {n}", labels([*each], [*each.values()])) for n, each in points.items()]
     parts = (Heading(study.title), Table.listing(listing), Table.listing(tried))
     terminal.result(document, parts)
-
-
-def _labels(values: Mapping[str, Any]) -> str:
-    return ", ".join(label(key, value) for key, value in values.items())

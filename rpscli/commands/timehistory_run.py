@@ -20,7 +20,7 @@ from rpscli.case.plausibility import doubts_of_directions
 from rpscli.commands import inputs
 from rpscli.commands.shell.options import Output
 from rpscli.commands.shell.terminal import concluded, leave, patience
-from rpscli.errors import AnalysisError, LimitExceeded, RecordError, RpsError, UsageError, all_made
+from rpscli.errors import AnalysisError, LimitExceeded, RecordError, RpsError, UsageError
 from rpscli.records.ground_motion import MotionComponents
 from rpscli.report.bundles import floor_spectra_files, timehistory_files
 from rpscli.report.documents import direction_note, heading, json_text, timehistory_document
@@ -62,7 +62,7 @@ class History:
 
     given: inputs.CaseInput
     case_label: str
-    ground: MotionComponents
+    motion: inputs.Motion
     label: str
     folder: OutputFolder
     floor_spectra: bool = False
@@ -70,6 +70,11 @@ class History:
     demands: dict[str, float] = field(default_factory=dict)
     verdicts: list[Verdict] = field(default_factory=list)
     error: RpsError | None = None
+
+    @property
+    def ground(self) -> MotionComponents:
+        """The motion itself."""
+        return self.motion.ground
 
     @property
     def name(self) -> str:
@@ -88,24 +93,19 @@ def histories_of(
     histories = []
     case_labels = unique([given.case.name for given in cases])
     for given, case_label in zip(cases, case_labels, strict=True):
-        grounds = all_made(partial(inputs.load_motion, given.case), motions, RecordError)
+        read = inputs.load_motions(given.case, motions, RecordError)
         labels = unique([
-            each.horizontal.name + ("" if each.scale == 1.0 else f"_x{each.scale:.4g}")
-            for each in grounds
+            ground.horizontal.name + ("" if ground.scale == 1.0 else f"_x{ground.scale:.4g}")
+            for _, ground in read
         ])  # fmt: skip
-        for motion, ground, label in zip(motions, grounds, labels, strict=True):
+        for motion, label in zip(read, labels, strict=True):
             place = inputs.RESULTS / case_label / COMMAND / label
             if out.place is not None:
                 inside = [case_label] * (len(cases) > 1) + [label] * (len(motions) > 1)
                 place = out.place.joinpath(*inside)
-            folder = inputs.case_folder(
-                given,
-                replace(out, place=place),
-                COMMAND,
-                record_source=inputs.motion_source(given.case, motion),
-                record=inputs.motion_inputs(ground),
-            )
-            histories.append(History(given, case_label, ground, label, folder, floor_spectra))
+            own = replace(out, place=place)
+            folder = inputs.case_folder(given, own, COMMAND, motion=motion)
+            histories.append(History(given, case_label, motion, label, folder, floor_spectra))
     return histories
 
 

@@ -143,17 +143,15 @@ def gathered(name: str, make: Callable[..., Any], *options: Decorator) -> Decora
     def decorate(function: Command) -> Command:
         @functools.wraps(function)
         def command(**given: Any) -> None:
-            made = make(**{key: given.pop(key) for key in taken if key in given})
-            function(**{name: made}, **given)
+            value = make(**{key: given.pop(key) for key in taken if key in given})
+            function(**{name: value}, **given)
 
-        return in_order(*options)(command)
+        made: Command = command
+        for option in options[::-1]:  # the help lists the last one first
+            made = option(made)
+        return made
 
     return decorate
-
-
-def in_order(*options: Decorator) -> Decorator:
-    """Options in the order in which the help lists them."""
-    return lambda function: functools.reduce(lambda f, option: option(f), options[::-1], function)
 
 
 _TERMINAL = (
