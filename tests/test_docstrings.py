@@ -111,11 +111,11 @@ def public_nodes() -> Iterator[tuple[str, ast.FunctionDef | ast.ClassDef, set[st
     Beside each stand the names that its class explains for all its methods.
     """
     for module, names in rpscli._HOMES.items():
-        file = PACKAGE.parent.joinpath(*module.split(".")).with_suffix(".py")
+        file = PACKAGE.joinpath(*module.split(".")).with_suffix(".py")
         for node in parsed(file).body:
             if not isinstance(node, ast.FunctionDef | ast.ClassDef) or node.name.startswith("_"):
                 continue
-            if node.name in names:
+            if node.name in names.split():
                 # An answer to what a base class asks has no docstring; linters see to all others.
                 for each in filter(ast.get_docstring, public([node])):
                     yield module, each, described(ast.get_docstring(node)) & shared(node)

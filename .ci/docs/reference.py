@@ -265,7 +265,7 @@ def python() -> dict[str, str]:
     """Pages of all public Python names, by the layer that they come from."""
     groups: dict[str, list[str]] = {}
     for module, names in rpscli._HOMES.items():
-        groups.setdefault(module.split(".")[1], []).extend(names)
+        groups.setdefault(module.split(".")[0], []).extend(names.split())
     assert set(groups) <= set(PYTHON), "a layer has no page"
     pages = {}
     for layer, (title, more) in PYTHON.items():

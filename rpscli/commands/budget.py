@@ -2,22 +2,18 @@
 
 from __future__ import annotations
 
-import math
 import re
 import shlex
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from functools import partial
 from typing import TYPE_CHECKING
 
 import click
 
-from rpscli.analyses.result_quantities import LIMITED
 from rpscli.commands import inputs
 from rpscli.commands.shell import options
 from rpscli.commands.shell.terminal import Terminal, announce_compilation, counted
-from rpscli.errors import AnalysisError, RpsError, all_made
-from rpscli.report.figures.look import Look
+from rpscli.errors import AnalysisError, RpsError
 
 if TYPE_CHECKING:
     from rpscli.case.case import Case
@@ -39,9 +35,7 @@ Wish = tuple[str, tuple[str, ...], inputs.MotionRequest | str]
 def command(
     request: options.CaseRequest,
     records: tuple[str, ...],
-    output: options.OutputRequest,
-    terminal: Terminal,
-    look: Look,
+    out: options.Output,
     motion: inputs.MotionRequest,
 ) -> None:
     """Change of each limited result of CASE for one input at a time, in the unit of its limit.
@@ -51,29 +45,24 @@ def command(
     the far-field set of FEMA P695 at its PGA shows the scatter. Each row names the options with
     which `rps timehistory CASE` gives its numbers. The exit code is 0 whatever the verdicts are.
     """
-    given = inputs.read_case(request, terminal)
-    motions = list(inputs.single_motions(records, motion, terminal.warn))
-    grounds = all_made(partial(inputs.load_motion, given.case), motions, RpsError)
-    resolved = {"record": inputs.motion_inputs(grounds[0]), "records": records}
-    source = inputs.motion_source(given.case, motions[0])
-    folder = inputs.case_folder(given, output, "budget", record_source=source, **resolved)
-    announce_compilation(terminal)
-    found = case_budget(given, motions, grounds, terminal)
-    folder.add_all(found.files(look))
-    plane = grounds[0].y is None
-    inputs.conclude(given, folder, found.document(), found.tables(), terminal, plane=plane)
+    given = inputs.read_case(request, out.terminal)
+    single = inputs.single_motions(records, motion, out.terminal.warn)
+    motions = inputs.load_motions(given.case, single)
+    folder = inputs.case_folder(given, out, "budget", motion=motions[0], records=records)
+    announce_compilation(out.terminal)
+    found = case_budget(given, motions, out.terminal)
+    folder.add_all(found.files(out.look))
+    plane = motions[0].ground.y is None
+    inputs.conclude(given, folder, found.document(), found.tables(), out.terminal, plane=plane)
 
 
 def case_budget(
-    given: inputs.CaseInput,
-    motions: Sequence[inputs.MotionRequest],
-    grounds: Sequence[MotionComponents],
-    terminal: Terminal,
+    given: inputs.CaseInput, motions: Sequence[inputs.Motion], terminal: Terminal
 ) -> Budget:
     """All rows of a case under the first of its motions."""
     from rpscli.report.budget import Budget
 
-    wishes = [("as it is", (), motions[0]), *_wishes(given.case, motions, grounds)]
+    wishes = [("as it is", (), motions[0].request), *_wishes(given.case, motions)]
     rows = []
     with counted(f"{len(wishes)} histories", terminal) as tell:
         for wish in wishes:
@@ -90,6 +79,7 @@ def _row(
     """What `rps timehistory` would find; the sentence of a refusal."""
     from rpscli.analyses.timehistory import time_history
     from rpscli.case.case import case_from_mapping
+    from rpscli.commands.timehistory_run import limited
     from rpscli.report.budget import Row
 
     if isinstance(motion, str):
@@ -107,16 +97,13 @@ def _row(
             raise AnalysisError(result.failure)
     except RpsError as error:
         return row._replace(refused=str(error).replace("\n", "; "))
-    found = {q.name: getattr(result, q.name) for q in LIMITED}
-    values = {name: math.nan if v is None else float(v) for name, v in found.items()}
-    return row._replace(outcome=result.outcome, values=values, record=ground.horizontal.source)
+    source = ground.horizontal.source
+    return row._replace(outcome=result.outcome, values=limited(result), record=source)
 
 
-def _wishes(
-    case: Case, motions: Sequence[inputs.MotionRequest], grounds: Sequence[MotionComponents]
-) -> Iterator[Wish]:
+def _wishes(case: Case, motions: Sequence[inputs.Motion]) -> Iterator[Wish]:
     """All changes, in the order of the tables."""
-    motion, ground = motions[0], grounds[0]
+    motion, ground = motions[0]
     for cause, text in _values(case):
         yield cause, (text,), motion
     given = [f"superstructure.{name}=null" for name in ("vertical_period", "vertical_damping")
@@ -125,7 +112,7 @@ def _wishes(
         yield "vertical period", tuple(given), motion
     if case.file.superstructure.damping is None:
         yield "damping", (), "the case has no storeys, and no damping of theirs"
-    yield _direction(case, motion, ground)
+    yield _direction(case, *motions[0])
     for factor in (0.99, 1.01):
         yield "1 % of the motion", (), _scaled(motion, factor * ground.scale)
     if ground.vertical is None:
@@ -133,7 +120,7 @@ def _wishes(
     else:
         without = ("record.vertical=null",) if motion.record is None else ()
         yield "without vertical motion", without, replace(motion, vertical=None)
-    yield from _records(case, motions, grounds)
+    yield from _records(case, motions)
 
 
 def _with_own_vertical(case: Case, motion: inputs.MotionRequest) -> inputs.MotionRequest | str:
@@ -207,22 +194,20 @@ def _direction(case: Case, motion: inputs.MotionRequest, ground: MotionComponent
     return cause, (f"record.source={other}", *unturned), alike
 
 
-def _records(
-    case: Case, motions: Sequence[inputs.MotionRequest], grounds: Sequence[MotionComponents]
-) -> Iterator[Wish]:
+def _records(case: Case, motions: Sequence[inputs.Motion]) -> Iterator[Wish]:
     """Those that are given; of a single one the far-field set, each alone at the PGA of that."""
     from rpscli.records.loading import expand_sources
 
-    found = list(zip(motions, grounds, strict=True))
+    request, ground = motions[0]
     try:
-        if len(found) == 1:
-            one = replace(motions[0], scale=None, scale_to="PGA=1 m/s2")
-            pga = grounds[0].scale / inputs.load_motion(case, one).scale
-            sources = expand_sources([FAR_FIELD + "?both" * (grounds[0].y is not None)])
+        if len(motions) == 1:
+            one = replace(request, scale=None, scale_to="PGA=1 m/s2")
+            pga = ground.scale / inputs.load_motion(case, one).scale
+            sources = expand_sources([FAR_FIELD + "?both" * (ground.y is not None)])
             aim = inputs.MotionRequest(scale_to=f"PGA={pga:.9g} m/s2")
             alone = [each for source in sources for each in inputs.single_motions((source,), aim)]
-            found = [(each, inputs.load_motion(case, each)) for each in alone]
-        for motion, ground in found:
+            motions = [inputs.Motion(each, inputs.load_motion(case, each)) for each in alone]
+        for motion, ground in motions:
             yield "records", (), _scaled(motion, ground.scale)
     except RpsError as error:
         yield "records", (), f"the far-field set at the same PGA: {error}"

@@ -11,10 +11,8 @@ import click
 from rpscli.case.conditions import Condition, conditions_of
 from rpscli.commands import inputs
 from rpscli.commands.shell import options
-from rpscli.commands.shell.terminal import Terminal
 from rpscli.errors import CaseError, RecordError, RpsError, UsageError
 from rpscli.report.documents import heading
-from rpscli.report.figures.look import USUAL, Look
 from rpscli.report.table import Heading, Part, Table, large, shown
 from rpscli.report.tables.derived import (
     AT_CRITICAL,
@@ -54,9 +52,7 @@ RECORD = ("name", "source", "format", "description", "npts", "dt", "duration", "
 @options.result_options
 def command(
     request: options.CaseRequest,
-    output: options.OutputRequest,
-    terminal: Terminal,
-    look: Look,
+    out: options.Output,
     *,
     draw: bool,
 ) -> None:
@@ -65,9 +61,9 @@ def command(
     Nothing is analysed, and nothing is written without --draw. A case with mistakes ends with exit
     code 3 and a line for each of them; so does a record that cannot be read.
     """
-    if not draw and (output != options.OutputRequest(None, force=False) or look != USUAL):
+    if not draw and (out != options.Output(out.terminal)):
         raise UsageError("only --draw writes something; options of files and figures go with it")
-    given = inputs.read_case(request, terminal)
+    given = inputs.read_case(request, out.terminal)
     from rpscli.model.statics import device_consequences, storey_strengths
     from rpscli.report.tables.derived import derived_quantities
     from rpscli.report.tables.yielding import strength_tables
@@ -77,13 +73,13 @@ def command(
     for way, seen in structure.ways.items():
         if strengths := storey_strengths(seen):
             derived[f"storey_strengths{way}"] = [each._asdict() for each in strengths]
-    doubts: tuple[str, ...] = ()
+    doubts: list[str] = []
     if structure.yields:
         from rpscli.analyses.pushover import pushover  # one that most cases do without
 
-        doubts = pushover(structure).warnings
+        doubts += pushover(structure).warnings
     record, error = _record(given.case)
-    doubts += tuple((record or {}).get("warnings", ()))
+    doubts += record["warnings"] if record else []
     document = {
         **heading("check"),
         "case": inputs.case_heading(given),
@@ -95,15 +91,15 @@ def command(
     if draw:
         from rpscli.report.bundles import bearing_files
 
-        folder = inputs.case_folder(given, output, "check")
-        folder.add_all(bearing_files(structure, given.case.title, look))
-        inputs.write(folder, terminal)
+        folder = inputs.case_folder(given, out, "check")
+        folder.add_all(bearing_files(structure, given.case.title, out.look))
+        inputs.write(folder, out.terminal)
         document["files"] = folder.files
-    terminal.warn(doubts)
+    out.terminal.warn(doubts)
     limits = conditions_of(given.case.limits, "limits of the case")
     others = device_tables(structure), strength_tables(structure)
     tables = chain(check_tables(document, limits, _unknown(structure, record)), *others)
-    terminal.finish(document, tables, error)
+    out.terminal.finish(document, tables, error)
 
 
 def _record(case: Case) -> tuple[dict[str, Any] | None, RpsError | None]:
@@ -173,9 +169,8 @@ def check_tables(
     if limits:
         from rpscli.report.limits import requirement_text
 
-        yield Table.of_texts(
-            ("limit", ""), [(c.name, requirement_text(c)) for c in limits], words=2
-        )
+        asked = [(each.name, requirement_text(each)) for each in limits]
+        yield Table.of_texts(("limit", ""), asked, words=2)
 
 
 def device_tables(structure: PodiumStructure) -> Iterator[Part]:
@@ -184,32 +179,28 @@ def device_tables(structure: PodiumStructure) -> Iterator[Part]:
         return
     from rpscli.model.statics import returns, uplift_acceleration, uplift_force
 
+    acceleration = uplift_acceleration(structure)
     found = [
-        (f"{index} {device.kind}", item.label, item.value, item.unit)
-        for index, device in enumerate(structure.devices)
-        for item in device.consequences(structure)
+        *(
+            (f"{index} {device.kind}", item.label, item.value, item.unit)
+            for index, device in enumerate(structure.devices)
+            for item in device.consequences(structure)
+        ),
+        ("all", "uplift force at the cap beam", uplift_force(structure), "N"),
+        ("all", "uplift acceleration, quasi-static", acceleration, "m/s2"),
     ]
-    found.append(("all", "uplift force at the cap beam", uplift_force(structure), "N"))
-    found.append(
-        ("all", "uplift acceleration, quasi-static", uplift_acceleration(structure), "m/s2")
-    )
     rows = []
     for device, label, value, unit in found:
         number, name = large(value, unit)
         rows.append((device, label, "never" if number is None else shown(number), name))
     yield Table.of_texts(("device", "", "value", "unit"), rows, words=2)
-    if back := returns(structure):
-        yield Table.of_texts(
-            ("from rest at rad", "of theta_cr", "u_b m", "friction kN", "largest kN", "comes back"),
-            [
-                (
-                    shown(row.rotation),
-                    shown(row.rotation / structure.critical_rotation, 2),
-                    shown(row.displacement),
-                    shown(1e-3 * row.friction),
-                    shown(1e-3 * row.largest_friction),
-                    "yes" if row.recentres else "no",
-                )
-                for row in back
-            ],
-        )
+    if not (back := returns(structure)):
+        return
+    swings = []
+    for row in back:
+        forces = shown(1e-3 * row.friction), shown(1e-3 * row.largest_friction)
+        share = shown(row.rotation / structure.critical_rotation, 2)
+        end = "yes" if row.recentres else "no"
+        swings.append((shown(row.rotation), share, shown(row.displacement), *forces, end))
+    heads = "from rest at rad", "of theta_cr", "u_b m", "friction kN", "largest kN", "comes back"
+    yield Table.of_texts(heads, swings)

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 from rpscli.case.design import parse_design
 from rpscli.case.text.files import opened
 from rpscli.commands.inputs import RESULTS, write
-from rpscli.commands.shell.options import CaseRequest, OutputRequest, RunChoices
+from rpscli.commands.shell.options import CaseRequest, Output, RunChoices
 from rpscli.commands.shell.terminal import Terminal, concluded, leave
 from rpscli.commands.study import computed, show_dry_run, study_heading
 from rpscli.errors import LimitExceeded, RpsError, StudyIncomplete
@@ -21,7 +21,7 @@ from rpscli.report.design import (
     nothing_passes,
 )
 from rpscli.report.documents import heading
-from rpscli.report.figures.look import Look, figure_files
+from rpscli.report.figures.look import figure_files
 from rpscli.report.files import OutputFolder
 from rpscli.report.limits import VERDICT, verdict_texts
 from rpscli.report.study.shown import note_of_directions, of_first_system
@@ -118,14 +118,9 @@ class Design(NamedTuple):
         leave(self.error)
 
 
-def designed(
-    request: CaseRequest,
-    choices: RunChoices,
-    output: OutputRequest,
-    look: Look,
-    terminal: Terminal,
-) -> Design | None:
+def designed(request: CaseRequest, choices: RunChoices, out: Output) -> Design | None:
     """Search, judge what is best, and collect the files; None after a dry run."""
+    terminal = out.terminal
     task = parse_design(**opened(request.source), overrides=request.overrides)
     search, rounds, validated = Search(task), 0, None
     first = Study(search.layout, request.overrides)
@@ -135,8 +130,8 @@ def designed(
         terminal.note(f"the first of at most {search.most} designs:")
         show_dry_run(first, choices, terminal)
         return None
-    place = output.place or RESULTS / task.study.name / "design"
-    folder = first.output(place, "design", force=output.force)
+    place = out.place or RESULTS / task.study.name / "design"
+    folder = first.output(place, "design", force=out.force)
     records = search.layout.context.records  # read once
     with Store(folder.folder, fresh=choices.fresh) as store:
 
@@ -157,12 +152,12 @@ def designed(
             validated = run(lay_out(task.study_of(best, task.unseen)))
         judged = run(lay_out(task.study_of(best)))
         every = run(lay_out(task.study_of(answer.values[answer.valid])))
-        found = collected(every, look)
+        found = collected(every, out.look)
         folder.add_all(found.files.items())
         folder.add("designs.csv", csv_text(design_columns(answer)))
         if validated is not None:
             columns = verdict_columns(validated.keys, validated.judgements)
             folder.add("validation.csv", csv_text(columns))
-        folder.add_all(figure_files(figures(answer, task.study.title), look).items())
+        folder.add_all(figure_files(figures(answer, task.study.title), out.look).items())
         store.require()
     return Design(search, answer, every, found, judged, validated, folder)

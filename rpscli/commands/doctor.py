@@ -44,7 +44,10 @@ def command(terminal: Terminal) -> None:
     """Show what is installed, what is missing, and the remedy; exit code 6 if it cannot run."""
     needed = _packages(None)
     optional = [row for extra in EXTRAS for row in _packages(extra)]
-    rows = [*_surroundings(), *needed, *optional, *_plugins()]
+    # Entry points of other packages: group and name, package, and why it does not load.
+    offers = (offer for kind in KINDS for offer in Registry(kind, {}, Any).offers())
+    added = [(f"rpscli.{each.kind}: {each.name}", each.package, each.fault) for each in offers]
+    rows = [*_surroundings(), *needed, *optional, *added]
     table = Table.of_texts(("subject", "found", "remedy, or what it adds"), rows, words=3)
     findings = [dict(zip(("subject", "found", "remedy"), row, strict=True)) for row in rows]
     lacking = "\n".join(f"{name}: {found}; {remedy}" for name, found, remedy in needed if remedy)
@@ -81,12 +84,6 @@ def _packages(extra: str | None) -> list[tuple[str, str, str]]:
             remedy = adds or f'pip install "{said[1]}>={said[2]}"'
             rows.append((said[1], version, remedy if lacks else ""))
     return rows
-
-
-def _plugins() -> list[tuple[str, str, str]]:
-    """Entry points of other packages: group and name, package, and why it does not load."""
-    offers = (offer for kind in KINDS for offer in Registry(kind, {}, Any).offers())
-    return [(f"rpscli.{each.kind}: {each.name}", each.package, each.fault) for each in offers]
 
 
 def _numbers(version: str) -> list[int]:

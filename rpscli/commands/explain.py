@@ -71,10 +71,8 @@ def command(word: str, terminal: Terminal) -> None:
         for name, meaning in glossary()
         if word.lower() in _names(name)
     ]
-    results = [
-        _result(q) for q in EVERY.values() if word == q.name or (word == q.label and not words)
-    ]
-    entries = [*_keys(word), *results, *words]
+    named = [q for q in EVERY.values() if word == q.name or (word == q.label and not words)]
+    entries = [*_keys(word), *map(_result, named), *words]
     offers = [] if entries else list(_offers(word))
     entries += _reports(word, everything=bool(offers), options=not (entries or offers))
     if not (entries or offers or word == PLUGINS):
@@ -106,17 +104,16 @@ def _names(entry: str) -> list[str]:
 
 
 def _result(quantity: ResultQuantity) -> Entry:
-    rows = {
-        "means": quantity.label,
-        "unit": quantity.unit or "none",
-        "limit, as in": quantity.limit,
-        "needs": quantity.needs,
-        "is": quantity.meaning,
-        "limits": "are at_least, since small values are bad" if quantity.from_below else "",
-    }
+    text = Table.listing([
+        ("means", quantity.label),
+        ("unit", quantity.unit or "none"),
+        ("limit, as in", quantity.limit),
+        ("needs", quantity.needs),
+        ("is", quantity.meaning),
+        ("limits", "are at_least, since small values are bad" if quantity.from_below else ""),
+    ])  # fmt: skip
     said = {name: value for name, value in quantity._asdict().items() if value}
-    text = Heading(f"{quantity.name}, a result"), Table.listing(rows.items())
-    return Entry("results", said, text)
+    return Entry("results", said, (Heading(f"{quantity.name}, a result"), text))
 
 
 def _formats() -> list[KeyReference]:
@@ -163,18 +160,18 @@ def _lines(key: KeyReference) -> Table:
 
     needed = "none, required in its section" if key.required else ""
     names = f"{', '.join(REPORTS.names())}; `rps explain NAME` lists the options of one"
-    rows = {
-        "means": key.meaning,
-        "symbol": key.symbol,
-        "unit": "none" if key.unit == "-" else key.unit,
-        "must be": key.bounds,
-        "words": ", ".join(key.words),
-        "names": names if key.key.split(".")[-1] == "reports" else "",
-        "default": needed if key.default is None else str(key.default),
-        "enters": f"THEORY.md, section {key.sections}" if key.sections else "",
-    }
     keys = zip(["keys", *[""] * len(key.keys)], map(": ".join, key.keys), strict=False)
-    return Table.listing([*rows.items(), *keys])
+    return Table.listing([
+        ("means", key.meaning),
+        ("symbol", key.symbol),
+        ("unit", "none" if key.unit == "-" else key.unit),
+        ("must be", key.bounds),
+        ("words", ", ".join(key.words)),
+        ("names", names if key.key.split(".")[-1] == "reports" else ""),
+        ("default", needed if key.default is None else str(key.default)),
+        ("enters", f"THEORY.md, section {key.sections}" if key.sections else ""),
+        *keys,
+    ])  # fmt: skip
 
 
 def _reports(word: str, *, everything: bool, options: bool) -> Iterator[Entry]:

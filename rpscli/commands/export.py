@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import click
 
 from rpscli.commands import inputs
 from rpscli.commands.shell import options
-from rpscli.commands.shell.terminal import Terminal, announce_compilation
+from rpscli.commands.shell.terminal import announce_compilation
 from rpscli.errors import AnalysisError, UsageError, visible
 
 if TYPE_CHECKING:
@@ -23,14 +24,12 @@ PROGRAMS = {"mujoco": "model.xml", "opensees": "model.py"}
 @options.case_options
 @click.argument("program", metavar="|".join(PROGRAMS), type=click.Choice([*PROGRAMS]))
 @options.records_option
-@options.output_options
-@options.terminal_options
+@options.written_options
 def command(
     request: options.CaseRequest,
     program: str,
     records: tuple[str, ...],
-    output: options.OutputRequest,
-    terminal: Terminal,
+    out: options.Output,
 ) -> None:
     """Write CASE and its record as a model for another program.
 
@@ -45,11 +44,12 @@ def command(
     from rpscli.report.bundles import history_columns
     from rpscli.report.table import Column, csv_lines
 
-    given = inputs.read_case(request, terminal)
-    motions = list(inputs.single_motions(records, inputs.MotionRequest(), terminal.warn))
+    given = inputs.read_case(request, out.terminal)
+    motions = list(inputs.single_motions(records, inputs.MotionRequest(), out.terminal.warn))
     if len(motions) > 1:
         raise UsageError(f"--record: a model has one motion, not {len(motions)}; name one of them")
-    ground = inputs.load_motion(given.case, motions[0])
+    motion = inputs.Motion(motions[0], inputs.load_motion(given.case, motions[0]))
+    ground = motion.ground
     structure = given.case.structure
     vertical = ground.vertical if program == "opensees" else None
     left = {"podium.devices": structure.devices, "record.vertical": vertical,
@@ -62,12 +62,9 @@ def command(
     if why:
         text = f"{given.case.source}: {why[0]}, so that both programs compute the same"
         raise UsageError(text)
-    own = inputs.RESULTS / given.case.name / "export" / program
-    place = options.OutputRequest(output.place or own, output.force)
-    resolved = {"program": program, "record": inputs.motion_inputs(ground)}
-    source = inputs.motion_source(given.case, motions[0])
-    folder = inputs.case_folder(given, place, "export", record_source=source, **resolved)
-    announce_compilation(terminal)
+    own = replace(out, place=out.place or inputs.RESULTS / given.case.name / "export" / program)
+    folder = inputs.case_folder(given, own, "export", motion=motion, program=program)
+    announce_compilation(out.terminal)
     result = time_history(structure, ground, given.case.analysis)
     if result.failure:
         raise AnalysisError(result.failure)
@@ -82,7 +79,7 @@ def command(
     folder.add(RERUN, _script(result, until))
     document = {"program": program, "limits": limits, "comparable_until": plain(until)}
     lines = [limits, f"next: python {folder.folder / RERUN}"]
-    inputs.conclude(given, folder, document, lines, terminal)
+    inputs.conclude(given, folder, document, lines, out.terminal)
 
 
 def _model(program: str, result: TimeHistoryResult, title: str, until: float) -> tuple[str, str]:

@@ -70,16 +70,13 @@ def command(
             found = identified(given.case.structure, test, columns)
         except AnalysisError as error:
             raise AnalysisError(f"{data}: {error}") from None
-    estimates = [
-        {"name": name, "unit": unit, **value._asdict()}
-        for (name, unit), value in found.estimates.items()
-    ]
+    estimates = found.estimates.items()
     document = {
         **heading("identify"),
         "case": case_heading(given),
         "test": test,
         "level": LEVEL,
-        "estimates": estimates,
+        "estimates": [{"name": n, "unit": u, **value._asdict()} for (n, u), value in estimates],
         "misfit": found.misfit,
         "ensembles": found.ensembles,
         "residuals": found.residuals,
@@ -106,7 +103,7 @@ def _tables(found: Identified) -> Iterator[Part]:
     if swings:
         yield Table.of_texts(heads, swings, words=0)
     if found.keys:
-        sets = (word for key, value in found.keys.items() for word in ("--set", f"{key}={value}"))
+        sets = options.set_words(f"{key}={value}" for key, value in found.keys.items())
         yield f"in the case, or behind it: {shlex.join(sets)}"
 
 

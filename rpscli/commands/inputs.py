@@ -6,16 +6,16 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
 from rpscli.commands.shell import options
 from rpscli.commands.shell.terminal import Terminal, counted, passing_time
-from rpscli.errors import CaseError, UsageError
+from rpscli.errors import CaseError, RpsError, UsageError, all_made
 from rpscli.report.documents import heading
 from rpscli.report.figures.film import FilmRequest
-from rpscli.report.figures.look import Look, drawn_with
+from rpscli.report.figures.look import drawn_with
 from rpscli.report.files import Drawing, OutputFolder, Run
 from rpscli.report.table import Part
 from rpscli.units import as_written
@@ -55,21 +55,22 @@ def read_case(request: options.CaseRequest, terminal: Terminal) -> CaseInput:
 
 def case_folder(
     given: CaseInput,
-    output: options.OutputRequest,
+    out: options.Output,
     command: str,
     *,
+    motion: Motion | None = None,
     record_source: Path | str | None = None,
     **inputs: Any,
 ) -> OutputFolder:
     """The folder of a command's results, claimed before the work begins."""
-    resolved: Mapping[str, Any] = {
-        "case": given.case.document,
-        "overrides": list(given.request.overrides),
-        **inputs,
-    }
-    run = Run(command, given.case.name, given.file, given.case.digest, resolved, record_source)
-    place = output.place or RESULTS / given.case.name / command
-    return OutputFolder(place, run, force=output.force)
+    case = given.case
+    resolved = {"case": case.document, "overrides": list(given.request.overrides), **inputs}
+    if motion is not None:
+        record_source = motion_source(case, motion.request)
+        resolved["record"] = motion_inputs(motion.ground)
+    run = Run(command, case.name, given.file, case.digest, resolved, record_source)
+    place = out.place or RESULTS / case.name / command
+    return OutputFolder(place, run, force=out.force)
 
 
 def write(folder: OutputFolder, terminal: Terminal) -> None:
@@ -87,17 +88,16 @@ def write(folder: OutputFolder, terminal: Terminal) -> None:
 def add_film(
     folder: OutputFolder,
     film: FilmRequest,
-    look: Look,
     draw: Callable[[Callable[[int, int], None]], bytes],
-    terminal: Terminal,
+    out: options.Output,
 ) -> None:
     """Collect an animation, which is told how many of its frames are drawn."""
 
     def drawn() -> bytes:
-        with counted("drawing the animation", terminal) as tell:
+        with counted("drawing the animation", out.terminal) as tell:
             return draw(tell)
 
-    make = partial(drawn_with, look, film.ending, drawn)
+    make = partial(drawn_with, out.look, film.ending, drawn)
     folder.add_at(film.file, Drawing(film.file.name, make))
 
 
@@ -169,6 +169,13 @@ class MotionRequest:
         return [word for option in given for word in option]
 
 
+class Motion(NamedTuple):
+    """A ground motion as it was asked for, and as it was read."""
+
+    request: MotionRequest
+    ground: MotionComponents
+
+
 motion_options = options.gathered(
     "motion",
     MotionRequest,
@@ -229,6 +236,13 @@ def motion_source(case: Case, request: MotionRequest) -> Path | str:
     given = case.record_source if own else Source.parse(request.record or "")
     file = (case.folder if own else Path()) / given.place
     return file if file.is_file() else given
+
+
+def load_motions(
+    case: Case, requests: Iterable[MotionRequest], fault: type[RpsError] = RpsError
+) -> list[Motion]:
+    """All motions; faults of this kind are told together."""
+    return all_made(lambda each: Motion(each, load_motion(case, each)), requests, fault)
 
 
 def load_motion(case: Case, request: MotionRequest) -> MotionComponents:

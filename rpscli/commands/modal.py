@@ -10,10 +10,8 @@ import click
 
 from rpscli.commands.inputs import add_film, case_folder, conclude, read_case
 from rpscli.commands.shell import options
-from rpscli.commands.shell.terminal import Terminal
 from rpscli.errors import listed
 from rpscli.report.figures.film import FilmRequest
-from rpscli.report.figures.look import Look
 from rpscli.report.table import Heading, Part, Table, measured, shown
 
 if TYPE_CHECKING:
@@ -27,9 +25,7 @@ if TYPE_CHECKING:
 @options.result_options
 def command(
     request: options.CaseRequest,
-    output: options.OutputRequest,
-    terminal: Terminal,
-    look: Look,
+    out: options.Output,
     film: FilmRequest | None,
     *,
     paper: bool,
@@ -38,20 +34,20 @@ def command(
 
     Writes modes.csv, shapes.csv, eigenvalues.csv and the figure modes.
     """
-    given = read_case(request, terminal)
-    folder = case_folder(given, output, "modal")
+    given = read_case(request, out.terminal)
+    folder = case_folder(given, out, "modal")
     from rpscli.analyses.modal import modal
     from rpscli.report.bundles import modal_files
 
     result = modal(given.case.structure)
-    folder.add_all(modal_files(result, given.case.title, look))
+    folder.add_all(modal_files(result, given.case.title, out.look))
     if film is not None:
         from rpscli.report.figures.animation import modes_film
 
         draw = partial(modes_film, result, given.case.title, film)
-        add_film(folder, film, look, draw, terminal)
+        add_film(folder, film, draw, out)
     tables = _tables(result, given.case.title, () if paper else (FIRST_ORDER,))
-    conclude(given, folder, result.results(), tables, terminal)
+    conclude(given, folder, result.results(), tables, out.terminal)
 
 
 ORDER = (

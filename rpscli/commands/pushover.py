@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 import click
@@ -10,9 +10,7 @@ import click
 from rpscli.analyses.result_quantities import PUSHOVER
 from rpscli.commands.inputs import case_folder, conclude, read_case
 from rpscli.commands.shell import options
-from rpscli.commands.shell.terminal import Terminal
 from rpscli.errors import UsageError
-from rpscli.report.figures.look import Look
 from rpscli.report.table import Heading, Part, Table, measured, shown
 
 if TYPE_CHECKING:
@@ -32,9 +30,7 @@ if TYPE_CHECKING:
 @options.result_options
 def command(
     request: options.CaseRequest,
-    output: options.OutputRequest,
-    terminal: Terminal,
-    look: Look,
+    out: options.Output,
     patterns: tuple[str, ...],
 ) -> None:
     """Restoring force of the storey of CASE, and capacity curves of the whole structure.
@@ -42,50 +38,47 @@ def command(
     Writes storey_curve.csv and, for a case with storeys, capacity.csv, a figure of each, and the
     figure bearing: columns at rest, where rolling ends and at the critical rotation.
     """
-    given = read_case(request, terminal)
+    given = read_case(request, out.terminal)
     from rpscli.analyses.pushover import PATTERNS, pushover
     from rpscli.report.bundles import pushover_files
 
     if patterns and given.case.structure.superstructure is None:
         raise UsageError("--pattern: the case has no storeys to push at")
-    asked = [_pattern(text, PATTERNS) for text in patterns] or PATTERNS
-    folder = case_folder(given, output, "pushover", patterns=list(asked))
+    asked = [_pattern(text) for text in patterns] or PATTERNS
+    folder = case_folder(given, out, "pushover", patterns=list(asked))
     try:
         result = pushover(given.case.structure, patterns=asked)
     except ValueError as error:
         raise UsageError(f"--pattern: {error}") from None
-    folder.add_all(pushover_files(result, given.case.title, look))
+    folder.add_all(pushover_files(result, given.case.title, out.look))
     tables = _tables(result, given.case.title)
-    conclude(given, folder, result.results(), tables, terminal, doubts=result.warnings)
+    conclude(given, folder, result.results(), tables, out.terminal, doubts=result.warnings)
 
 
-def _pattern(text: str, names: Sequence[PatternName]) -> PatternName | list[float]:
-    for name in names:
-        if text == name:
-            return name
+def _pattern(text: str) -> PatternName | list[float]:
+    from rpscli.analyses.pushover import PATTERNS
+
     try:
-        return [float(force) for force in text.split(",")]
+        known = next((name for name in PATTERNS if name == text), None)
+        return known or [float(force) for force in text.split(",")]
     except ValueError:
-        raise UsageError(
-            f"--pattern {text}: write {', '.join(names)}, or floor forces from the bottom as in"
-            " 1,2,3"
-        ) from None
+        names = ", ".join(PATTERNS)
+        remedy = f"write {names}, or floor forces from the bottom as in 1,2,3"
+        raise UsageError(f"--pattern {text}: {remedy}") from None
 
 
 def _tables(result: PushoverResult, title: str) -> Iterator[Part]:
     scalars = {q.name: (q.label, measured(getattr(result, q.name), q.unit)) for q in PUSHOVER}
-    rows = [
+    label, stiffness = scalars["initial_stiffness"]
+    yield Heading(title)
+    yield Table.listing([
         scalars["uplift_force"],
-        ("stiffness in full contact", scalars["initial_stiffness"][1])
-        if result.structure.bed
-        else scalars["initial_stiffness"],
+        ("stiffness in full contact" if result.structure.bed else label, stiffness),
         ("largest force", measured(float(result.curve.force.max()), "N")),
         scalars["critical_rotation"],
         scalars["critical_displacement"],
         ("lift at the critical rotation", measured(float(result.curve.lift[-1]), "m")),
-    ]
-    yield Heading(title)
-    yield Table.listing(rows)
+    ])  # fmt: skip
     if result.capacity:
         heads = ("pattern", "roof at uplift m", "largest sum of floor forces kN")
         capacity = []

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Sequence
-from dataclasses import asdict, replace
-from functools import partial, wraps
+from dataclasses import asdict, dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -16,18 +16,17 @@ from rpscli.commands.shell import Group
 from rpscli.commands.shell.options import (
     FILE,
     CaseRequest,
-    Command,
-    OutputRequest,
+    Output,
     completing,
-    figure_options,
-    output_options,
+    gathered,
     overrides_option,
+    result_options,
     terminal_options,
+    written_options,
 )
 from rpscli.commands.shell.terminal import Terminal, watched
 from rpscli.errors import LimitExceeded, Refused, UsageError
 from rpscli.report.documents import heading
-from rpscli.report.figures.look import Look
 from rpscli.report.files import OutputFolder, Run, encoded, write_whole
 
 if TYPE_CHECKING:
@@ -51,36 +50,46 @@ def command() -> None:
     """
 
 
-def source_options(function: Command) -> Command:
-    """SRC, --dt, --units, --scale as `motions`, those of a pair x and y; warnings are told."""
+@dataclass(frozen=True)
+class SourceRequest:
+    """A ground motion to be read; what its file states needs no option."""
 
-    @click.argument("source", metavar="SRC", type=FILE)
-    @click.option("--dt", type=float, metavar="S", help="Time step of a file that states none [s].")
-    @click.option(
-        "--units", metavar="UNIT", help="Unit of the values of a file that states none, such as g."
-    )
-    @click.option(
-        "--scale", type=float, default=1.0, metavar="FACTOR", help="Factor on the values."
-    )
-    @wraps(function)
-    def command(*, source: str, scale: float, terminal: Terminal, dt: float | None,
-                units: str | None, **rest: Any) -> None:  # fmt: skip
+    source: str
+    dt: float | None
+    units: str | None
+    scale: float
+
+    def motions(self, terminal: Terminal) -> list[GroundMotion]:
+        """The motion, or x and y of a pair; warnings go to the terminal."""
         from rpscli.records.loading import load_components
 
-        read = load_components(source, dt=dt, units=units)
-        read = read if scale == 1.0 else read.scaled(scale)
+        read = load_components(self.source, dt=self.dt, units=self.units)
+        read = read if self.scale == 1.0 else read.scaled(self.scale)
         motions, stem = [read.horizontal], read.horizontal.name.replace("_both", "", 1)
         if read.y is not None:
             named = zip("xy", (read.horizontal, read.y), strict=True)
             motions = [replace(each, name=f"{stem}_{way}") for way, each in named]
         terminal.warn(dict.fromkeys(text for each in motions for text in each.warnings))
-        function(motions=motions, terminal=terminal, **rest)
-
-    return command
+        return motions
 
 
-def record_folder(
-    motions: Sequence[GroundMotion], output: OutputRequest, command: str, **inputs: Any
+source_options = gathered(
+    "given",
+    SourceRequest,
+    click.argument("source", metavar="SRC", type=FILE),
+    click.option("--dt", type=float, metavar="S", help="Time step of a file that states none [s]."),
+    click.option(
+        "--units", metavar="UNIT", help="Unit of the values of a file that states none, such as g."
+    ),
+    click.option(
+        "--scale", type=float, default=1.0, metavar="FACTOR", help="Factor on the values."
+    ),
+)
+"""SRC, --dt, --units and --scale, as `given`."""
+
+
+def _folder(
+    motions: Sequence[GroundMotion], out: Output, command: str, **inputs: Any
 ) -> OutputFolder:
     """The folder of a command's results; a record that is no file is known by its samples."""
     from rpscli.records.source import Source
@@ -90,8 +99,7 @@ def record_folder(
     name = f"{motion.name.removesuffix('_x')}_both" if others else motion.name
     inputs |= {"source": motion.source} | ({"y": others[0].digest} if others else {})
     run = Run(f"record {command}", name, file if file.is_file() else None, motion.digest, inputs)
-    place = output.place or RESULTS / name / f"record_{command}"
-    return OutputFolder(place, run, force=output.force)
+    return OutputFolder(out.place or RESULTS / name / f"record_{command}", run, force=out.force)
 
 
 def _result(
@@ -109,21 +117,17 @@ def _result(
 
 
 @command.command("info", short_help="what was read, and its intensity measures")
-@terminal_options
 @source_options
-def info(motions: Sequence[GroundMotion], terminal: Terminal) -> None:
+@terminal_options
+def info(given: SourceRequest, terminal: Terminal) -> None:
     """How SRC was read, and its intensity measures in SI units."""
-    _result("info", motions, terminal)
+    _result("info", given.motions(terminal), terminal)
 
 
 @command.command("plot", short_help="time histories and response spectrum")
-@terminal_options
 @source_options
-@figure_options
-@output_options
-def plot(
-    motions: Sequence[GroundMotion], output: OutputRequest, terminal: Terminal, look: Look
-) -> None:
+@result_options
+def plot(given: SourceRequest, out: Output) -> None:
     """Draw SRC: acceleration, velocity, displacement and its response spectrum at 5 % damping.
 
     Writes record.csv, spectrum.csv and the figure record; of a pair x_record.csv, y_record.csv, ...
@@ -131,12 +135,13 @@ def plot(
     from rpscli.records.measures import drawn_spectrum
     from rpscli.report.bundles import record_files
 
-    folder = record_folder(motions, output, "plot")
+    motions = given.motions(out.terminal)
+    folder = _folder(motions, out, "plot")
     for motion, way in zip(motions, ("x_", "y_") if len(motions) > 1 else ("",), strict=True):
-        files = record_files(motion, drawn_spectrum(motion), look)
+        files = record_files(motion, drawn_spectrum(motion), out.look)
         folder.add_all((f"{way}{name}", content) for name, content in files)
-    write(folder, terminal)
-    _result("plot", motions, terminal, files=folder.files)
+    write(folder, out.terminal)
+    _result("plot", motions, out.terminal, files=folder.files)
 
 
 USUAL_PERIODS = 0.2, 3.0
@@ -229,9 +234,7 @@ def _targets() -> list[str]:
     help="Match the target's spectrum over the range, or its PGV.",
 )
 @click.option("--pgv", type=float, metavar="V", help="PGV for --scale-by PGV [m/s].")
-@terminal_options
-@figure_options
-@output_options
+@result_options
 def select(
     sources: tuple[str, ...],
     target: str,
@@ -246,9 +249,7 @@ def select(
     per_event: int,
     scale_by: Literal["spectrum", "PGV"],
     pgv: float | None,
-    output: OutputRequest,
-    terminal: Terminal,
-    look: Look,
+    out: Output,
 ) -> None:
     """Choose the motions among SRC whose mean spectrum fits a target, with their factors.
 
@@ -280,37 +281,37 @@ def select(
         raise UsageError("--set: overrides a value of a case; name it by --case")
     structure, limit = None, ""
     if case_source is not None:
-        structure, limit = _structure(CaseRequest(case_source, overrides), terminal)
+        structure, limit = _structure(CaseRequest(case_source, overrides), out.terminal)
     if spectrum.deviation is not None and rules not in {None, "none"}:
         raise UsageError(f"--rules {rules}: is about means, {target} has a sigma_ln to be met")
     asked = KNOWN.get(rules or spectrum.rules)
     span, why = _range(structure, limit, spectrum, asked)
     span, why = (span, why) if periods is None else (periods, "as asked for")
     single, notes = expanded(sources)
-    terminal.warn(notes)
+    out.terminal.warn(notes)
     usual: Component = USUAL if any(Source.parse(text).both for text in single) else "component"
     of = component or (asked.of if asked and rules else None) or spectrum.of or usual
     request = search.SelectionRequest(
         count, span, factors, per_event, wanted_pgv, of, rules or spectrum.rules, structure
     )
-    numbers = watched("records read", terminal, range(len(single)), many=100)
+    numbers = watched("records read", out.terminal, range(len(single)), many=100)
     every = [load_components(single[number]).horizontal for number in numbers]
     motions, left_out = search.kept(every, [search.parse_filter(text) for text in where])
     if not motions:
         counts = ", ".join(f"{text} {sum(out.values())}" for text, out in left_out.items())
         raise UsageError(f"--where: leaves no motion of {len(every)}; out go by {counts}")
-    looking = partial(watched, "candidates", terminal, many=100)
+    looking = partial(watched, "candidates", out.terminal, many=100)
     selection = search.select(motions, spectrum, request, looking)
-    place, file = output.place or RESULTS / "selection" / "record_select", Path(target)
+    place, file = out.place or RESULTS / "selection" / "record_select", Path(target)
     digest = hashlib.sha256("".join(motion.digest for motion in motions).encode()).hexdigest()
     inputs = {
         "sources": list(sources), "target": target, "request": asdict(request), "where": where
     }  # fmt: skip
     run = Run("record select", spectrum.name, file if file.is_file() else None, digest, inputs)
-    folder = OutputFolder(place, run, force=output.force)
-    folder.add_all(selection_files(selection, place, look))
-    terminal.warn(report.selection_doubts(selection, structure and structure.fixed))
-    write(folder, terminal)
+    folder = OutputFolder(place, run, force=out.force)
+    folder.add_all(selection_files(selection, place, out.look))
+    out.terminal.warn(report.selection_doubts(selection, structure and structure.fixed))
+    write(folder, out.terminal)
     missed = [
         f"not met: {rule.rule}, {rule.found}; required {rule.required}"
         for rule in selection.rules
@@ -321,7 +322,7 @@ def select(
         **heading("record select"), **report.selection_document(selection),
         "periods_from": why, "left_out": left_out, "files": folder.files,
     }  # fmt: skip
-    terminal.finish(document, report.selection_tables(selection, why, left_out), error)
+    out.terminal.finish(document, report.selection_tables(selection, why, left_out), error)
 
 
 def _structure(request: CaseRequest, terminal: Terminal) -> tuple[Periods, str]:
@@ -378,18 +379,12 @@ def _pgv(scale_by: str, pgv: float | None, target: TargetSpectrum) -> float | No
     return target.pgv if pgv is None else pgv
 
 
-def write_record(
-    command: str,
-    motions: Sequence[GroundMotion],
-    output: OutputRequest,
-    terminal: Terminal,
-    form: str | None,
-) -> None:
+def _write(command: str, motions: Sequence[GroundMotion], out: Output, form: str | None) -> None:
     """Write the motions into the folder, or the file, that the command line names."""
     from rpscli.records.formats.at2 import at2_text
     from rpscli.report.tables.motions import two_column_text
 
-    place = Path() if output.place is None else output.place
+    place = out.place or Path()
     endings = {} if place.is_dir() else {ending: form for form, ending in FORMATS.items()}
     named = endings.get(place.suffix.lower())
     if named and form not in {None, named}:
@@ -399,20 +394,21 @@ def write_record(
     wanted = named or form or "at2"
     contents = [(at2_text if wanted == "at2" else two_column_text)(motion) for motion in motions]
     if named:
-        if place.exists() and not output.force:
+        if place.exists() and not out.force:
             raise Refused(f"{place} exists; name another file, or overwrite it with --force")
         write_whole({place: encoded(contents[0])})
-        terminal.note(f"written to {place}")
-        return _result(command, motions, terminal, files=[str(place)])
-    folder = record_folder(motions, output, command, format=wanted)
-    names = (f"{motion.name}{FORMATS[wanted]}" for motion in motions)
-    folder.add_all(zip(names, contents, strict=True))
-    write(folder, terminal)
-    return _result(command, motions, terminal, files=folder.files)
+        out.terminal.note(f"written to {place}")
+        files = [str(place)]
+    else:
+        folder = _folder(motions, out, command, format=wanted)
+        names = (f"{motion.name}{FORMATS[wanted]}" for motion in motions)
+        folder.add_all(zip(names, contents, strict=True))
+        write(folder, out.terminal)
+        files = folder.files
+    _result(command, motions, out.terminal, files=files)
 
 
 @command.command("convert", short_help="write it as AT2 or as two columns")
-@terminal_options
 @source_options
 @click.option(
     "--to",
@@ -424,38 +420,31 @@ def write_record(
 @click.option(
     "--resample", type=float, metavar="S", help="New time step, by linear interpolation [s]."
 )
-@output_options
-def convert(
-    motions: Sequence[GroundMotion],
-    output: OutputRequest,
-    terminal: Terminal,
-    form: str | None,
-    resample: float | None,
-) -> None:
+@written_options
+def convert(given: SourceRequest, out: Output, form: str | None, resample: float | None) -> None:
     """Write SRC as a PEER AT2 file or as two columns of text, with another time step if asked.
 
     The name after -o may also be that of a file: -o motion.at2, -o motion.txt. Of a pair each
     component has a file.
     """
+    motions = given.motions(out.terminal)
     if resample is not None:
-        known = {text for motion in motions for text in motion.warnings}
         motions = [motion.resampled(resample) for motion in motions]
-        terminal.warn({text for motion in motions for text in motion.warnings} - known)
-    write_record("convert", motions, output, terminal, form)
+        out.terminal.warn(text for motion in motions for text in motion.warnings)
+    _write("convert", motions, out, form)
 
 
 @command.command("synth", short_help="make a pulse or a synthetic motion")
-@terminal_options
 @source_options
-@output_options
-def synth(motions: Sequence[GroundMotion], output: OutputRequest, terminal: Terminal) -> None:
+@written_options
+def synth(given: SourceRequest, out: Output) -> None:
     """Make the motion that SRC describes, and write it as an AT2 file that says so.
 
     SRC is synthetic:?pga=0.4g&seed=1 (also duration, dt, ground_frequency, ground_damping,
     cut_frequency, cut_damping, pulse_velocity, pulse_period, pulse_cycles) or a pulse such as
     pulse:ricker?amplitude=0.4g&period=1. The same seed gives the same motion.
     """
-    motion = motions[0]
+    motion, *_ = motions = given.motions(out.terminal)
     if (form := motion.format) not in ("synthetic", "pulse"):
         raise UsageError(f"{motion.source}: is {form}, not made here; use `rps record convert`")
-    write_record("synth", motions, output, terminal, "at2")
+    _write("synth", motions, out, "at2")

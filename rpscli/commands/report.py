@@ -78,8 +78,9 @@ def command(
         raise UsageError(f"-o {place}: the page is HTML; name a file that ends with .html")
     from rpscli.commands import report_page as pages
     from rpscli.commands.study import read
+    from rpscli.report.html.page import FORMATS
 
-    look = Look(style={} if style_file is None else drawable_style(style_file))
+    style = {} if style_file is None else drawable_style(style_file)
     request = options.CaseRequest(subject, overrides)
     earlier = pages.earlier_results(Path(subject)) if Path(subject).is_dir() else None
     kind = pages.kind_of(subject) if earlier is None else earlier.run["command"]
@@ -96,14 +97,15 @@ def command(
         why = "a design has limits of its own; leave --fail-on out"
     if why:
         raise UsageError(f"{subject}: {why}")
+    folder = None if earlier is None else earlier.folder
+    out = options.Output(terminal, folder, look=Look(FORMATS, style=style))
     make: Callable[[], PageDone]
     if kind == pages.DESIGN:
         name = Path(subject).stem if earlier is None else earlier.run["name"]
-        make = partial(pages.design_page, request, earlier, look, terminal)
+        make = partial(pages.design_page, request, earlier, out)
     elif kind == pages.SWEEP:
         study = read(earlier.subject if earlier else request, conditions, terminal)
-        name, folder = study.layout.study.name, None if earlier is None else earlier.folder
-        make = partial(pages.study_page, study, folder, look, terminal)
+        name, make = study.layout.study.name, partial(pages.study_page, study, out)
     else:
         if earlier is None:
             given = inputs.read_case(request, terminal)
@@ -113,7 +115,7 @@ def command(
             given, motions = earlier.case()
             asked = pages.typed_together(given.case, motions)
         name = given.case.name
-        told = (given, motions, asked, conditions, look, earlier, terminal)
+        told = (given, motions, asked, conditions, earlier, out)
         make = partial(pages.history_page, *told, with_budget=with_budget)
     file = place or inputs.RESULTS / name / "report.html"
     _require_free(file, name, force=force)

@@ -21,18 +21,17 @@ from rpscli.commands import timehistory_run as run
 from rpscli.commands.budget import case_budget
 from rpscli.commands.design import designed
 from rpscli.commands.inputs import RESULTS, CaseInput, MotionRequest, case_heading
-from rpscli.commands.shell.options import CaseRequest, OutputRequest, RunChoices
-from rpscli.commands.shell.terminal import Terminal, announce_compilation, concluded
+from rpscli.commands.shell.options import CaseRequest, Output, RunChoices
+from rpscli.commands.shell.terminal import announce_compilation, concluded
 from rpscli.commands.study import swept
 from rpscli.errors import RecordError, RpsError, UsageError
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.source import Source
 from rpscli.report.documents import as_text, heading, read_json, results_of
 from rpscli.report.figures.history import record_name
-from rpscli.report.figures.look import Look
-from rpscli.report.files import RUN_FILE, RUN_KINDS
+from rpscli.report.files import RUN_FILE, RUN_KINDS, OutputFolder
 from rpscli.report.html import case_page as parts
-from rpscli.report.html.page import Block, Notice, Picture, Section, page_look, pictures
+from rpscli.report.html.page import Block, Notice, Picture, Section, pictures
 from rpscli.report.limits import verdicts_in_short
 from rpscli.report.study.labels import labels
 from rpscli.report.study.shown import cut, of_first_system, summary_tables, verdict_table
@@ -179,27 +178,27 @@ def history_page(
     motions: Sequence[MotionRequest],
     asked: Sequence[Asked],
     conditions: Sequence[Condition],
-    look: Look,
     earlier: Earlier | None,
-    terminal: Terminal,
+    out: Output,
     *,
     with_budget: bool = False,
 ) -> PageDone:
     """Compute what belongs to a case, and put it in order."""
-    case, stored, requests = given.case, list[Block](), list[run.HistoryRequest]()
+    case, terminal = given.case, out.terminal
+    stored, histories = list[Block](), list[run.History]()
     if case.record is not None or motions[0].record is not None:
         # A place for the files, which are not written there.
-        requests = run.history_requests([given], motions, OutputRequest(Path(), force=True))
+        histories = run.histories_of([given], motions, Output(terminal, Path(), force=True))
         announce_compilation(terminal)
-        made = (_several if len(requests) > 1 else _single)(requests, conditions, look, terminal)
+        made = (_several if len(histories) > 1 else _single)(histories, conditions, out)
         terminal.warn(made.document["warnings"])
         if earlier is not None:
-            stored = [*_compared(earlier, requests, made.document)]
+            stored = [*_compared(earlier, histories, made.document)]
         if with_budget:
-            order = sorted(range(len(motions)), key=lambda n: n != made.worst)
-            grounds = [requests[n].ground for n in order]
-            budget = case_budget(given, [motions[n] for n in order], grounds, terminal)
-            made.results.append(budget.section(look, requests[made.worst].label))
+            worst = histories[made.worst]
+            first = sorted(histories, key=lambda each: each is not worst)
+            budget = case_budget(given, [each.motion for each in first], terminal)
+            made.results.append(budget.section(out.look, worst.label))
     elif with_budget:
         raise UsageError(f"{case.source}: --budget needs a ground motion; add --record")
     else:
@@ -209,64 +208,64 @@ def history_page(
     sections = parts.page_sections(
         case,
         case.title,
-        look,
+        out.look,
         short=made.short,
         warnings=made.document["warnings"],
-        inputs=parts.case_input(case, given.request.overrides, [each.ground for each in requests]),
+        inputs=parts.case_input(case, given.request.overrides, [each.ground for each in histories]),
         results=made.results,
         commands=_commands(given, asked, earlier, with_budget=with_budget),
         stored=stored,
-        both=any(request.ground.y is not None for request in requests),
+        both=any(history.ground.y is not None for history in histories),
     )
     title, signed = f"{made.title}{ends(case)}", case.file.document
     return PageDone(case.title, title, sections, made.document, made.error, signed)
 
 
 def _single(
-    requests: Sequence[run.HistoryRequest],
-    conditions: Sequence[Condition],
-    look: Look,
-    terminal: Terminal,
+    histories: list[run.History], conditions: Sequence[Condition], out: Output
 ) -> _Histories:
     """One history, and histories beside it."""
-    request = requests[0]
-    done, result = run.compute(request, conditions, page_look(look), terminal)
-    short = parts.history_short(result, done.verdicts, run.look_beside(done, result))
-    files = [(path.name, content) for path, content in request.folder.contents.items()]
-    ground = parts.ground_section(request.ground, result.structure, look)
+    (history,) = histories
+    result = run.compute(history, conditions, out)
+    short = parts.history_short(result, history.verdicts, run.look_beside(history, result))
+    files = _names(history.folder)
+    ground = parts.ground_section(history.ground, result.structure, out.look)
     response = parts.response_section(result, files)
     results = [ground, response, *parts.column_sections(result, files)]
     title = f"Time history under {record_name(result)}"
-    return _Histories(title, short, results, done.document, done.error)
+    return _Histories(title, short, results, history.document, history.error)
 
 
 def _several(
-    requests: Sequence[run.HistoryRequest],
-    conditions: Sequence[Condition],
-    look: Look,
-    terminal: Terminal,
+    histories: list[run.History], conditions: Sequence[Condition], out: Output
 ) -> _Histories:
     """Histories under several records, with the response to the one that turns columns most."""
-    quiet = replace(look, formats=())
-    found = run.computed_set(requests, conditions, quiet, terminal, None, written=False)
+    quiet = replace(out, look=replace(out.look, formats=()))
+    found = run.computed_set(histories, conditions, quiet, None, written=False)
     error = run.set_error([found])
+    document = run.all_document([found], error)
     # That of a history that failed is none, and counts as 0.
-    turned = [each.demands["rotation_ratio"] for each in found.histories]
+    turned = [each.demands["rotation_ratio"] for each in histories]
     worst = max(range(len(turned)), key=lambda n: 0.0 if isnan(turned[n]) else turned[n])
-    _, result = run.compute(requests[worst], conditions, page_look(look), terminal)
-    files = [(path.name, content) for path, content in requests[worst].folder.contents.items()]
-    motions = parts.horizontal(*(request.ground for request in requests))
-    response = (
-        f"Response to the record with the largest rotation of the columns, {record_name(result)}"
-    )
+    result = run.compute(histories[worst], conditions, out)
+    files = _names(histories[worst].folder)
+    motions = parts.horizontal(*(history.ground for history in histories))
+    all_of = f"{len(motions)} records"
+    largest = "Response to the record with the largest rotation of the columns, "
+    figures = ("orbit", "rotation", "storey_shears")
     results = [
-        parts.motions_section(motions, [], f"{len(motions)} records", look, "as they were scaled"),
-        parts.response_section(result, files, response, ("orbit", "rotation", "storey_shears")),
+        parts.motions_section(motions, [], all_of, out.look, "as they were scaled"),
+        parts.response_section(result, files, f"{largest}{record_name(result)}", figures),
         *parts.column_sections(result, files),
     ]
-    title = f"Time histories under {len(requests)} records"
+    title = f"Time histories under {len(histories)} records"
     short = [verdicts_in_short(found.verdicts), *[*run.set_tables([found])][1:]]
-    return _Histories(title, short, results, run.all_document([found], error), error, worst)
+    return _Histories(title, short, results, document, error, worst)
+
+
+def _names(folder: OutputFolder) -> list[tuple[str, object]]:
+    """The files of a folder by name."""
+    return [(path.name, content) for path, content in folder.contents.items()]
 
 
 def typed_together(case: Case, motions: Sequence[MotionRequest]) -> list[Asked]:
@@ -299,13 +298,13 @@ def _commands(
 
 
 def _compared(
-    earlier: Earlier, requests: Sequence[run.HistoryRequest], document: Mapping[str, Any]
+    earlier: Earlier, histories: Sequence[run.History], document: Mapping[str, Any]
 ) -> Iterator[Block]:
     """Differences of case, records and results from the stored ones."""
-    for request, record in zip(requests, earlier.records, strict=True):
-        named = request.ground.named
+    for history, record in zip(histories, earlier.records, strict=True):
+        named = history.ground.named
         if any(record[n]["sha256"] != named[n].digest for n in ("horizontal", "y") if record[n]):
-            yield Notice(f"The record {request.label} is no longer that of the stored results.")
+            yield Notice(f"The record {history.label} is no longer that of the stored results.")
     if (file := earlier.file) is not None:
         digest = hashlib.sha256(file.read_bytes()).hexdigest() if file.is_file() else ""
         if digest != earlier.run["sha256"]:
@@ -319,7 +318,7 @@ def _compared(
     except (OSError, ValueError) as error:
         yield Notice(f"{summary} cannot be read, so nothing was compared: {error}")
         return
-    if len(requests) > 1:  # the summary of a set is that of its only case
+    if len(histories) > 1:  # the summary of a set is that of its only case
         (document,) = document["sets"]
     now = results_of(plain(document))
     # By what the record was scaled is a result; the aim that asked for it is computed once.
@@ -337,14 +336,14 @@ def _compared(
     yield Table.of_texts(("result", "stored", "computed anew"), differing, words=1)
 
 
-def study_page(study: Study, place: Path | None, look: Look, terminal: Terminal) -> PageDone:
+def study_page(study: Study, out: Output) -> PageDone:
     """Compute the points that are not stored yet, and put all in order."""
-    look, layout = page_look(look), study.layout
-    folder = study.output(place or RESULTS / layout.study.name / "sweep")
+    layout = study.layout
+    folder = study.output(out.place or RESULTS / layout.study.name / "sweep")
     # What is in a folder is shown, not added to.
-    choices = RunChoices(report_only=place is not None)
-    done = swept("report", study, folder, choices, look, terminal)
-    terminal.warn(done.notes)
+    choices = RunChoices(report_only=out.place is not None)
+    done = swept("report", study, folder, choices, out)
+    out.terminal.warn(done.notes)
     result, found = done.result, done.found
     varied = any(key.startswith("podium.contact") for key in layout.plan.keys)
     first = resolved(layout.plan, layout[0].values)
@@ -352,7 +351,7 @@ def study_page(study: Study, place: Path | None, look: Look, terminal: Terminal)
     results = [_figures(found.files, study)]
     if result.summary:
         statistics = [*summary_tables(result.summary), of_first_system(layout), *found.parts]
-        motions = parts.motions_section(*_motions_of(study), study.title, look)
+        motions = parts.motions_section(*_motions_of(study), study.title, out.look)
         results = [motions, Section("Statistics", [*cut(statistics)]), *results]
     which = []
     if (systems := len(layout.properties)) > 1:
@@ -370,7 +369,7 @@ def study_page(study: Study, place: Path | None, look: Look, terminal: Terminal)
     sections = parts.page_sections(
         first,
         study.title,
-        look,
+        out.look,
         short=_in_short(result),
         warnings=warnings,
         inputs=_study_input(study, first, "The case" if systems == 1 else "Its first system"),
@@ -435,35 +434,30 @@ def _study_input(study: Study, first: Case, which: str) -> Iterator[Block]:
     yield parts.input_table(first.document, first.written)
 
 
-def design_page(
-    asked: CaseRequest, earlier: Earlier | None, look: Look, terminal: Terminal
-) -> PageDone:
+def design_page(asked: CaseRequest, earlier: Earlier | None, out: Output) -> PageDone:
     """Search, or go on from the points that are stored, and put all in order."""
     request = asked if earlier is None else earlier.subject
-    folder = None if earlier is None else earlier.folder
-    output, look = OutputRequest(folder, force=folder is not None), page_look(look)
-    done = designed(request, RunChoices(), output, look, terminal)
+    done = designed(request, RunChoices(), replace(out, force=earlier is not None))
     assert done is not None, "it is no dry run"
     document, study, at = done.document, done.run.study, done.judged.layout
-    terminal.warn(notes := document["warnings"])
+    out.terminal.warn(notes := document["warnings"])
     case = resolved(at.plan, at[0].values)
     named = {path.name: content for path, content in done.folder.contents.items()}
+    motions = parts.motions_section(*_motions_of(study), study.title, out.look)
     title = "the best design" if document["best"] else "the least violated design"
     sections = parts.page_sections(
         case,
         study.title,
-        look,
+        out.look,
         short=[part for part in done.tables if part != Heading(study.title)],
         warnings=notes,
         inputs=_study_input(study, case, f"The case of {title}"),
-        results=[
-            parts.motions_section(*_motions_of(study), study.title, look), _figures(named, study)
-        ],
+        results=[motions, _figures(named, study)],
         commands=[["rps", command, *asked.words] for command in ("design", "report")],
         stored=[f"Every point is stored in {done.folder.folder}."],
         both=all(study.layout.pairs),
         which=[f"Of {title}."],
-    )  # fmt: skip
+    )
     subtitle = f"Design: {len(done.answer.places)} examined{ends(case)}"
     signed = done.search.task.file.document
     return PageDone(study.title, subtitle, sections, document, done.error, signed)

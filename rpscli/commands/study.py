@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from functools import partial
 from itertools import groupby
@@ -10,50 +10,24 @@ from typing import Any, NamedTuple
 
 import click
 
+from rpscli import studies
 from rpscli.analyses.kernels import history as compilation
 from rpscli.case.conditions import Condition
 from rpscli.commands.inputs import RESULTS, write
-from rpscli.commands.shell.options import CaseRequest, OutputRequest, RunChoices
-from rpscli.commands.shell.terminal import (
-    INTERRUPTED,
-    Terminal,
-    announce_compilation,
-    concluded,
-    duration,
-    leave,
-    passing_time,
-    progress_report,
-    rendered,
-    watched,
-)
+from rpscli.commands.shell import terminal as shell
+from rpscli.commands.shell.options import CaseRequest, Output, RunChoices
+from rpscli.commands.shell.terminal import Terminal, duration, passing_time
 from rpscli.errors import LimitExceeded, Refused, RpsError
 from rpscli.machine import available_cores
 from rpscli.physics.state import LANES
 from rpscli.report.documents import failure_document, heading
-from rpscli.report.figures.look import Look
 from rpscli.report.files import OutputFolder
 from rpscli.report.limits import counts_of_limits, verdicts_in_short
-from rpscli.report.study.labels import label
-from rpscli.report.study.shown import (
-    asked,
-    cut,
-    note_of_directions,
-    of_first_system,
-    summary_tables,
-    verdict_table,
-)
+from rpscli.report.study import shown
+from rpscli.report.study.labels import labels
 from rpscli.report.study.statistics import summary_document, verdict_document
 from rpscli.report.table import Heading, Part, Table
-from rpscli.studies import (
-    Collected,
-    Study,
-    StudyInterrupted,
-    StudyResult,
-    collected,
-    error_of,
-    load_study,
-    run_in,
-)
+from rpscli.studies import Collected, Study, StudyInterrupted, StudyResult
 from rpscli.sweep.points import StudyPoints
 from rpscli.sweep.run import Progress, Start, estimated_seconds
 from rpscli.sweep.store import Store
@@ -72,8 +46,9 @@ ALL = "; --all prints them"
 
 def read(request: CaseRequest, conditions: Iterable[Condition], terminal: Terminal) -> Study:
     """Read and check a study and all its systems."""
-    examined = partial(watched, "systems examined", terminal)
-    study = load_study(request.source, request.overrides, conditions=conditions, watched=examined)
+    examined = partial(shell.watched, "systems examined", terminal)
+    how: dict[str, Any] = {"conditions": conditions, "watched": examined}
+    study = studies.load_study(request.source, request.overrides, **how)
     if (section := study.layout.study.file.sample) and (note := balance_note(section)):
         terminal.warn([note])
     return study
@@ -98,16 +73,17 @@ def computed(
         if pending and begin.kept:
             terminal.note(f"continuing: {begin.kept} of {total} points are stored already")
         if pending and layout.plan.analysis == "timehistory" and not choices.scheduler:
-            announce_compilation(terminal)
-        with progress_report(terminal, begin.kept, begin.kept + pending) as report:
+            shell.announce_compilation(terminal)
+        with shell.progress_report(terminal, begin.kept, begin.kept + pending) as report:
             yield report
 
     def announce() -> None:
         terminal.note("\nstopping after the points under way; Ctrl-C again stops at once")
 
-    how: dict[str, Any] = {"jobs": choices.jobs, "scheduler": choices.scheduler}
+    names = ("jobs", "scheduler", "retry_failed")
+    how: dict[str, Any] = {name: getattr(choices, name) for name in names}
     try:
-        result = run_in(store, study, watch, announce, retry_failed=choices.retry_failed, **how)
+        result = studies.run_in(store, study, watch, announce, **how)
     except StudyInterrupted as interruption:
         text = str(interruption)
         terminal.note(text)
@@ -115,10 +91,10 @@ def computed(
             **heading(command),
             "study": study_heading(layout),
             "points": interruption.points,
-            **failure_document("Interrupted", text, INTERRUPTED),
+            **failure_document("Interrupted", text, shell.INTERRUPTED),
         }
         terminal.result(document)
-        raise click.exceptions.Exit(INTERRUPTED) from None
+        raise click.exceptions.Exit(shell.INTERRUPTED) from None
     if count := result.done.computed:
         seconds = result.done.seconds
         rate = count / seconds if seconds else 0.0
@@ -159,7 +135,7 @@ class Swept(NamedTuple):
         document = {
             **heading(command),
             "study": study_heading(layout),
-            "note": (result.summary and note_of_directions(layout)) or None,
+            "note": (result.summary and shown.note_of_directions(layout)) or None,
             "points": {
                 "total": len(result),
                 "computed": result.done.computed,
@@ -175,26 +151,24 @@ class Swept(NamedTuple):
             "warnings": self.notes,
             "files": [str(result.results.store.path), *self.folder.files],
         }
-        return concluded(document, self.error)
+        return shell.concluded(document, self.error)
 
     def tables(self, most: int = 0) -> list[Part]:
         """All, or as many rows of each as fit into some lines: statistics are cut first."""
         result, judged, told = self.result, self.result.judgements, list(self._told())
-        head: list[Part] = [Heading(result.study.title)]
         counts = {"points": len(result), **result.outcomes}
         listing = [(name, str(count)) for name, count in counts.items()]
-        if aim := result.layout.scaled_to:
-            listing.append(("records scaled to", aim))
-        head.append(Table.listing(listing))
+        listing.append(("records scaled to", result.layout.scaled_to))
+        head: list[Part] = [Heading(result.study.title), Table.listing(listing)]
         if not most:
-            return [*head, *summary_tables(result.summary), *told]
-        statistics = list(summary_tables(result.summary, asked(result.layout)))
+            return [*head, *shown.summary_tables(result.summary), *told]
+        statistics = list(shown.summary_tables(result.summary, shown.asked(result.layout)))
         elsewhere, few = f"statistics are in statistics.csv{ALL}", head
         for rows, of_reports in [(n, FEWER[0]) for n in FEWER] + [(0, n) for n in FEWER]:
-            some = cut(statistics, rows, ALL) if rows else [elsewhere]
+            some = shown.cut(statistics, rows, ALL) if rows else [elsewhere]
             limits = [counts_of_limits(judged)] if len(judged) > of_reports else []
-            few = [*head, *some, *limits, *cut(told, of_reports, ALL)]
-            if rendered(few).count("\n") <= most:
+            few = [*head, *some, *limits, *shown.cut(told, of_reports, ALL)]
+            if shell.rendered(few).count("\n") <= most:
                 break
         return few
 
@@ -202,9 +176,9 @@ class Swept(NamedTuple):
         """What counts as overturned, verdicts, reports; a remark of several is said once."""
         result = self.result
         if result.summary is not None:
-            yield of_first_system(result.layout)
+            yield shown.of_first_system(result.layout)
             if result.judgements:
-                yield verdict_table(result.summary, result.judgements)
+                yield shown.verdict_table(result.summary, result.judgements)
         remarks = set[Part]()
         for part in self.found.parts:
             if isinstance(part, Table):
@@ -213,7 +187,7 @@ class Swept(NamedTuple):
             if isinstance(part, Heading) or part not in remarks:
                 yield part
             remarks.add(part)
-        if result.summary and (note := note_of_directions(result.layout)):
+        if result.summary and (note := shown.note_of_directions(result.layout)):
             yield note
 
 
@@ -222,38 +196,36 @@ def swept(
     study: Study,
     folder: OutputFolder,
     choices: RunChoices,
-    look: Look,
-    terminal: Terminal,
+    out: Output,
 ) -> Swept:
     """Compute what is not stored yet; only a sweep writes into the folder of the store."""
     with Store(folder.folder, fresh=choices.fresh) as store:
-        result = computed(command, study, store, choices, terminal)
-        with passing_time("making reports", terminal):
-            found = collected(result, look)
+        result = computed(command, study, store, choices, out.terminal)
+        with passing_time("making reports", out.terminal):
+            found = studies.collected(result, out.look)
         if command == "sweep":
             folder.add_all(found.files.items())
             store.require()
-            write(folder, terminal)
-    return Swept(result, found, error_of(result, found), folder)
+            write(folder, out.terminal)
+    return Swept(result, found, studies.error_of(result, found), folder)
 
 
 def sweep(
     request: CaseRequest,
     conditions: Iterable[Condition],
     choices: RunChoices,
-    output: OutputRequest,
-    look: Look,
-    terminal: Terminal,
+    out: Output,
     most: int,
 ) -> None:
     """Compute, write and show a study, in so many lines; 0 shows all."""
+    terminal = out.terminal
     study = read(request, conditions, terminal)
     if choices.dry_run:
         show_dry_run(study, choices, terminal)
         return
-    place = output.place or RESULTS / study.layout.study.name / "sweep"
-    folder = study.output(place, force=output.force)
-    done = swept("sweep", study, folder, choices, look, terminal)
+    place = out.place or RESULTS / study.layout.study.name / "sweep"
+    folder = study.output(place, force=out.force)
+    done = swept("sweep", study, folder, choices, out)
     # Of each report: what one has to say takes no room from the next.
     for _, of_one in groupby(done.notes, lambda note: note.partition(": ")[0]):
         terminal.warn_first(list(of_one), "with --json", OF_A_REPORT)
@@ -262,7 +234,7 @@ def sweep(
     if isinstance(error, LimitExceeded) and not (terminal.as_json or terminal.quiet):
         # The table has them one by one.
         error = LimitExceeded(verdicts_in_short(done.result.judgements))
-    leave(error)
+    shell.leave(error)
 
 
 def show_dry_run(study: Study, choices: RunChoices, terminal: Terminal) -> None:
@@ -305,10 +277,6 @@ def show_dry_run(study: Study, choices: RunChoices, terminal: Terminal) -> None:
     }
     time = f"about {duration(seconds)} on {jobs} cores, by {source}"
     listing = [*((name, str(number)) for name, number in counts.items()), ("time", time)]
-    shown = [(f"point {number}", _labels(varied)) for number, varied in points.items()]
-    parts = (Heading(study.title), Table.listing(listing), Table.listing(shown))
+    tried = [(f"point {n}", labels([*each], [*each.values()])) for n, each in points.items()]
+    parts = (Heading(study.title), Table.listing(listing), Table.listing(tried))
     terminal.result(document, parts)
-
-
-def _labels(values: Mapping[str, Any]) -> str:
-    return ", ".join(label(key, value) for key, value in values.items())

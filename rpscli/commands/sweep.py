@@ -6,8 +6,6 @@ import click
 
 from rpscli.case.conditions import Condition
 from rpscli.commands.shell import options
-from rpscli.commands.shell.terminal import Terminal
-from rpscli.report.figures.look import Look
 
 MOST_LINES = 60
 
@@ -37,10 +35,8 @@ def command(
     study: str,
     overrides: tuple[str, ...],
     choices: options.RunChoices,
-    output: options.OutputRequest,
-    terminal: Terminal,
+    out: options.Output,
     conditions: list[Condition],
-    look: Look,
     *,
     whole: bool,
 ) -> None:
@@ -53,7 +49,7 @@ def command(
     from rpscli.commands.study import sweep
 
     given = options.CaseRequest(study, overrides)
-    sweep(given, conditions, choices, output, look, terminal, 0 if whole else MOST_LINES)
+    sweep(given, conditions, choices, out, 0 if whole else MOST_LINES)
 
 
 @click.command("design")
@@ -65,9 +61,7 @@ def design(
     design: str,
     overrides: tuple[str, ...],
     choices: options.RunChoices,
-    output: options.OutputRequest,
-    terminal: Terminal,
-    look: Look,
+    out: options.Output,
 ) -> None:
     """Find the values of DESIGN that meet its limits and minimise its objective.
 
@@ -82,6 +76,6 @@ def design(
     from rpscli.commands.design import designed
 
     request = options.CaseRequest(design, overrides)
-    done = designed(request, choices, output, look, terminal)
+    done = designed(request, choices, out)
     if done is not None:
-        done.conclude(terminal)
+        done.conclude(out.terminal)

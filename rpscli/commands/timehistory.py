@@ -10,10 +10,9 @@ from rpscli.analyses.result_quantities import LIMITED
 from rpscli.case.conditions import Condition
 from rpscli.commands.inputs import MotionRequest, motion_options, read_case, single_motions
 from rpscli.commands.shell import options
-from rpscli.commands.shell.terminal import Terminal, announce_compilation
+from rpscli.commands.shell.terminal import announce_compilation
 from rpscli.errors import CaseError, UsageError, all_made
 from rpscli.report.figures.film import FilmRequest
-from rpscli.report.figures.look import Look
 
 
 @click.command("timehistory")
@@ -34,11 +33,9 @@ from rpscli.report.figures.look import Look
 def command(
     requests: list[options.CaseRequest],
     records: tuple[str, ...],
-    output: options.OutputRequest,
-    terminal: Terminal,
+    out: options.Output,
     conditions: list[Condition],
     film: FilmRequest | None,
-    look: Look,
     motion: MotionRequest,
     *,
     floor_spectra: bool,
@@ -48,16 +45,16 @@ def command(
     Overturning is a result, not an error: see --fail-on. The limits of the case count as well.
     Several histories end with one table and one verdict; ask for their figures with --figures.
     """
-    from rpscli.commands.timehistory_run import history_requests, run_all, run_one
+    from rpscli.commands.timehistory_run import histories_of, run_all, run_one
 
-    motions = list(single_motions(records, motion, terminal.warn))
-    cases = all_made(lambda request: read_case(request, terminal), requests, CaseError)
-    histories = history_requests(cases, motions, output, floor_spectra=floor_spectra)
-    announce_compilation(terminal)
+    motions = list(single_motions(records, motion, out.terminal.warn))
+    cases = all_made(lambda request: read_case(request, out.terminal), requests, CaseError)
+    histories = histories_of(cases, motions, out, floor_spectra=floor_spectra)
+    announce_compilation(out.terminal)
     if len(histories) == 1:
-        run_one(histories[0], conditions, look, film, terminal)
+        run_one(histories[0], conditions, film, out)
         return
     if film is not None:
         raise UsageError(f"--animate {film.file}: shows one history, not {len(histories)}")
-    quick = look if look.formats else replace(look, formats=())
-    run_all(histories, conditions, quick, output, terminal)
+    look = out.look if out.look.formats else replace(out.look, formats=())
+    run_all(histories, conditions, replace(out, look=look))

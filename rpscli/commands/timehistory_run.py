@@ -6,7 +6,7 @@ import hashlib
 import math
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import groupby
 from typing import Any, NamedTuple
@@ -18,15 +18,14 @@ from rpscli.analyses.timehistory import Neighbour, neighbours, time_history
 from rpscli.case.conditions import LIMITS, Condition, case_conditions
 from rpscli.case.plausibility import doubts_of_directions
 from rpscli.commands import inputs
-from rpscli.commands.shell.options import OutputRequest
-from rpscli.commands.shell.terminal import Terminal, concluded, leave, patience
-from rpscli.errors import AnalysisError, LimitExceeded, RecordError, RpsError, UsageError, all_made
+from rpscli.commands.shell.options import Output
+from rpscli.commands.shell.terminal import concluded, leave, patience
+from rpscli.errors import AnalysisError, LimitExceeded, RecordError, RpsError, UsageError
 from rpscli.records.ground_motion import MotionComponents
 from rpscli.report.bundles import floor_spectra_files, timehistory_files
 from rpscli.report.documents import direction_note, heading, json_text, timehistory_document
 from rpscli.report.figures.animation import history_film
 from rpscli.report.figures.film import FilmRequest
-from rpscli.report.figures.look import Look
 from rpscli.report.files import OutputFolder
 from rpscli.report.limits import VERDICT, excess_text, verdict_texts, worst_text
 from rpscli.report.study import statistics
@@ -54,16 +53,28 @@ CODES = (
 )
 
 
-@dataclass(frozen=True, eq=False)
-class HistoryRequest:
-    """A case, its motion, the folder of the results; spectra of floors where they are asked for."""
+@dataclass(eq=False)
+class History:
+    """A case under a motion, the folder of its results, and what it says once it is computed.
+
+    `demands` are by name, NaN for what it has not; spectra of floors are made where asked for.
+    """
 
     given: inputs.CaseInput
     case_label: str
-    ground: MotionComponents
+    motion: inputs.Motion
     label: str
     folder: OutputFolder
     floor_spectra: bool = False
+    document: dict[str, Any] = field(default_factory=dict)
+    demands: dict[str, float] = field(default_factory=dict)
+    verdicts: list[Verdict] = field(default_factory=list)
+    error: RpsError | None = None
+
+    @property
+    def ground(self) -> MotionComponents:
+        """The motion itself."""
+        return self.motion.ground
 
     @property
     def name(self) -> str:
@@ -71,45 +82,31 @@ class HistoryRequest:
         return f"{self.case_label}, {self.label}"
 
 
-class HistoryResult(NamedTuple):
-    """A history that is over: document, demands by name, NaN for what it has not, verdicts."""
-
-    request: HistoryRequest
-    document: dict[str, Any]
-    demands: dict[str, float]
-    verdicts: list[Verdict]
-    error: RpsError | None
-
-
-def history_requests(
+def histories_of(
     cases: Sequence[inputs.CaseInput],
     motions: Sequence[inputs.MotionRequest],
-    output: OutputRequest,
+    out: Output,
     *,
     floor_spectra: bool = False,
-) -> list[HistoryRequest]:
+) -> list[History]:
     """Every case under every motion, all read and all folders claimed before any is computed."""
-    requests = []
+    histories = []
     case_labels = unique([given.case.name for given in cases])
     for given, case_label in zip(cases, case_labels, strict=True):
-        grounds = all_made(partial(inputs.load_motion, given.case), motions, RecordError)
-        scaled = ["" if each.scale == 1.0 else f"_x{each.scale:.4g}" for each in grounds]
-        names = [each.horizontal.name for each in grounds]
-        labels = unique([f"{name}{by}" for name, by in zip(names, scaled, strict=True)])
-        for motion, ground, label in zip(motions, grounds, labels, strict=True):
+        read = inputs.load_motions(given.case, motions, RecordError)
+        labels = unique([
+            ground.horizontal.name + ("" if ground.scale == 1.0 else f"_x{ground.scale:.4g}")
+            for _, ground in read
+        ])  # fmt: skip
+        for motion, label in zip(read, labels, strict=True):
             place = inputs.RESULTS / case_label / COMMAND / label
-            if output.place is not None:
+            if out.place is not None:
                 inside = [case_label] * (len(cases) > 1) + [label] * (len(motions) > 1)
-                place = output.place.joinpath(*inside)
-            folder = inputs.case_folder(
-                given,
-                OutputRequest(place, output.force),
-                COMMAND,
-                record_source=inputs.motion_source(given.case, motion),
-                record=inputs.motion_inputs(ground),
-            )
-            requests.append(HistoryRequest(given, case_label, ground, label, folder, floor_spectra))
-    return requests
+                place = out.place.joinpath(*inside)
+            own = replace(out, place=place)
+            folder = inputs.case_folder(given, own, COMMAND, motion=motion)
+            histories.append(History(given, case_label, motion, label, folder, floor_spectra))
+    return histories
 
 
 def unique(names: Sequence[str]) -> list[str]:
@@ -122,36 +119,37 @@ def unique(names: Sequence[str]) -> list[str]:
     return [*taken.values()]
 
 
-def compute(
-    request: HistoryRequest, conditions: Sequence[Condition], look: Look, terminal: Terminal
-) -> tuple[HistoryResult, TimeHistoryResult]:
+def compute(history: History, conditions: Sequence[Condition], out: Output) -> TimeHistoryResult:
     """Run a history, judge it, and collect its files; the caller writes them."""
-    case, ground = request.given.case, request.ground
+    case, ground, folder = history.given.case, history.ground, history.folder
     limits = [*case_conditions(case.limits, case.structure), *conditions]
     for limit in limits if ground.y is not None else ():
         if why := no_bound(limit.name, case.structure):  # known before minutes are spent
             raise UsageError(f"{limit.source}: {why}")
-    with patience(case, ground.horizontal.duration, terminal):
+    with patience(case, ground.horizontal.duration, out.terminal):
         result = time_history(case.structure, ground, case.analysis)
-    request.folder.add_all(timehistory_files(result, case.title, look))
-    if request.floor_spectra:
-        request.folder.add_all(floor_spectra_files(result, case.title, look))
-    values = {quantity.name: getattr(result, quantity.name) for quantity in LIMITED}
-    demands = {name: math.nan if each is None else float(each) for name, each in values.items()}
-    verdicts: list[Verdict] = []
-    error: RpsError | None = AnalysisError(result.failure) if result.failure else None
-    if error is None:
+    folder.add_all(timehistory_files(result, case.title, out.look))
+    if history.floor_spectra:
+        folder.add_all(floor_spectra_files(result, case.title, out.look))
+    history.demands = limited(result)
+    if result.failure:
+        history.error = AnalysisError(result.failure)
+    else:
         for limit in limits:
             _refuse_unknown(limit, result)
-        records = Records.of([result.outcome], [demands], [result.record.source])
-        verdicts = judged_records(records, [request.label], limits)
-        over = [
-            f"limit exceeded: {excess_text(verdict)}" for verdict in verdicts if verdict.exceeded
-        ]
-        error = LimitExceeded("\n".join(over)) if over else None
-    document = _document(request, result)
-    document["verdicts"] = [statistics.verdict_document((), verdict) for verdict in verdicts]
-    return HistoryResult(request, concluded(document, error), demands, verdicts, error), result
+        records = Records.of([result.outcome], [history.demands], [result.record.source])
+        history.verdicts = judged_records(records, [history.label], limits)
+        over = [f"limit exceeded: {excess_text(v)}" for v in history.verdicts if v.exceeded]
+        history.error = LimitExceeded("\n".join(over)) if over else None
+    document = _document(history, result)
+    history.document = concluded(document, history.error)
+    return result
+
+
+def limited(result: TimeHistoryResult) -> dict[str, float]:
+    """Results that may have limits by name, NaN for what a history has not."""
+    values = {quantity.name: getattr(result, quantity.name) for quantity in LIMITED}
+    return {name: math.nan if each is None else float(each) for name, each in values.items()}
 
 
 def _refuse_unknown(limit: Condition, result: TimeHistoryResult) -> None:
@@ -162,160 +160,144 @@ def _refuse_unknown(limit: Condition, result: TimeHistoryResult) -> None:
         raise UsageError(f"{limit.source}: {limit.name} needs {NEEDS[needs]}")
 
 
-def _document(request: HistoryRequest, result: TimeHistoryResult) -> dict[str, Any]:
-    given, ground = request.given, request.ground
+def _document(history: History, result: TimeHistoryResult) -> dict[str, Any]:
+    case, ground, both = history.given.case, history.ground, history.ground.y is not None
     document = {
         **heading(COMMAND),
-        "note": direction_note([ground.y is not None], result.structure.planar_only) or None,
-        "case": inputs.case_heading(given),
+        "note": direction_note([both], result.structure.planar_only) or None,
+        "case": inputs.case_heading(history.given),
         **timehistory_document(result),
+        "verdicts": [statistics.verdict_document((), verdict) for verdict in history.verdicts],
     }
     document["record"] |= {"scale": ground.scale, "scaled_to": ground.scaled_to or None}
-    doubts = doubts_of_directions(given.case.structure, both=ground.y is not None)
-    warnings = [*given.case.warnings, *map(str, doubts)]
-    document["warnings"] = [*warnings, *document["warnings"], *ground.warnings]
+    doubts = map(str, doubts_of_directions(case.structure, both=both))
+    document["warnings"] = [*case.warnings, *doubts, *document["warnings"], *ground.warnings]
     return document
 
 
-def look_beside(done: HistoryResult, result: TimeHistoryResult) -> list[Neighbour]:
+def look_beside(history: History, result: TimeHistoryResult) -> list[Neighbour]:
     """Histories beside a single one, which go into its document too."""
     beside = neighbours(result)
-    done.document["neighbours"] = [each._asdict() for each in beside]
+    history.document["neighbours"] = [each._asdict() for each in beside]
     return beside
 
 
-def _add_summary(done: HistoryResult) -> OutputFolder:
+def _add_summary(history: History) -> OutputFolder:
     """The folder with `summary.json`, which names all files that were collected before it."""
-    folder = done.request.folder
-    done.document["files"] = [str(folder.folder / "summary.json"), *folder.files]
-    folder.add("summary.json", json_text(done.document))
+    folder = history.folder
+    history.document["files"] = [str(folder.folder / "summary.json"), *folder.files]
+    folder.add("summary.json", json_text(history.document))
     return folder
 
 
 def run_one(
-    request: HistoryRequest,
-    conditions: Sequence[Condition],
-    look: Look,
-    film: FilmRequest | None,
-    terminal: Terminal,
+    history: History, conditions: Sequence[Condition], film: FilmRequest | None, out: Output
 ) -> None:
     """Compute a single history, look beside it, and write and show all of it."""
-    title = request.given.case.title
-    done, result = compute(request, conditions, look, terminal)
-    beside = look_beside(done, result)
+    title, terminal = history.given.case.title, out.terminal
+    result = compute(history, conditions, out)
+    beside, document = look_beside(history, result), history.document
     if film is not None:
-        draw = partial(history_film, result, title, film)
-        inputs.add_film(request.folder, film, look, draw, terminal)
-    inputs.write(_add_summary(done), terminal)
-    done.document["warnings"] += request.folder.undrawn
-    terminal.warn(done.document["warnings"])
-    tables = timehistory_tables(result, done.verdicts, title, request.ground.scaled_to)
-    texts = [*neighbours_texts(result, beside), passes_text(result), done.document["note"]]
-    terminal.result(done.document, [*tables, *filter(None, texts)])
-    leave(done.error)
+        inputs.add_film(history.folder, film, partial(history_film, result, title, film), out)
+    inputs.write(_add_summary(history), terminal)
+    document["warnings"] += history.folder.undrawn
+    terminal.warn(document["warnings"])
+    tables = timehistory_tables(result, history.verdicts, title, history.ground.scaled_to)
+    texts = [*neighbours_texts(result, beside), passes_text(result), document["note"]]
+    terminal.result(document, [*tables, *filter(None, texts)])
+    leave(history.error)
 
 
 class Computed(NamedTuple):
     """The histories of one case, what they say together, and the folder for it."""
 
-    histories: list[HistoryResult]
+    histories: list[History]
     together: Summary
     verdicts: list[Verdict]
     folder: OutputFolder | None
 
     @property
-    def first(self) -> HistoryRequest:
+    def first(self) -> History:
         """The first of them, whose case is that of all."""
-        return self.histories[0].request
+        return self.histories[0]
 
     @property
     def labels(self) -> list[str]:
         """Names of the records."""
-        return [history.request.label for history in self.histories]
+        return [history.label for history in self.histories]
 
 
-def run_all(
-    requests: Sequence[HistoryRequest],
-    conditions: Sequence[Condition],
-    look: Look,
-    output: OutputRequest,
-    terminal: Terminal,
-) -> None:
+def run_all(histories: Sequence[History], conditions: Sequence[Condition], out: Output) -> None:
     """Compute all histories, and write each as soon as it is over."""
-    cases = [list(group) for _, group in groupby(requests, lambda request: request.case_label)]
-    folders = [_set_folder(group, output, alone=len(cases) == 1) for group in cases]
+    cases = [list(group) for _, group in groupby(histories, lambda history: history.case_label)]
+    folders = [_set_folder(group, out, alone=len(cases) == 1) for group in cases]
     computed = [
-        computed_set(group, conditions, look, terminal, folder)
+        computed_set(group, conditions, out, folder)
         for group, folder in zip(cases, folders, strict=True)
     ]
     for case in computed:
         if case.folder is None:
-            terminal.note(f"written to {case.first.folder.folder}")
+            out.terminal.note(f"written to {case.first.folder.folder}")
             continue
         scalars = [history.document for history in case.histories]
         case.folder.add("records.csv", csv_text(statistics.records_columns(case.labels, scalars)))
         case.folder.add("statistics.csv", csv_text(statistics.demand_columns(case.together)))
         case.folder.add("summary.json", json_text({**heading(), **set_document(case)}))
-        inputs.write(case.folder, terminal)
+        inputs.write(case.folder, out.terminal)
     error = set_error(computed)
     document = all_document(computed, error)
-    terminal.warn(document["warnings"])
-    terminal.result(document, set_tables(computed))
+    out.terminal.warn(document["warnings"])
+    out.terminal.result(document, set_tables(computed))
     leave(error)
 
 
 def computed_set(
-    group: Sequence[HistoryRequest],
+    group: list[History],
     conditions: Sequence[Condition],
-    look: Look,
-    terminal: Terminal,
+    out: Output,
     folder: OutputFolder | None,
     *,
     written: bool = True,
 ) -> Computed:
     """Compute the histories of one case, each written as soon as it is over, and judge them."""
-    histories = []
-    for request in group:
-        done, _ = compute(request, conditions, look, terminal)
+    for history in group:
+        compute(history, conditions, out)
         if written:
-            _add_summary(done).write()
-            terminal.warn(request.folder.undrawn)
-        histories.append(done)
-    outcomes = [history.document["outcome"] for history in histories]
-    sources = [request.ground.horizontal.source for request in group]
-    records = Records.of(outcomes, [history.demands for history in histories], sources)
-    judged = group[0].given.case
-    limits = case_conditions(judged.limits, judged.structure, len(group))
+            _add_summary(history).write()
+            out.terminal.warn(history.folder.undrawn)
+    outcomes = [history.document["outcome"] for history in group]
+    sources = [history.ground.horizontal.source for history in group]
+    records = Records.of(outcomes, [history.demands for history in group], sources)
+    case = group[0].given.case
+    limits = case_conditions(case.limits, case.structure, len(group))
     verdicts = judged_records(records, [each.label for each in group], [*limits, *conditions])
-    return Computed(histories, summary_of_records(records), verdicts, folder)
+    return Computed(group, summary_of_records(records), verdicts, folder)
 
 
-def _set_folder(
-    group: Sequence[HistoryRequest], output: OutputRequest, *, alone: bool
-) -> OutputFolder | None:
+def _set_folder(group: Sequence[History], out: Output, *, alone: bool) -> OutputFolder | None:
     """Folder for the table of a case: each set of records has one of its own."""
     if len(group) == 1:
         return None
     first = group[0]
-    grounds = (request.ground.named for request in group)
+    grounds = (history.ground.named for history in group)
     motions = "".join(each[name].digest for each in grounds for name in each if name != "vertical")
     name = f"{len(group)}_records_{hashlib.sha256(motions.encode()).hexdigest()[:6]}"
     place = inputs.RESULTS / first.case_label / COMMAND / name
-    if output.place is not None:
-        place = output.place if alone else output.place / first.case_label
+    if out.place is not None:
+        place = out.place if alone else out.place / first.case_label
     return inputs.case_folder(
         first.given,
-        OutputRequest(place, output.force),
+        replace(out, place=place),
         COMMAND,
         record_source=name,
-        records=[inputs.motion_inputs(request.ground) for request in group],
+        records=[inputs.motion_inputs(history.ground) for history in group],
     )
 
 
 def set_error(computed: Sequence[Computed]) -> RpsError | None:
     """The error that ends the command: failed histories, else limits that are exceeded."""
     lines = [
-        f"{history.request.name}: {history.error}"
+        f"{history.name}: {history.error}"
         for case in computed
         for history in case.histories
         if isinstance(history.error, AnalysisError)
@@ -346,13 +328,13 @@ def all_document(computed: Sequence[Computed], error: RpsError | None) -> dict[s
     return concluded(document, error)
 
 
-def _warnings(histories: Sequence[HistoryResult]) -> Iterator[str]:
+def _warnings(histories: Sequence[History]) -> Iterator[str]:
     """Each kind of warning once, with its number of histories and the numbers of the first."""
     kinds: dict[str, list[tuple[str, str]]] = {}
     for history in histories:
         for text in history.document["warnings"]:
             kind = re.sub(r"[-+\d.]+", "", text)
-            kinds.setdefault(kind, []).append((history.request.name, text))
+            kinds.setdefault(kind, []).append((history.name, text))
     for given in kinds.values():
         name, text = given[0]
         others = f"{len(given)} of {len(histories)} histories, such as " * (len(given) > 1)
@@ -362,7 +344,7 @@ def _warnings(histories: Sequence[HistoryResult]) -> Iterator[str]:
 def set_document(case: Computed) -> dict[str, Any]:
     """Statistics and verdicts of the records of a case."""
     return {
-        "case": case.histories[0].document["case"],
+        "case": case.first.document["case"],
         "records": case.labels,
         **statistics.summary_document(case.together)[0],
         "verdicts": [statistics.verdict_document((), verdict) for verdict in case.verdicts],
@@ -373,9 +355,7 @@ def set_tables(computed: Sequence[Computed]) -> Iterator[Part]:
     """Every record, mean and largest, and the verdicts."""
     for case in computed:
         yield Heading(case.first.given.case.title)
-        if aims := dict.fromkeys(
-            filter(None, (each.request.ground.scaled_to for each in case.histories))
-        ):
+        if aims := dict.fromkeys(filter(None, (each.ground.scaled_to for each in case.histories))):
             yield f"records scaled to {' or '.join(aims)}"
         (row,) = case.together.rows
         spreads = zip(case.together.quantities, row.spreads, strict=True)
@@ -402,7 +382,7 @@ def set_tables(computed: Sequence[Computed]) -> Iterator[Part]:
 
 
 def _note(computed: Sequence[Computed]) -> str:
-    grounds = (history.request.ground for case in computed for history in case.histories)
+    grounds = (history.ground for case in computed for history in case.histories)
     planar = computed[0].first.given.case.structure.planar_only
     return direction_note((ground.y is not None for ground in grounds), planar)
 

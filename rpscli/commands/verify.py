@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from itertools import groupby
 from pathlib import Path
@@ -96,20 +96,38 @@ def _conclude(
     from rpscli.analyses.verification import scored
 
     compared, left = scored(given, digits)
-    error = _mismatch(compared, what)
+    off = [line for line in compared if not line.holds]
+    faults = [f"{len(off)} of {len(compared)} numbers {what}"]
+    for line in off:
+        expected, computed, tolerance = _numbers(line)
+        text = f"{computed} instead of {expected} {line.unit}, tolerance {tolerance}"
+        faults.append(f"{line.quantity}: {text} ({line.group})")
     document = {
         **heading("verify"),
         "compared": len(compared),
-        "mismatches": sum(not line.holds for line in compared),
+        "mismatches": len(off),
         "comparisons": [
             {**asdict(each), "holds": each.holds, "digits": each.digits} for each in compared
         ],
         "not_answered": left,
     }
-    right = [line.digits for line in compared if line.digits is not None]
-    remarks = [f"{sum(right) / len(right):.1f} digits in the mean"] if right else []
-    remarks += [f"not answered: {', '.join(left)}"] if left else []
-    terminal.finish(document, (*_tables(compared), *remarks), error)
+    parts: list[Part] = []
+    for group, lines in groupby(compared, lambda line: line.group):
+        heads = ("quantity", "expected", "computed", "tolerance", "verdict")
+        named = ((f"{one.quantity} [{one.unit}]".removesuffix(" [-]"), one) for one in lines)
+        rows = [(name, *_numbers(one), one.verdict) for name, one in named]
+        parts += [Heading(group), Table.of_texts(heads, rows)]
+    parts.append(Heading(f"{len(compared)} numbers compared, {len(off) or 'none'} off"))
+    if right := [line.digits for line in compared if line.digits is not None]:
+        parts.append(f"{sum(right) / len(right):.1f} digits in the mean")
+    if left:
+        parts.append(f"not answered: {', '.join(left)}")
+    terminal.finish(document, parts, VerificationMismatch("\n".join(faults)) if off else None)
+
+
+def _numbers(line: Comparison) -> tuple[str, str, str]:
+    """Expected, computed, tolerance."""
+    return shown(line.expected, DIGITS), shown(line.computed, DIGITS), shown(line.tolerance, 2)
 
 
 def _write_problems(folder: Path, terminal: Terminal) -> None:
@@ -122,40 +140,3 @@ def _write_problems(folder: Path, terminal: Terminal) -> None:
     terminal.note(f"written to {folder}; begin with README.md, fill in {folder / ANSWERS}")
     if terminal.as_json:
         terminal.result({**heading("verify"), "files": [str(path) for path in files]})
-
-
-def _tables(compared: Sequence[Comparison]) -> Iterator[Part]:
-    for group, lines in groupby(compared, lambda line: line.group):
-        yield Heading(group)
-        yield Table.of_texts(
-            ("quantity", "expected", "computed", "tolerance", "verdict"),
-            [
-                (
-                    f"{line.quantity} [{line.unit}]" if line.unit != "-" else line.quantity,
-                    *_numbers(line),
-                    line.verdict,
-                )
-                for line in lines
-            ],
-        )
-    off = sum(not line.holds for line in compared)
-    yield Heading(f"{len(compared)} numbers compared, {off or 'none'} off")
-
-
-def _numbers(line: Comparison) -> tuple[str, str, str]:
-    """Expected, computed, tolerance."""
-    return shown(line.expected, DIGITS), shown(line.computed, DIGITS), shown(line.tolerance, 2)
-
-
-def _mismatch(compared: Sequence[Comparison], what: str) -> VerificationMismatch | None:
-    off = [line for line in compared if not line.holds]
-    if not off:
-        return None
-    first = f"{len(off)} of {len(compared)} numbers {what}"
-    lines = [
-        f"{line.quantity}: {computed} instead of {expected} {line.unit}, tolerance {tolerance}"
-        f" ({line.group})"
-        for line in off
-        for expected, computed, tolerance in (_numbers(line),)
-    ]
-    return VerificationMismatch("\n".join([first, *lines]))

@@ -11,7 +11,6 @@ from typing import Any
 
 import jsonschema
 import pytest
-from click.testing import Result
 from sweep.small_studies import ROOT
 
 from rpscli.case.schema.case_file import CaseFile
@@ -19,8 +18,7 @@ from rpscli.case.schema.keys import known_paths
 from rpscli.case.text.files import read_text
 from rpscli.case.text.yaml_text import read_yaml
 
-Invoke = Callable[..., Result]
-InvokeJson = Callable[..., dict[str, Any]]
+from .conftest import Invoke, InvokeJson
 
 
 def test_the_starter_is_a_case(rps: Invoke) -> None:

@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
-from click.testing import Result
 
 import rpscli
 from rpscli.records.loading import expand_sources, load_components, load_record
 from rpscli.records.measures import intensity_measures
 
-Invoke = Callable[..., Result]
-InvokeJson = Callable[..., dict[str, Any]]
+from .conftest import Invoke, InvokeJson
 
 NOISE = "synthetic:?pga=0.3g&seed=5&duration=8"
 SINE = "pulse:sine?amplitude=0.3g&period=1"

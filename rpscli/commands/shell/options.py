@@ -18,7 +18,7 @@ from rpscli.commands.shell.terminal import Terminal
 from rpscli.constants import MOST_JOBS
 from rpscli.errors import UsageError, hint, listed
 from rpscli.report.figures.film import RATES, USUAL_SIZE, FilmRequest
-from rpscli.report.figures.look import FIGURES, FORMATS, Look
+from rpscli.report.figures.look import FIGURES, FORMATS, USUAL, Look
 from rpscli.report.figures.style import drawable_style
 
 FILE = click.Path(allow_dash=True, readable=False)
@@ -127,11 +127,13 @@ def set_words(settings: Iterable[str]) -> list[str]:
 
 
 @dataclass(frozen=True)
-class OutputRequest:
-    """Folder of the results; None is the default one."""
+class Output:
+    """Where results go: terminal, folder, None for the default one, and the look of its figures."""
 
-    place: Path | None
-    force: bool
+    terminal: Terminal
+    place: Path | None = None
+    force: bool = False
+    look: Look = USUAL
 
 
 def gathered(name: str, make: Callable[..., Any], *options: Decorator) -> Decorator:
@@ -141,27 +143,24 @@ def gathered(name: str, make: Callable[..., Any], *options: Decorator) -> Decora
     def decorate(function: Command) -> Command:
         @functools.wraps(function)
         def command(**given: Any) -> None:
-            made = make(**{key: given.pop(key) for key in taken if key in given})
-            function(**{name: made}, **given)
+            value = make(**{key: given.pop(key) for key in taken if key in given})
+            function(**{name: value}, **given)
 
-        return in_order(*options)(command)
+        made: Command = command
+        for option in options[::-1]:  # the help lists the last one first
+            made = option(made)
+        return made
 
     return decorate
 
 
-def in_order(*options: Decorator) -> Decorator:
-    """Options in the order in which the help lists them."""
-    return lambda function: functools.reduce(lambda f, option: option(f), options[::-1], function)
-
-
-terminal_options = gathered(
-    "terminal",
-    Terminal,
+_TERMINAL = (
     click.option(
         "--json", "as_json", is_flag=True, help="Print one JSON document in place of tables."
     ),
     click.option("-q", "--quiet", is_flag=True, help="Print errors only (and --json)."),
 )
+terminal_options = gathered("terminal", Terminal, *_TERMINAL)
 """--json and --quiet, as `terminal`."""
 
 
@@ -240,9 +239,37 @@ def _formats(text: str) -> tuple[tuple[str, ...] | None, tuple[str, ...]]:
     return tuple(dict.fromkeys(formats)) or None, added
 
 
-figure_options = gathered(
-    "look",
-    _look,
+def _output(
+    *,
+    as_json: bool,
+    quiet: bool,
+    place: Path | None,
+    force: bool,
+    figures: str | None = None,
+    columns: str | None = None,
+    style_file: Path | None = None,
+) -> Output:
+    terminal = Terminal(as_json, quiet)
+    return Output(terminal, place, force, _look(figures, columns, style_file))
+
+
+_WRITTEN = (
+    click.option(
+        "-o",
+        "--output",
+        "place",
+        type=click.Path(path_type=Path, readable=False),
+        metavar="DIR",
+        help="Folder of the results; results/<name>/<command> by default.",
+    ),
+    click.option("--force", is_flag=True, help="Overwrite files that this command did not write."),
+    *_TERMINAL,
+)
+written_options = gathered("out", _output, *_WRITTEN)
+"""-o, --force, --json and --quiet, as `out`."""
+result_options = gathered(
+    "out",
+    _output,
     click.option(
         "--figures",
         metavar="FORMATS",
@@ -256,8 +283,9 @@ figure_options = gathered(
         help="Make figures as wide as one column of a journal (89 mm), or two (178 mm).",
     ),
     style_option,
+    *_WRITTEN,
 )
-"""--figures, --columns and --style, as `look`."""
+"""Options of every command that draws and writes, as `out`."""
 
 
 def _film(
@@ -370,24 +398,6 @@ several_cases_options = gathered(
     _overrides,
 )
 """CASE... and --set, as `requests`."""
-
-output_options = gathered(
-    "output",
-    OutputRequest,
-    click.option(
-        "-o",
-        "--output",
-        "place",
-        type=click.Path(path_type=Path, readable=False),
-        metavar="DIR",
-        help="Folder of the results; results/<name>/<command> by default.",
-    ),
-    click.option("--force", is_flag=True, help="Overwrite files that this command did not write."),
-)
-"""-o and --force, as `output`."""
-
-result_options = in_order(figure_options, output_options, terminal_options)
-"""Options of every command that draws and writes: `look`, `output` and `terminal`."""
 
 
 def fail_on_option(meaning: str) -> Decorator:

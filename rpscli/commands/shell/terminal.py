@@ -16,7 +16,7 @@ from contextlib import AbstractContextManager, ExitStack, contextmanager, nullco
 from dataclasses import dataclass, field
 from pathlib import Path
 from textwrap import wrap
-from typing import TYPE_CHECKING, Any, Literal, TextIO
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TextIO
 
 import click
 
@@ -141,8 +141,8 @@ def _made(table: Table, columns: Sequence[int], widths: Sequence[int]) -> RichTa
         made = RichTable(box=None, show_header=False, pad_edge=False, padding=(0, 2, 0, 0))
     else:
         made = RichTable(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False)
-    usual: Sequence[int | None] = widths or [None] * len(columns)
-    for index, width in zip(columns, usual, strict=True):
+    fixed: Sequence[int | None] = widths or [None] * len(columns)
+    for index, width in zip(columns, fixed, strict=True):
         justify: Literal["left", "right"] = "left" if index < table.words else "right"
         if listing:
             made.add_column(overflow="fold" if index else "ellipsis")
@@ -211,30 +211,56 @@ TRACEBACK = "RPS_TRACEBACK"
 """Environment variable that asks for the traceback of an internal error."""
 
 
-def exit_code_of(error: BaseException) -> int:
-    """The exit code that stands for an error."""
-    if isinstance(error, RpsError | click.ClickException):
-        return error.exit_code
-    return INTERRUPTED if isinstance(error, KeyboardInterrupt | click.Abort) else INTERNAL
+class Ending(NamedTuple):
+    """An error as it is told: its kind, its text and the exit code that stands for it."""
+
+    kind: str
+    message: str
+    code: int
+
+    @classmethod
+    def of(cls, error: BaseException) -> Ending:
+        """All faults of the command line are one kind; words of hundreds of letters are cut."""
+        name, code = type(error).__name__, getattr(error, "exit_code", INTERNAL)
+        if isinstance(error, click.ClickException):
+            name, text = "UsageError", error.format_message()
+        elif isinstance(error, RpsError):
+            text = str(error)
+        elif isinstance(error, KeyboardInterrupt | click.Abort):
+            name, code = "Interrupted", INTERRUPTED
+            text = "interrupted; no file is half written; the same command may be given again"
+        elif isinstance(error, OSError):
+            place = f"{str(error.filename)[:200]}: " if error.filename else ""
+            text = f"{place}{error.strerror or error}; check the path, its permissions and the disk"
+        elif isinstance(error, MemoryError | RecursionError):
+            text = "there is not enough memory; use fewer points, samples or storeys"
+        else:
+            last = traceback.extract_tb(error.__traceback__)[-1:]
+            where = f" ({Path(last[0].filename).name}:{last[0].lineno})" if last else ""
+            text = (
+                f"internal error{where}: {name}: {error}; this is a fault of rps: please report it"
+                f" with the traceback that {TRACEBACK}=1 shows"
+            )
+        # The end of a path says most of it.
+        cut = re.sub(r"\S{301,}", lambda word: f"{word[0][:140]}...{word[0][-140:]}", text)
+        return cls(name, cut, code)
 
 
 def report(error: BaseException, *, as_json: bool) -> int:
     """Say on the streams what went wrong; returns the exit code."""
-    code = exit_code_of(error)
+    ending = Ending.of(error)
     if as_json:
-        document = failure_document(kind(error), message(error), code)
-        emit(json_text(document), sys.stdout)
+        emit(json_text(failure_document(*ending)), sys.stdout)
     emit(_lines(error), sys.stderr)
-    return code
+    return ending.code
 
 
 def concluded(document: Mapping[str, Any], error: RpsError | None) -> dict[str, Any]:
     """The document of a result with its exit code; status ``ok`` although a limit is exceeded."""
+    if error is not None and not isinstance(error, LimitExceeded):
+        return {**document, **failure_document(*Ending.of(error))}
     code = 0 if error is None else error.exit_code
-    end = {"passed": code == 0, "exit_code": code}
-    if error is None or isinstance(error, LimitExceeded):
-        return {**document, **end}
-    return {**document, **failure_document(kind(error), message(error), code)}
+    return {**document, "passed": code == 0, "exit_code": code}
 
 
 def leave(error: RpsError | None) -> None:
@@ -244,48 +270,16 @@ def leave(error: RpsError | None) -> None:
         raise click.exceptions.Exit(error.exit_code)
 
 
-def kind(error: BaseException) -> str:
-    """Name of an error in JSON: its class; all faults of the command line are one kind."""
-    if isinstance(error, click.ClickException):
-        return "UsageError"
-    return "Interrupted" if exit_code_of(error) == INTERRUPTED else type(error).__name__
-
-
-def message(error: BaseException) -> str:
-    """Text of an error, without its kind; words of hundreds of letters are cut."""
-    # The end of a path says most of it.
-    return re.sub(r"\S{301,}", lambda word: f"{word[0][:140]}...{word[0][-140:]}", _message(error))
-
-
-def _message(error: BaseException) -> str:
-    if isinstance(error, click.ClickException):
-        return error.format_message()
-    if exit_code_of(error) == INTERRUPTED:
-        return "interrupted; no file is half written; the same command may be given again"
-    if isinstance(error, RpsError):
-        return str(error)
-    if isinstance(error, OSError):
-        named = f"{str(error.filename)[:200]}: " if error.filename else ""
-        return f"{named}{error.strerror or error}; check the path, its permissions and the disk"
-    if isinstance(error, MemoryError | RecursionError):
-        return "there is not enough memory; use fewer points, samples or storeys"
-    place = traceback.extract_tb(error.__traceback__)[-1:]
-    where = f" ({Path(place[0].filename).name}:{place[0].lineno})" if place else ""
-    return (
-        f"internal error{where}: {type(error).__name__}: {error}; this is a fault of rps: please"
-        f" report it with the traceback that {TRACEBACK}=1 shows"
-    )
-
-
 def _lines(error: BaseException) -> str:
-    if exit_code_of(error) == INTERNAL and os.environ.get(TRACEBACK):
+    ending = Ending.of(error)
+    if ending.code == INTERNAL and os.environ.get(TRACEBACK):
         return "".join(traceback.format_exception(error))
     if type(error).__name__ == "NoArgsIsHelpError":  # click >= 8.2: a group without a subcommand
-        return f"{message(error)}\n"
+        return f"{ending.message}\n"
     usage = ""
     if isinstance(error, click.UsageError) and error.ctx is not None:
         usage = f"{error.ctx.get_usage()}\ntry {error.ctx.command_path} --help\n"
-    return usage + "".join(f"error: {line}\n" for line in visible(message(error)).splitlines())
+    return usage + "".join(f"error: {line}\n" for line in visible(ending.message).splitlines())
 
 
 MANY = 5000
