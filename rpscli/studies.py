@@ -521,7 +521,7 @@ def collected(result: StudyResult, look: Look, place: Path | None = None) -> Col
         command = reproduction(result.layout, result.layout[number], base or Path())
         found.failures.append(Failure(number + 1, message, command))
     if found.failures:
-        heads = dict.fromkeys(Failure._fields, "-")
+        heads = ", ".join(Failure._fields)
         found.files["failed.csv"] = csv_text(columns_of(heads, found.failures))
     with result.results.store:
         if result.summary is not None:

@@ -9,8 +9,8 @@ import pytest
 from rpscli.analyses import result_quantities
 from rpscli.analyses.largest_demands import OUTCOMES
 from rpscli.commands.explain import glossary
-from rpscli.report.tables.derived import DYNAMICS, FIRST_PERIOD, GEOMETRY
-from rpscli.report.tables.timehistory import OUTCOMES as SENTENCES
+from rpscli.report.derived import DYNAMICS, FIRST_PERIOD, GEOMETRY
+from rpscli.report.timehistory import OUTCOMES as SENTENCES
 
 EXPLAINED = {
     part.strip().lower()

@@ -12,9 +12,7 @@ from rpscli.case.conditions import Condition, conditions_of
 from rpscli.commands import inputs
 from rpscli.commands.shell import options
 from rpscli.errors import CaseError, RecordError, RpsError, UsageError
-from rpscli.report.documents import heading
-from rpscli.report.table import Heading, Part, Table, large, shown
-from rpscli.report.tables.derived import (
+from rpscli.report.derived import (
     AT_CRITICAL,
     BOTH,
     COLUMN,
@@ -23,7 +21,11 @@ from rpscli.report.tables.derived import (
     FIRST_PERIOD,
     GEOMETRY,
     UPWARDS,
+    derived_quantities,
+    strength_tables,
 )
+from rpscli.report.files import heading
+from rpscli.report.table import Heading, Part, Table, large, shown
 
 if TYPE_CHECKING:
     from rpscli.case.case import Case
@@ -65,8 +67,6 @@ def command(
         raise UsageError("only --draw writes something; options of files and figures go with it")
     given = inputs.read_case(request, out.terminal)
     from rpscli.model.statics import device_consequences, storey_strengths
-    from rpscli.report.tables.derived import derived_quantities
-    from rpscli.report.tables.yielding import strength_tables
 
     structure = given.case.structure
     derived = derived_quantities(structure) | device_consequences(structure)

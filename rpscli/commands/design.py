@@ -20,12 +20,16 @@ from rpscli.report.design import (
     figures,
     nothing_passes,
 )
-from rpscli.report.documents import heading
 from rpscli.report.figures.look import figure_files
-from rpscli.report.files import OutputFolder
+from rpscli.report.files import OutputFolder, heading
 from rpscli.report.limits import VERDICT, verdict_texts
-from rpscli.report.study.shown import note_of_directions, of_first_system
-from rpscli.report.study.statistics import verdict_columns, verdict_document, verdict_lines
+from rpscli.report.study.statistics import (
+    note_of_directions,
+    of_first_system,
+    verdict_columns,
+    verdict_document,
+    verdict_lines,
+)
 from rpscli.report.table import Heading, Part, Table, csv_text
 from rpscli.studies import Collected, Study, StudyResult, collected, error_of
 from rpscli.sweep.design import Answer, Search

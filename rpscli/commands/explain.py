@@ -13,7 +13,7 @@ from rpscli.analyses.result_quantities import EVERY, ResultQuantity
 from rpscli.commands.shell.options import completing, terminal_options
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.errors import UsageError, hint
-from rpscli.report.documents import heading
+from rpscli.report.files import heading
 from rpscli.report.table import Heading, Part, Table
 
 if TYPE_CHECKING:

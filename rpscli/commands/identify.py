@@ -12,7 +12,7 @@ from rpscli.commands.inputs import case_heading, read_case
 from rpscli.commands.shell import options
 from rpscli.commands.shell.terminal import Terminal, announce_compilation, passing_time
 from rpscli.errors import AnalysisError, RecordError, UsageError, listed
-from rpscli.report.documents import heading
+from rpscli.report.files import heading
 from rpscli.report.table import Heading, Part, Table, shown
 
 if TYPE_CHECKING:

@@ -14,8 +14,7 @@ from click.shell_completion import BashComplete, FishComplete, ZshComplete
 from rpscli.commands.shell.options import completing, terminal_options
 from rpscli.commands.shell.terminal import Terminal, emit
 from rpscli.errors import Refused, UsageError, hint, listed
-from rpscli.report.documents import heading, json_text
-from rpscli.report.files import write_whole
+from rpscli.report.files import heading, json_text, write_whole
 from rpscli.report.table import Table
 
 FOLDER = "cases"

@@ -13,10 +13,9 @@ import click
 from rpscli.commands.shell import options
 from rpscli.commands.shell.terminal import Terminal, counted, passing_time
 from rpscli.errors import CaseError, RpsError, UsageError, all_made
-from rpscli.report.documents import heading
 from rpscli.report.figures.film import FilmRequest
 from rpscli.report.figures.look import drawn_with
-from rpscli.report.files import Drawing, OutputFolder, Run
+from rpscli.report.files import Drawing, OutputFolder, Run, heading
 from rpscli.report.table import Part
 from rpscli.units import as_written
 

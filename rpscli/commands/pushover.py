@@ -86,6 +86,23 @@ def _tables(result: PushoverResult, title: str) -> Iterator[Part]:
             largest = shown(float(curve.sum_of_floor_forces.max()) * 1e-3)
             capacity.append((curve.pattern, shown(curve.roof_displacement_at_uplift), largest))
         yield Table.of_texts(heads, capacity)
-    from rpscli.report.tables.yielding import yielding_tables  # numpy is slow
+    yield from _yielding_tables(result)
 
-    yield from yielding_tables(result)
+
+def _yielding_tables(result: PushoverResult) -> Iterator[Part]:
+    """Storeys that yield on the capacity curves, and where each begins."""
+    building = result.structure.superstructure
+    if building is None or building.strengths is None:
+        return
+    rows = [
+        (curve.pattern, str(storey), shown(1e-3 * force), shown(force / result.uplift_force))
+        for curve in result.capacity
+        for storey, force in sorted(curve.yielding.items(), key=lambda item: item[1])
+    ]
+    if not rows:
+        yield "columns lift first: pushed slowly no storey ever yields, only in motion"
+        return
+    heads = "pattern", "storey yields", "at floor forces of kN", "of uplift force"
+    yield Table.of_texts(heads, rows)
+    if building.hardening == 0.0:
+        yield "without hardening a curve ends where the first storey yields: it is a mechanism then"

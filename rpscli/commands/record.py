@@ -26,8 +26,7 @@ from rpscli.commands.shell.options import (
 )
 from rpscli.commands.shell.terminal import Terminal, watched
 from rpscli.errors import LimitExceeded, Refused, UsageError
-from rpscli.report.documents import heading
-from rpscli.report.files import OutputFolder, Run, encoded, write_whole
+from rpscli.report.files import OutputFolder, Run, encoded, heading, write_whole
 
 if TYPE_CHECKING:
     from rpscli.records.ground_motion import GroundMotion
@@ -107,7 +106,7 @@ def _result(
 ) -> None:
     """The motion that was read and its strength, as document or table."""
     from rpscli.records.measures import intensity_measures
-    from rpscli.report.tables.motions import record_document, record_table
+    from rpscli.report.motions import record_document, record_table
 
     measured = [(motion, intensity_measures(motion)) for motion in motions]
     own, *others = (record_document(*each) for each in measured)
@@ -133,7 +132,7 @@ def plot(given: SourceRequest, out: Output) -> None:
     Writes record.csv, spectrum.csv and the figure record; of a pair x_record.csv, y_record.csv, ...
     """
     from rpscli.records.measures import drawn_spectrum
-    from rpscli.report.bundles import record_files
+    from rpscli.report.motions import record_files
 
     motions = given.motions(out.terminal)
     folder = _folder(motions, out, "plot")
@@ -272,8 +271,8 @@ def select(
     from rpscli.records.source import Source
     from rpscli.records.target import RULES as KNOWN
     from rpscli.records.target import load_target
-    from rpscli.report.bundles import selection_files
-    from rpscli.report.tables import motions as report
+    from rpscli.report import motions as report
+    from rpscli.report.motions import selection_files
 
     spectrum = load_target(target)
     wanted_pgv = _pgv(scale_by, pgv, spectrum)
@@ -382,7 +381,7 @@ def _pgv(scale_by: str, pgv: float | None, target: TargetSpectrum) -> float | No
 def _write(command: str, motions: Sequence[GroundMotion], out: Output, form: str | None) -> None:
     """Write the motions into the folder, or the file, that the command line names."""
     from rpscli.records.formats.at2 import at2_text
-    from rpscli.report.tables.motions import two_column_text
+    from rpscli.report.motions import two_column_text
 
     place = out.place or Path()
     endings = {} if place.is_dir() else {ending: form for form, ending in FORMATS.items()}

@@ -20,11 +20,11 @@ from rpscli.commands.shell.terminal import Terminal, duration, passing_time
 from rpscli.errors import LimitExceeded, Refused, RpsError
 from rpscli.machine import available_cores
 from rpscli.physics.state import LANES
-from rpscli.report.documents import failure_document, heading
-from rpscli.report.files import OutputFolder
+from rpscli.report.files import OutputFolder, failure_document, heading
 from rpscli.report.limits import counts_of_limits, verdicts_in_short
-from rpscli.report.study import shown
-from rpscli.report.study.labels import labels
+from rpscli.report.study import statistics as of_study
+from rpscli.report.study.registry import asked
+from rpscli.report.study.report import labels
 from rpscli.report.study.statistics import summary_document, verdict_document
 from rpscli.report.table import Heading, Part, Table
 from rpscli.studies import Collected, Study, StudyInterrupted, StudyResult
@@ -135,7 +135,7 @@ class Swept(NamedTuple):
         document = {
             **heading(command),
             "study": study_heading(layout),
-            "note": (result.summary and shown.note_of_directions(layout)) or None,
+            "note": (result.summary and of_study.note_of_directions(layout)) or None,
             "points": {
                 "total": len(result),
                 "computed": result.done.computed,
@@ -161,13 +161,13 @@ class Swept(NamedTuple):
         listing.append(("records scaled to", result.layout.scaled_to))
         head: list[Part] = [Heading(result.study.title), Table.listing(listing)]
         if not most:
-            return [*head, *shown.summary_tables(result.summary), *told]
-        statistics = list(shown.summary_tables(result.summary, shown.asked(result.layout)))
+            return [*head, *of_study.summary_tables(result.summary), *told]
+        statistics = list(of_study.summary_tables(result.summary, asked(result.layout)))
         elsewhere, few = f"statistics are in statistics.csv{ALL}", head
         for rows, of_reports in [(n, FEWER[0]) for n in FEWER] + [(0, n) for n in FEWER]:
-            some = shown.cut(statistics, rows, ALL) if rows else [elsewhere]
+            some = of_study.cut(statistics, rows, ALL) if rows else [elsewhere]
             limits = [counts_of_limits(judged)] if len(judged) > of_reports else []
-            few = [*head, *some, *limits, *shown.cut(told, of_reports, ALL)]
+            few = [*head, *some, *limits, *of_study.cut(told, of_reports, ALL)]
             if shell.rendered(few).count("\n") <= most:
                 break
         return few
@@ -176,9 +176,9 @@ class Swept(NamedTuple):
         """What counts as overturned, verdicts, reports; a remark of several is said once."""
         result = self.result
         if result.summary is not None:
-            yield shown.of_first_system(result.layout)
+            yield of_study.of_first_system(result.layout)
             if result.judgements:
-                yield shown.verdict_table(result.summary, result.judgements)
+                yield of_study.verdict_table(result.summary, result.judgements)
         remarks = set[Part]()
         for part in self.found.parts:
             if isinstance(part, Table):
@@ -187,7 +187,7 @@ class Swept(NamedTuple):
             if isinstance(part, Heading) or part not in remarks:
                 yield part
             remarks.add(part)
-        if result.summary and (note := shown.note_of_directions(result.layout)):
+        if result.summary and (note := of_study.note_of_directions(result.layout)):
             yield note
 
 

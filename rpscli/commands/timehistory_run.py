@@ -23,18 +23,19 @@ from rpscli.commands.shell.terminal import concluded, leave, patience
 from rpscli.errors import AnalysisError, LimitExceeded, RecordError, RpsError, UsageError
 from rpscli.records.ground_motion import MotionComponents
 from rpscli.report.bundles import floor_spectra_files, timehistory_files
-from rpscli.report.documents import direction_note, heading, json_text, timehistory_document
 from rpscli.report.figures.animation import history_film
 from rpscli.report.figures.film import FilmRequest
-from rpscli.report.files import OutputFolder
+from rpscli.report.files import OutputFolder, heading, json_text
 from rpscli.report.limits import VERDICT, excess_text, verdict_texts, worst_text
 from rpscli.report.study import statistics
 from rpscli.report.table import Heading, Part, Table, csv_text, headed, large, shown, standing
-from rpscli.report.tables.timehistory import (
+from rpscli.report.timehistory import (
+    direction_note,
     neighbours_texts,
     overturned_text,
     passes_text,
     restitution_text,
+    timehistory_document,
     timehistory_tables,
 )
 from rpscli.sweep.statistics.fractiles import Spread

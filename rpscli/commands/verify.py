@@ -14,8 +14,7 @@ from rpscli.commands.inputs import MotionRequest, load_motion
 from rpscli.commands.shell.options import FILE, FiniteRange, terminal_options
 from rpscli.commands.shell.terminal import Terminal, announce_compilation
 from rpscli.errors import Refused, UsageError, VerificationMismatch
-from rpscli.report.documents import heading
-from rpscli.report.files import write_whole
+from rpscli.report.files import heading, write_whole
 from rpscli.report.table import Heading, Part, Table, shown
 
 if TYPE_CHECKING:

@@ -15,9 +15,9 @@ from rpscli.analyses.result_quantities import LIMITED, NEEDS, ResultQuantity
 from rpscli.case.case import Case
 from rpscli.case.conditions import LIMITS, Condition, case_conditions
 from rpscli.errors import UsageError
-from rpscli.report.bundles import Files
 from rpscli.report.figures import style
 from rpscli.report.figures.look import Look, figure_files
+from rpscli.report.files import Files
 from rpscli.report.html.page import Block, Picture, Section, page_look, pictures
 from rpscli.report.limits import bound_text
 from rpscli.report.table import Table, columns_of, csv_text, headed, large, shown
@@ -185,13 +185,10 @@ class Budget:
 
     def files(self, look: Look) -> Files:
         """`budget.csv`, and a picture of each result."""
-        heads = dict.fromkeys(("cause", "change", "options", "outcome", "refused"), "-")
-        units = {e.name: e.quantity.unit for e in self.effects if e.quantity}
-        cells = [
-            [*(getattr(row, name) for name in heads), *(row.values.get(name) for name in units)]
-            for row in self.every
-        ]
-        yield "budget.csv", csv_text(columns_of(heads | units, cells))
+        known = {e.name: f"{e.name} [{e.quantity.unit}]" for e in self.effects if e.quantity}
+        cells = [(*row[:4], row.refused, *map(row.values.get, known)) for row in self.every]
+        heads = ", ".join(("cause, change, options, outcome, refused", *known.values()))
+        yield "budget.csv", csv_text(columns_of(heads, cells))
         draws = {e.name: partial(self.figure, e) for e in self.effects if e.quantity}
         yield from figure_files(draws, look).items()
 

@@ -3,58 +3,48 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from functools import partial
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from rpscli.analyses.floor_spectra import (
-    FloorSpectra,
-    fixed_base_floor_spectra,
-    isolated_floor_spectra,
-)
+from rpscli.analyses.floor_spectra import fixed_base_floor_spectra, isolated_floor_spectra
 from rpscli.analyses.modal import ModalResult
-from rpscli.analyses.pushover import CapacityCurve, PushoverResult, pushover
+from rpscli.analyses.pushover import PushoverResult, pushover
 from rpscli.analyses.result_quantities import STOREY_CURVE, STOREYS, STOREYS_YIELDING
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.trace import Event, sampled
 from rpscli.model.podium import PodiumStructure
-from rpscli.records.ground_motion import GroundMotion
-from rpscli.records.measures import ResponseSpectrum
-from rpscli.records.selection import Selection
 from rpscli.report.figures import (
     bearing,
     devices,
     floors,
     history,
-    motions,
     orbit,
     structure,
     style,
 )
 from rpscli.report.figures import pushover as static
-from rpscli.report.figures.look import FIGURES, USUAL, Draw, Look, figure_files
-from rpscli.report.files import Content
+from rpscli.report.figures.look import FIGURES, USUAL, Look, figure_files
+from rpscli.report.files import Files
 from rpscli.report.table import Column, columns_of, csv_lines, csv_text
-from rpscli.report.tables import motions as tables
-from rpscli.report.tables.timehistory import fixed_base_demands, isolated_demands
-
-Files = Iterator[tuple[str, str | Content]]  # names and contents
+from rpscli.report.timehistory import fixed_base_demands, isolated_demands
 
 
-def _with_added(
-    figures: Mapping[str, Draw], result: object, title: str, look: Look
-) -> dict[str, Draw]:
-    """Our figures, and those of other packages that are asked for."""
+def _figures(
+    figures: Mapping[str, Callable[[Any, str], bytes]], result: Any, title: str, look: Look
+) -> Files:
+    """Our figures of a result, and those of other packages that are asked for."""
 
     def drawn(name: str) -> bytes:
         draw = FIGURES[name]
         with FIGURES.blaming(name):  # errors in its labels surface when it is saved
             return style.single(draw, result, (title, name), 3.4)
 
-    return {**{name: partial(drawn, name) for name in look.added}, **figures}
+    added = {name: partial(drawn, name) for name in look.added}
+    own = {stem: partial(draw, result, title) for stem, draw in figures.items()}
+    yield from figure_files({**added, **own}, look).items()
 
 
 def bearing_files(of: PodiumStructure, title: str, look: Look = USUAL) -> Files:
@@ -67,29 +57,37 @@ def modal_files(result: ModalResult, title: str, look: Look = USUAL) -> Files:
     """Files of a modal analysis."""
     yield "modes.csv", csv_text(mode_columns(result))
     yield "shapes.csv", csv_text(shape_columns(result))
-    heads = {"state": "-", "mode": "-", "real": "1/s", "imaginary": "rad/s"}
     rows = [
         (name, index // 2, value.real, value.imag)  # two a mode, mode 0 is the storey's own
         for name, modes in result.uplifted.items()
         for index, value in enumerate(modes.eigenvalues.tolist())
     ]
+    heads = "state, mode, real [1/s], imaginary [rad/s]"
     yield "eigenvalues.csv", csv_text(columns_of(heads, rows))
-    figures: dict[str, Draw] = {"modes": partial(structure.modes_figure, result, title)}
-    yield from figure_files(_with_added(figures, result, title, look), look).items()
+    yield from _figures({"modes": structure.modes_figure}, result, title, look)
 
 
 def pushover_files(result: PushoverResult, title: str, look: Look = USUAL) -> Files:
     """Files of the static characteristics; without a building there are no capacity curves."""
     curve = [Column(q.name, q.unit, getattr(result.curve, q.name)) for q in STOREY_CURVE]
     yield "storey_curve.csv", csv_text(curve)  # one row a point, from the uplift on
-    figures: dict[str, Draw] = {
-        "bearing": partial(bearing.bearing_figure, result, title),
-        "storey_curve": partial(static.storey_curve_figure, result, title),
+    figures: dict[str, Callable[[Any, str], bytes]] = {
+        "bearing": bearing.bearing_figure,
+        "storey_curve": static.storey_curve_figure,
     }
     if result.capacity:
-        yield "capacity.csv", csv_text(capacity_columns(result.capacity))
-        figures["capacity"] = partial(static.capacity_figure, result, title)
-    yield from figure_files(_with_added(figures, result, title, look), look).items()
+        heads = "pattern, roof_displacement [m], cap_beam_displacement [m], sum_of_floor_forces [N]"
+        rows = [
+            (each.pattern, *point)
+            for each in result.capacity
+            for point in zip(
+                each.roof_displacement, each.cap_beam_displacement, each.sum_of_floor_forces,
+                strict=True,
+            )
+        ]  # fmt: skip
+        yield "capacity.csv", csv_text(columns_of(heads, rows))
+        figures["capacity"] = static.capacity_figure
+    yield from _figures(figures, result, title, look)
 
 
 def timehistory_files(result: TimeHistoryResult, title: str, look: Look = USUAL) -> Files:
@@ -97,59 +95,52 @@ def timehistory_files(result: TimeHistoryResult, title: str, look: Look = USUAL)
     yield "timehistory.csv", csv_lines(history_columns(result))
     yield "events.csv", csv_text(event_columns(result.events))
     yield "storeys.csv", csv_text(storey_columns(result))
-    figures: dict[str, Callable[..., bytes]] = {
-        **({"storey_shears": floors.profile_figure} if result.structure.storeys else {}),
-        **({"storey_loops": floors.loops_figure} if result.structure.yields else {}),
-        **({"devices": devices.devices_figure} if result.structure.devices else {}),
-        **({"column": bearing.column_figure} if result.column_demand is not None else {}),
-        **({"orbit": orbit.orbit_figure} if result.trace.y is not None else {}),
-        "rotation": history.rotation_figure,
-        "displacements": history.displacement_figure,
-        "moment_rotation": history.moment_figure,
-        "energy": history.energy_figure,
-    }
-    few = history.thinned(result)
-    draws = {
+    of, few = result.structure, history.thinned(result)
+    known = (
+        ("storey_shears", floors.profile_figure, of.storeys),
+        ("storey_loops", floors.loops_figure, of.yields),
+        ("devices", devices.devices_figure, of.devices),
+        ("column", bearing.column_figure, result.column_demand),
+        ("orbit", orbit.orbit_figure, result.trace.y),
+        ("rotation", history.rotation_figure, True),
+        ("displacements", history.displacement_figure, True),
+        ("moment_rotation", history.moment_figure, True),
+        ("energy", history.energy_figure, True),
+    )
+
+    def drawn(draw: Callable[..., bytes], whole: TimeHistoryResult, title: str) -> bytes:
         # Maxima over the height are those of all samples.
-        stem: partial(draw, result if stem == "storey_shears" else few, title)
-        for stem, draw in figures.items()
-    }
-    yield from figure_files(_with_added(draws, result, title, look), look).items()
+        return draw(whole if draw is floors.profile_figure else few, title)
+
+    figures = {stem: partial(drawn, draw) for stem, draw, there in known if there}
+    yield from _figures(figures, result, title, look)
 
 
 def floor_spectra_files(result: TimeHistoryResult, title: str, look: Look = USUAL) -> Files:
-    """Spectra of the floors; none without a building."""
+    """Spectra of the floors, a row each and period from the bottom; none without a building."""
     if not result.structure.storeys:
         return
     isolated, fixed = isolated_floor_spectra(result), fixed_base_floor_spectra(result)
-    yield "floor_spectra.csv", csv_text(floor_spectra_columns(isolated, fixed))
+    count, periods = isolated.displacement.shape
+    columns = [
+        Column("floor", "-", np.repeat(np.arange(1, count + 1), periods)),
+        Column("period", "s", np.tile(isolated.periods, count)),
+    ]
+    for prefix, of in {"": isolated, "fixed_base_": fixed}.items():
+        if of is not None:
+            acceleration = of.pseudo_acceleration.ravel()
+            columns.append(Column(f"{prefix}pseudo_acceleration", "m/s2", acceleration))
+            columns.append(Column(f"{prefix}displacement", "m", of.displacement.ravel()))
+    yield "floor_spectra.csv", csv_text(columns)
     record = f"{result.record.name}{', fixed base elastic' * result.structure.yields}"
     draw = partial(floors.floor_spectra_figure, isolated, fixed, title, record)
     yield from figure_files({"floor_spectra": draw}, look).items()
 
 
-def record_files(motion: GroundMotion, spectrum: ResponseSpectrum, look: Look = USUAL) -> Files:
-    """Files of a ground motion."""
-    yield "record.csv", csv_lines(tables.motion_columns(motion))
-    yield "spectrum.csv", csv_text(tables.spectrum_columns(spectrum))
-    draw = partial(motions.record_figure, motion, spectrum)
-    yield from figure_files({"record": draw}, look).items()
-
-
-def selection_files(selection: Selection, folder: Path, look: Look = USUAL) -> Files:
-    """Files of a choice of motions; the list names them as seen from the folder."""
-    yield "selection.txt", tables.selection_list(selection, folder)
-    yield "selection.csv", csv_text(tables.selection_columns(selection))
-    yield "spectra.csv", csv_text(tables.mean_columns(selection))
-    draw = partial(motions.selection_figure, selection, selection.target.name)
-    yield from figure_files({"selection": draw}, look).items()
-
-
 def mode_columns(result: ModalResult) -> list[Column]:
     """`modes.csv`: one row a vibration mode of each state; those uplifted in both orders."""
-    heads = {"state": "-", "mode": "-", "frequency": "rad/s", "period": "s", "damping": "-"}
-    heads |= {"frequency_ratio": "-", "damping_ratio": "-"}
-    heads |= {"first_order_frequency": "rad/s", "first_order_damping": "-"}
+    heads = "state, mode, frequency [rad/s], period [s], damping, frequency_ratio, damping_ratio"
+    heads += ", first_order_frequency [rad/s], first_order_damping"
     rows: list[tuple[Any, ...]] = []
     for state, modes, of_itself in (
         ("full_contact", result.full_contact, None),
@@ -180,18 +171,7 @@ def shape_columns(result: ModalResult) -> list[Column]:
         for (state, first), (shapes, elastic) in profiles.items()
         for mode, level in np.ndindex(*shapes.shape)
     ]
-    return columns_of(dict.fromkeys(("state", "mode", "level", "horizontal", "elastic"), "-"), rows)
-
-
-def capacity_columns(curves: tuple[CapacityCurve, ...]) -> list[Column]:
-    """`capacity.csv`: the points of one load pattern after those of the other."""
-    patterns = [curve.pattern for curve in curves for _ in curve.sum_of_floor_forces]
-    heads = {"roof_displacement": "m", "cap_beam_displacement": "m", "sum_of_floor_forces": "N"}
-    values = {name: np.concatenate([getattr(each, name) for each in curves]) for name in heads}
-    return [
-        Column("pattern", "-", patterns),
-        *(Column(name, unit, values[name]) for name, unit in heads.items()),
-    ]
+    return columns_of("state, mode, level, horizontal, elastic", rows)
 
 
 def storey_columns(result: TimeHistoryResult) -> list[Column]:
@@ -215,24 +195,8 @@ def history_columns(result: TimeHistoryResult) -> list[Column]:
 
 def event_columns(events: tuple[Event, ...]) -> list[Column]:
     """`events.csv`: one row an event, in the order of time."""
-    heads = {"time": "s", "kind": "-", "rotation": "rad"}
-    heads |= {"rotation_rate_before": "rad/s", "rotation_rate_after": "rad/s", "energy_lost": "J"}
+    units = {"time": "s", "kind": "-", "rotation": "rad"}
+    units |= {"rotation_rate_before": "rad/s", "rotation_rate_after": "rad/s", "energy_lost": "J"}
     if any(event.azimuth is not None for event in events):
-        heads |= {"azimuth": "rad", "least_tilt": "rad", "nearness": "-", "loss_share": "-"}
-    return columns_of(heads, [[getattr(event, name) for name in heads] for event in events])
-
-
-def floor_spectra_columns(isolated: FloorSpectra, fixed: FloorSpectra | None) -> list[Column]:
-    """`floor_spectra.csv`: one row a floor, from the bottom, and period."""
-    floors, periods = isolated.displacement.shape
-    columns = [
-        Column("floor", "-", np.repeat(np.arange(1, floors + 1), periods)),
-        Column("period", "s", np.tile(isolated.periods, floors)),
-    ]
-    for prefix, spectra in (("", isolated), ("fixed_base_", fixed)):
-        if spectra is not None:
-            columns += [
-                Column(f"{prefix}pseudo_acceleration", "m/s2", spectra.pseudo_acceleration.ravel()),
-                Column(f"{prefix}displacement", "m", spectra.displacement.ravel()),
-            ]
-    return columns
+        units |= {"azimuth": "rad", "least_tilt": "rad", "nearness": "-", "loss_share": "-"}
+    return [Column(name, of, [getattr(e, name) for e in events]) for name, of in units.items()]

@@ -16,9 +16,9 @@ from rpscli.case.design import Objective
 from rpscli.report.figures import style
 from rpscli.report.figures.look import Draw
 from rpscli.report.limits import VERDICT, limit_unit, requirement_text, verdict_texts
-from rpscli.report.study.labels import axis_label, key_columns, label, symbol
 from rpscli.report.study.panels import MOST_TICKS
-from rpscli.report.study.statistics import reached, verdict_document
+from rpscli.report.study.report import axis_label, key_columns, label, reached, symbol
+from rpscli.report.study.statistics import verdict_document
 from rpscli.report.table import Column, Part, Table, large, shown
 from rpscli.sweep.design import ROBUST, Answer, Requirement
 from rpscli.sweep.statistics.fractiles import CONFIDENCE

@@ -1,9 +1,10 @@
-"""Files and folders of results: whole or not at all, and never over what is not their own."""
+"""Documents and files of results: whole or not at all, and never over what is not their own."""
 
 from __future__ import annotations
 
 import json
 import os
+import platform
 import secrets
 import stat
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -13,9 +14,125 @@ from functools import partial
 from pathlib import Path
 from typing import Any, TypeAlias
 
-from rpscli.errors import OutputError, Refused, RpsError, UsageError, refused_by_system
+from rpscli.analyses.result_quantities import plain
+from rpscli.errors import (
+    OutputError,
+    Refused,
+    RpsError,
+    UsageError,
+    is_number,
+    refused_by_system,
+    visible,
+)
 from rpscli.machine import mode_of
-from rpscli.report.documents import SCHEMA_VERSION, json_text, read_json, versions
+from rpscli.version import VERSION
+
+SCHEMA_VERSION = 1  # version of every JSON document that rps writes
+
+
+def json_text(document: Mapping[str, Any]) -> str:
+    """The document, indented by two, with a newline at its end."""
+    return _text(plain(document), "") + "\n"
+
+
+def _text(value: Any, indent: str) -> str:
+    deeper = indent + "  "
+    if isinstance(value, dict) and value:
+        items = (f"{deeper}{json.dumps(key)}: {_text(item, deeper)}" for key, item in value.items())
+        return "{\n" + ",\n".join(items) + f"\n{indent}}}"
+    if isinstance(value, list) and any(isinstance(item, dict | list) for item in value):
+        return "[\n" + ",\n".join(deeper + _text(item, deeper) for item in value) + f"\n{indent}]"
+    return json.dumps(value, allow_nan=False)
+
+
+def versions() -> dict[str, str | None]:
+    """Versions of rps, Python, numpy and numba, without importing any of them."""
+    others = {name: installed(name) for name in ("numpy", "numba")}
+    return {"rps": VERSION, "python": platform.python_version(), **others}
+
+
+def installed(package: str) -> str | None:
+    """Version of a package; None if it is not there."""
+    from importlib import metadata
+
+    try:
+        return metadata.version(package)
+    except metadata.PackageNotFoundError:
+        return None
+
+
+Document = dict[str, Any]
+
+
+def heading(command: str = "", status: str = "ok") -> Document:
+    """The keys with which every document begins."""
+    begin = {"schema_version": SCHEMA_VERSION, "rps_version": VERSION, "status": status}
+    return begin | ({"command": command} if command else {})
+
+
+def failure_document(kind: str, message: str, exit_code: int) -> Document:
+    """The keys by which a document says that its command failed."""
+    return {
+        **heading(status="error"),
+        "passed": False,
+        "exit_code": exit_code,
+        "error": {"type": kind, "message": message, "exit_code": exit_code},
+    }
+
+
+def read_json(path: Path, kinds: Any) -> Document:
+    """A document of an earlier run, checked whole; a ValueError says what is wrong and where."""
+    # Kinds are types, lists of one kind, tuples of one that may be missing, mappings of kinds.
+    try:
+        document = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, RecursionError) as error:
+        if isinstance(error, FileNotFoundError):
+            raise
+        raise ValueError(f"cannot be read: {error}") from None
+    return dict(_checked(document, kinds, "the file"))
+
+
+def _checked(value: Any, kinds: Any, place: str) -> Any:
+    if isinstance(kinds, tuple):
+        return None if value is None else _checked(value, kinds[0], place)
+    kind = type(kinds) if isinstance(kinds, dict | list) else kinds
+    if not (is_number(value) if kind is float else isinstance(value, kind)):
+        known = {dict: "a mapping", list: "a list", float: "a number", str: "a text"}
+        raise ValueError(f"{place} must be {known[kind]}")
+    if isinstance(value, str) and visible(value) != value:
+        raise ValueError(f"{place} must be a text that shows")
+    if isinstance(kinds, list):
+        return [_checked(each, kinds[0], f"{place}[{n}]") for n, each in enumerate(value)]
+    if isinstance(kinds, dict):
+        return value | {key: _checked(value.get(key), of, key) for key, of in kinds.items()}
+    return value
+
+
+MADE_ANEW = {"files", "rps_version", "case", "verdicts", "passed", "exit_code", "command"}
+"""Keys of a document that are no results."""
+
+
+def leaves(value: object, name: str = "") -> Iterator[tuple[str, Any]]:
+    """Values of nested mappings and of lists of mappings under dotted names; other lists whole."""
+    if isinstance(value, list) and any(isinstance(item, dict) for item in value):
+        value = {str(index): item for index, item in enumerate(value)}
+    if not isinstance(value, dict) or not value:
+        yield name, value
+        return
+    for key, item in value.items():
+        yield from leaves(item, f"{name}.{key}" if name else key)
+
+
+def results_of(document: Mapping[str, Any]) -> dict[str, Any]:
+    """The results of a document by dotted name."""
+    return dict(leaves({key: document[key] for key in document if key not in MADE_ANEW}))
+
+
+def as_text(value: object) -> str:
+    """A value of a document for a table, cut where it is long."""
+    text = json.dumps(value, ensure_ascii=False)
+    return text if len(text) < 60 else f"{text[:57]}..."
+
 
 _writing = partial(
     refused_by_system, fault=OutputError, verb="written", remedy="name another place with -o"
@@ -50,6 +167,8 @@ class Drawing:
 Written: TypeAlias = bytes | Iterator[str]
 """Of a file, or its lines, which are made as they are written."""
 Content: TypeAlias = Written | Drawing
+Files: TypeAlias = Iterator[tuple[str, str | Content]]
+"""Names and contents."""
 
 
 def encoded(text: str) -> bytes:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 import math
 import re
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import islice
 from typing import TYPE_CHECKING, Any, NamedTuple, cast
@@ -152,10 +152,18 @@ Part = Table | Heading | str
 """A part of what a command shows: a plain text is a remark between tables."""
 
 
-def columns_of(heads: Mapping[str, str], rows: Iterable[Sequence[Any]]) -> list[Column]:
-    """Columns with these names and units from the rows of a table."""
-    cells = list(zip(*rows, strict=True)) or [()] * len(heads)
-    return [Column(*head, values) for head, values in zip(heads.items(), cells, strict=True)]
+def columns_of(heads: str, rows: Iterable[Sequence[Any]]) -> list[Column]:
+    """Columns from rows; heads as a file has them, `time [s], kind`, a plain number without unit.
+
+    >>> [column.title for column in columns_of("time [s], kind", [])]
+    ['time [s]', 'kind [-]']
+    """
+    parts = [head.removesuffix("]").partition(" [") for head in heads.split(", ")]
+    cells = list(zip(*rows, strict=True)) or [()] * len(parts)
+    return [
+        Column(name, unit or "-", values)
+        for (name, _, unit), values in zip(parts, cells, strict=True)
+    ]
 
 
 def picked(columns: Iterable[Column], *names: str) -> list[Column]:

@@ -18,7 +18,8 @@ from rpscli.errors import CaseError
 from rpscli.model.impact import ImpactLaw
 from rpscli.records.ground_motion import GroundMotion, MotionComponents
 from rpscli.report.bundles import event_columns, history_columns
-from rpscli.report.documents import json_text, timehistory_document
+from rpscli.report.files import json_text
+from rpscli.report.timehistory import timehistory_document
 
 pytestmark = needs_compiled_kernels
 

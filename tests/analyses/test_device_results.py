@@ -15,8 +15,7 @@ from rpscli.model.devices import FrictionDamper, RollingResistance, Stop, Tendon
 from rpscli.model.podium import Device
 from rpscli.physics.state import FULL_CONTACT, ROCKING, ROLLING, STUCK
 from rpscli.report.bundles import history_columns
-from rpscli.report.documents import timehistory_document
-from rpscli.report.tables.timehistory import timehistory_tables
+from rpscli.report.timehistory import timehistory_document, timehistory_tables
 
 F_D, P, K_T, P_Y, C, A, GAP, K_S, C_S = 3e5, 5e4, 1e7, 1.5e5, 3e5, 0.5, 0.05, 2e7, 3e5
 STRUCTURE = replace(

@@ -11,7 +11,7 @@ from rpscli.analyses import timehistory as module
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import FACTORS, neighbours, time_history
 from rpscli.model.impact import ImpactLaw
-from rpscli.report.tables.timehistory import neighbours_texts, restitution_text
+from rpscli.report.timehistory import neighbours_texts, restitution_text
 
 pytestmark = needs_compiled_kernels
 

@@ -27,9 +27,8 @@ from rpscli.analyses.timehistory import time_history
 from rpscli.model.impact import ImpactLaw
 from rpscli.records.ground_motion import MotionComponents
 from rpscli.report.bundles import history_columns, storey_columns
-from rpscli.report.documents import timehistory_document
-from rpscli.report.study.labels import label
-from rpscli.report.tables.timehistory import timehistory_tables
+from rpscli.report.study.report import label
+from rpscli.report.timehistory import timehistory_document, timehistory_tables
 from rpscli.sweep.table import points_csv
 
 pytestmark = [

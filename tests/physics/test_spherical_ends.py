@@ -27,7 +27,7 @@ from rpscli.model.bearing import Bearing
 from rpscli.model.devices import FrictionDamper, RollingResistance, Stop, Tendon, ViscousDamper
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import Device, PodiumStructure
-from rpscli.report.tables.timehistory import outcome_text
+from rpscli.report.timehistory import outcome_text
 
 H, RADIUS, COLUMNS, BEAM, G = 1.5, 2.0, 2e4, 2e5, 9.80665
 

@@ -15,7 +15,7 @@ from rpscli.records.formats.at2 import at2_text
 from rpscli.records.formats.record_text import uniform_step
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.loading import load_record
-from rpscli.report.tables.motions import two_column_text
+from rpscli.report.motions import two_column_text
 
 FOUR = [0.1, -0.2, 0.3, 0.05]
 

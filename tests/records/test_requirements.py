@@ -15,8 +15,7 @@ from rpscli.records.loading import load_record
 from rpscli.records.measures import response_spectrum
 from rpscli.records.selection import parse_filter
 from rpscli.records.target import RULES, Component, Periods, load_target
-from rpscli.report.table import csv_text
-from rpscli.report.tables.motions import spectrum_columns
+from rpscli.report.motions import record_files
 
 
 class Have(NamedTuple):
@@ -224,7 +223,8 @@ def test_a_table(tmp_path: Path) -> None:
 def test_the_spectrum_of_a_record_is_a_table(tmp_path: Path) -> None:
     motion = load_record("synthetic:?pga=0.3g&seed=1&duration=4&dt=0.02")
     spectrum = response_spectrum(motion, [0.0, 0.5, 1.0, 2.0])
-    (tmp_path / "spectrum.csv").write_text(csv_text(spectrum_columns(spectrum)), encoding="utf-8")
+    files = dict(record_files(motion, spectrum))
+    (tmp_path / "spectrum.csv").write_text(str(files["spectrum.csv"]), encoding="utf-8")
     found = load_target(str(tmp_path / "spectrum.csv")).acceleration(spectrum.periods[1:])
     np.testing.assert_allclose(found, spectrum.pseudo_acceleration[1:], rtol=1e-9)
 

@@ -25,7 +25,7 @@ from rpscli.records.selection import (
     select,
 )
 from rpscli.records.target import Periods, load_target
-from rpscli.report.tables.motions import selection_list
+from rpscli.report.motions import selection_list
 
 TARGET = "en1998:?ag=0.3g&soil=C"
 

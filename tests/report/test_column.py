@@ -13,14 +13,13 @@ from rpscli.analyses.timehistory import time_history
 from rpscli.case.case import load_case
 from rpscli.records.ground_motion import MotionComponents
 from rpscli.records.loading import load_record
-from rpscli.report.documents import timehistory_document
+from rpscli.report import derived
+from rpscli.report.derived import column_derivations
 from rpscli.report.figures.bearing import column_figure
 from rpscli.report.html.case_page import column_sections
 from rpscli.report.html.page import Picture
 from rpscli.report.table import Table
-from rpscli.report.tables import derived
-from rpscli.report.tables.derived import column_derivations
-from rpscli.report.tables.timehistory import column_table
+from rpscli.report.timehistory import column_table, timehistory_document
 
 from .test_derivation import evaluated
 

@@ -10,8 +10,8 @@ from typing import Any
 import pytest
 
 from rpscli.case.case import Case, load_case, parse_case
-from rpscli.report.tables import derived
-from rpscli.report.tables.derived import FUNCTIONS, Derivation, derivations
+from rpscli.report import derived
+from rpscli.report.derived import FUNCTIONS, Derivation, derivations
 
 CASES = sorted((Path(__file__).parents[2] / "cases").glob("*.yaml"))
 SIX = next(path for path in CASES if path.stem == "six_storey")

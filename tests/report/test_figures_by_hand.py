@@ -27,7 +27,7 @@ from rpscli.records.target import RULES, TargetSpectrum
 from rpscli.report.design import region_figure, requirements_figure
 from rpscli.report.figures.motions import selection_figure
 from rpscli.report.figures.style import kept_figure
-from rpscli.report.study.comparison import Agreement, Compared, Endings, comparison_figure, maxima
+from rpscli.report.study.comparison import Compared, Endings, comparison_figure, maxima
 from rpscli.report.study.fragility import Binned, Fragilities, Fragility, LimitState
 from rpscli.report.study.heights import Floors, floor_spectra_figure
 from rpscli.report.study.risk import Risk, risk_figure
@@ -77,19 +77,19 @@ def test_what_a_rate_comes_from() -> None:
     drift, fall = LimitState("max_lift", 0.02), LimitState("overturning", None)
     edges, nothing = np.array([1.0, 2.0, 4.0, 8.0, INF]), np.empty(0)
 
-    def risk(place: int, limit: LimitState, rates: list[float], half: float) -> Risk:
+    def risk(place: int, limit: LimitState, rates: list[float]) -> Risk:
         observed = Binned(nothing, ())
         counts = (9, 3, 0, 0)
         fit, values = fit_of(nothing), [(0.5,), (0,)][place]
         fragility = Fragility(values, limit, fit, nothing, observed, *counts, place, 0.4, 6.0)
         band = (0.5 * sum(rates), 2.0 * sum(rates)) if place else NOTHING
         others = NAN, NAN, (), 0.1
-        return Risk(fragility, sum(rates), band, edges, np.array(rates), half, *others, ())
+        return Risk(fragility, sum(rates), band, edges, np.array(rates), *others, ())
 
     risks = (
-        risk(0, drift, [0.001, 0.003, 0.004, 0.002], 3.0),
-        risk(1, drift, [0.0, 0.004, 0.012, 0.004], 5.0),
-        risk(1, fall, [0.0, 0.0, 0.008, 0.002], 7.0),
+        risk(0, drift, [0.001, 0.003, 0.004, 0.002]),
+        risk(1, drift, [0.0, 0.004, 0.012, 0.004]),
+        risk(1, fall, [0.0, 0.0, 0.008, 0.002]),
     )
     found = Fragilities(
         intensity=Intensity("PGA", "m/s2", None, nothing),
@@ -102,9 +102,9 @@ def test_what_a_rate_comes_from() -> None:
     labelled(figure, "PGA [m/s²]", "share of the annual rate [%]")
     first = panels(figure)["lift of the building > 0.02 m"]
     second = panels(figure)["overturning"]
-    for axes, shares, halves in (
-        (first, {"ρ = 0.5": (10, 30, 40), "flat ends": (0, 20, 60)}, (3.0, 5.0)),
-        (second, {"flat ends": (0, 0, 80)}, (7.0,)),
+    for axes, shares in (
+        (first, {"ρ = 0.5": (10, 30, 40), "flat ends": (0, 20, 60)}),
+        (second, {"flat ends": (0, 0, 80)}),
     ):
         steps = {str(patch.get_label()): patch for patch in axes.patches if patch.get_label()}
         assert list(steps) == list(shares)
@@ -120,8 +120,6 @@ def test_what_a_rate_comes_from() -> None:
             values, at, _ = patch.get_data()
             same(values, shares[label])
             same(at, edges[:-1])
-        for line, half in zip(axes.lines, halves, strict=True):
-            same(line.get_data(), ((half, half), (0.0, 0.82)))
         assert axes.get_xscale() == "log"
         same(axes.get_xlim(), (0.9, 1.1 * 1.4 * 8.0))
         assert axes.get_ylim()[0] == 0.0
@@ -129,7 +127,7 @@ def test_what_a_rate_comes_from() -> None:
     # 1 - exp(-50 x 0.01), with 0.02, and with half and twice of it
     numbers = [text.get_text() for text in first.texts]
     assert numbers == ["P = 0.393 (no band)", "P = 0.632 (0.39 to 0.86)"]
-    for words in ("P in 50 years, 90 % bands", "dashed: half of the rate", "over 3 records"):
+    for words in ("P in 50 years, 90 % bands", "over 3 records"):
         assert words in figure.get_suptitle()
 
 
@@ -140,7 +138,7 @@ def compared() -> dict[str, Axes]:
         Binned(np.array(levels), [share(number, 4) for number in numbers])
         for levels, numbers in (((2.0, 5.0), (0, 4)), ((3.0, 8.0), (1, 3)))
     ]
-    outcomes = Endings(Agreement(1, 2, 1, 0, share(1, 4)), *binned)
+    outcomes = Endings(1, 2, 1, 0, share(1, 4), *binned)
     observed = np.array([[1.0, 1.0, 0.0, 0.0, NAN], [0.01, 0.02, 0.04, NAN, 0.03]])
     computed = np.array([[1.0, 0.0, 1.0, 1.0, NAN], [0.02, 0.01, INF, NAN, 0.03]])
     pairs = np.array([0, 1, 2, 3]), np.array([0, 1, 2, 4])

@@ -111,35 +111,27 @@ def test_other_inputs_are_noticed(tmp_path: Path) -> None:
     assert folder_of(tmp_path, "a", scale=2.0).replaces_other_inputs
 
 
-def test_a_full_disk_leaves_everything_as_it_was(
+def test_a_full_disk_or_an_interruption_leaves_everything_as_it_was(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     write_whole({tmp_path / "a": b"old"})
     write = Path.write_bytes
 
-    def full(path: Path, data: bytes) -> int:
+    def stopped(path: Path, data: bytes) -> int:
+        if data == b"interrupted":
+            raise KeyboardInterrupt
         if data == b"too much":
             write(path, data[:3])
             raise OSError(errno.ENOSPC, "No space left on device")
         return write(path, data)
 
-    monkeypatch.setattr(Path, "write_bytes", full)
+    monkeypatch.setattr(Path, "write_bytes", stopped)
     with pytest.raises(OutputError, match=r"b: cannot be written: No space left on device"):
         write_whole({tmp_path / "a": b"new", tmp_path / "b": b"too much"})
+    with pytest.raises(KeyboardInterrupt):
+        write_whole({tmp_path / "a": b"interrupted"})
     assert [file.name for file in tmp_path.iterdir()] == ["a"]
     assert (tmp_path / "a").read_bytes() == b"old"
-
-
-def test_an_interruption_leaves_nothing_behind(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def interrupted(path: Path, data: bytes) -> int:
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(Path, "write_bytes", interrupted)
-    with pytest.raises(KeyboardInterrupt):
-        write_whole({tmp_path / "a": b"new"})
-    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_folder_in_the_way(tmp_path: Path) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterator
+from contextlib import nullcontext
 from dataclasses import replace
 from functools import cache, partial
 from itertools import combinations
@@ -38,6 +39,7 @@ from rpscli.report.figures.look import Look, figure_files, put_in_force
 from rpscli.report.figures.motions import selection_figure
 from rpscli.report.figures.structure import structure_figure
 from rpscli.report.files import Drawing
+from rpscli.report.motions import record_files
 from rpscli.report.study.heights import Floors, floor_spectra_figure
 
 TITLE = "Eighteen hospitals at the river, of which each is compared with all of the others"
@@ -157,7 +159,7 @@ def test_figures_of_analyses_can_be_read(columns: int) -> None:
         *bundles.floor_spectra_files(result, TITLE, look),
         *bundles.pushover_files(pushover(made), TITLE, look),
         *bundles.modal_files(modal(made), TITLE, look),
-        *bundles.record_files(result.record, drawn_spectrum(result.record), look),
+        *record_files(result.record, drawn_spectrum(result.record), look),
     ]
     drawings = [each for _, each in files if isinstance(each, Drawing)]
     assert len(drawings) > 15
@@ -169,13 +171,9 @@ def test_panels_fit_into_a_grid(*, of_rps: bool) -> None:
     names = ["rotation", "energy", "moment_rotation", "storey_curve", *PANELS]
     found = []
     for first in range(0, len(names), 4):
-        with warnings.catch_warnings():
+        with warnings.catch_warnings(), style.in_style() if of_rps else nullcontext():
             warnings.simplefilter("error")  # of a layout that collapses
-            if of_rps:
-                with style.in_style():
-                    found += in_grid(names[first : first + 4])
-            else:
-                found += in_grid(names[first : first + 4])
+            found += in_grid(names[first : first + 4])
     assert not found
 
 

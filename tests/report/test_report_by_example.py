@@ -8,12 +8,11 @@ from typing import Any
 import pytest
 
 from rpscli.report import table
+from rpscli.report.derived import greek, numeric, symbolic
 from rpscli.report.figures import floors, history, style
 from rpscli.report.study.fragility import LimitState
-from rpscli.report.study.labels import label, plain, symbol
 from rpscli.report.study.panels import over
-from rpscli.report.study.report import add_notes, with_band
-from rpscli.report.tables.derived import greek, numeric, symbolic
+from rpscli.report.study.report import add_notes, label, plain, symbol, with_band
 
 RHO = "podium.bearing.curvature_ratio"
 STOP = {"kind": "stop", "gap": 0.2, "stiffness": 1e6}

@@ -24,6 +24,7 @@ from rpscli.sweep import run
 from rpscli.sweep.store import Store
 
 ROOT = Path(__file__).parents[2]
+LARGEST = "largest"
 
 SMALL: dict[str, Any] = {
     "rps": 1,
@@ -38,14 +39,7 @@ SMALL: dict[str, Any] = {
     "limits": {"rotation_ratio": 0.01},
     "reports": [
         "overturning",
-        {
-            "lines": {
-                "x": "scale",
-                "y": "rotation_ratio",
-                "series": "record",
-                "statistic": "largest",
-            }
-        },
+        {"lines": {"x": "scale", "y": "rotation_ratio", "series": "record", "statistic": LARGEST}},
     ],
 }
 
@@ -374,15 +368,9 @@ def test_tables_of_many_values_draw_the_first_and_hold_all(tmp_path: Path) -> No
 
 
 def test_studies_without_histories_have_no_statistics() -> None:
-    study = rpscli.load_study(
-        {
-            "rps": 1,
-            "analysis": "modal",
-            "base": SMALL["base"],
-            "vary": [{"superstructure.period": [0.3, 0.6]}],
-        }
-    )
-    result = study.run()
+    vary = [{"superstructure.period": [0.3, 0.6]}]
+    study = {"rps": 1, "analysis": "modal", "base": SMALL["base"], "vary": vary}
+    result = rpscli.load_study(study).run()
     assert result.passed
     assert "fixed_base.periods.0" in result.columns
     np.testing.assert_allclose(result["fixed_base.periods.0"], [0.3, 0.6], rtol=1e-12)
@@ -429,15 +417,9 @@ def test_a_study_of_many_systems_prints_few_lines(
     alphas = [0.10, 0.12, 0.15]
     vary = [{"podium.bearing.slenderness": alphas}, {"podium.bearing.curvature_ratio": [0.4, 0.5]}]
     vary.append({"superstructure.period": [0.4, 0.5, 0.6]})
-    study = SMALL | {
-        "vary": vary,
-        "scale": [0.5, 0.6, 0.7, 0.8],
-        "limits": {"rotation_ratio": 1e-3},
-    }
-    study |= {
-        "records": ["synthetic:?pga=0.5g&duration=2&dt=0.02&seed=1"],
-        "reports": ["overturning"],
-    }
+    study = SMALL | {"vary": vary, "limits": {"rotation_ratio": 1e-3}, "reports": ["overturning"]}
+    records = ["synthetic:?pga=0.5g&duration=2&dt=0.02&seed=1"]
+    study |= {"records": records, "scale": [0.5, 0.6, 0.7, 0.8]}
     (tmp_path / "many.yaml").write_text(json.dumps(study), encoding="utf-8")
     words = ["sweep", "many.yaml", "--figures", "none"]
     short, whole = (CliRunner().invoke(program, [*words, *more]) for more in ([], ["--all"]))

@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rpscli.analyses.result_quantities import plain
-from rpscli.report.documents import json_text
+from rpscli.report.files import json_text
 from rpscli.report.table import Column, Table, csv_text, records
 
 values = st.recursive(

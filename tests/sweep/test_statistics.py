@@ -7,10 +7,9 @@ import math
 import numpy as np
 import pytest
 
-from rpscli.report.study.against import RotationOptions, rotation
+from rpscli.report.study.comparison import RotationOptions, rotation
 from rpscli.report.study.heights import StoreyShearOptions, storey_shear, unlike_buildings
-from rpscli.report.study.ida import IdaOptions, ida
-from rpscli.report.study.lines import LinesOptions, lines
+from rpscli.report.study.lines import IdaOptions, LinesOptions, ida, lines
 from rpscli.report.study.scatter import DemandOptions, ScatterOptions, bilinear_fit, demand, scatter
 from rpscli.report.study.table import OVERTURNING, TABLE, OverturningOptions, TableOptions
 from rpscli.sweep.points import lay_out

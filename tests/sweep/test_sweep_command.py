@@ -32,10 +32,9 @@ from rpscli.commands.shell.terminal import (
     progress_report,
 )
 from rpscli.records.loading import load_record
-from rpscli.report.study.labels import key_cells, key_columns, label
 from rpscli.report.study.registry import REPORTS as REPORT_KINDS
-from rpscli.report.study.report import Found
-from rpscli.report.study.shown import of_first_system
+from rpscli.report.study.report import Found, key_cells, key_columns, label
+from rpscli.report.study.statistics import of_first_system
 from rpscli.report.table import records
 from rpscli.studies import load_study
 from rpscli.sweep.evaluation import SCALARS

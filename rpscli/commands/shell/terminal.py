@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TextIO
 import click
 
 from rpscli.errors import LimitExceeded, OutputError, RpsError, visible
-from rpscli.report.documents import failure_document, json_text
+from rpscli.report.files import failure_document, json_text
 from rpscli.report.table import Heading, Part, Table
 from rpscli.user_cache import VARIABLE
 

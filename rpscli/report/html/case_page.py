@@ -20,17 +20,17 @@ from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import Superstructure
 from rpscli.records.ground_motion import GroundMotion, MotionComponents
 from rpscli.records.measures import DAMPING, drawn_spectrum, intensity_measures
+from rpscli.report import derived, timehistory
 from rpscli.report.bundles import bearing_files
-from rpscli.report.documents import direction_note, leaves, versions
 from rpscli.report.figures import style
 from rpscli.report.figures.look import Draw, Look, figure_files
 from rpscli.report.figures.motions import record_figure, spectra_figure
 from rpscli.report.figures.structure import structure_figure
+from rpscli.report.files import leaves, versions
 from rpscli.report.html.page import Block, Code, Notice, Picture, Section, page_look, pictures
 from rpscli.report.limits import limits_table, verdicts_in_short
+from rpscli.report.motions import record_table
 from rpscli.report.table import Column, Table
-from rpscli.report.tables import derived, timehistory
-from rpscli.report.tables.motions import record_table
 from rpscli.sweep.statistics.verdicts import Verdict
 
 MOST_ROWS = 100
@@ -253,7 +253,7 @@ def history_short(
     yield timehistory.restitution_text(result.structure)
     yield from map(Notice, timehistory.neighbours_texts(result, beside))
     both, planar = [result.motion.y is not None], result.structure.planar_only
-    yield from filter(None, [direction_note(both, planar)])
+    yield from filter(None, [timehistory.direction_note(both, planar)])
 
 
 def ground_section(ground: MotionComponents, structure: PodiumStructure, look: Look) -> Section:

@@ -1,4 +1,4 @@
-"""A study beside what was observed: counts of outcomes, maxima, and every pair."""
+"""Endings and maxima beside those observed; rotations of systems beside those of one."""
 
 from __future__ import annotations
 
@@ -10,22 +10,23 @@ from pathlib import PurePath
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from pydantic import Field
 
 from rpscli.analyses.result_quantities import LIMITED
 from rpscli.case.study.observed import OVERTURNED, Observed, comparable
-from rpscli.errors import beginning
+from rpscli.case.study.reports import ReportOptions, ReportRequest, VariedKey, VariedKeys
+from rpscli.case.study.schema import Axis
+from rpscli.case.text.document import Document, Fault, Path, dotted, shown
+from rpscli.errors import beginning, listed
 from rpscli.report.figures import style
 from rpscli.report.study import fragility, panels
 from rpscli.report.study.fragility import Binned, binned
-from rpscli.report.study.labels import keyed, labels
-from rpscli.report.study.report import Found, Report
-from rpscli.report.study.statistics import reached
+from rpscli.report.study.report import Found, Report, keyed, label, labels, reached, without_uplift
 from rpscli.report.table import Column
 from rpscli.sweep.points import StudyPoints
 from rpscli.sweep.statistics.fractiles import Share, clustered, demand, fractiles
-from rpscli.sweep.statistics.grouping import INTENSITY, Histories, grouping
-from rpscli.sweep.table import Array, Indices, Intensity, StudyResults, groups
+from rpscli.sweep.statistics.grouping import INTENSITY, Histories, grouping, own_keys
+from rpscli.sweep.table import Array, Indices, Intensity, StudyResults, groups, leading_keys
 
 MOST_ROWS = 8  # of panels in the figure; the CSV files have all
 SHOWN = {
@@ -45,11 +46,20 @@ class ComparisonOptions(fragility.MeasureOptions):
 
 
 class Endings(NamedTuple):
-    """Counts of outcomes that agree, and the shares that overturned by intensity."""
+    """Counts of both outcomes, the share of equal ones, shares that overturned by intensity."""
 
-    agreement: Agreement
+    both: int
+    computed_only: int
+    observed_only: int
+    neither: int
+    agreed: Share
     observed: Binned
     computed: Binned
+
+    @property
+    def overturned(self) -> tuple[int, int]:
+        """Observed and computed."""
+        return self.both + self.observed_only, self.both + self.computed_only
 
 
 class Compared(NamedTuple):
@@ -104,12 +114,12 @@ def _compared(
     else:
         at = intensity.values[points]
         kept = np.flatnonzero(at > 0.0)
-        seen, told = (
-            binned(table, points[kept], at[kept], of[kept] == 1.0) for of in (observed, computed)
-        )
-        fell, clusters = (computed == 1.0, observed == 1.0), table.layout.clusters[points]
-        counts = agreement(*fell, clusters)
-        found = Endings(counts, seen, told)
+        saw, fell = both = observed == 1.0, computed == 1.0
+        cells = (saw & fell, fell & ~saw, saw & ~fell, ~saw & ~fell)
+        counts = (int(cell.sum()) for cell in cells)
+        agreed = clustered(saw == fell, table.layout.clusters[points])
+        bins = (binned(table, points[kept], at[kept], of[kept]) for of in both)
+        found = Endings._make((*counts, agreed, *bins))
     return Compared(system.values, name, found, points, observed, computed, int((~known).sum()))
 
 
@@ -117,27 +127,16 @@ def _tables(
     keys: Sequence[str], compared: Sequence[Compared], intensity: Intensity, layout: StudyPoints
 ) -> dict[str, list[Column]]:
     """Endings, maxima, and every pair: hits and misses by record."""
-    outcomes = (
-        "counted", "agreed", "agreed_share", "agreed_low", "agreed_high", "overturned_observed",
-        "overturned_computed", "both", "computed_only", "observed_only", "neither", "failed",
-    )  # fmt: skip
-    ratios = (
-        "quantity", "counted", "overturned_computed", "median_ratio", "dispersion",
-        "kolmogorov_smirnov", "failed",
-    )  # fmt: skip
-    heads = {"record": "-", "point": "-", intensity.name: intensity.unit, "quantity": "-"}
-    heads |= {"observed": "SI", "computed": "SI", "told": "-"}
     rows: dict[str, list[tuple[Any, ...]]] = {"": [], "_maxima": [], "_pairs": []}
     for each in compared:
         found, values = each.found, each.values
         if isinstance(found, Maxima):
-            ratio = found.counted, found.overturned, found.median, found.dispersion, found.distance
+            ratio = found.counted, found.overturned, found.median, found.dispersion
             rows["_maxima"].append((values, each.quantity, *ratio, each.failed))
         else:
-            of, share = found.agreement, found.agreement.agreed
-            shares = share.number, share.fraction, share.low, share.high
-            counts = of.observed, of.computed, *of[:4], each.failed
-            rows[""].append((values, of.counted, *shares, *counts))
+            share = found.agreed
+            shares = share.of, share.number, share.fraction, share.low, share.high
+            rows[""].append((values, *shares, *found.overturned, *found[:4], each.failed))
         pairs = zip(each.points.tolist(), each.observed, each.computed, strict=True)
         for point, observed, computed in pairs:
             request = layout[point].record
@@ -145,9 +144,14 @@ def _tables(
             told = TOLD[int(observed), int(computed)] if each.quantity == OVERTURNED else None
             at = request.source, point + 1, intensity.values[point], each.quantity
             rows["_pairs"].append((values, *at, observed, reached(computed), told))
-    units = {"": dict.fromkeys(outcomes, "-"), "_maxima": dict.fromkeys(ratios, "-")}
-    units["_pairs"] = heads
-    return {suffix: keyed(keys, units[suffix], of) for suffix, of in rows.items()}
+    heads = {
+        "": "counted, agreed, agreed_share, agreed_low, agreed_high, overturned_observed,"
+        " overturned_computed, both, computed_only, observed_only, neither, failed",
+        "_maxima": "quantity, counted, overturned_computed, median_ratio, dispersion, failed",
+        "_pairs": f"record, point, {intensity.name} [{intensity.unit}], quantity, observed [SI],"
+        " computed [SI], told",
+    }
+    return {suffix: keyed(keys, heads[suffix], of) for suffix, of in rows.items()}
 
 
 def comparison_figure(
@@ -176,7 +180,7 @@ def comparison_figure(
 
 def _draw_outcomes(axes: style.Axes, each: Compared, found: Endings, intensity: Intensity) -> str:
     """Both shares by intensity; below and above, the outcomes that differ."""
-    at, counts = intensity.values[each.points], found.agreement
+    at, agreed = intensity.values[each.points], found.agreed
     for name, bins, colour, marker in (
         ("observed", found.observed, style.BLACK, "o"),
         ("computed", found.computed, style.BLUE, "s"),
@@ -191,9 +195,9 @@ def _draw_outcomes(axes: style.Axes, each: Compared, found: Endings, intensity: 
     panels.log_ticks(axes.xaxis)
     name = style.typeset(f"{fragility.measure_name(intensity)} [{intensity.unit}]")
     axes.set(ylim=(-0.1, 1.1), xlabel=name, ylabel="share that overturned")
-    percent = 100.0 * (counts.agreed.fraction or 0.0)
-    line = f"{percent:.1f} % of {counts.counted} agree"
-    return f"{line}; overturned {counts.computed}, observed {counts.observed}"
+    observed, computed = found.overturned
+    line = f"{100.0 * (agreed.fraction or 0.0):.1f} % of {agreed.of} agree"
+    return f"{line}; overturned {computed}, observed {observed}"
 
 
 def _draw_maxima(axes: style.Axes, each: Compared, found: Maxima) -> str:
@@ -291,60 +295,21 @@ def unpaired(layout: StudyPoints) -> Iterator[str]:
         )
 
 
-Flags = NDArray[np.bool_]
-
-
-class Agreement(NamedTuple):
-    """Counts of computed and observed outcomes, and the share of those that are the same."""
-
-    both: int
-    computed_only: int
-    observed_only: int
-    neither: int
-    agreed: Share
-
-    @property
-    def counted(self) -> int:
-        """All outcomes."""
-        return self.agreed.of
-
-    @property
-    def computed(self) -> int:
-        """Computed overturnings."""
-        return self.both + self.computed_only
-
-    @property
-    def observed(self) -> int:
-        """Observed overturnings."""
-        return self.both + self.observed_only
-
-
 class Maxima(NamedTuple):
     """Computed over observed maxima of one quantity.
 
     `median` and `dispersion` (standard deviation of the logarithm) are those of the `counted`
-    ratios; `overturned` histories have none, and are infinite in the distance of Kolmogorov and
-    Smirnov between both distributions.
+    ratios; `overturned` histories have none.
     """
 
     counted: int
     overturned: int
     median: float
     dispersion: float
-    distance: float
-
-
-def agreement(computed: Flags, observed: Flags, cluster: Indices) -> Agreement:
-    """Count the four pairs of outcomes, of clusters as `clustered` takes them."""
-    cells = (computed & observed, computed & ~observed, ~computed & observed, ~computed & ~observed)
-    a, b, c, d = (int(cell.sum()) for cell in cells)
-    return Agreement(a, b, c, d, clustered(computed == observed, cluster))
 
 
 def maxima(computed: Array, observed: Array) -> Maxima:
     """Compare maxima; computed ones are infinite where the structure overturned."""
-    from scipy.stats import ks_2samp
-
     stood = np.isfinite(computed) & (computed > 0.0) & (observed > 0.0)
     logs = np.log(computed[stood] / observed[stood])
     return Maxima(
@@ -352,8 +317,120 @@ def maxima(computed: Array, observed: Array) -> Maxima:
         overturned=int(np.isinf(computed).sum()),
         median=math.exp(fractiles(logs, [0.5])[0]),
         dispersion=float(np.std(logs, ddof=1)) if len(logs) > 1 else math.nan,
-        distance=float(ks_2samp(computed, observed).statistic) if len(observed) else math.nan,
     )
 
 
+class RotationOptions(ReportOptions):
+    """Largest rotations of several systems against those of one, record by record."""
+
+    key: VariedKey | None = None
+    """varied key in which they differ; the last axis"""
+    reference: Any = Field(None, description="its value on the horizontal axis; the last one")
+    panels: VariedKeys | None = None
+    """varied keys, one panel for each value; each intensity by default"""
+
+
+class Paired(NamedTuple):
+    """Points (pairs,) of a system and of the reference that differ in one key, all computed."""
+
+    value: object
+    points: Indices
+    references: Indices
+    failed: int
+
+
+def rotation(study: StudyResults, options: RotationOptions) -> Found:
+    """Largest rotations over alpha of each system and of the reference (paper, Figure 7)."""
+    table, layout = study.table, study.table.layout
+    leading = leading_keys(layout)
+    key = options.key or leading[-1]
+    systems = groups(layout, [key])
+    wanted = [group for group in systems if group.values[0] == options.reference]
+    reference = (wanted or systems[-1:])[0]
+    # Each intensity has a panel, unless the study says otherwise.
+    keys = own_keys(layout, leading) if options.panels is None else options.panels
+    found = grouping(table, keys, leading)
+    shown: dict[Histories, list[Paired]] = {}
+    for within in found.groups:
+        shown[within] = []
+        for system in (each for each in systems if each is not reference):
+            kept = np.isin(system.points, within.every)
+            mine, theirs = system.points[kept], reference.points[kept]
+            bad = table.failed[mine] | table.failed[theirs]
+            pair = Paired(system.values[0], mine[~bad], theirs[~bad], int(bad.sum()))
+            shown[within].append(pair)
+    pairs, count = [each for group in shown.values() for each in group], len(systems) - 1
+    alpha = np.array([properties.alpha for properties in layout.properties])
+    ratio = table.columns["max_rotation"] / alpha[np.arange(len(table)) // layout.points_of_system]
+    ratio = np.where(table.overturned, np.inf, ratio)
+    every = [[each.references for each in pairs], [each.points for each in pairs]]
+    ends = [
+        1.08 * float(drawn[np.isfinite(drawn)].max(initial=0.0)) or 1.0
+        for drawn in (ratio[np.concatenate(points)] for points in every)
+    ]
+
+    def draw(axes: style.Axes, group: Histories) -> None:
+        for place, each in enumerate(shown[group]):
+            x, y = both = ratio[each.references], ratio[each.points]
+            stood = np.isfinite(x) & np.isfinite(y)
+            look = panels.look(place, count) | {"ls": "", "ms": 3.2}
+            axes.plot(x[stood], y[stood], **look, alpha=0.75, label=label(key, each.value))
+            at_frame = [np.minimum(of[~stood], end) for of, end in zip(both, ends, strict=True)]
+            (fell,) = axes.plot(*at_frame, **look, mfc="none", mew=0.9, clip_on=False, zorder=3)
+            fell.set_in_layout(False)
+        axes.plot([0.0, min(ends)], [0.0, min(ends)], "k--", lw=0.8)
+
+    # One row a pair; a rotation is empty where the structure overturned.
+    factors = len(layout.scales) > 1 and layout.plan.measure is None
+    rows, names = [], list[str]()
+    for each in pairs:
+        for mine, theirs in zip(each.points.tolist(), each.references.tolist(), strict=True):
+            named = layout.described(mine) | ({INTENSITY: layout[mine].scale} if factors else {})
+            names = list(named)
+            ours, other = ((table.outcomes[n], float(ratio[n])) for n in (mine, theirs))
+            rows.append((tuple(named.values()), *ours, reference.values[0], *other))
+    heads = f"outcome, rotation_over_alpha, reference {key}, reference_outcome"
+    name = r"$|\theta_{max}|/\alpha$ [-]"
+    figure = panels.in_panels(
+        found.keys,
+        found.groups,
+        draw,
+        x_label=f"{name}, {label(key, reference.values[0])}",
+        y_label=f"{name}, the others",
+        limits=lambda axes: axes.set(xlim=(0.0, ends[0]), ylim=(0.0, ends[1])),
+        note=panels.noted(
+            found,
+            "open markers: overturned",
+            panels.shaded(count),
+            failed=sum(each.failed for each in pairs),
+        ),
+    )
+    return Found({"": keyed(names, f"{heads}, reference_rotation_over_alpha", rows)}, figure)
+
+
+def unknown_reference(
+    _document: Document, axes: Sequence[Axis], request: ReportRequest
+) -> Iterator[Fault]:
+    """A reference that its key does not take, or no key at all."""
+    options, report = request.options, f"the report {request.kind}"
+    assert isinstance(options, RotationOptions), "requests have the options of their kind"
+    of_key = [axis for axis in axes if options.key is None or options.key in axis.keys][-1:]
+    if not of_key:
+        yield Fault(request.path, f"{report} needs a varied key: systems to compare")
+        return
+    place = of_key[0].keys.index(options.key) if options.key else 0
+    key, values = of_key[0].keys[place], [row[place] for row in of_key[0].rows]
+    if len({repr(value) for value in values}) < 2:
+        yield Fault(
+            request.path,
+            f"{report} compares systems, but {key} has one value;"
+            " give it another one, or the report another `key`",
+        )
+    if options.reference is not None and options.reference not in values:
+        path: Path = (*request.path, request.kind, "reference")
+        text = f"{dotted(path)} = {shown(options.reference)} is not a value of {key}"
+        yield Fault(path, f"{text}, which takes {listed(map(shown, values), 'and')}")
+
+
 REPORT = Report(ComparisonOptions, comparison, requires=uncomparable)
+ROTATION = Report(RotationOptions, rotation, check=unknown_reference, requires=without_uplift)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from operator import attrgetter
 from typing import Annotated, Any, NamedTuple, TypeVar
 
 import numpy as np
@@ -24,8 +23,7 @@ from rpscli.case.study.schema import Option, PositiveNumber, PositiveNumbers, Se
 from rpscli.records.measures import MEASURES, measure_label, needs_period
 from rpscli.report.figures import style
 from rpscli.report.study import panels
-from rpscli.report.study.labels import keyed, labels
-from rpscli.report.study.report import Found, Report
+from rpscli.report.study.report import Found, Report, keyed, labels
 from rpscli.report.study.statistics import counted_columns, share_columns
 from rpscli.report.table import Column
 from rpscli.sweep.points import StudyPoints
@@ -82,11 +80,9 @@ class LimitState(NamedTuple):
     @property
     def title(self) -> str:
         """The state in the words of the results, with its unit."""
-        if self.result not in LIMITS:
+        if (known := LIMITS.get(self.result)) is None:
             return self.label
-        known = LIMITS[self.result]
-        unit = f" {known.unit}" if known.unit not in {"", "-"} else ""
-        return self.label.replace(self.result, known.label, 1) + unit
+        return f"{self.label.replace(self.result, known.label, 1)} {known.unit}".removesuffix(" -")
 
 
 class MeasureOptions(ReportOptions):
@@ -203,18 +199,12 @@ class Fragilities:
     curves: tuple[Fragility, ...]
 
     @property
-    def axis(self) -> str:
-        """Label of the axis of intensities."""
-        return f"{measure_name(self.intensity)} [{self.intensity.unit}]"
-
-    @property
     def notes(self) -> Iterator[str]:
         """Notes on what is pooled, on overturning beyond limits, and on fits that are not plain."""
         yield from self.systems.notes
         limited = [curve for curve in self.curves if curve.limit.threshold is not None]
         if fallen := sum(curve.overturned for curve in limited):
-            exceeded = sum(curve.exceeded for curve in limited)
-            counts = f"{fallen} of {exceeded} histories beyond a limit"
+            counts = f"{fallen} of {sum(c.exceeded for c in limited)} histories beyond a limit"
             yield f"an overturned history exceeds every limit: {counts} overturned"
         yield from self.told((curve, curve.fit.note) for curve in self.curves)
 
@@ -238,19 +228,12 @@ class Fragilities:
         self,
         groups: Mapping[str, list[Item]],
         draw: Callable[[style.Axes, list[Item]], None],
-        y_label: str,
-        note: str,
-        limits: Callable[[style.Axes], object] | None = None,
+        **words: Any,
     ) -> Callable[[str], bytes]:
         """A figure of panels by their titles."""
-        words: dict[str, Any] = {
-            "x_label": self.axis,
-            "y_label": y_label,
-            "note": note,
-            "limits": limits,
-        }
+        x_label = f"{measure_name(self.intensity)} [{self.intensity.unit}]"
         row, shown = 2 if len(groups) == 4 else 3, [*groups.values()]
-        return panels.panel_figure([*groups], shown, draw, in_row=row, **words)
+        return panels.panel_figure([*groups], shown, draw, in_row=row, x_label=x_label, **words)
 
     def told(self, notes: Iterable[tuple[Fragility, str | None]]) -> Iterator[str]:
         """Notes on curves, each once with all that it is about."""
@@ -324,8 +307,9 @@ def measure_without_period(layout: StudyPoints, options: MeasureOptions) -> Iter
         yield f"{options.measure} at T1 needs storeys; give the report a `period`"
 
 
-def wrong_intensities(layout: StudyPoints, options: FragilityOptions) -> Iterator[str]:
-    """The fault of a value under `at` that is no intensity."""
+def fragility_faults(layout: StudyPoints, options: FragilityOptions) -> Iterator[str]:
+    """Faults of the measure, and of a value under `at` that is no intensity."""
+    yield from measure_without_period(layout, options)
     try:
         options.intensities(layout)
     except PydanticCustomError as error:
@@ -342,26 +326,18 @@ def margins(study: StudyResults, options: FragilityOptions, found: Fragilities) 
     rows = []
     for name, value in options.intensities(study.table.layout).items():
         for curve in found.curves:
-            fit = curve.fit
-            medians, betas = (
-                np.append(one, many)
-                for one, many in zip((fit.median, fit.beta), fit.resampled, strict=True)
-            )
-            acmr = factor * medians / value
-            probable = ndtr(-np.log(acmr) / total(betas))
-            ends = band(probable[1:], options.confidence)
-            of_records = ndtr(-math.log(acmr[0]) / fit.beta) if fit.fitted else math.nan
+            fit, (medians, betas) = curve.fit, curve.fit.resampled
+            cmr = fit.median / value
+            below, resampled = (-np.log(factor * of) for of in (cmr, medians / value))
+            ends = band(ndtr(resampled / total(betas)), options.confidence)
             rows.append((
-                curve.values, curve.limit.label, name, value, medians[0] / value, acmr[0],
+                curve.values, curve.limit.label, name, value, cmr, factor * cmr,
                 *(math.exp(-ndtri(share) * curve.total) for share in (0.1, 0.2)), fit.beta,
-                curve.total, of_records, probable[0], *ends,
+                curve.total, ndtr(below / fit.beta), ndtr(below / curve.total), *ends,
             ))  # fmt: skip
-    heads = {"limit": "-", "name": "-", found.intensity.name: found.intensity.unit}
-    heads |= dict.fromkeys(
-        ("CMR", "ACMR", "ACMR_10", "ACMR_20", "beta", "beta_total", "probability_of_records"), "-"
-    )
-    heads |= dict.fromkeys(("probability", "probability_low", "probability_high"), "-")
-    return keyed(found.systems.keys, heads, rows)
+    heads = f"limit, name, {found.intensity.name} [{found.intensity.unit}], CMR, ACMR, ACMR_10"
+    heads += ", ACMR_20, beta, beta_total, probability_of_records, probability, probability_low"
+    return keyed(found.systems.keys, f"{heads}, probability_high", rows)
 
 
 def fragility(study: StudyResults, options: FragilityOptions) -> Found:
@@ -369,16 +345,18 @@ def fragility(study: StudyResults, options: FragilityOptions) -> Found:
     found = fragilities(study, options)
     keys, measure, unit = found.systems.keys, found.intensity.name, found.intensity.unit
     curves = [((curve.values, curve.limit.label), curve) for curve in found.curves]
-    counts = ("beta_total", "exceeded", "counted", "overturned_among_them", "failed", "note")
-    counted = attrgetter("total", "exceeded", "counted", "overturned", "failed", "fit.note")
-    fit_heads = {"limit": "-", "intensity": "-", "method": "-"}
-    fit_heads |= dict.fromkeys(("median", "median_low", "median_high"), unit)
-    fit_heads |= dict.fromkeys(("beta", "beta_low", "beta_high", *counts), "-")
+    fit_heads = (
+        f"limit, intensity, method, median [{unit}], median_low [{unit}], median_high [{unit}],"
+        " beta, beta_low, beta_high, beta_total, exceeded, counted, overturned_among_them, failed,"
+        " note"
+    )
     fits = [
-        (*of, measure, fit.method, fit.median, *fit.median_band, fit.beta, *fit.beta_band,
-         *counted(curve))
-        for of, curve in curves
-        for fit in [curve.fit]
+        (
+            *of, measure, fit.method, fit.median, *fit.median_band, fit.beta, *fit.beta_band,
+            c.total, c.exceeded, c.counted, c.overturned, c.failed, fit.note,
+        )
+        for of, c in curves
+        for fit in [c.fit]
     ]  # fmt: skip
     lines = [
         (*of, *numbers)
@@ -388,20 +366,18 @@ def fragility(study: StudyResults, options: FragilityOptions) -> Found:
     ]
     levels = [(*of, at) for of, curve in curves for at in curve.observed.intensity]
     shares = [share for _, curve in curves for share in curve.observed.shares]
-    line_heads = {"limit": "-", measure: unit, "probability": "-", "low": "-", "high": "-"}
     tables = {
         "": keyed(keys, fit_heads, fits),
         **({"_at": margins(study, options, found)} if options.at else {}),
-        "_curves": keyed(keys, line_heads, lines),
+        "_curves": keyed(keys, f"limit, {measure} [{unit}], probability, low, high", lines),
         "_observed": [
-            *keyed(keys, {"limit": "-", measure: unit}, levels),
+            *keyed(keys, f"limit, {measure} [{unit}]", levels),
             *counted_columns(shares),
             *share_columns("exceeded", shares),
         ],
     }
-    main = dict.fromkeys((*keys, "limit", "median", "beta", *counts[:3]), "")
-    if not options.dispersion.given:
-        del main["beta_total"]
+    total = ["beta_total"] * bool(options.dispersion.given)
+    main = (*keys, "limit", "median", "beta", *total, "exceeded", "counted")
     remark = what_bands_hold(study.table.layout, options)
     if any(curve.fit.median > curve.largest for curve in found.curves):
         remark += "; a median beyond the largest intensity computed is extrapolated"
@@ -409,7 +385,7 @@ def fragility(study: StudyResults, options: FragilityOptions) -> Found:
         tables,
         fragility_figure(found) if any(curve.fit.fitted for curve in found.curves) else None,
         list(found.notes),
-        shown={"": main} | ({"_at": {}} if options.at else {}),
+        shown={"": dict.fromkeys(main, "")} | ({"_at": {}} if options.at else {}),
         remark=remark,
     )
 
@@ -435,13 +411,9 @@ def fragility_figure(report: Fragilities) -> Callable[[str], bytes]:
         for curve in curves:
             fit, grid, seen = curve.fit, curve.grid, curve.observed
             _, name, place, count = report.placed(curve)
-            look: dict[str, Any] = {
-                "color": panels.colour(place, count), "marker": panels.marker(place), "ms": 3.2,
-            }  # fmt: skip
-            axes.plot(
-                grid, fit.curve, "--" if fit.method == "penalised" else "-", lw=1.4, markevery=[],
-                label=name or None, **look,
-            )  # fmt: skip
+            look = panels.look(place, count) | {"ms": 3.2}
+            dashes = "--" if fit.method == "penalised" else "-"
+            axes.plot(grid, fit.curve, dashes, lw=1.4, markevery=[], label=name or None, **look)
             if len(curves) <= MOST_BANDS:
                 axes.fill_between(grid, *fit.band, color=look["color"], alpha=0.15, lw=0)
             axes.plot(seen.intensity, seen.share, ls="", alpha=0.8, **look)
@@ -454,9 +426,10 @@ def fragility_figure(report: Fragilities) -> Callable[[str], bytes]:
 
     banded = [curve for group in groups.values() if len(group) <= MOST_BANDS for curve in group]
     bands = f"bands: {style.percent(report.confidence)}, the choice of records"
-    if not any(np.isfinite(curve.fit.band[0]).any() for curve in banded):
-        few = f"no bands of more than {MOST_BANDS} curves, see CSV"
-        bands = "no bands are determined" if banded else few
+    if not banded:
+        bands = f"no bands of more than {MOST_BANDS} curves, see CSV"
+    elif not any(np.isfinite(curve.fit.band[0]).any() for curve in banded):
+        bands = "no bands are determined"
     missing = sum(not curve.fit.fitted for curve in report.curves)
     penalised = any(curve.fit.method == "penalised" for curve in report.curves)
     note = panels.remarks(
@@ -470,7 +443,7 @@ def fragility_figure(report: Fragilities) -> Callable[[str], bytes]:
         panels.over(report.systems.pooled),
         panels.left_out(sum({curve.place: curve.failed for curve in drawn}.values())),
     )
-    return report.figure(groups, draw, "probability of exceedance", note)
+    return report.figure(groups, draw, y_label="probability of exceedance", note=note)
 
 
 BEYOND_COMPUTED = "grey: stronger than computed"
@@ -488,12 +461,6 @@ def measure_name(intensity: Intensity) -> str:
         return intensity.name
     at = "T1" if intensity.period is None else f"{intensity.period:g} s"
     return measure_label(intensity.measure, intensity.of, at)
-
-
-def fragility_faults(layout: StudyPoints, options: FragilityOptions) -> Iterator[str]:
-    """Faults that keep a study from having a fragility."""
-    yield from measure_without_period(layout, options)
-    yield from wrong_intensities(layout, options)
 
 
 REPORT = Report(

@@ -14,9 +14,7 @@ from rpscli.case.schema.fields import DampingRatio
 from rpscli.case.study.reports import ReportOptions, VariedKeys
 from rpscli.report.figures import style
 from rpscli.report.study import panels
-from rpscli.report.study.labels import keyed
-from rpscli.report.study.report import Found, Report, without_uplift
-from rpscli.report.study.statistics import reached
+from rpscli.report.study.report import Found, Report, keyed, reached, without_uplift
 from rpscli.sweep.points import StudyPoints
 from rpscli.sweep.statistics.fractiles import THREE
 from rpscli.sweep.statistics.grouping import Histories, grouping, own_keys
@@ -65,9 +63,8 @@ def storey_shear(study: StudyResults, options: StoreyShearOptions) -> Found:
         for counts in [(len(of.survivors), of.overturned.number, of.failed)]
         for storey, ratios in enumerate(np.transpose(one.shears).tolist(), start=1)
     ]
-    heads = {f"{name}_shear_ratio": "-" for name, *_ in SHEARS}
-    heads |= {f"{name}_shear": "N" for name, *_ in SHEARS}
-    heads |= dict.fromkeys(("counted", "overturned", "failed"), "-")
+    heads = [f"{name}_shear_ratio" for name, *_ in SHEARS]
+    heads += [f"{name}_shear [N]" for name, *_ in SHEARS]
     notes = list(found.notes)
     histories = [profile.histories for profile in profiles]
     if fallen := sum(group.overturned.number for group in histories):
@@ -80,32 +77,32 @@ def storey_shear(study: StudyResults, options: StoreyShearOptions) -> Found:
 
     def draw(axes: style.Axes, profile: Profile) -> None:
         edges = np.arange(len(profile.shears[0]) + 1)
+        if in_kn:
+            axes.locator_params(axis="x", nbins=3)  # long numbers
         for (_, name, colour, line), shear in zip(SHEARS, profile.shears, strict=True):
-            values = shear
-            if in_kn:
-                axes.locator_params(axis="x", nbins=3)  # long numbers
-                values = shear * profile.static * 1e-3
+            values = shear * profile.static * 1e-3 if in_kn else shear
             # The shear is the same all the way up a storey.
             look: dict[str, Any] = {"color": colour, "ls": line, "lw": 1.3, "label": name}
             axes.stairs(values, edges, orientation="horizontal", **look)
         axes.set_ylim(0.0, len(edges) - 1)
         axes.locator_params(axis="y", integer=True)
         survivors, every = len(profile.histories.survivors), len(profile.histories)
-        axes.text(
-            0.96, 0.95, f"{survivors} survivors{panels.break_if_narrow()}of {every}",
-            transform=axes.transAxes, ha="right", va="top", fontsize=0.9 * style.small(),
-        )  # fmt: skip
+        text = f"{survivors} survivors{panels.break_if_narrow()}of {every}"
+        panels.corner(axes, "right", "top", text)
 
-    words: dict[str, Any] = {"share": "x", "limits": lambda axes: axes.set_xlim(left=0.0)}
     in_kn_label = STOREY_SHEARS.in_unit("kN", STOREY_SHEARS.symbol)
-    words |= {"x_label": in_kn_label if in_kn else "$V_i/V_{st}$ [-]"}
-    words |= {"y_label": "level (0 = cap beam)"}
-    words["note"] = panels.noted(found, failed=sum(group.failed for group in histories))
-    return Found(
-        {"": keyed(found.keys, {"storey": "-", **heads}, rows)},
-        panels.in_panels(found.keys, profiles, draw, **words),
-        notes,
+    figure = panels.in_panels(
+        found.keys,
+        profiles,
+        draw,
+        x_label=in_kn_label if in_kn else "$V_i/V_{st}$ [-]",
+        y_label="level (0 = cap beam)",
+        share="x",
+        limits=lambda axes: axes.set_xlim(left=0.0),
+        note=panels.noted(found, failed=sum(group.failed for group in histories)),
     )
+    titles = f"storey, {', '.join(heads)}, counted, overturned, failed"
+    return Found({"": keyed(found.keys, titles, rows)}, figure, notes)
 
 
 def profile_of(study: StudyResults, group: Histories) -> Profile | None:
@@ -171,12 +168,12 @@ def floor_spectra(study: StudyResults, options: FloorSpectraOptions) -> Found:
         spectra[group.fallen, 0] = np.inf
         spread = np.quantile(spectra, THREE, axis=0, method="inverted_cdf")
         floors.append(Floors(group.values, spread))
-    heads = {
-        f"{state}_{name}_{100 * share:.0f}": unit
+    heads = [
+        f"{state}_{name}_{100 * share:.0f} [{unit}]"
         for state in STATES
         for name, unit in SPECTRA.items()
         for share in THREE
-    }
+    ]
     rows = [
         (one.values, floor, float(period), *map(reached, cells.ravel().tolist()))
         for one in floors
@@ -186,7 +183,7 @@ def floor_spectra(study: StudyResults, options: FloorSpectraOptions) -> Found:
     ]
     note = panels.noted(found, NOT_DRAWN if found.overturned else "")
     return Found(
-        {"": keyed(found.keys, {"floor": "-", "period": "s", **heads}, rows)},
+        {"": keyed(found.keys, f"floor, period [s], {', '.join(heads)}", rows)},
         floor_spectra_figure(found.keys, floors, note) if floors else None,
         found.notes,
     )
@@ -218,9 +215,8 @@ def floor_spectra_figure(
         for each in axes.figure.axes:
             each.xaxis.set_major_formatter("{x:g}")
 
-    words: dict[str, Any] = {"x_label": "period [s]", "y_label": "pseudo-acceleration [m/s²]"}
-    words |= {"limits": limits, "note": note}
-    return panels.in_panels((*keys, "floor"), shown, draw, **words)
+    labels = {"x_label": "period [s]", "y_label": "pseudo-acceleration [m/s²]"}
+    return panels.in_panels((*keys, "floor"), shown, draw, limits=limits, note=note, **labels)
 
 
 def without_floors(layout: StudyPoints, _options: ReportOptions) -> Iterator[str]:

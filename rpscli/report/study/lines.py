@@ -1,31 +1,47 @@
-"""Any result against a varied key, or one list of results against another."""
+"""Lines: any result against a varied key, a list against another, demands against intensity."""
 
 from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
-from pydantic import AliasChoices, Field, StrictBool
+from pydantic import AliasChoices, Field
 
 from rpscli.analyses.result_quantities import ResultQuantity
 from rpscli.case.schema.fields import Text
 from rpscli.case.study.reports import ReportOptions, ReportRequest, VariedKeys
 from rpscli.case.study.schema import AnyKeys, Axis, Keys
 from rpscli.case.text.document import Document, Fault, Path, dotted
-from rpscli.errors import hint
+from rpscli.errors import hint, listed
 from rpscli.report.figures import style
 from rpscli.report.study import panels
-from rpscli.report.study.labels import keyed, labels, plain, symbol
-from rpscli.report.study.report import Found, Report, Statistic
-from rpscli.report.study.statistics import reached
+from rpscli.report.study.report import (
+    DemandName,
+    Found,
+    Report,
+    Statistic,
+    keyed,
+    labels,
+    plain,
+    reached,
+    symbol,
+)
 from rpscli.report.table import LARGE_UNITS
-from rpscli.sweep.evaluation import KNOWN, quantity
-from rpscli.sweep.statistics import grouping as of_groups
-from rpscli.sweep.statistics.grouping import Histories, shown_keys, statistic_words
-from rpscli.sweep.table import StudyResults, unit_of
+from rpscli.sweep.evaluation import KNOWN, SCALARS, quantity
+from rpscli.sweep.statistics.fractiles import THREE, demand, fractiles
+from rpscli.sweep.statistics.grouping import (
+    INTENSITY,
+    Histories,
+    axis_keys,
+    grouping,
+    own_keys,
+    shown_keys,
+    statistic_words,
+)
+from rpscli.sweep.table import Array, StudyResults, unit_of
 from rpscli.units import in_si
 
 LEGEND = {"frequency_parameter": "model", "frequency_parameter_rigid": "rigid estimate"}
@@ -33,8 +49,6 @@ LEGEND = {"frequency_parameter": "model", "frequency_parameter_rigid": "rigid es
 
 MEAN = statistic_words("mean")
 MOST_NAMED = 2  # results whose names stand on the axis; the legend has those of more
-
-Values = dict[str, list[Any]]  # some results of all points, by name; None where a point has none
 
 
 class LinesOptions(ReportOptions):
@@ -53,9 +67,6 @@ class LinesOptions(ReportOptions):
         description="of points with one abscissa: the mean of survivors; or, with overturned"
         " histories as larger than any demand, the median, the largest, or a fractile as 0.84",
     )
-    upright: StrictBool = Field(default=False, description="draw x upwards, as floors are")
-    x_label: Text | None = Field(None, description="in place of the name of x")
-    y_label: Text | None = Field(None, description="in place of the names of the results")
 
 
 class Line(NamedTuple):
@@ -78,17 +89,17 @@ class Panel(NamedTuple):
 
 def lines(study: StudyResults, options: LinesOptions) -> Found:
     """The lines of every series of every panel; a statistic where points share an abscissa."""
-    layout, together = study.table.layout, of_groups.axis_keys(study.table.layout, options.x)
+    layout, together = study.table.layout, axis_keys(study.table.layout, options.x)
     panel_keys, series = options.panels or (), options.series
     if series is None:
-        series = of_groups.own_keys(layout, (*panel_keys, *together))
+        series = own_keys(layout, (*panel_keys, *together))
     names = (*options.result, *options.dashed)
-    found = of_groups.grouping(study.table, panel_keys, (*series, options.x))
-    values = _collected(study, names if together else (*names, options.x))
+    found = grouping(study.table, panel_keys, (*series, options.x))
+    columns = study.stored(names if together else (*names, options.x)).columns
     shown = []
     for group in found.groups:
         parts = itertools.product(names, group.parts(series))
-        of_group = [line for name, part in parts for line in _lines(values, options, part, name)]
+        of_group = [line for name, part in parts for line in _lines(columns, options, part, name)]
         shown.append(Panel(group.values, of_group))
     every = [line for panel in shown for line in panel.lines]
     single = all(c + o < 2 for x in every for c, o in zip(x.counted, x.overturned, strict=True))
@@ -104,37 +115,33 @@ def lines(study: StudyResults, options: LinesOptions) -> Found:
         for i in range(len(line.x))
     ]  # fmt: skip
     units = {_unit(name) for name in names}
-    heads = {
-        "result": "-", "unit": "-", x_name: _unit(x_name),
-        "value": units.pop() if len(units) == 1 else "SI",
-    }  # fmt: skip
-    if statistic:
-        heads |= {"statistic": "-", "counted": "-", "overturned": "-"}
+    unit = units.pop() if len(units) == 1 else "SI"
+    heads = f"result, unit, {x_name} [{_unit(x_name)}], value [{unit}]"
+    heads += ", statistic, counted, overturned" * bool(statistic)
     notes = [*found.notes] if together else []
     if statistic == MEAN and (fallen := _left_out_of_means(shown)):
         notes.append(fallen)
-
-    y_label = ", ".join(filter(None, (options.y_label or _together(names), statistic)))
-    both = (options.x_label or _axis(x_name), y_label)
-    unbounded = any(math.inf in line.y for line in every)
     hollow = statistic == MEAN and any(any(line.overturned) for line in every)
-    note = panels.remarks(
-        panels.over(found.pooled) if together else "",
-        "hollow: means without those that overturned, counts in the CSV" * hollow,
-        panels.shaded(max(len({line.values for line in every}), len(names))),
-        f"not drawn where the {statistic} overturned" if unbounded else "",
-        panels.left_out(found.failed),
-    )
 
     def draw(axes: style.Axes, panel: Panel) -> None:
         _draw(axes, panel, every, options, series_keys, statistic)
 
-    x, y = reversed(both) if options.upright else both
-    return Found(
-        {"": keyed((*found.keys, *series_keys), heads, rows)},
-        panels.in_panels(found.keys, shown, draw, x_label=x, y_label=y, note=note),
-        notes,
+    figure = panels.in_panels(
+        found.keys,
+        shown,
+        draw,
+        x_label=_axis(x_name),
+        y_label=", ".join(filter(None, (_together(names), statistic))),
+        note=panels.remarks(
+            panels.over(found.pooled) if together else "",
+            "hollow: means without those that overturned, counts in the CSV" * hollow,
+            panels.shaded(max(len({line.values for line in every}), len(names))),
+            f"not drawn where the {statistic} overturned"
+            * any(math.inf in line.y for line in every),
+            panels.left_out(found.failed),
+        ),
     )
+    return Found({"": keyed((*found.keys, *series_keys), heads, rows)}, figure, notes)
 
 
 def _left_out_of_means(shown: Sequence[Panel]) -> str:
@@ -150,49 +157,26 @@ def _left_out_of_means(shown: Sequence[Panel]) -> str:
     )
 
 
-def _collected(study: StudyResults, names: Iterable[str]) -> Values:
-    """Results of all points: numbers, lists, or None."""
-    wanted = tuple(names)
-    columns, analysis = study.stored(wanted).columns, study.table.layout.plan.analysis
-    values: Values = {}
-    for name in wanted:
-        column, of = columns.get(name), quantity(analysis, name)
-        rows = [None] * len(study.table) if column is None else column.tolist()
-        values[name] = [_value(row, whole=of is not None and of.whole) for row in rows]
-    return values
-
-
-def _value(value: Any, *, whole: bool) -> Any:
-    """A number, a list without what is NaN behind its end, or None."""
-    if isinstance(value, list):
-        found = [_value(item, whole=whole) for item in value]
-        while found and found[-1] is None:
-            found.pop()
-        return found or None
-    if value is None or math.isnan(value):
-        return None
-    return int(value) if whole else value
-
-
-def _lines(values: Values, options: LinesOptions, series: Histories, name: str) -> list[Line]:
+def _lines(
+    columns: Mapping[str, Array], options: LinesOptions, series: Histories, name: str
+) -> list[Line]:
     """Lines of one result of one series: one, or one for each point if results are lists."""
-    if options.x in values:
-        usable = [n for n in series.every.tolist() if values[name][n] is not None]
-        curves = [(values[options.x][n], values[name][n]) for n in usable]
-        whole = [c for c in curves if isinstance(c[0], list) and isinstance(c[1], list)]
-        if whole:
-            return [Line(series.values, name, tuple(x), tuple(y)) for x, y in whole]
-        pairs = sorted(c for c in curves if c[0] is not None)
-        return [Line(series.values, name, *zip(*pairs, strict=True))] if pairs else []
-    numbers = np.array([v if isinstance(v, int | float) else np.nan for v in values[name]])
-    at = []
-    for group in series.parts([options.x]):
-        found = group.statistic(numbers, options.statistic)
-        if not math.isnan(found):
-            known = int((~np.isnan(numbers[group.survivors])).sum())
-            x = in_si(group.values[0], unit_of(options.x))
-            at.append((x, found, known, group.overturned.number))
-    return [Line(series.values, name, *zip(*at, strict=True))] if at else []
+    x, y = columns.get(options.x), columns.get(name)
+    points: list[list[Any]] = [[]]
+    if y is not None and x is not None:
+        for n in series.every.tolist():
+            pairs = zip(*(np.atleast_1d(of[n]).tolist() for of in (x, y)), strict=True)
+            points.append([pair for pair in pairs if not math.isnan(sum(pair))])
+        if x.ndim == 1:
+            points = [sorted(itertools.chain(*points))]
+    elif y is not None and y.ndim == 1:
+        for group in series.parts([options.x]):
+            found = group.statistic(y, options.statistic)
+            if not math.isnan(found):
+                known = int((~np.isnan(y[group.survivors])).sum())
+                at = in_si(group.values[0], unit_of(options.x))
+                points[0].append((at, found, known, group.overturned.number))
+    return [Line(series.values, name, *zip(*each, strict=True)) for each in points if each]
 
 
 def _draw(
@@ -211,30 +195,27 @@ def _draw(
     dashed = [line for line in panel.lines if line.result in options.dashed]
     paths = {tuple(plain(y) for y in line.y) for line in dashed}
     among, count = len(dashed) if len(paths) == 1 else 1, max(len(series), len(results))
-    of_x, of_y = (axes.yaxis, axes.xaxis) if options.upright else (axes.xaxis, axes.yaxis)
-    panels.large_axis(of_x, _unit(options.x))
-    panels.large_axis(of_y, _unit(results[0]))
+    panels.large_axis(axes.xaxis, _unit(options.x))
+    panels.large_axis(axes.yaxis, _unit(results[0]))
     for line in panel.lines:
         place = series.index(line.values)
         if len(series) == 1:
             place = results.index(line.result)
-        x, words_at = list(map(float, range(len(line.x)))), [plain(value) for value in line.x]
-        if all(isinstance(value, int | float) for value in line.x):  # else each word has a place
-            x, words_at = [float(str(value)) for value in line.x], []
-        pair = (line.y, x) if options.upright else (x, line.y)
+        x: Sequence[float] = line.x
+        if not all(isinstance(value, int | float) for value in line.x):  # each word has a place
+            x = range(len(line.x))
+            axes.set_xticks(x, [plain(value) for value in line.x])
         parts = (labels(series_keys, line.values), names[line.result])
         look: dict[str, Any] = {"ls": _staggered(place, among)}
         if line.result not in options.dashed:
             look = {"ls": ("-", "-.", ":")[options.result.index(line.result) % 3]}
             look["marker"] = "o" if len(x) < 25 else ""
         name, shade = ", ".join(filter(None, parts)) or None, panels.colour(place, count)
-        axes.plot(*pair, lw=1.4, color=shade, ms=3.0, label=name, **look)
+        axes.plot(x, line.y, lw=1.4, color=shade, ms=3.0, label=name, **look)
         if statistic == MEAN:
             fallen = [n for n, overturned in enumerate(line.overturned) if overturned]
-            at = [[values[n] for n in fallen] for values in pair]
+            at = [[values[n] for n in fallen] for values in (x, line.y)]
             axes.plot(*at, "o", color="white", mec=shade, ms=4.5, zorder=3.0)
-        if words_at:
-            (axes.set_yticks if options.upright else axes.set_xticks)(x, words_at)
 
 
 def _distinct(results: tuple[str, ...]) -> list[str]:
@@ -253,9 +234,10 @@ def _staggered(place: int, among: int) -> str | tuple[int, tuple[int, int]]:
 
 def _together(names: Sequence[str]) -> str:
     """Label of the axis of one or two kinds of result, or of values that a legend tells apart."""
-    labels, units = [{*map(of, names)} for of in (_axis, _unit)]
+    labels = dict.fromkeys(map(_axis, names))
     if len(labels) <= MOST_NAMED:
-        return ", ".join(dict.fromkeys(map(_axis, names)))
+        return ", ".join(labels)
+    units = {*map(_unit, names)}
     (unit,) = units if len(units) == 1 else ("SI units",)
     return f"value [{LARGE_UNITS.get(unit, (unit,))[0]}]"
 
@@ -293,6 +275,114 @@ def unknown_results(
             yield Fault(path, f"{text}{' and does not vary' * (option == 'x')}; {meant}")
 
 
+MOST_CURVES = 200
+LINES = ((style.BLUE, ":"), (style.BLUE, "-"), (style.BLUE, "--"))
+
+
+class IdaOptions(ReportOptions):
+    """Incremental dynamic analysis: demand against intensity, with fractiles."""
+
+    result: DemandName = Field(
+        "rotation_ratio",
+        description="horizontal axis",
+        validation_alias=AliasChoices("result", "demand"),
+    )
+    panels: VariedKeys | None = Field(None, description="varied keys, one panel for each value")
+
+
+class Ida(NamedTuple):
+    """Demands of one group at ascending intensities, or factors; infinite is overturned."""
+
+    values: tuple[object, ...]
+    levels: list[Histories]
+    heights: Array
+    curves: Array  # (curves, levels) of each record, sample and member, NaN where it failed
+    fractiles: Array  # (3, levels) of the points that did not fail
+
+
+def ida(study: StudyResults, options: IdaOptions) -> Found:
+    """Curves and fractiles of each system."""
+    table = study.table
+    found = grouping(table, options.panels, (INTENSITY,))
+    demands = demand(table, table.columns[options.result])
+    shown = []
+    for group in found.groups:
+        levels = sorted(group.parts([INTENSITY]), key=_height)
+        curves = np.column_stack([demands[level.every] for level in levels])
+        spread = np.column_stack([fractiles(column, THREE) for column in curves.T])
+        shown.append(Ida(group.values, levels, np.array([*map(_height, levels)]), curves, spread))
+    (name,) = shown_keys(table.layout, (INTENSITY,))
+    of, level_name = SCALARS["timehistory"][options.result], f"{name} [{unit_of(name)}]"
+    three = [f"{options.result}_{round(100 * share)} [{of.unit}]" for share in THREE]
+    heads = f"{level_name}, {', '.join(three)}, counted, overturned, failed"
+    rows = [
+        (panel.values, at, *spread, len(level), level.overturned.number, level.failed)
+        for panel in shown
+        for level, at, spread in zip(
+            panel.levels, panel.heights.tolist(), panel.fractiles.T.tolist(), strict=True
+        )
+    ]
+    finite = np.concatenate([panel.curves[np.isfinite(panel.curves)] for panel in shown])
+    edge = 1.15 * float(finite.max()) if len(finite) else 1.15
+    top = 1.04 * max(float(panel.heights.max()) for panel in shown)
+    numbers = sorted({str(len(panel.curves)) for panel in shown})
+
+    def draw(axes: style.Axes, panel: Ida) -> None:
+        levels = np.concatenate([[0.0], panel.heights])
+        panels.large_axis(axes.xaxis, of.unit)
+        # Evenly through all of them: more would only blacken the panel.
+        for curve in panel.curves[:: max(1, len(panel.curves) // MOST_CURVES)]:
+            line = _run_out(curve, levels, edge)
+            axes.plot(*line, color=style.GREY, lw=0.8, label="single curves")
+        for fractile, (colour, dashes), share in zip(panel.fractiles, LINES, THREE, strict=True):
+            label = "median" if share == 0.5 else f"{style.percent(share)} fractile"
+            line = _run_out(fractile, levels, edge)
+            axes.plot(*line, color=colour, ls=dashes, lw=1.8, label=label)
+
+    figure = panels.in_panels(
+        found.keys,
+        shown,
+        draw,
+        x_label=panels.large_label(of),
+        y_label=level_name,
+        limits=lambda axes: axes.set(xlim=(0.0, 0.97 * edge), ylim=(0.0, top)),
+        note=panels.noted(
+            found,
+            f"fractiles of {listed(numbers)} curves",
+            "level to the right: overturned at the next intensity" if found.overturned else "",
+            "back to the left: stronger motions, smaller rotations",
+        ),
+    )
+    return Found({"": keyed(found.keys, heads, rows)}, figure, found.notes)
+
+
+def _height(level: Histories) -> float:
+    """The factor or the intensity of a level."""
+    return float(str(level.values[0]))
+
+
+def _run_out(values: Array, levels: Array, edge: float) -> tuple[list[float], list[float]]:
+    """A curve from the origin to the first level at which it leaves the frame."""
+    x, y = [0.0], [0.0]
+    for value, level in zip(values.tolist(), levels[1:].tolist(), strict=True):
+        if np.isinf(value):
+            # Flat at the last level that stood: a little more, and it overturns.
+            return [*x, edge], [*y, y[-1]]
+        if not np.isnan(value):
+            x.append(value)
+            y.append(level)
+    return x, y
+
+
+def single_intensity(
+    document: Document, _axes: Sequence[Axis], request: ReportRequest
+) -> Iterator[Fault]:
+    """A study without several intensities has no curves."""
+    if not isinstance(document.content.get("scale"), dict | list):
+        wanted = "several intensities: scale: {measure: PGV, values: [...]}"
+        yield Fault(request.path, f"the report {request.kind} needs {wanted}")
+
+
 REPORT = Report(
     LinesOptions,
     lines,
@@ -300,3 +390,4 @@ REPORT = Report(
     results=lambda options: (*options.result, *options.dashed),
     analyses=("timehistory", "modal", "pushover"),
 )
+IDA = Report(IdaOptions, ida, check=single_intensity, results=lambda options: [options.result])

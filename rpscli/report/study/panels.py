@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeVar
 from rpscli.analyses.result_quantities import ResultQuantity
 from rpscli.report.figures import style
 from rpscli.report.figures.look import FONT_SIZE, SMALL
-from rpscli.report.study.labels import labels
+from rpscli.report.study.report import labels
 from rpscli.report.table import LARGE_UNITS, large
 from rpscli.sweep.statistics.grouping import Grouping
 
@@ -44,9 +44,16 @@ def shaded(count: int) -> str:
     return f"{count} series, more than colours: shades of a scale" * (count > len(COLOURS))
 
 
-def marker(place: int) -> str:
-    """A marker for each series."""
-    return MARKERS[place % len(MARKERS)]
+def look(place: int, count: int) -> dict[str, Any]:
+    """Colour and marker of each of so many series."""
+    return {"color": colour(place, count), "marker": MARKERS[place % len(MARKERS)]}
+
+
+def corner(axes: style.Axes, x: str, y: str, text: str, size: float = 0.9, **look: Any) -> None:
+    """A text inside a panel, at its left or right and at its bottom or top."""
+    place = {"left": 0.04, "right": 0.96, "bottom": 0.05, "top": 0.95}
+    sides: dict[str, Any] = {"ha": x, "va": y, "transform": axes.transAxes}
+    axes.text(place[x], place[y], text, fontsize=size * style.small(), **sides, **look)
 
 
 def in_panels(
@@ -86,7 +93,8 @@ def panel_figure(
             style.folded(style.typeset(name), (width - style.BESIDE) / columns, letters)
             for name in names
         ]
-        shown, cut = first(panels, columns, MOST_PANELS, max(map(_lines, titles), default=1))
+        lines = 1 + max((text.count("\n") for text in titles), default=0)
+        shown, cut = first(panels, columns, MOST_PANELS, lines)
         rows = max(1, math.ceil(len(shown) / columns))
 
         def draw_all(figure: style.Figure) -> None:
@@ -123,10 +131,6 @@ def panel_figure(
         return style.picture(draw_all, height, style.WIDTH if widest > 1 else 0.72 * style.WIDTH)
 
     return picture
-
-
-def _lines(text: str) -> int:
-    return 1 + text.count("\n")
 
 
 def first(

@@ -8,17 +8,7 @@ from typing import Any
 from rpscli.case.conditions import FRICTION, Condition
 from rpscli.case.text.document import Fault
 from rpscli.registry import Registry
-from rpscli.report.study import (
-    against,
-    comparison,
-    fragility,
-    heights,
-    ida,
-    lines,
-    risk,
-    scatter,
-    table,
-)
+from rpscli.report.study import comparison, fragility, heights, lines, risk, scatter, table
 from rpscli.report.study.report import Report
 from rpscli.sweep.points import StudyPoints
 from rpscli.sweep.systems import needs_of
@@ -27,13 +17,13 @@ REPORTS: Registry[Report[Any]] = Registry(
     "reports",
     {
         "overturning": table.OVERTURNING,
-        "rotation": against.REPORT,
+        "rotation": comparison.ROTATION,
         "demand": scatter.DEMAND,
         "storey_shear": heights.STOREY_SHEAR,
         "floor_spectra": heights.FLOOR_SPECTRA,
         "fragility": fragility.REPORT,
         "risk": risk.REPORT,
-        "ida": ida.REPORT,
+        "ida": lines.IDA,
         "overturning_spectrum": scatter.OVERTURNING_SPECTRUM,
         "comparison": comparison.REPORT,
         "lines": lines.REPORT,
@@ -42,6 +32,14 @@ REPORTS: Registry[Report[Any]] = Registry(
     },
     Report,
 )
+
+
+def asked(layout: StudyPoints) -> set[str] | None:
+    """Results that the reports of a study are about; None where it has none."""
+    requests = layout.study.reports
+    if not requests:
+        return None
+    return set().union(*(REPORTS[each.kind].results(each.options) for each in requests))
 
 
 def requirement_faults(layout: StudyPoints) -> Iterator[Fault]:

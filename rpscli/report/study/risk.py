@@ -18,8 +18,7 @@ from rpscli.report.figures import style
 from rpscli.report.study import fragility as fragile
 from rpscli.report.study import panels
 from rpscli.report.study.fragility import MOST_BANDS, Fragilities, Fragility
-from rpscli.report.study.labels import keyed
-from rpscli.report.study.report import Found, Report, with_band
+from rpscli.report.study.report import Found, Report, keyed, with_band
 from rpscli.sweep.points import StudyPoints
 from rpscli.sweep.statistics import hazard as rates
 from rpscli.sweep.statistics.hazard import Hazard, annual_rate
@@ -51,7 +50,6 @@ class Risk:
     band: Band  # over the bootstrap samples of the fragility
     edges: Array  # of bins of intensity (bins + 1,), the last is infinite
     rates: Array  # from motions in these (bins,)
-    half: float  # intensity below which half of the rate comes from
     of_records: float  # without other uncertainties
     of_shares: float  # straight from the observed shares
     of_hazard: tuple[float, ...]  # of the further hazard curves (fractiles,)
@@ -69,13 +67,8 @@ class Risk:
         return float(self.rates[-1] / self.rate)
 
     def probabilities(self, years: float) -> tuple[float, ...]:
-        """Of at least one excess within so many years, and of both ends of the band."""
-        return tuple(probability(rate, years) for rate in (self.rate, *self.band))
-
-
-def probability(rate: float, years: float) -> float:
-    """Of at least one excess within so many years, if excesses are a Poisson process."""
-    return -math.expm1(-rate * years)
+        """Of an excess within so many years (a Poisson process), and of both ends of the band."""
+        return tuple(-math.expm1(-rate * years) for rate in (self.rate, *self.band))
 
 
 def risk_faults(layout: StudyPoints, options: RiskOptions) -> Iterator[str]:
@@ -89,7 +82,7 @@ def risk_faults(layout: StudyPoints, options: RiskOptions) -> Iterator[str]:
         yield f"measure: {options.measure} is not hazard.measure: {measure}; remove the first"
     if needs_period(measure) and options.period is None:
         yield f"a hazard curve of {measure} is for one period; give the report a `period`"
-    yield from fragile.wrong_intensities(layout, options.model_copy(update={"measure": measure}))
+    yield from fragile.fragility_faults(layout, options.model_copy(update={"measure": measure}))
     try:
         rates.read_hazard(layout.study.folder / section.file, section.measure)
     except CaseError as error:
@@ -135,24 +128,20 @@ def risk(study: StudyResults, options: RiskOptions) -> Found:
             )
             for n, share in enumerate(hazard.fractiles)
         ),
-        (f"half_from_{measured}_below", unit, "half from below", lambda r: r.half),
         ("share_beyond_computed", "-", "from beyond computed", lambda r: r.beyond_computed),
         ("share_beyond_hazard", "-", "from beyond hazard", lambda r: r.beyond_hazard),
         ("note", "-", None, lambda r: r.note),
     ]  # fmt: skip
     rows = [(each.fragility.values, *(value(each) for *_, value in columns)) for each in risks]
-    part_heads = {
-        "limit": "-", f"{measured}_from": unit, f"{measured}_to": unit, "annual_rate": "1/year",
-        "share": "-",
-    }  # fmt: skip
+    ends = f"{measured}_from [{unit}], {measured}_to [{unit}]"
     parts = [
         (each.fragility.values, each.fragility.limit.label, low, high, rate, rate / each.rate)
         for each in known
         for low, high, rate in zip(each.edges, each.edges[1:], each.rates, strict=False)
     ]
     tables = {
-        "": keyed(keys, {name: of_unit for name, of_unit, *_ in columns}, rows),
-        "_contributions": keyed(keys, part_heads, parts),
+        "": keyed(keys, ", ".join(f"{name} [{of}]" for name, of, *_ in columns), rows),
+        "_contributions": keyed(keys, f"limit, {ends}, annual_rate [1/year], share", parts),
         **({"_at": fragile.margins(study, options, found)} if options.at else {}),
     }
     readers = {name: label for name, _, label, _ in columns if label}
@@ -176,7 +165,7 @@ def risk_of(fragility: Fragility, hazard: Hazard, options: RiskOptions) -> Risk:
         of_shares = rates.rate_of_shares(hazard, observed.intensity, observed.share)
     if not fit.fitted:
         none, lost = np.full(BINS + 1, nan), (nan,) * len(hazard.fractiles)
-        return Risk(fragility, nan, NOTHING, edges, none, nan, nan, of_shares, lost, nan, ())
+        return Risk(fragility, nan, NOTHING, edges, none, nan, of_shares, lost, nan, ())
     at = np.append(edges[:-1], max(fragility.largest, low))
     above = rates.rates_above(hazard, fit.median, total, at)
     medians, betas = fit.resampled
@@ -185,24 +174,18 @@ def risk_of(fragility: Fragility, hazard: Hazard, options: RiskOptions) -> Risk:
         for pair in zip(medians, options.dispersion.total(betas), strict=True)
     ]
     rate, curves = float(above[0]), [hazard.fractile(share) for share in hazard.fractiles]
-    ends = band(np.array(sampled), options.confidence)
-    parts, half = -np.diff(np.append(above[:-1], 0.0)), _half(hazard, fit.median, total)
-    others = annual_rate(hazard, fit.median, fit.beta), of_shares
-    of_hazard = tuple(annual_rate(curve, fit.median, total) for curve in curves)
-    doubts = tuple(_notes(fragility, hazard, rate, of_shares))
-    far = float(above[-1] / rate)
-    return Risk(fragility, rate, ends, edges, parts, half, *others, of_hazard, far, doubts)
-
-
-def _half(hazard: Hazard, median: float, beta: float) -> float:
-    """The intensity below and above which motions contribute the same."""
-    low, high = np.log(hazard.intensity[0]), np.log(hazard.intensity[-1]) + 10.0
-    whole = annual_rate(hazard, median, beta)
-    for _ in range(60):  # halving, to the last digits
-        middle = 0.5 * (low + high)
-        rest = rates.rates_above(hazard, median, beta, np.exp([middle]))[0]
-        low, high = (middle, high) if rest > 0.5 * whole else (low, middle)
-    return float(np.exp(low))
+    return Risk(
+        fragility,
+        rate,
+        band=band(np.array(sampled), options.confidence),
+        edges=edges,
+        rates=-np.diff(np.append(above[:-1], 0.0)),
+        of_records=annual_rate(hazard, fit.median, fit.beta),
+        of_shares=of_shares,
+        of_hazard=tuple(annual_rate(curve, fit.median, total) for curve in curves),
+        beyond_computed=float(above[-1] / rate),
+        notes=tuple(_notes(fragility, hazard, rate, of_shares)),
+    )
 
 
 def _notes(fragility: Fragility, hazard: Hazard, rate: float, of_shares: float) -> Iterator[str]:
@@ -250,15 +233,12 @@ def _report_notes(found: Fragilities, risks: Sequence[Risk], of: Of | None) -> I
 def risk_figure(found: Fragilities, risks: Sequence[Risk], years: float) -> Callable[[str], bytes]:
     """One panel a limit state: what share of its rate comes from which intensities."""
     groups = found.in_panels(risks, lambda each: each.fragility)
-    most, (low, high) = max(map(len, groups.values())), _shown(risks)
+    rows, (low, high) = min(max(map(len, groups.values())), MOST_BANDS), _shown(risks)
     last = float(risks[0].edges[-2])
 
     def line() -> float:
         """Height of the numbers above the steps: two lines where panels are narrow."""
-        return 0.075 * (1 + panels.break_if_narrow().count("\n"))
-
-    def room() -> float:
-        return 0.03 + line() * min(most, MOST_BANDS)
+        return 0.15 if style.narrow() else 0.075
 
     def draw(axes: style.Axes, panel: list[Risk]) -> None:
         for row, each in enumerate(panel):
@@ -268,11 +248,9 @@ def risk_figure(found: Fragilities, risks: Sequence[Risk], years: float) -> Call
             axes.stairs(shares[:-1], each.edges[:-1], color=shade, lw=1.4, label=name or None)
             if high > last:
                 axes.stairs(shares[-1:], [last, high], color=shade, lw=1.4, ls=":")
-            axes.axvline(each.half, ymax=1.0 - room(), color=shade, lw=0.8, ls="--")
             if len(panel) <= MOST_BANDS and not style.tight():
-                words = f"P = {with_band(*each.probabilities(years))}"
-                if line() > 0.1:
-                    words = words.replace(" (", "\n(")
+                band = with_band(*each.probabilities(years))
+                words = f"P = {band.replace(' (', f'{panels.break_if_narrow()}(')}"
                 axes.text(
                     0.02, 0.98 - line() * row, words, color=shade, transform=axes.transAxes,
                     va="top", fontsize=0.85 * style.small(),
@@ -283,27 +261,24 @@ def risk_figure(found: Fragilities, risks: Sequence[Risk], years: float) -> Call
         axes.set_xscale("log")  # of all panels at the end: ticks of logarithms are of another kind
         panels.log_ticks(axes.xaxis)
         axes.set_xlim(low, high)
-        axes.set_ylim(0.0, axes.get_ylim()[1] / (1.0 - room()))
+        axes.set_ylim(0.0, axes.get_ylim()[1] / (0.97 - line() * rows))
 
     note = panels.remarks(
         f"P in {years:g} years, {style.percent(found.confidence)} bands of the choice of records",
-        "dashed: half of the rate from either side",
         "dotted: all from beyond the hazard curve" * (high > last),
         fragile.BEYOND_COMPUTED,
         panels.over(found.systems.pooled),
     )
-    return found.figure(groups, draw, "share of the annual rate [%]", note, limit_axes)
+    y_label = "share of the annual rate [%]"
+    return found.figure(groups, draw, y_label=y_label, note=note, limits=limit_axes)
 
 
 def _shown(risks: Sequence[Risk]) -> tuple[float, float]:
-    """The intensities from which more than a hundredth of the largest share comes, and halves."""
-    lows, highs = [], []
-    for each in risks:
-        counting = np.flatnonzero(each.rates >= 0.01 * each.rates[:-1].max())
-        last = float(each.edges[-2])
-        lows.append(float(each.edges[counting[0]]))
-        highs += [min(float(each.edges[counting[-1] + 1]), 1.4 * last), each.half]
-    return 0.9 * min(lows), 1.1 * max(highs)
+    """The intensities from which more than a hundredth of the largest share comes."""
+    edges = risks[0].edges
+    counting = [np.flatnonzero(of.rates >= 0.01 * of.rates[:-1].max()) for of in risks]
+    high = min(edges[max(of[-1] for of in counting) + 1], 1.4 * edges[-2])
+    return 0.9 * float(edges[min(of[0] for of in counting)]), 1.1 * float(high)
 
 
 REPORT = Report(RiskOptions, risk, requires=risk_faults, results=lambda options: options.results)

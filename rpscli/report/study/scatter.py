@@ -1,12 +1,12 @@
-"""Points of a study as scatter: one demand against another, and overturning spectra of pulses."""
+"""Points of a study as scatter: one demand against another, systems against one, pulses."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import PurePath
-from typing import Annotated, Any, Literal, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,12 +24,23 @@ from rpscli.records.source import Source
 from rpscli.report.figures import style
 from rpscli.report.study import panels
 from rpscli.report.study.fragility import MeasureOptions, measure_name, measure_without_period
-from rpscli.report.study.labels import axis_label, keyed, labels
-from rpscli.report.study.report import Found, Report, without_uplift
-from rpscli.report.table import Column, measured
+from rpscli.report.study.report import (
+    Found,
+    Report,
+    axis_label,
+    keyed,
+    labels,
+    without_uplift,
+)
 from rpscli.sweep.evaluation import SCALARS, RecordRequest
 from rpscli.sweep.points import StudyPoints
-from rpscli.sweep.statistics.grouping import INTENSITY, Histories, grouping, shown_keys
+from rpscli.sweep.statistics.grouping import (
+    INTENSITY,
+    Grouping,
+    Histories,
+    grouping,
+    shown_keys,
+)
 from rpscli.sweep.table import Array, StudyResults, Table, groups, leading_keys, unit_of
 from rpscli.units import in_si
 
@@ -46,40 +57,45 @@ class ScatterOptions(DemandOptions):
 
     x: Text = Field(description="to the right: a demand, a measure as PGV, or a varied key")
     y: Text = Field(description="upwards: likewise")
-    curve: Literal["bilinear"] | None = Field(None, description="through the points of a panel")
 
 
-COEFFICIENTS = (
-    ("saturation_{x}", "break_x", "x"),
-    ("saturation_{y}", "break_y", "y"),
-    ("k_s", "slope_after", "y/x"),
-    ("slope_before", "slope", "y/x"),
-    ("{y}_at_uplift", "start", "y"),
-    ("residual", "residual", "y"),
-)
-"""Names of what a bilinear curve is made of in tables, its attributes, and their units."""
+COEFFICIENTS = {
+    "saturation_rotation_ratio": "break_x",
+    "saturation_base_shear_ratio": "break_y",
+    "k_s": "slope_after",
+    "slope_before": "slope",
+    "base_shear_ratio_at_uplift": "start",
+    "residual": "residual",
+}
+"""Names of what a bilinear curve is made of in the table, and its attributes."""
 
 
 class Ordinate(NamedTuple):
     """What an axis shows of all points (points,) [SI]."""
 
+    name: str
     values: Array
     unit: str
     label: str
+
+    @property
+    def head(self) -> str:
+        """Of its column."""
+        return f"{self.name} [{self.unit}]"
 
 
 def ordinate(table: Table, name: str) -> Ordinate:
     """A demand, a measure of the scaled motion (at T1), or a varied key, NaN where no number."""
     if (quantity := SCALARS["timehistory"].get(name)) is not None:
-        return Ordinate(table.columns[name], quantity.unit, panels.large_label(quantity))
+        return Ordinate(name, table.columns[name], quantity.unit, panels.large_label(quantity))
     if name in MEASURES.names():
         found = table.intensity(name)
-        return Ordinate(found.values, found.unit, f"{measure_name(found)} [{found.unit}]")
+        return Ordinate(name, found.values, found.unit, f"{measure_name(found)} [{found.unit}]")
     values = np.full(len(table), np.nan)
     for group in groups(table.layout, [name]):
         value = in_si(group.values[0], unit_of(name))
         values[group.points] = value if is_number(value) else np.nan
-    return Ordinate(values, unit_of(name), axis_label(*shown_keys(table.layout, [name])))
+    return Ordinate(name, values, unit_of(name), axis_label(*shown_keys(table.layout, [name])))
 
 
 class Cloud(NamedTuple):
@@ -88,144 +104,155 @@ class Cloud(NamedTuple):
     values: tuple[object, ...]
     histories: Histories
     shown: Histories
-    fit: Bilinear | None
+    fit: Bilinear | None = None
+    note: str | None = None  # why there is no curve
 
 
 def scatter(study: StudyResults, options: ScatterOptions) -> Found:
-    """Every history that stood, and the curves through them."""
+    """Every history that stood."""
     table, series = study.table, options.series or ()
-    return _scatter(study, options, options.x, options.y, series, ~table.overturned)
+    both = ordinate(table, options.x), ordinate(table, options.y)
+    found = grouping(table, options.panels, series)
+    clouds = _clouds(found, both, ~table.overturned)
+    rows = [
+        ((*cloud.values, *part.values), n + 1, table.outcomes[n], *(of.values[n] for of in both))
+        for cloud in clouds
+        for part in cloud.shown.parts(series)
+        for n in part.points.tolist()
+    ]
+    keys = (*found.keys, *shown_keys(table.layout, series))
+    heads = f"point, outcome, {both[0].head}, {both[1].head}"
+    return Found({"": keyed(keys, heads, rows)}, _figure(found, clouds, both, series), found.notes)
 
 
 def demand(study: StudyResults, options: DemandOptions) -> Found:
     """Histories that lifted off and stood, with a curve in each panel."""
-    leading = leading_keys(study.table.layout)
+    table, leading = study.table, leading_keys(study.table.layout)
     series = options.series if options.series is not None else leading[1:-1]
-    lifted = np.isin(study.table.outcomes, STOOD)
-    return _scatter(study, options, "rotation_ratio", "base_shear_ratio", series, lifted)
-
-
-def _scatter(
-    study: StudyResults,
-    options: DemandOptions,
-    x_name: str,
-    y_name: str,
-    series: tuple[str, ...],
-    kept: NDArray[np.bool_],
-) -> Found:
-    table = study.table
-    both = ordinate(table, x_name), ordinate(table, y_name)
-    x, y = (each.values for each in both)
-    kept = kept & ~table.failed & np.isfinite(x) & np.isfinite(y)
+    x, y = both = [ordinate(table, name) for name in ("rotation_ratio", "base_shear_ratio")]
     found = grouping(table, options.panels, series)
-    series_keys = shown_keys(table.layout, series)
-    plain = isinstance(options, ScatterOptions)  # else the curves are all that is asked for
-    curved = not isinstance(options, ScatterOptions) or options.curve is not None
     clouds = []
-    for group in found.groups:
-        shown = Histories(table, group.values, group.points[kept[group.points]])
-        fit = bilinear_fit(x[shown.points], y[shown.points]) if curved else None
-        clouds.append(Cloud(group.values, group, shown, fit))
-    units = (both[0].unit, both[1].unit) if plain else None
-    every = np.concatenate([cloud.shown.points for cloud in clouds])
-    most = max(len(cloud.shown.parts(series)) for cloud in clouds)
-    highest, top = (float(values[every].max(initial=0.0)) for values in (x, y))
-
-    def draw(axes: style.Axes, cloud: Cloud) -> None:
-        for axis, each in zip((axes.xaxis, axes.yaxis), both, strict=True):
-            panels.large_axis(axis, each.unit)
-        for place, part in enumerate(cloud.shown.parts(series)):
-            axes.plot(
-                x[part.points], y[part.points], ls="", marker=panels.marker(place), ms=3.0,
-                mew=0.0, alpha=0.7, color=panels.colour(place, most),
-                label=labels(series_keys, part.values) or None,
-            )  # fmt: skip
-        if curved:
-            _draw_curve(axes, cloud.fit, x[cloud.shown.points], (highest, top), units)
-
-    def limits(axes: style.Axes) -> None:
-        axes.set(xlim=(0.0, 1.04 * highest or 1.0), ylim=(0.0, None))
-
-    tables = {}
-    if curved:
-        tables["_curve" * plain] = _fits(found.keys, clouds, (x_name, y_name), both)
-    if plain:
-        rows = [
-            ((*cloud.values, *part.values), n + 1, table.outcomes[n], float(x[n]), float(y[n]))
-            for cloud in clouds
-            for part in cloud.shown.parts(series)
-            for n in part.points.tolist()
-        ]
-        heads = {"point": "-", "outcome": "-", x_name: both[0].unit, y_name: both[1].unit}
-        tables = {"": keyed((*found.keys, *series_keys), heads, rows), **tables}
-    without = [_too_few(x, cloud) for cloud in clouds if curved and cloud.fit is None]
-    notes = list(found.notes)
+    for cloud in _clouds(found, both, np.isin(table.outcomes, STOOD)):
+        at = x.values[cloud.shown.points]
+        few = f"{len(np.unique(at))} different rotations of survivors"
+        fit = bilinear_fit(at, y.values[cloud.shown.points])
+        note = None if fit else f"{few}; the curve needs {2 * FEWEST}"
+        clouds.append(cloud._replace(fit=fit, note=note))
+    rows = [
+        (
+            cloud.values,
+            *(getattr(cloud.fit, attribute, None) for attribute in COEFFICIENTS.values()),
+            len(cloud.shown),
+            int((table.outcomes[cloud.histories.points] == "at_rest").sum()),
+            cloud.histories.overturned.number,
+            cloud.histories.failed,
+            cloud.note,
+        )
+        for cloud in clouds
+    ]
+    heads = f"{', '.join(COEFFICIENTS)}, counted, at_rest, overturned, failed, note"
+    notes, without = list(found.notes), [cloud.note for cloud in clouds if cloud.note]
     if without:
         notes.append(f"{len(without)} of {len(clouds)} panels have no curve: {without[0]}")
-    fallen = f"{found.overturned} overturned points left out" if found.overturned else ""
-    fits = "fits without bands" * any(cloud.fit for cloud in clouds)
-    words: dict[str, Any] = {"x_label": both[0].label, "y_label": both[1].label, "limits": limits}
-    words["note"] = panels.noted(found, fits, panels.shaded(most), fallen)
-    return Found(tables, panels.in_panels(found.keys, clouds, draw, **words), notes)
+    figure = _figure(found, clouds, both, series, curves=True)
+    return Found({"": keyed(found.keys, heads, rows)}, figure, notes)
+
+
+def _clouds(found: Grouping, both: Sequence[Ordinate], kept: NDArray[np.bool_]) -> list[Cloud]:
+    """The points of each group that did not fail and have both values."""
+    table = found.groups[0].table
+    kept = kept & ~table.failed & np.isfinite([of.values for of in both]).all(axis=0)
+    return [
+        Cloud(of.values, of, Histories(table, of.values, of.points[kept[of.points]]))
+        for of in found.groups
+    ]
+
+
+def _figure(
+    found: Grouping,
+    clouds: Sequence[Cloud],
+    both: Sequence[Ordinate],
+    series: tuple[str, ...],
+    *,
+    curves: bool = False,
+) -> Callable[[str], bytes]:
+    x, y = both
+    series_keys = shown_keys(found.groups[0].table.layout, series)
+    every = np.concatenate([cloud.shown.points for cloud in clouds])
+    most = max(len(cloud.shown.parts(series)) for cloud in clouds)
+    highest, top = (float(of.values[every].max(initial=0.0)) for of in both)
+
+    def draw(axes: style.Axes, cloud: Cloud) -> None:
+        panels.large_axis(axes.xaxis, x.unit)
+        panels.large_axis(axes.yaxis, y.unit)
+        for place, part in enumerate(cloud.shown.parts(series)):
+            at, name = part.points, labels(series_keys, part.values) or None
+            look: dict[str, Any] = {"ls": "", "ms": 3.0, "mew": 0.0, "alpha": 0.7, "label": name}
+            axes.plot(x.values[at], y.values[at], **panels.look(place, most), **look)
+        if curves:
+            _draw_curve(axes, cloud.fit, x.values[cloud.shown.points], highest, top)
+
+    return panels.in_panels(
+        found.keys,
+        clouds,
+        draw,
+        x_label=x.label,
+        y_label=y.label,
+        limits=lambda axes: axes.set(xlim=(0.0, 1.04 * highest or 1.0), ylim=(0.0, None)),
+        note=panels.noted(
+            found,
+            "fits without bands" * any(cloud.fit for cloud in clouds),
+            panels.shaded(most),
+            f"{found.overturned} overturned points left out" * bool(found.overturned),
+        ),
+    )
 
 
 def _draw_curve(
-    axes: style.Axes,
-    fit: Bilinear | None,
-    x: Array,
-    room: tuple[float, float],
-    units: tuple[str, str] | None,
+    axes: style.Axes, fit: Bilinear | None, x: Array, highest: float, top: float
 ) -> None:
     """The curve as far as its points (m,) go, with its numbers where it leaves room for them."""
-    highest, top = room
-    apart, text, rising = panels.break_if_narrow(), "no curve: too few points", False
+    apart, text, place = panels.break_if_narrow(), "no curve: too few points", ("right", "bottom")
     if fit is not None:
         ends = np.array([x.min(), fit.break_x, x.max()])
         axes.plot(ends, fit(ends), color=style.BLACK, lw=1.6, label="bilinear fit")
-        beyond = f"beyond,\nfrom {int((x > fit.break_x).sum())} of {len(x)}"
         text = (
             f"saturation at{apart}{fit.break_x:.3f}, {fit.break_y:.2f}"
-            f"\nslope kₛ{apart}{fit.slope_after:.2f} {beyond}"
+            f"\nslope kₛ{apart}{fit.slope_after:.2f} beyond,"
+            f"\nfrom {int((x > fit.break_x).sum())} of {len(x)}"
         )
-        if units is not None:
-            at = measured(fit.break_x, units[0]), measured(fit.break_y, units[1])
-            text = f"break at{apart}{', '.join(at)}\nslope{apart}{fit.slope_after:.3g} {beyond}"
-        # Where the curve runs through the lower right, the upper left is free.
-        rising = bool(np.min(fit(np.linspace(0.3, 1.0, 8) * highest)) < 0.35 * top)
-    if style.tight():
-        return
-    axes.text(
-        0.04 if rising else 0.96, 0.95 if rising else 0.05, text, transform=axes.transAxes,
-        ha="left" if rising else "right", va="top" if rising else "bottom",
-        fontsize=0.9 * style.small(),
-        bbox={"fc": "white", "ec": "none", "alpha": 0.8, "pad": 1.5},
-    )  # fmt: skip
+        if np.min(fit(np.linspace(0.3, 1.0, 8) * highest)) < 0.35 * top:
+            place = ("left", "top")  # the curve runs through the lower right
+    if not style.tight():
+        box = {"fc": "white", "ec": "none", "alpha": 0.8, "pad": 1.5}
+        panels.corner(axes, *place, text, bbox=box)
 
 
-def _too_few(x: Array, cloud: Cloud) -> str:
-    points = len(np.unique(x[cloud.shown.points]))
-    return f"{points} different rotations of survivors; the curve needs {2 * FEWEST}"
+def unknown_axes(
+    _document: Document, axes: Sequence[Axis], request: ReportRequest
+) -> Iterator[Fault]:
+    """Axes of what is no demand, no measure, and does not vary as a number."""
+    assert isinstance(request.options, ScatterOptions), "requests have the options of their kind"
+    varied = {
+        key
+        for axis in axes
+        for place, key in enumerate(axis.keys)
+        if all(is_number(in_si(row[place], unit_of(key))) for row in axis.rows)
+    }
+    known = [*SCALARS["timehistory"], *MEASURES.names(), *varied, INTENSITY]
+    for option in ("x", "y"):
+        if (name := getattr(request.options, option)) not in known:
+            path: Path = (*request.path, request.kind, option)
+            otherwise = "`rps explain results` and `rps explain measures` list them"
+            meant = hint(name, known, otherwise, 0.6)
+            text = f"{dotted(path)} = {name} is no demand, no measure and no varied number; {meant}"
+            yield Fault(path, text)
 
 
-def _fits(
-    keys: tuple[str, ...],
-    clouds: list[Cloud],
-    names: tuple[str, str],
-    both: tuple[Ordinate, Ordinate],
-) -> list[Column]:
-    """One row a panel: the curve, and the points that it went through or left out."""
-    rows = []
-    for cloud in clouds:
-        resting = cloud.histories.table.outcomes[cloud.histories.points] == "at_rest"
-        counts = len(cloud.shown), int(resting.sum()), cloud.histories.overturned.number
-        fitted = (getattr(cloud.fit, attribute, None) for _, attribute, _ in COEFFICIENTS)
-        note = None if cloud.fit else _too_few(both[0].values, cloud)
-        rows.append((cloud.values, *fitted, *counts, cloud.histories.failed, note))
-    x_unit, y_unit = (each.unit for each in both)
-    units = {"x": x_unit, "y": y_unit, "y/x": "-" if x_unit == y_unit else "SI"}
-    heads = {name.format(x=names[0], y=names[1]): units[unit] for name, _, unit in COEFFICIENTS}
-    heads |= dict.fromkeys(("counted", "at_rest", "overturned", "failed", "note"), "-")
-    return keyed(keys, heads, rows)
+def measures_without_period(layout: StudyPoints, options: ScatterOptions) -> Iterator[str]:
+    """Measures at T1 where systems have none."""
+    for name in {options.x, options.y} & {*MEASURES.names()}:
+        yield from measure_without_period(layout, MeasureOptions.model_construct(measure=name))
 
 
 NEGLIGIBLE = 1e-6
@@ -241,11 +268,9 @@ class PulseSection(Section):
     """peak acceleration of the unscaled pulse; that of the record by default"""
 
 
-class SpectrumOptions(ReportOptions):
+class SpectrumOptions(DemandOptions):
     """Overturning spectrum of pulses: amplitude over g tan(alpha) against frequency over p."""
 
-    panels: VariedKeys | None = Field(None, description="varied keys, one panel for each value")
-    series: VariedKeys | None = Field(None, description="varied keys, one colour for each value")
     pulses: dict[str, PulseSection] = Field(
         {}, description="period and amplitude of records that are files, by source or name"
     )
@@ -262,7 +287,7 @@ LOOKS = (
 def overturning_spectrum(study: StudyResults, options: SpectrumOptions) -> Found:
     """Amplitude and frequency of every point, made dimensionless by its own system."""
     table, layout, series = study.table, study.table.layout, options.series or ()
-    frequency, amplitude = _pulses_of(study, options)
+    frequency, amplitude = both = _pulses_of(study, options)
     found = grouping(table, options.panels, (*series, INTENSITY, "record"))
     series_keys = shown_keys(layout, series)
     clouds = {group: group.parts(series) for group in found.groups}
@@ -278,42 +303,35 @@ def overturning_spectrum(study: StudyResults, options: SpectrumOptions) -> Found
             if several:
                 # What overturned and the least that did; survivors would hide the other series.
                 fell, name = part.points[part.fallen], labels(series_keys, part.values)
-                look: dict[str, Any] = {
-                    "color": panels.colour(place, most), "marker": panels.marker(place)
-                }  # fmt: skip
-                faint: dict[str, Any] = {"ls": "", "ms": 2.6, "mew": 0.0, "alpha": 0.35} | look
+                look = panels.look(place, most)
+                faint = look | {"ls": "", "ms": 2.6, "mew": 0.0, "alpha": 0.35}
                 axes.plot(frequency[fell], amplitude[fell], **faint)
                 axes.plot(*boundary, ms=3.4, lw=1.3, label=name, **look)
                 continue
             for word, name, shade, mark, size in LOOKS:
                 chosen = part.every[np.char.startswith(shown[part.every], word)]
                 if len(chosen):
-                    axes.plot(
-                        frequency[chosen], amplitude[chosen], ls="", color=shade, marker=mark,
-                        ms=size, mew=0.0, label=name,
-                    )  # fmt: skip
+                    look = {"ls": "", "color": shade, "marker": mark, "ms": size, "mew": 0.0}
+                    axes.plot(frequency[chosen], amplitude[chosen], label=name, **look)
             axes.plot(*boundary, color=style.BLACK, lw=1.2, label="least that overturns")
 
-    def limits(axes: style.Axes) -> None:
-        axes.set(xlim=(0.0, None), ylim=(0.0, None))
-
-    heads = {
-        "frequency_over_p": frequency, "amplitude_over_g_tan_alpha": amplitude,
-        "rotation_ratio": rotation, "outcome": table.outcomes,
-    }  # fmt: skip
     rows = [
-        ((*group.values, *part.values), *(values[n] for values in heads.values()))
+        ((*group.values, *part.values), *(of[n] for of in (*both, rotation, table.outcomes)))
         for group, parts in clouds.items()
         for part in parts
         for n in part.every.tolist()
     ]
-    words: dict[str, Any] = {"x_label": r"$\omega/p$ [-]", "limits": limits}
-    words["y_label"] = r"$a_p/(g\,\tan\alpha)$ [-]"
-    words["note"] = panels.noted(found, "only what overturned" * several, panels.shaded(most))
-    return Found(
-        {"": keyed((*found.keys, *series_keys), dict.fromkeys(heads, "-"), rows)},
-        panels.in_panels(found.keys, found.groups, draw, **words),
+    heads = "frequency_over_p, amplitude_over_g_tan_alpha, rotation_ratio, outcome"
+    figure = panels.in_panels(
+        found.keys,
+        found.groups,
+        draw,
+        x_label=r"$\omega/p$ [-]",
+        y_label=r"$a_p/(g\,\tan\alpha)$ [-]",
+        limits=lambda axes: axes.set(xlim=(0.0, None), ylim=(0.0, None)),
+        note=panels.noted(found, "only what overturned" * several, panels.shaded(most)),
     )
+    return Found({"": keyed((*found.keys, *series_keys), heads, rows)}, figure)
 
 
 def _pulses_of(study: StudyResults, options: SpectrumOptions) -> tuple[Array, Array]:
@@ -362,53 +380,12 @@ def records_without_period(layout: StudyPoints, options: SpectrumOptions) -> Ite
     yield from without_uplift(layout, options)
     requests = {properties.record for properties in layout.properties}
     wanted = [request or other for request in layout.records for other in requests]
-    for request in dict.fromkeys(wanted):
+    for request in filter(None, dict.fromkeys(wanted)):
         try:
-            if request is not None:
-                pulse_of(request.source, options)
+            pulse_of(request.source, options)
         except (CaseError, RecordError) as error:
             yield str(error)
             return
-
-
-def unknown_axes(
-    _document: Document, axes: Sequence[Axis], request: ReportRequest
-) -> Iterator[Fault]:
-    """Axes of what is no demand, no measure, and does not vary as a number."""
-    assert isinstance(request.options, ScatterOptions), "requests have the options of their kind"
-    varied = {
-        key
-        for axis in axes
-        for place, key in enumerate(axis.keys)
-        if all(is_number(in_si(row[place], unit_of(key))) for row in axis.rows)
-    }
-    known = [*SCALARS["timehistory"], *MEASURES.names(), *varied, INTENSITY]
-    for option in ("x", "y"):
-        if (name := getattr(request.options, option)) not in known:
-            path: Path = (*request.path, request.kind, option)
-            otherwise = "`rps explain results` and `rps explain measures` list them"
-            meant = hint(name, known, otherwise, 0.6)
-            text = f"{dotted(path)} = {name} is no demand, no measure and no varied number; {meant}"
-            yield Fault(path, text)
-
-
-def measures_without_period(layout: StudyPoints, options: ScatterOptions) -> Iterator[str]:
-    """Measures at T1 where systems have none."""
-    for name in {options.x, options.y} & {*MEASURES.names()}:
-        yield from measure_without_period(layout, MeasureOptions.model_construct(measure=name))
-
-
-SCATTER = Report(
-    ScatterOptions,
-    scatter,
-    check=unknown_axes,
-    requires=measures_without_period,
-    results=lambda of: [name for name in (of.x, of.y) if name in SCALARS["timehistory"]],
-)
-DEMAND = Report(DemandOptions, demand)
-OVERTURNING_SPECTRUM = Report(
-    SpectrumOptions, overturning_spectrum, requires=records_without_period
-)
 
 
 FEWEST = 4
@@ -497,3 +474,16 @@ def _curve(x: Array, y: Array, knee: float) -> Bilinear:
     residual = np.sqrt(np.sum((y - columns @ coefficients) ** 2) / max(len(x) - 4, 1))
     start, slope, after = coefficients.tolist()
     return Bilinear(start, slope, knee, start + slope * knee, after, float(residual))
+
+
+SCATTER = Report(
+    ScatterOptions,
+    scatter,
+    check=unknown_axes,
+    requires=measures_without_period,
+    results=lambda of: [name for name in (of.x, of.y) if name in SCALARS["timehistory"]],
+)
+DEMAND = Report(DemandOptions, demand)
+OVERTURNING_SPECTRUM = Report(
+    SpectrumOptions, overturning_spectrum, requires=records_without_period
+)

@@ -1,53 +1,67 @@
-"""Outcomes and demands of each system at each intensity, and verdicts on them, as documents."""
+"""Statistics of a study and verdicts on them: CSV columns, documents, and tables for readers."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict
 from typing import Any
 
 from rpscli.analyses.result_quantities import HISTORY, SAMPLED, YIELDING
-from rpscli.report.limits import limit_unit, requirement_text, verdict_text
-from rpscli.report.study.labels import key_columns, labels
-from rpscli.report.table import Column
-from rpscli.sweep.statistics.fractiles import Share
+from rpscli.report.limits import (
+    VERDICT,
+    limit_unit,
+    requirement_text,
+    verdict_text,
+    verdict_texts,
+)
+from rpscli.report.study.report import (
+    key_cells,
+    key_columns,
+    keyed,
+    labels,
+    reached,
+    symbol,
+)
+from rpscli.report.table import Column, Part, Table, columns_of, headed, large, standing
+from rpscli.report.timehistory import direction_note, overturned_text, restitution_text
+from rpscli.sweep.points import StudyPoints
+from rpscli.sweep.statistics.fractiles import Share, Spread
 from rpscli.sweep.statistics.summary import Summary
 from rpscli.sweep.statistics.verdicts import Verdict
+
+MOST_ROWS = 40  # of a table on a page
+DIGITS = 3
+A_TABLE = 3  # quantities side by side in a table that fits a page
 
 SPREAD = {"median": "median", "84": "high", "largest": "largest"}
 """What follows the name of a quantity in a column, and the attribute of its spread."""
 OF_RECORDS = {
     "mean_of_maxima": "mean", "median": "median", "fractile_84": "high", "largest": "largest"
 }  # fmt: skip
-FROM_BELOW = {"84": "16", "largest": "least"}
-"""What follows the names of those of which small values are bad."""
+FROM_BELOW = {"84": "16", "fractile_84": "fractile_16", "largest": "least"}
+"""Names of those of which small values are bad."""
 
 
 def counted_columns(shares: Sequence[Share]) -> list[Column]:
     """Histories, and the recordings or events that they come from."""
-    return [
-        Column("counted", "-", [share.of for share in shares]),
-        Column(shares[0].by if shares else "recordings", "-", [s.recordings for s in shares]),
-    ]
+    by = shares[0].by if shares else "recordings"
+    return columns_of(f"counted, {by}", [(share.of, share.recordings) for share in shares])
 
 
 def share_columns(name: str, shares: Sequence[Share]) -> list[Column]:
     """Count, share and interval; `name` is what is counted."""
-    endings = {"": "number", "_share": "fraction", "_low": "low", "_high": "high"}
-    return [
-        Column(name + ending, "-", [getattr(share, attribute) for share in shares])
-        for ending, attribute in endings.items()
-    ]
+    heads = f"{name}, {name}_share, {name}_low, {name}_high"
+    return columns_of(heads, [(each.number, each.fraction, *each[2:4]) for each in shares])
 
 
 def summary_columns(summary: Summary) -> list[Column]:
     """`statistics.csv`: one row a system and intensity; ``inf`` where so many overturned."""
-    rows = summary.rows
+    rows, overturned = summary.rows, [row.overturned for row in summary.rows]
     columns = key_columns(summary.keys, [row.values for row in rows])
-    columns += counted_columns([row.overturned for row in rows])
+    columns += counted_columns(overturned)
     columns.append(Column("failed", "-", [row.failed for row in rows]))
-    columns += share_columns("overturned", [row.overturned for row in rows])
+    columns += share_columns("overturned", overturned)
     for place, quantity in enumerate(summary.quantities):
         for suffix, attribute in SPREAD.items():
             values = [reached(getattr(row.spreads[place], attribute)) for row in rows]
@@ -58,63 +72,45 @@ def summary_columns(summary: Summary) -> list[Column]:
 
 def records_columns(labels: Sequence[str], histories: Sequence[Mapping[str, Any]]) -> list[Column]:
     """`records.csv`: one row a record."""
-    return [
-        Column("record", "-", labels),
-        Column("scale", "-", [history["record"]["scale"] for history in histories]),
-        Column("outcome", "-", [history["outcome"] for history in histories]),
-        *(
-            Column(quantity.name, quantity.unit, [history[quantity.name] for history in histories])
-            for quantity in (*HISTORY, *YIELDING, *SAMPLED)
-            if quantity.name in histories[0]
-        ),
+    known = [q for q in (*HISTORY, *YIELDING, *SAMPLED) if q.name in histories[0]]
+    rows = [
+        (label, of["record"]["scale"], of["outcome"], *(of[q.name] for q in known))
+        for label, of in zip(labels, histories, strict=True)
     ]
+    titles = ("record, scale, outcome", *(f"{q.name} [{q.unit}]" for q in known))
+    return columns_of(", ".join(titles), rows)
 
 
 def demand_columns(summary: Summary) -> list[Column]:
     """`statistics.csv` of one structure: one row a demand; ``inf`` where so many overturned."""
     (row,) = summary.rows
-    found = [
-        (quantity, spread)
-        for quantity, spread in zip(summary.quantities, row.spreads, strict=True)
-        if not quantity.from_below
+    rows = [
+        (of.name, of.unit, *(reached(getattr(spread, name)) for name in OF_RECORDS.values()))
+        for of, spread in zip(summary.quantities, row.spreads, strict=True)
+        if not of.from_below
     ]
-    return [
-        Column("quantity", "-", [quantity.name for quantity, _ in found]),
-        Column("unit", "-", [quantity.unit for quantity, _ in found]),
-        *(
-            Column(name, "SI", [reached(getattr(spread, attribute)) for _, spread in found])
-            for name, attribute in OF_RECORDS.items()
-        ),
-    ]
-
-
-def reached(value: float) -> float | str:
-    """A demand for a cell of a CSV file: ``inf`` or ``-inf`` for that of an overturned history."""
-    return str(value) if math.isinf(value) else value
+    return columns_of(f"quantity, unit, {', '.join(f'{name} [SI]' for name in OF_RECORDS)}", rows)
 
 
 def verdict_columns(keys: Sequence[str], verdicts: Sequence[Verdict]) -> list[Column]:
     """`verdicts.csv`: one row a limit of each system and intensity."""
-    conditions = [verdict.condition for verdict in verdicts]
-    fractiles = [None if v.fractile is None else reached(v.fractile) for v in verdicts]
+    limits, results = [], []
+    for verdict in verdicts:
+        of, found = verdict.condition, verdict.fractile
+        bounds = (None, of.limit) if of.from_below else (of.limit, None)
+        share = of.share if of.fractile is None else None
+        at = None if found is None else reached(found)
+        unit = limit_unit(of.name)
+        limits.append((verdict.values, of.name, unit, *bounds, share, of.fractile, at))
+        flags = str(verdict.exceeded).lower(), str(verdict.shown).lower()
+        results.append((verdict.overturned, *flags, verdict.shown_by, of.source))
+    heads = "limit, unit, at_most [SI], at_least [SI], admissible_share, fractile"
+    beyond = [verdict.beyond for verdict in verdicts]
     return [
-        *key_columns(keys, [verdict.values for verdict in verdicts]),
-        Column("limit", "-", [condition.name for condition in conditions]),
-        Column("unit", "-", [limit_unit(c.name) for c in conditions]),
-        Column("at_most", "SI", [None if c.from_below else c.limit for c in conditions]),
-        Column("at_least", "SI", [c.limit if c.from_below else None for c in conditions]),
-        Column(
-            "admissible_share", "-", [c.share if c.fractile is None else None for c in conditions]
-        ),
-        Column("fractile", "-", [condition.fractile for condition in conditions]),
-        Column("value_at_fractile", "SI", fractiles),
-        *counted_columns([verdict.beyond for verdict in verdicts]),
-        *share_columns("beyond", [verdict.beyond for verdict in verdicts]),
-        Column("overturned_among_them", "-", [verdict.overturned for verdict in verdicts]),
-        Column("exceeded", "-", [str(verdict.exceeded).lower() for verdict in verdicts]),
-        Column("shown", "-", [str(verdict.shown).lower() for verdict in verdicts]),
-        Column("shown_by_recordings", "-", [verdict.shown_by for verdict in verdicts]),
-        Column("source", "-", [condition.source for condition in conditions]),
+        *keyed(keys, f"{heads}, value_at_fractile [SI]", limits),
+        *counted_columns(beyond),
+        *share_columns("beyond", beyond),
+        *columns_of("overturned_among_them, exceeded, shown, shown_by_recordings, source", results),
     ]
 
 
@@ -129,10 +125,10 @@ def summary_document(summary: Summary) -> list[dict[str, Any]]:
             "overturned": share_document(row.overturned),
             "demands": {
                 quantity.name: {
-                    "mean_of_maxima": spread.mean,
-                    "median": spread.median,
-                    "fractile_16" if quantity.from_below else "fractile_84": spread.high,
-                    "least" if quantity.from_below else "largest": spread.largest,
+                    FROM_BELOW.get(name, name) if quantity.from_below else name: getattr(
+                        spread, attribute
+                    )
+                    for name, attribute in OF_RECORDS.items()
                 }
                 for quantity, spread in zip(summary.quantities, row.spreads, strict=True)
             },
@@ -168,13 +164,102 @@ def verdict_document(keys: Sequence[str], verdict: Verdict) -> dict[str, Any]:
 def verdict_lines(keys: Sequence[str], verdicts: Sequence[Verdict], of: str = "") -> list[str]:
     """Each limit that fails in a line."""
     lines = []
-    for verdict in verdicts:
-        if verdict.fails:
-            what = "limit exceeded" if verdict.exceeded else "limit not shown to be met"
-            system = labels(keys, verdict.values)
-            asked = f"{verdict.condition.name}: {requirement_text(verdict.condition)}"
-            where = f" ({system})" if system else ""
-            lines.append(
-                f"{what}: {of}{asked}; {verdict_text(verdict)}{where}, {verdict.condition.source}"
-            )
+    for verdict in filter(lambda verdict: verdict.fails, verdicts):
+        what = "limit exceeded" if verdict.exceeded else "limit not shown to be met"
+        system, limit = labels(keys, verdict.values), verdict.condition
+        where = f" ({system})" if system else ""
+        asked = f"{what}: {of}{limit.name}: {requirement_text(limit)}"
+        lines.append(f"{asked}; {verdict_text(verdict)}{where}, {limit.source}")
     return lines
+
+
+def summary_tables(summary: Summary | None, wanted: set[str] | None = None) -> Iterator[Part]:
+    """Outcomes; then median, 84 % fractile and largest value of demands: the main or some."""
+    if summary is None:
+        return
+    rows, systems = summary.rows, [row.values for row in summary.rows]
+    behind = [row.overturned.by for row in rows if row.overturned.behind][:1]
+    outcomes = []
+    for row in rows:
+        over = row.overturned
+        counts = [over.of, *[over.recordings] * len(behind), row.failed, over.number]
+        outcomes.append([*map(str, counts), over.interval])
+    heads = ["counted", *behind, "failed", "overturned", "95 % interval"]
+    yield _of_systems(summary, systems, heads, outcomes)
+    main = [
+        (place, quantity)
+        for place, quantity in enumerate(summary.quantities)
+        if (quantity.demand if wanted is None else quantity.name in wanted)
+        and not quantity.from_below
+    ]
+    for first in range(0, len(main), A_TABLE):
+        some = main[first : first + A_TABLE]
+        named = [headed(quantity.label, quantity.unit) for _, quantity in some]
+        spreads = [[_spread(row.spreads[place], of.unit) for place, of in some] for row in rows]
+        yield _of_systems(summary, systems, named, spreads)
+    if main:
+        yield (
+            "demands: median / 84 % fractile / largest; - where so many overturned, and in brackets"
+            " the least and the largest of those that stand"
+        )
+    if summary.pooled:
+        yield f"each row is over all records and {' and '.join(summary.pooled)}"
+
+
+def _spread(spread: Spread, unit: str) -> str:
+    *three, _, low, high = (standing(large(value, unit)[0], DIGITS) for value in spread)
+    some = math.isinf(spread.largest) and not math.isnan(spread.low_stands)
+    return " / ".join(three) + f" ({low} to {high})" * some  # the mean is in JSON
+
+
+def verdict_table(summary: Summary, verdicts: Sequence[Verdict]) -> Table:
+    """Every limit of each system and intensity; those that are exceeded first."""
+    ordered = sorted(verdicts, key=lambda verdict: (not verdict.exceeded, verdict.shown))
+    systems = [verdict.values for verdict in ordered]
+    return _of_systems(summary, systems, VERDICT, map(verdict_texts, ordered), words=4, keys=1)
+
+
+def _of_systems(
+    summary: Summary,
+    systems: Sequence[tuple[object, ...]],
+    heads: Sequence[str],
+    cells: Iterable[Sequence[str]],
+    *,
+    words: int = 0,
+    keys: int = 0,
+) -> Table:
+    """A table whose rows begin with a system and an intensity."""
+    columns = key_columns(summary.keys, systems)
+    named = [key_cells(column, symbol(column.name)) for column in columns]
+    rows = [[*(texts[place] for _, texts in named), *others] for place, others in enumerate(cells)]
+    own = [head for head, _ in named]
+    return Table.of_texts([*own, *heads], rows, words=len(own) + words, keys=len(own) + keys)
+
+
+def of_first_system(layout: StudyPoints) -> str:
+    """Overturning and restitution of the first system, others differ; limits that do not count."""
+    first = layout.system(0)
+    text = overturned_text(first.structure, first.settings)
+    text = f"{text}; {restitution_text(first.structure)}"
+    text += " (the first system)" * (len(layout.properties) > 1)
+    of_base = layout.plan.base.get("limits") if layout.study.file.limits else None
+    replaced = "" if not of_base else f"; own limits replace all of the base: {', '.join(of_base)}"
+    return text + replaced
+
+
+def note_of_directions(layout: StudyPoints) -> str:
+    """That histories have one direction only; by the first system, whether they could have both."""
+    return direction_note(layout.pairs, layout.system(0).structure.planar_only)
+
+
+def cut(parts: Iterable[Part], rows: int = MOST_ROWS, others: str = "") -> Iterator[Part]:
+    """The parts with so many rows of each table, but listings, and a remark on what is left out."""
+    longest = 0
+    for part in parts:
+        if isinstance(part, Table) and any(part.heads) and len(part) > rows:
+            longest = max(longest, len(part))
+            yield part.first(rows)
+        else:
+            yield part
+    if longest:
+        yield f"the first {rows} of up to {longest} rows; all are in the CSV files{others}"

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from functools import partial
+from itertools import takewhile
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,10 +13,17 @@ from pydantic import Field
 from rpscli.case.study.reports import ReportOptions, VariedKeys
 from rpscli.report.figures import style
 from rpscli.report.figures.look import FONT_SIZE, SMALL
-from rpscli.report.study.labels import key_columns, label, plain
 from rpscli.report.study.panels import left_out, over
-from rpscli.report.study.report import DemandName, Found, Report, StatisticOrShare
-from rpscli.report.study.statistics import reached
+from rpscli.report.study.report import (
+    DemandName,
+    Found,
+    Report,
+    StatisticOrShare,
+    key_columns,
+    label,
+    plain,
+    reached,
+)
 from rpscli.report.table import Column
 from rpscli.sweep.evaluation import SCALARS
 from rpscli.sweep.statistics.grouping import Histories, grouping, shown_keys, statistic_words
@@ -96,11 +104,11 @@ def table_report(study: StudyResults, options: TableOptions) -> Found:
     rows, column_keys = grouping(table, options.rows, across), shown_keys(layout, across)
     columns = [group.values for group in groups(layout, across)]
     nothing = make(Histories(table, (), np.empty(0, dtype=np.int64)))
-    cells: list[list[Cell | None]] = []
+    cells = []
     for row in rows.groups:
         # by their text: a value may be a list, of devices or of masses
         found = {repr(part.values): make(part) for part in row.parts(across)}
-        cells.append([found.get(repr(values)) for values in columns])
+        cells.append([found.get(repr(values), nothing) for values in columns])
     written = key_columns(rows.keys, [row.values for row in rows.groups])
     for place, values_across in enumerate(columns):
         named = zip(column_keys, values_across, strict=True)
@@ -109,7 +117,7 @@ def table_report(study: StudyResults, options: TableOptions) -> Found:
             Column(
                 name + suffix,
                 "-" if suffix else unit,
-                [(row[place] or nothing).numbers[suffix] for row in cells],
+                [row[place].numbers[suffix] for row in cells],
             )
             for suffix in nothing.numbers
         ]
@@ -117,7 +125,12 @@ def table_report(study: StudyResults, options: TableOptions) -> Found:
     written.append(Column("failed", "-", [row.failed for row in rows.groups]))
 
     heads = ["\n".join(map(label, column_keys, values)) or "all" for values in columns]
-    names = _names(rows.keys, [row.values for row in rows.groups])
+    names, before = [], list[str]()
+    for row in rows.groups:  # those that begin like the row before tell how they go on
+        parts = list(map(label, rows.keys, row.values))
+        same = takewhile(lambda pair: len({*pair}) == 1, zip(parts, before, strict=False))
+        names.append(", ".join(parts[len([*same]) :]))
+        before = parts
     above = [over(rows.pooled), words, left_out(rows.failed)]
     return Found({"": written}, partial(_picture, names, heads, cells, above), rows.notes)
 
@@ -129,23 +142,10 @@ def overturning(study: StudyResults, options: OverturningOptions) -> Found:
     )
 
 
-def _names(keys: Sequence[str], rows: Sequence[tuple[object, ...]]) -> list[str]:
-    """Labels of rows; those that begin like the row before tell how they go on."""
-    names, before = [], [""] * len(keys)
-    for values in rows:
-        parts = list(map(label, keys, values))
-        same = next(
-            (n for n, pair in enumerate(zip(parts, before, strict=True)) if len({*pair}) > 1), 0
-        )
-        names.append(", ".join(parts[same:]))
-        before = parts
-    return names
-
-
 def _picture(
     names: list[str],
     heads: list[str],
-    cells: list[list[Cell | None]],
+    cells: list[list[Cell]],
     above: list[str],
     title: str,
 ) -> bytes:
@@ -156,29 +156,23 @@ def _picture(
     def wide(texts: Iterable[str]) -> float:
         return max((style.width_of(text, size) for text in texts if text), default=0.0)
 
+    def lines(texts: Iterable[str]) -> int:
+        return 1 + max(text.count("\n") for text in texts)
+
     # Names may be as wide as the figure; what would run into the next column goes on below.
     names = [style.folded(style.typeset(name), 0.4 * width, size) for name in names[:MOST_ROWS]]
     beside = 0.4 + wide(names)
     columns = max(1, min(MOST_COLUMNS, len(heads), int((width - beside) / LEAST_WIDTH)))
     room = max((width - beside) / columns, 0.2)
-    drawn = [[cell or Cell({}, ("-", ""), np.nan) for cell in row[:columns]] for row in cells]
+    drawn = [row[:columns] for row in cells[: len(names)]]
     few = [style.folded(style.typeset(head), 0.95 * room, size) for head in heads[:columns]]
     below = [
         [style.folded(cell.texts[1], 0.95 * room / SMALLER, size) for cell in row] for row in drawn
     ]
-    heights = [
-        max(
-            0.3 + 0.11 * max(text.count("\n") for text in texts),
-            0.1 + LINE * (1 + name.count("\n")),
-        )
-        for name, texts in zip(names, below, strict=False)
-    ]
-    other = 0.6 + LINE * (1 + max(head.count("\n") for head in few))
-    edges = np.cumsum([0.0, *heights])
-    most = len(names)
+    height = max(0.19 + 0.11 * max(map(lines, below)), 0.1 + LINE * lines(names))
+    other, most = 0.6 + LINE * lines(few), len(names)
     if target is not None:
-        most = max(1, int(np.searchsorted(edges, style.inches(target)[1] - other)) - 1)
-    edges = edges[: most + 1]
+        most = min(most, max(1, int((style.inches(target)[1] - other) / height)))
     counts = ("rows", most, len(cells)), ("columns", columns, len(heads))
     cut = [f"the first {some} of {of} {what}" for what, some, of in counts if some < of]
 
@@ -186,24 +180,26 @@ def _picture(
         style.heading(figure, title, *above, *cut)
         axes = figure.subplots()
         shades = [[cell.shade for cell in row] for row in drawn[:most]]
-        # Rows are as high as their texts [in].
-        axes.pcolormesh(
-            range(columns + 1), edges, shades, cmap="Blues", vmin=0.0, vmax=1.0, alpha=0.75
-        )
+        axes.pcolormesh(shades, cmap="Blues", vmin=0.0, vmax=1.0, alpha=0.75)
         inside: dict[str, Any] = {"ha": "center", "in_layout": False}
         for y, x in np.ndindex(most, columns):
-            first, at, further = drawn[y][x].texts[0], 0.5 * (edges[y] + edges[y + 1]), below[y][x]
-            up = 0.055 * (1 + further.count("\n")) * bool(further)
-            fits = size * min(1.0 / SMALL, 0.95 * room / wide([first]))
-            axes.text(x + 0.5, at - up + 0.07, first, va="bottom", fontsize=fits, **inside)
-            axes.text(x + 0.5, at - up + 0.08, further, va="top", fontsize=SMALLER * size, **inside)
+            first, further = drawn[y][x].texts[0], below[y][x]
+            up = 0.055 * lines([further]) * bool(further)
+            fits, at = size * min(1.0 / SMALL, 0.95 * room / wide([first])), y + 0.5
+            axes.text(
+                x + 0.5, at - (up - 0.07) / height, first, va="bottom", fontsize=fits, **inside
+            )
+            axes.text(
+                x + 0.5, at - (up - 0.08) / height, further, va="top", fontsize=SMALLER * size,
+                **inside,
+            )  # fmt: skip
         axes.set_xticks(np.arange(columns) + 0.5, few)
-        axes.set_yticks(0.5 * (edges[:-1] + edges[1:]), names[:most])
+        axes.set_yticks(np.arange(most) + 0.5, names[:most])
         axes.tick_params(length=0, labeltop=True, labelbottom=False, labelsize=size)
         axes.invert_yaxis()
         axes.grid(visible=False)
 
-    return style.picture(draw, other + edges[-1], width)
+    return style.picture(draw, other + most * height, width)
 
 
 TABLE = Report(TableOptions, table_report, results=lambda options: [options.result])

@@ -1,10 +1,10 @@
-"""A time history as tables for a terminal."""
+"""A time history as tables and texts for readers, and as a document."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -12,15 +12,30 @@ from numpy.typing import NDArray
 
 from rpscli.analyses.column_design import WITHOUT_IMPULSE, no_line
 from rpscli.analyses.column_forces import AMPLE
-from rpscli.analyses.result_quantities import HISTORY, PAIR, SAMPLED, YIELDING
+from rpscli.analyses.result_quantities import (
+    EVERY,
+    SAMPLED,
+    STOREYS,
+    STOREYS_YIELDING,
+    values_of,
+)
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import OTHER_LOSS, Neighbour
 from rpscli.errors import listed
 from rpscli.model.podium import PodiumStructure
+from rpscli.report.derived import UPPER
 from rpscli.report.limits import limits_table
-from rpscli.report.table import Heading, Part, Table, measured, percent, shown
-from rpscli.report.tables.yielding import yielded_tables
+from rpscli.report.table import (
+    Column,
+    Heading,
+    Part,
+    Table,
+    measured,
+    percent,
+    shown,
+    standing,
+)
 from rpscli.sweep.statistics.verdicts import Verdict
 
 OUTCOMES = {
@@ -31,8 +46,6 @@ OUTCOMES = {
     "overturned_rocking": "overturned, rocking",
     "failed": "the analysis failed",
 }
-
-QUANTITIES = {quantity.name: quantity for quantity in (*HISTORY, *YIELDING, *SAMPLED, *PAIR)}
 
 Row = tuple[str, str, str, str]
 
@@ -45,8 +58,7 @@ def timehistory_tables(
     if scaled_to:
         yield f"record scaled to {scaled_to}"
     yield f"outcome: {outcome_text(result)}"
-    if (contact := contact_text(result.structure)) is not None:
-        yield contact
+    yield from filter(None, [contact_text(result.structure)])
     yield from demand_tables(result)
     yield from column_table(result)
     if verdicts:
@@ -55,12 +67,15 @@ def timehistory_tables(
 
 def demand_tables(result: TimeHistoryResult) -> Iterator[Table | str]:
     """Largest demands; of storeys, of those that yield and of devices, if there are any."""
-    yield outcome_table(result)
+    rows = [*_of_storey(result), *_of_building(result), *_of_contacts(result), *_energy(result)]
+    heads = ["", "on bearings", "normalised", f"{_elastic(result)}fixed base"]
+    columns = len(heads) - (result.fixed_base is None)
+    yield Table.of_texts(heads[:columns], [row[:columns] for row in rows])
     if result.structure.storeys:
-        yield storeys_table(result)
-    yield from yielded_tables(result)
+        yield _storeys_table(result)
+    yield from _yielded_tables(result)
     if result.devices:
-        yield devices_table(result)
+        yield _devices_table(result)
 
 
 def outcome_text(result: TimeHistoryResult) -> str:
@@ -97,13 +112,12 @@ def restitution_text(structure: PodiumStructure) -> str:
     law, e = structure.impact_law, structure.restitution
     if structure.bearing.is_spherical:
         return "no impacts: columns without a flat part roll through the upright position"
-    text = f"restitution at impact: e = {shown(e)} (law {law.kind}), e2 = {shown(e * e)}"
-    if (contact := contact_text(structure)) is not None:
-        text = f"{text}; {contact}"
-    if law.kind == "value" or law.loss <= OTHER_LOSS:
-        return text
-    other = replace(structure, impact_law=replace(law, loss=OTHER_LOSS)).restitution
-    return f"{text}; with podium.impact.loss {OTHER_LOSS:g} it would be {shown(other)}"
+    parts = [f"restitution at impact: e = {shown(e)} (law {law.kind}), e2 = {shown(e * e)}"]
+    parts += filter(None, [contact_text(structure)])
+    if law.kind != "value" and law.loss > OTHER_LOSS:
+        other = replace(structure, impact_law=replace(law, loss=OTHER_LOSS)).restitution
+        parts.append(f"with podium.impact.loss {OTHER_LOSS:g} it would be {shown(other)}")
+    return "; ".join(parts)
 
 
 def contact_text(structure: PodiumStructure) -> str | None:
@@ -121,6 +135,19 @@ def contact_text(structure: PodiumStructure) -> str | None:
         parts.append(f"a joint settles {shown(1e3 * bed.settlement, 2)} mm")
     other = "edges" if kind == "plane" else "plane"
     return f"{', '.join(parts)}; a period does not reveal the kind: compare with {other}"
+
+
+def direction_note(pairs: Iterable[bool], refused: str) -> str:
+    """That one direction says too little, and what to do; `refused` is why both cannot be had."""
+    if all(pairs):
+        return ""
+    remedy = (
+        f"both components together cannot be followed: {refused}"
+        if refused
+        else "write ?both behind a pair, as in fema_p695:farfield/1?both, and both components act"
+        " together"
+    )
+    return f"one horizontal direction at a time, not conservative: {remedy}"
 
 
 def neighbours_texts(result: TimeHistoryResult, found: Sequence[Neighbour]) -> Iterator[str]:
@@ -154,9 +181,8 @@ def _reached(found: Sequence[Neighbour]) -> str:
     stood = [each for each in found if not each.outcome.startswith(("overturned", "failed"))]
     texts = []
     if stood:
-        ratios = [each.rotation_ratio for each in stood]
         shears = [1e-3 * each.max_base_shear for each in stood]
-        texts = [f"{_range(ratios)} theta_cr"]
+        texts = [f"{_range([each.rotation_ratio for each in stood])} theta_cr"]
         texts += [f"base shear {_range(shears)} kN"] * any(shears)
     for kind, word in (("overturned", "overturns"), ("failed", "fails")):
         if count := sum(each.outcome.startswith(kind) for each in found):
@@ -168,76 +194,82 @@ def _range(values: Sequence[float]) -> str:
     return " to ".join(dict.fromkeys((shown(min(values)), shown(max(values)))))
 
 
-def outcome_table(result: TimeHistoryResult) -> Table:
-    """The largest demands beside those of the fixed base."""
-    rows = [
-        _row(result, "max_rotation", f"{shown(result.rotation_ratio)} theta_cr"),
-        *_azimuth(result.max_rotation_azimuth),
-        *_known(result, "max_rotation_time", "critical_passage_time"),
-        _row(result, "max_cap_beam_displacement", _ways(result, "max_cap_beam_displacement")),
-        _row(result, "max_lift"),
-    ]
+def _rows(
+    result: TimeHistoryResult, *names: str, normalised: str = "", fixed: float | None = None
+) -> Iterator[Row]:
+    """A row of each result that the history has."""
+    for name in names:
+        _, unit, label, *_ = EVERY[name]
+        if (value := getattr(result, name)) is not None:
+            beside = "" if fixed is None else measured(fixed, unit)
+            yield label, measured(value, unit), normalised, beside
+
+
+def _of_storey(result: TimeHistoryResult) -> Iterator[Row]:
+    """Rotation and displacement of the columns, and what remains of them."""
+    yield from _rows(result, "max_rotation", normalised=f"{shown(result.rotation_ratio)} theta_cr")
+    yield from _azimuth(result.max_rotation_azimuth)
+    yield from _rows(result, "max_rotation_time", "critical_passage_time")
+    ways = _ways(result, "max_cap_beam_displacement")
+    yield from _rows(result, "max_cap_beam_displacement", normalised=ways)
+    yield from _rows(result, "max_lift")
     if result.residual_rotation > 0.0:
-        residual = f"{shown(result.residual_rotation / result.critical_rotation)} theta_cr"
-        rows.append(_row(result, "residual_rotation", residual))
-        rows += _azimuth(result.residual_azimuth)
-        rows.append(_row(result, "residual_displacement"))
-    rows += _known(result, "max_damper_force", "max_stop_force", "lost_prestress")
-    rows += _of_building(result)
-    e = result.structure.restitution
-    if not result.structure.bearing.is_spherical:
-        rows.append(("restitution at impact e", shown(e), f"e2 = {shown(e * e)}", ""))
-    rows += _passes(result)
-    if result.structure.bed is not None:
-        rows += _known(result, "full_contact_share", "max_impact_number", "edge_pressure_ratio")
-    ratio, axial = result.friction_ratio, result.axial
-    rows.append(_row(result, "friction_demand", "" if ratio is None else f"{shown(ratio)} of mu"))
-    if result.structure.upwards and axial is not None and axial.sliding_time > 0.0:
-        time = f"{shown(1e3 * axial.sliding_time)} ms"
-        rows.append((f"  above {AMPLE:g} tan(alpha) for", time, "", ""))
-    rows += [*_columns(result), _row(result, "duration"), *_energy(result)]
-    heads = ["", "on bearings", "normalised", f"{_elastic(result)}fixed base"]
-    if result.fixed_base is None:
-        return Table.of_texts(heads[:3], [row[:3] for row in rows])
-    return Table.of_texts(heads, rows)
+        ratio = f"{shown(result.residual_rotation / result.critical_rotation)} theta_cr"
+        yield from _rows(result, "residual_rotation", normalised=ratio)
+        yield from _azimuth(result.residual_azimuth)
+        yield from _rows(result, "residual_displacement")
+    yield from _rows(result, "max_damper_force", "max_stop_force", "lost_prestress")
 
 
 def _of_building(result: TimeHistoryResult) -> Iterator[Row]:
-    if result.fixed_base is not None:
-        ratio, shear = f"{shown(result.base_shear_ratio)} V_st", result.fixed_base.base_shear
-        yield _row(result, "max_base_shear", ratio, shear)
-        if result.both_components:
-            yield "  in x, in y", _ways(result, "max_base_shear"), "", ""
-        yield from _known(result, "uplift_shear_ratio")
-        yield _row(result, "fixed_base_ratio")
-        fixed_acceleration = float(np.max(result.fixed_base.floor_accelerations))
-        yield _row(result, "max_floor_acceleration", fixed=fixed_acceleration)
-        for name in (
-            "floor_acceleration_over_fixed",
-            "max_roof_displacement",
-            "max_floor_velocity",
-        ):
-            yield _row(result, name)
+    if (fixed := result.fixed_base) is None:
+        return
+    ratio = f"{shown(result.base_shear_ratio)} V_st"
+    yield from _rows(result, "max_base_shear", normalised=ratio, fixed=fixed.base_shear)
+    if result.both_components:
+        yield "  in x, in y", _ways(result, "max_base_shear"), "", ""
+    yield from _rows(result, "uplift_shear_ratio", "fixed_base_ratio")
+    largest = float(np.max(fixed.floor_accelerations))
+    yield from _rows(result, "max_floor_acceleration", fixed=largest)
+    further = "floor_acceleration_over_fixed", "max_roof_displacement", "max_floor_velocity"
+    yield from _rows(result, *further)
     demands = fixed_base_demands(result)
     if demands is not None and demands.storey_drift_ratios is not None:
-        yield _row(result, "drift_ratio", fixed=float(max(demands.storey_drift_ratios)))
+        yield from _rows(result, "drift_ratio", fixed=float(max(demands.storey_drift_ratios)))
     if result.structure.yields:
         residual = result.residual_drift_ratio
-        yield from _known(result, "ductility", "plastic_drift")
+        yield from _rows(result, "ductility", "plastic_drift")
         of_height = "" if residual is None else f"{shown(residual)} of the height"
-        yield _row(result, "residual_drift", of_height)
+        yield from _rows(result, "residual_drift", normalised=of_height)
 
 
-def _row(
-    result: TimeHistoryResult, name: str, normalised: str = "", fixed: float | None = None
-) -> Row:
-    _, unit, label, *_ = QUANTITIES[name]
-    beside = "" if fixed is None else measured(fixed, unit)
-    return label, measured(getattr(result, name), unit), normalised, beside
-
-
-def _known(result: TimeHistoryResult, *names: str) -> list[Row]:
-    return [_row(result, name) for name in names if getattr(result, name) is not None]
+def _of_contacts(result: TimeHistoryResult) -> Iterator[Row]:
+    """Impacts or passes, joints, friction, and forces of one column, or of all together."""
+    structure, e = result.structure, result.structure.restitution
+    if not structure.bearing.is_spherical:
+        yield "restitution at impact e", shown(e), f"e2 = {shown(e * e)}", ""
+    yield from _passes(result)
+    if structure.bed is not None:
+        yield from _rows(result, "full_contact_share", "max_impact_number", "edge_pressure_ratio")
+    of_mu = "" if result.friction_ratio is None else f"{shown(result.friction_ratio)} of mu"
+    yield from _rows(result, "friction_demand", normalised=of_mu)
+    if structure.upwards and result.axial is not None and result.axial.sliding_time > 0.0:
+        time = f"{shown(1e3 * result.axial.sliding_time)} ms"
+        yield f"  above {AMPLE:g} tan(alpha) for", time, "", ""
+    forces = _rows(result, "max_column_shear", "max_column_force", "min_column_force")
+    if structure.columns == 1:  # their number is not known
+        axial = "axial force, all columns"
+        if result.overturning_ratio is not None:
+            axial = "axial force of an outer column, times columns"
+        labels = "total column shear", axial, f"minimum {axial}"
+        forces = ((label, *row[1:]) for label, row in zip(labels, forces, strict=True))
+    yield from forces
+    designed = ("column_moment", "contact_pressure_ratio", "crushed_width_ratio")
+    yield from _rows(result, "overturning_ratio", *designed)
+    impulse = [WITHOUT_IMPULSE] * (result.column_demand is not None)
+    for what in (*result.left_out_of_columns, *impulse):
+        yield f"  without {what}", "", "", ""
+    yield from _rows(result, "duration")
 
 
 def _elastic(result: TimeHistoryResult) -> str:
@@ -245,34 +277,31 @@ def _elastic(result: TimeHistoryResult) -> str:
     return "elastic, " if result.structure.yields else ""
 
 
-def _azimuth(angle: float | None) -> list[Row]:
-    if angle is None:
-        return []
-    return [("  towards", f"{shown(math.degrees(angle))} deg from x", "", "")]
+def _azimuth(angle: float | None) -> Iterator[Row]:
+    if angle is not None:
+        yield "  towards", f"{shown(math.degrees(angle))} deg from x", "", ""
 
 
 def _ways(result: TimeHistoryResult, name: str) -> str:
     """A result in x and in y; empty where one component acts."""
     if not result.both_components:
         return ""
-    unit = QUANTITIES[name].unit
-    x, y = (measured(getattr(result, f"{name}_{way}"), unit) for way in "xy")
+    x, y = (measured(getattr(result, f"{name}_{way}"), EVERY[name].unit) for way in "xy")
     return f"x {x}, y {y}"
 
 
 def _passes(result: TimeHistoryResult) -> Iterator[Row]:
     """Uplifts and impacts, or passes near upright: their number, the closest, and the shortest."""
-    if result.both_components and result.passes is not None:
-        yield "uplifts, passes", f"{result.uplifts}, {result.passes:.0f}", "", ""
-    else:
+    if not result.both_components or result.passes is None:
         yield "uplifts, impacts", f"{result.uplifts}, {result.impacts}", "", ""
+    else:
+        yield "uplifts, passes", f"{result.uplifts}, {result.passes:.0f}", "", ""
     if result.both_components and result.passes:
-        labels = [QUANTITIES[name].label for name in ("passes_as_impacts", "closest_pass")]
-        yield labels[0], f"{result.passes_as_impacts:.0f}", "", ""
-        yield labels[1], f"{shown(result.closest_pass)} alpha", "", ""
-        yield _row(result, "shortest_pass")
+        yield EVERY["passes_as_impacts"].label, f"{result.passes_as_impacts:.0f}", "", ""
+        yield EVERY["closest_pass"].label, f"{shown(result.closest_pass)} alpha", "", ""
+        yield from _rows(result, "shortest_pass")
     if result.both_components:
-        yield _row(result, "torsion_lever")
+        yield from _rows(result, "torsion_lever")
 
 
 ROUND = "columns are taken as round: square ones, which would wobble over corners, are not followed"
@@ -291,30 +320,13 @@ def passes_text(result: TimeHistoryResult) -> str | None:
         )
     if not result.passes:
         return ROUND
-    lost = 0 if result.passes_as_impacts is None else int(result.passes_as_impacts)
+    lost = result.passes_as_impacts or 0
     return (
-        f"{result.passes:.0f} passes near upright, however wide; {lost} of them lose like an impact"
-        " (l > 0.5);"
+        f"{result.passes:.0f} passes near upright, however wide; {lost:.0f} of them lose like an"
+        " impact (l > 0.5);"
         f" contact time {1e3 * result.structure.impact_law.contact_time:g} ms assumed: it decides"
         f" how the motion dies out, but hardly its maxima; {ROUND}"
     )
-
-
-def _columns(result: TimeHistoryResult) -> Iterator[Row]:
-    """Forces of one column, or of all where their number is not known."""
-    rows = _known(result, "max_column_shear", "max_column_force", "min_column_force")
-    labels = ("total column shear", "axial force, all columns", "minimum axial force, all columns")
-    if result.overturning_ratio is not None:
-        outer = "axial force of an outer column, times columns"
-        labels = (labels[0], outer, f"minimum {outer}")
-    if result.structure.columns == 1:
-        rows = [(label, *row[1:]) for label, row in zip(labels, rows, strict=True)]
-    yield from rows
-    designed = ("column_moment", "contact_pressure_ratio", "crushed_width_ratio")
-    yield from _known(result, "overturning_ratio", *designed)
-    impulse = [WITHOUT_IMPULSE] * (result.column_demand is not None)
-    for what in (*result.left_out_of_columns, *impulse):
-        yield f"  without {what}", "", "", ""
 
 
 LARGEST = {
@@ -347,47 +359,72 @@ def column_table(result: TimeHistoryResult) -> Iterator[Part]:
         yield f"no pressure: {corner}"
 
 
-def _energy(result: TimeHistoryResult) -> list[Row]:
+ENERGIES = (
+    ("damped", "damped", ""),
+    ("damped vertically", "damped_vertical", "upwards"),
+    ("in storeys that yield", "yielded", "yields"),
+    ("in devices", "devices", "devices"),
+    ("in the joints", "bed", "bed"),
+    ("lost at impacts", "impact", ""),
+    ("still stored", "stored", ""),
+    ("residual", "residual", ""),
+)
+"""Words for parts of the energy, and what a structure must have for each."""
+
+
+def _energy(result: TimeHistoryResult) -> Iterator[Row]:
     energy, structure = result.energy, result.structure
-    parts = [
-        (name, value)
-        for name, value, there in (
-            ("damped", energy.damped, True),
-            ("damped vertically", energy.damped_vertical, structure.upwards),
-            ("in storeys that yield", energy.yielded, structure.yields),
-            ("in devices", energy.devices, structure.devices),
-            ("in the joints", energy.bed, structure.bed),
-            ("lost at impacts", energy.impact, True),
-            ("still stored", energy.stored, True),
-            ("residual", energy.residual, True),
-        )
-        if there
-    ]
-    supplied = sum(value for _, value in parts)
-    rows = [(f"  {name}", measured(of, "J"), percent(of, supplied), "") for name, of in parts]
-    return [("energy input", measured(energy.input, "J"), "", ""), *rows]
+    parts = {
+        f"  {label}": float(getattr(energy, name))
+        for label, name, needed in ENERGIES
+        if not needed or getattr(structure, needed)
+    }
+    yield "energy input", measured(energy.input, "J"), "", ""
+    for label, part in parts.items():
+        yield label, measured(part, "J"), percent(part, sum(parts.values())), ""
 
 
-def storeys_table(result: TimeHistoryResult) -> Table:
-    """Largest demands of each storey, the roof on top."""
-    pair = [isolated_demands(result), fixed_base_demands(result) or isolated_demands(result)]
-    ratio = pair[0].storey_drift_ratios is not None
-    columns = [demands.storey_shears * 1e-3 for demands in pair]
-    columns += [
-        d.storey_drifts * 1e3 if d.storey_drift_ratios is None else d.storey_drift_ratios
-        for d in pair
-    ]
-    columns += [demands.floor_accelerations for demands in pair]
-    rows = [
-        [str(storey + 1), *(shown(float(column[storey])) for column in columns)]
-        for storey in reversed(range(result.structure.storeys))
-    ]
-    fixed, drift = f"{_elastic(result)}fixed", "drift ratio" if ratio else "drift mm"
-    heads = ["storey", "shear kN", fixed, drift, fixed, "acceleration m/s2", fixed]
-    return Table.of_texts(heads, rows)
+def _storeys_table(result: TimeHistoryResult) -> Table:
+    """Largest demands of each storey, on bearings and on a fixed base."""
+    isolated, fixed = isolated_demands(result), fixed_base_demands(result)
+    drift = ("drift mm", "storey_drifts", 1e3)
+    if isolated.storey_drift_ratios is not None:
+        drift = ("drift ratio", "storey_drift_ratios", 1.0)
+    shear = ("shear kN", "storey_shears", 1e-3)
+    acceleration = ("acceleration m/s2", "floor_accelerations", 1.0)
+    return _by_storey(
+        (label, factor * getattr(demands, name))
+        for head, name, factor in (shear, drift, acceleration)
+        for label, demands in ((head, isolated), (f"{_elastic(result)}fixed", fixed or isolated))
+    )
 
 
-def devices_table(result: TimeHistoryResult) -> Table:
+def _by_storey(columns: Iterable[tuple[str, Array]]) -> Table:
+    """Columns with a value of each storey, the roof on top."""
+    known = [Column(head, "-", values[::-1], head, standing) for head, values in columns]
+    storeys = range(len(known[0].values), 0, -1)  # type: ignore[arg-type]
+    return Table([Column("storey", "-", storeys, "storey", str), *known])
+
+
+def _yielded_tables(result: TimeHistoryResult) -> Iterator[Table | str]:
+    """What a history did to storeys that yield, and which of them yield most."""
+    building = result.structure.superstructure
+    if building is None or not building.yields:
+        return
+    yield _by_storey([
+        ("ductility", result.ductilities),
+        ("plastic drift mm", 1e3 * result.plastic_drifts),
+        ("residual mm", 1e3 * result.residual_drifts),
+        ("yielded kJ", 1e-3 * result.energies_yielded),
+        ("first at s", result.first_yields),
+    ])  # fmt: skip
+    most = int(result.ductilities.argmax())
+    if most > 0 and result.ductilities[most] > 1.0:
+        reason = f": {UPPER}" if building.yields_by_first_mode else ""
+        yield f"storey {most + 1}, not the first, has the largest ductility{reason}"
+
+
+def _devices_table(result: TimeHistoryResult) -> Table:
     """Largest demands of each device, and what its prestress is at the end."""
     units = {"force": "N", "stroke": "m", "velocity": "m/s", "energy": "J"}
     rows = []
@@ -432,3 +469,29 @@ def _demands(result: TimeHistoryResult, drifts: Array, of: Any) -> StoreyDemands
     ratios = None if building is None else building.drift_ratios(drifts)
     floors = of.floor_accelerations, of.floor_velocities
     return StoreyDemands(drifts, ratios, of.storey_shears, *floors)
+
+
+OF_RECORD = ("name", "source", "npts", "dt", "pga")
+"""Attributes of its record in the document of a history."""
+
+
+def timehistory_document(result: TimeHistoryResult) -> dict[str, Any]:
+    """Scalar results, demands of each storey, energies [J], and what to be warned of."""
+    fixed, column, structure = fixed_base_demands(result), result.column_demand, result.structure
+    unknown = {name for _, name, needed in ENERGIES[1:3] if not getattr(structure, needed)}
+    return {
+        "record": {name: getattr(result.record, name) for name in OF_RECORD},
+        "failure": result.failure,
+        "samples": result.sampling,
+        **result.scalars(),
+        **values_of(result, SAMPLED),
+        "column_forces": {end: asdict(forces) for end, forces in result.column_forces.items()},
+        "column_forces_leave_out": list(result.left_out_of_columns),
+        "column_instants": [asdict(each) for each in column.instants] if column else [],
+        **values_of(isolated_demands(result), STOREYS),
+        **values_of(result, STOREYS_YIELDING if structure.yields else ()),
+        "fixed_base": None if fixed is None else values_of(fixed, STOREYS),
+        "energy": {name: of for name, of in asdict(result.energy).items() if name not in unknown},
+        "devices": [asdict(demand) for demand in result.devices],
+        "warnings": result.warnings,
+    }

@@ -1,4 +1,4 @@
-"""A ground motion, or several that were chosen, as documents, CSV tables and files of text."""
+"""A ground motion, or several that were chosen, as documents, tables and files."""
 
 from __future__ import annotations
 
@@ -14,9 +14,12 @@ from rpscli.records.formats.record_text import remark
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.measures import IntensityMeasures, ResponseSpectrum, displacement, velocity
 from rpscli.records.selection import Selection, misfit
-from rpscli.records.source import Source, is_file
+from rpscli.records.source import is_file
 from rpscli.records.target import COMPONENTS, NOT_VERIFIED
-from rpscli.report.table import Column, Part, Table, picked, records, shown
+from rpscli.report.figures import motions as figures
+from rpscli.report.figures.look import USUAL, Look, figure_files
+from rpscli.report.files import Files
+from rpscli.report.table import Column, Part, Table, csv_lines, csv_text, picked, records, shown
 
 
 def record_document(motion: GroundMotion, measures: IntensityMeasures) -> dict[str, Any]:
@@ -49,19 +52,23 @@ def record_table(motion: GroundMotion, measures: IntensityMeasures) -> Table:
     return Table.listing([("name", motion.name), *rows])
 
 
-def motion_columns(motion: GroundMotion) -> list[Column]:
-    """`record.csv`: the motion and its integrals, one row a sample."""
+def record_files(motion: GroundMotion, spectrum: ResponseSpectrum, look: Look = USUAL) -> Files:
+    """Files of a ground motion: a row a sample with its integrals, and a row a period."""
     a, dt = motion.acceleration, motion.dt
-    columns = [Column("time", "s", motion.time), Column("acceleration", "m/s2", a)]
-    columns.append(Column("velocity", "m/s", velocity(a, dt)))
-    return [*columns, Column("displacement", "m", displacement(a, dt))]
-
-
-def spectrum_columns(spectrum: ResponseSpectrum) -> list[Column]:
-    """`spectrum.csv`: one row a period."""
-    units = {"pseudo_acceleration": "m/s2", "total_acceleration": "m/s2", "displacement": "m"}
-    columns = [Column(name, unit, getattr(spectrum, name)) for name, unit in units.items()]
-    return [Column("period", "s", spectrum.periods), *columns]
+    yield "record.csv", csv_lines([
+        Column("time", "s", motion.time),
+        Column("acceleration", "m/s2", a),
+        Column("velocity", "m/s", velocity(a, dt)),
+        Column("displacement", "m", displacement(a, dt)),
+    ])  # fmt: skip
+    yield "spectrum.csv", csv_text([
+        Column("period", "s", spectrum.periods),
+        Column("pseudo_acceleration", "m/s2", spectrum.pseudo_acceleration),
+        Column("total_acceleration", "m/s2", spectrum.total_acceleration),
+        Column("displacement", "m", spectrum.displacement),
+    ])  # fmt: skip
+    draw = partial(figures.record_figure, motion, spectrum)
+    yield from figure_files({"record": draw}, look).items()
 
 
 def two_column_text(motion: GroundMotion) -> str:
@@ -99,8 +106,8 @@ def selection_document(selection: Selection) -> dict[str, Any]:
 def selection_columns(selection: Selection) -> list[Column]:
     """`selection.csv`: one row a motion, its peaks scaled."""
     chosen, three = selection.chosen, partial(shown, digits=3)
-    seconds = [one.motions[1].source if len(one.motions) > 1 else None for one in chosen]
     misfits = [float(misfit(one.scaled[1:], selection.wanted)) for one in chosen]
+    seconds = [one.motions[1].source if len(one.motions) > 1 else None for one in chosen]
 
     def column(name: str, *head: Any, unit: str = "-", scaled: bool = False) -> Column:
         values = [getattr(one, name) for one in chosen]
@@ -200,19 +207,22 @@ def selection_tables(
     yield WHY_PGV
 
 
-def mean_columns(selection: Selection) -> list[Column]:
-    """`spectra.csv`: one row a period; target, mean, and every scaled motion."""
-    scatter = []
-    if (wanted := selection.target.deviation) and selection.deviation is not None:
-        scatter.append(Column("target_deviation", "-", wanted(selection.periods)))
-        scatter.append(Column("deviation", "-", selection.deviation))
-    return [
+def selection_files(selection: Selection, folder: Path, look: Look = USUAL) -> Files:
+    """Files of a choice of motions; the list names them as seen from the folder."""
+    yield "selection.txt", selection_list(selection, folder)
+    yield "selection.csv", csv_text(selection_columns(selection))
+    columns = [
         Column("period", "s", selection.periods),
         Column("target", "m/s2", selection.wanted),
         Column("mean", "m/s2", selection.mean),
-        *scatter,
-        *(Column(one.name, "m/s2", one.factor * one.acceleration) for one in selection.chosen),
     ]
+    if (wanted := selection.target.deviation) and selection.deviation is not None:
+        columns.append(Column("target_deviation", "-", wanted(selection.periods)))
+        columns.append(Column("deviation", "-", selection.deviation))
+    scaled = [Column(of.name, "m/s2", of.factor * of.acceleration) for of in selection.chosen]
+    yield "spectra.csv", csv_text([*columns, *scaled])
+    draw = partial(figures.selection_figure, selection, selection.target.name)
+    yield from figure_files({"selection": draw}, look).items()
 
 
 def selection_list(selection: Selection, folder: Path) -> str:
@@ -222,11 +232,10 @@ def selection_list(selection: Selection, folder: Path) -> str:
         f"# {len(selection.chosen)} {what}, for {selection.target.source}",
         "# in a study: records: ['list:selection.txt'], with the path as seen from the study",
     )
-    lines = (_line(one.source, one.factor, folder) for one in selection.chosen)
+    lines = []
+    for one in selection.chosen:
+        of, place = one.source, one.source.place
+        if is_file(place, None) and not Path(place).expanduser().is_absolute():
+            of = of.at(Path(os.path.relpath(place, folder)).as_posix())
+        lines.append(of.plus(factor=f"{of.factor * one.factor:g}"))
     return "\n".join((*heads, *lines)) + "\n"
-
-
-def _line(of: Source, factor: float, folder: Path) -> str:
-    if is_file(of.place, None) and not Path(of.place).expanduser().is_absolute():
-        of = of.at(Path(os.path.relpath(of.place, folder)).as_posix())
-    return of.plus(factor=f"{of.factor * factor:g}")

@@ -13,6 +13,8 @@ from dataclasses import replace
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from rpscli.report.table import Part, Table, shown
+
 if TYPE_CHECKING:
     from rpscli.analyses.results import TimeHistoryResult
     from rpscli.model.podium import Array, PodiumStructure
@@ -41,28 +43,19 @@ GEOMETRY = (
     Derived("flat_width", "width of the flat part", "2B", "m", lambda s: 2 * s.bearing.half_width),
     Derived("arc_radius", "radius of the arcs", "r", "m", "bearing.radius"),
     Derived("alpha", "slenderness angle", "alpha", "rad", "bearing.alpha"),
-    Derived(
-        "alpha_wedge", "slenderness angle of the wedge", "alpha'", "rad", "bearing.alpha_wedge"
-    ),
+    Derived("alpha_wedge", "slenderness angle of the wedge", "alpha'", "rad",
+            "bearing.alpha_wedge"),
     Derived("beta", "rolling ends at", "beta", "rad", "bearing.beta"),
     Derived("curvature_ratio", "curvature ratio", "rho", "-", "bearing.curvature_ratio"),
-    Derived(
-        "rho_cr_paper", "critical curvature ratio, first order", "rho_cr", "-",
-        "bearing.critical_curvature_ratio_of_paper",
-    ),
-    Derived(
-        "rho_cr_exact", "critical curvature ratio, exact", "rho_cr", "-",
-        "bearing.critical_curvature_ratio",
-    ),
+    Derived("rho_cr_paper", "critical curvature ratio, first order", "rho_cr", "-",
+            "bearing.critical_curvature_ratio_of_paper"),
+    Derived("rho_cr_exact", "critical curvature ratio, exact", "rho_cr", "-",
+            "bearing.critical_curvature_ratio"),
     Derived("critical_rotation", "critical rotation", "theta_cr", "rad"),
-    Derived(
-        "critical_rotation_paper", "critical rotation, first order", "theta_cr", "rad",
-        "bearing.critical_rotation_of_paper",
-    ),
-    Derived(
-        "overturns", "overturning", "", "-",
-        lambda s: "rolling" if s.bearing.overturns_rolling else "rocking",
-    ),
+    Derived("critical_rotation_paper", "critical rotation, first order", "theta_cr", "rad",
+            "bearing.critical_rotation_of_paper"),
+    Derived("overturns", "overturning", "", "-",
+            lambda s: "rolling" if s.bearing.overturns_rolling else "rocking"),
 )  # fmt: skip
 """Shape of the columns. `rho_cr_paper` is the first-order formula of the paper, `rho_cr_exact` the
 curvature ratio at which theta_cr = beta (Theory (1.14))."""
@@ -80,10 +73,8 @@ DYNAMICS = (
     Derived("static_base_shear", "base shear at uplift", "V_st", "N"),
     Derived("initial_stiffness", "stiffness after uplift", "", "N/m"),
     Derived("rolling_period", "period of rolling, rigid building", "T", "s"),
-    Derived(
-        "p_hat", "frequency parameter, rigid estimate", "p_hat", "rad/s",
-        "rigid_frequency_parameter",
-    ),
+    Derived("p_hat", "frequency parameter, rigid estimate", "p_hat", "rad/s",
+            "rigid_frequency_parameter"),
 )  # fmt: skip
 """Masses and statics."""
 
@@ -97,24 +88,18 @@ def _path_at_critical(structure: PodiumStructure) -> tuple[float, float]:
 
 
 AT_CRITICAL = (
-    Derived(
-        "critical_displacement", "cap beam displacement at it", "u_b", "m",
-        lambda s: _path_at_critical(s)[0],
-    ),
+    Derived("critical_displacement", "cap beam displacement at it", "u_b", "m",
+            lambda s: _path_at_critical(s)[0]),
     Derived("critical_lift", "lift at it", "v_b", "m", lambda s: _path_at_critical(s)[1]),
 )  # fmt: skip
 """Where the weight no longer restores."""
 
 BOTH = (
-    Derived(
-        "pass_turn", "azimuth change in a pass near upright", "Delta phi", "rad",
-        lambda s: None if s.passes_smoothly else s.pass_turn,
-    ),
+    Derived("pass_turn", "azimuth change in a pass near upright", "Delta phi", "rad",
+            lambda s: None if s.passes_smoothly else s.pass_turn),
     Derived("turning_inertia", "rotational inertia, upright", "K(0)", "-"),
-    Derived(
-        "contact_time", "contact time of an impact", "t_c", "s",
-        lambda s: None if s.passes_smoothly else s.impact_law.contact_time,
-    ),
+    Derived("contact_time", "contact time of an impact", "t_c", "s",
+            lambda s: None if s.passes_smoothly else s.impact_law.contact_time),
 )  # fmt: skip
 """Where both horizontal components act."""
 
@@ -204,10 +189,8 @@ COLUMN = (
 )
 """Of `podium.column`."""
 
-FIRST_PERIOD = Derived(
-    "T1", "first period on a fixed base", "T1", "s",
-    lambda s: float(s.superstructure.periods[0]) if s.superstructure else None,
-)  # fmt: skip
+FIRST_PERIOD = Derived("T1", "first period on a fixed base", "T1", "s",
+    lambda s: float(s.superstructure.periods[0]) if s.superstructure else None)  # fmt: skip
 
 
 def derived_quantities(structure: PodiumStructure) -> dict[str, Any]:
@@ -254,10 +237,8 @@ class Derivation(NamedTuple):
 BEFORE = {
     "restitution": (
         Derived("inertia_ratio", "I_o / (m_c R²) of a column", "I", "-", "bearing.inertia_ratio"),
-        Derived(
-            "e_edge", "restitution, impulse at the edges", "e_edge", "-",
-            lambda s: _letters(s).get("e_edge"),
-        ),
+        Derived("e_edge", "restitution, impulse at the edges", "e_edge", "-",
+                lambda s: _letters(s).get("e_edge")),
     ),
     "uplift_force": (Derived("weight", "weight that is lifted", "W", "N"),),
 }  # fmt: skip
@@ -291,10 +272,10 @@ def column_derivations(result: TimeHistoryResult) -> Iterator[Derivation]:
         letters = _letters(structure) | _ends(structure, x, N) | {"x": x, "N_1": N}
         rows = []
         if each.largest == "column_moment":
-            letters |= {"s": state.side, "F_1": each.shear, "d": state.rise}
-            P = N * math.cos(x) + state.side * each.shear * math.sin(x)
-            Q = state.side * each.shear * math.cos(x) - N * math.sin(x)
-            letters |= {"e": (each.moment + state.rise * Q) / P, "P": P, "Q": Q}
+            F, rise = state.side * each.shear, state.rise
+            P, Q = N * math.cos(x) + F * math.sin(x), F * math.cos(x) - N * math.sin(x)
+            letters |= {"s": state.side, "F_1": each.shear, "d": rise, "P": P, "Q": Q}
+            letters["e"] = (each.moment + rise * Q) / P
             rows = [
                 ("axial force at its end", "P", P, "N", "N_1 * cos(x) + s * F_1 * sin(x)"),
                 ("shear at its end", "Q", Q, "N", "s * F_1 * cos(x) - N_1 * sin(x)"),
@@ -488,3 +469,34 @@ def _printed(text: str) -> str:
 
 
 _LETTER = re.compile(r"[A-Za-z_]\w*")
+
+
+UPPER = (
+    "strengths follow the shears of the first mode on a fixed base, so upper storeys yield most:"
+    " modes of uplifted columns are stiffer, and load upper storeys more than that mode does"
+)
+
+
+def strength_tables(structure: PodiumStructure) -> Iterator[Part]:
+    """Strength of each storey beside its shear at uplift, the roof on top; in y if that differs."""
+    from rpscli.model.statics import storey_strengths  # numpy is slow
+
+    heads = "strength kN", "of V_st", "shear at uplift kN", "under slow ground motion"
+    for way, seen in structure.ways.items():
+        rows = [
+            (
+                str(storey),
+                shown(1e-3 * each.strength),
+                "" if each.strength_ratio is None else shown(each.strength_ratio),
+                shown(1e-3 * each.shear_at_uplift),
+                f"yields {'after' if each.uplift_first else 'BEFORE'} uplift",
+                shown(1e3 * each.yield_drift),
+            )
+            for storey, each in enumerate(storey_strengths(seen), 1)
+        ]
+        if rows:
+            storey = f"storey{way.replace('_', ', in ')}"
+            yield Table.of_texts((storey, *heads, "at a drift of mm"), rows[::-1])
+    building = structure.superstructure
+    if building is not None and building.yields_by_first_mode:
+        yield f"{UPPER} (one history of six storeys: ductility 1.8 of the first, 6.7 of the last)"

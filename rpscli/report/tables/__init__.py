@@ -1,1 +1,0 @@
-"""Columns and quantities of the files and documents of each analysis."""
