@@ -1,29 +1,225 @@
 """A second road through histories of a storey under both horizontal components.
 
 It shares nothing with the program: the unknowns are the Cartesian tilt (X, Y) and the floors'
-displacements (`spatial_lagrangian`), the steps those of DOP853 restarted at every sample of the
+displacements, the steps those of DOP853 restarted at every sample of the
 record and at every event, full contact the matrix exponentials of both directions. Where the tilt
 falls below `TIP` the storey crosses the rest of the cone, unrolled, in a straight line.
+
+Lagrange's equations are those of a storey that tilts to any side:
+X = theta cos(phi), Y = theta sin(phi), and the floors' displacements relative to the ground. The
+section of a column through its axis and its contact is that of `storey_lagrangian`, so the cap beam
+moves by u(theta) towards the azimuth phi and v(theta) upwards. A column that keeps its place on its
+circle of the radius `path` on the ground turns about its own axis by psi' = -kappa phi',
+kappa = path/rim, `rim` being the distance of the contact from the axis. That is a condition on
+velocities: only the part of dJ/dtheta that leaves kappa alone acts (Theory, section 13).
 """
 
 from __future__ import annotations
 
+import cmath
 import math
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from .crossings import Array, Curve, Rates, Stepper
-from .devices import OracleDevice
+from .devices import (
+    Equipment,
+    Friction,
+    OracleDevice,
+    RollingResistance,
+    Stop,
+    Tendon,
+    Viscous,
+)
 from .full_contact import FullContact
-from .spatial_lagrangian import SpatialDevices, SpatialLagrangian
-from .storey_lagrangian import Contact, OracleSystem
+from .storey_lagrangian import Contact, OracleSystem, StoreyLagrangian
 
 TIP = 1e-10
 _BEGINNING = 1e-12  # tilt at which an uplift is handed over to the integrator
 _ORDER = 12  # of the pushes within a quarter of a radian of the fastest mode: 1e-17 of them is left
+
+
+class Section(NamedTuple):
+    """Of one tilt: the cap beam and its first two derivatives, and what turns round."""
+
+    shift: complex
+    slope: complex
+    bend: complex
+    inertia: float  # J [kg m2] of phi'
+    spinning: float  # dJ/dtheta at fixed kappa
+    twisting: float  # what is left of dJ/dtheta
+    kappa: float
+
+
+class SpatialDevices(Equipment):
+    """Devices as forces on the Cartesian tilt; sums over all of a kind."""
+
+    def on_beam(self, rate: Array) -> Array:
+        """Force against a velocity of the cap beam."""
+        speed = math.hypot(*rate)
+        if speed == 0.0:
+            return np.zeros(2)
+        force = 0.0
+        for device in self.devices:
+            if isinstance(device, Viscous):
+                force += device.coefficient * speed**device.exponent
+            elif isinstance(device, Friction):
+                force += device.force
+        return -force / speed * rate
+
+    def against_tilt(
+        self, x: float, shift: float, slope: float, rate: float, *, rolling: bool
+    ) -> float:
+        """Moment of stops and tendons against theta, which is at x."""
+        moment = 0.0
+        for k, device in enumerate(self.devices):
+            if isinstance(device, Stop):
+                moment += device.push(shift, slope * rate) * slope
+            elif isinstance(device, Tendon):
+                e, growth = self.elongation(x, rolling=rolling)
+                moment += device.columns * self.tension(k, device, e) * growth
+        return moment
+
+    def against_rolling(self, grows: float, swings: float) -> Array:
+        """Moments against theta' and theta phi'."""
+        moment = sum(self.rolling(d) for d in self.devices if isinstance(d, RollingResistance))
+        rolls = math.hypot(grows, swings)
+        return moment / rolls * np.array([grows, swings]) if moment else np.zeros(2)
+
+
+class SpatialLagrangian:
+    """Masses and contact alike in x and y; stiffness and damping of each direction."""
+
+    def __init__(
+        self,
+        along_x: OracleSystem,
+        along_y: OracleSystem,
+        axial: float,
+        *,
+        integrated_spin: bool = False,
+    ) -> None:
+        """`axial` is I_3/(m_c R^2); `integrated_spin` lets all of dJ/dtheta act, as the program."""
+        self.integrated_spin = integrated_spin
+        self.devices: SpatialDevices | None = None
+        self.system, self.directions = along_x, (along_x, along_y)
+        self.plane = StoreyLagrangian(along_x)
+        self.storeys, self.critical_rotation = self.plane.storeys, self.plane.critical_rotation
+        self.axial = axial * along_x.columns_mass * along_x.R**2
+        n = self.storeys
+        between = np.eye(n) - np.eye(n, k=-1)
+        self.springs = [between.T @ np.diag(way.stiffnesses) @ between for way in self.directions]
+
+    def section(self, x: float, *, rolling: bool) -> Section:
+        plane = self.plane
+        _, slope, bend = plane.cap_beam(x, rolling=rolling)
+        # as there, but 1 - exp(-i x) without its cancellation towards the tip of the cone
+        versed = 2j * math.sin(x / 2.0) * cmath.exp(-0.5j * x)
+        if rolling:
+            shift = 2.0 * plane.radius * x + 2.0 * plane.arc_frame * versed
+        else:
+            foot = complex(plane.half_width + plane.radius * plane.beta, -plane.half_height)
+            shift = 2.0 * (foot - plane.arc_end) + 2.0 * plane.arc_end * versed
+        arc = x if rolling else plane.beta
+        path = plane.half_width + plane.radius * arc
+        rim = plane.half_width + plane.radius * math.sin(arc)
+        kappa = path / rim
+        kappa_slope = plane.radius * (1.0 - kappa * math.cos(x)) / rim if rolling else 0.0
+        sine, cosine, u = math.sin(x), math.cos(x), shift.real
+        mass = self.system.columns_mass / 4.0 + self.system.cap_beam_mass
+        spin = self.axial * (kappa - cosine)
+        twisting = 2.0 * spin * kappa_slope
+        acting = twisting if self.integrated_spin else 0.0
+        return Section(
+            shift,
+            slope,
+            bend,
+            plane.spin_inertia * sine**2 + spin * (kappa - cosine) + mass * u**2,
+            2.0 * (plane.spin_inertia * sine * cosine + spin * sine + mass * u * slope.real)
+            + acting,
+            twisting - acting,
+            kappa,
+        )
+
+    def tilt_inertia(self, slope: complex) -> float:
+        """Of theta': floors ride along upwards alone."""
+        plane = self.plane
+        sideways = self.system.columns_mass / 4.0 + self.system.cap_beam_mass
+        return float(
+            plane.spin_inertia + sideways * slope.real**2 + plane.moving_mass * slope.imag**2
+        )
+
+    def storey_forces(self, floors: Array, rates: Array, beam: Array, beam_rate: Array) -> Array:
+        """K v + C v' of both directions, (2, n)."""
+        forces = [
+            spring @ (floors[i] - beam[i]) + way.damping_matrix @ (rates[i] - beam_rate[i])
+            for i, (spring, way) in enumerate(zip(self.springs, self.directions, strict=True))
+        ]
+        return np.array(forces).reshape(2, self.storeys)
+
+    def accelerations(self, y: Array, ground: Array, *, rolling: bool) -> Array:
+        """Of [X, Y, floors along x, floors along y] under `ground` = a_x, a_y, a_v."""
+        n, half = self.storeys, len(y) // 2
+        tilt, rate = y[:2], y[half : half + 2]
+        x = math.hypot(tilt[0], tilt[1])
+        outwards = tilt / x
+        around = np.array([-outwards[1], outwards[0]])
+        grows, swings = float(outwards @ rate), float(around @ rate)  # theta', theta phi'
+        turns = swings / x
+        here = self.section(x, rolling=rolling)
+        beam = here.shift.real * outwards
+        beam_rate = here.slope.real * grows * outwards + here.shift.real * turns * around
+        forces = self.storey_forces(
+            y[2:half].reshape(2, n), y[half + 2 :].reshape(2, n), beam, beam_rate
+        )
+        push = forces.sum(axis=1) - self.plane.pushed_mass * ground[:2]
+        gravity = self.system.gravity + ground[2]
+        # d(A theta')/dt - (1/2) dA/dtheta theta'^2 - (1/2) dJ/dtheta phi'^2
+        sideways = self.system.columns_mass / 4.0 + self.system.cap_beam_mass
+        half_slope = sideways * here.slope.real * here.bend.real
+        half_slope += self.plane.moving_mass * here.slope.imag * here.bend.imag
+        outward = here.slope.real * float(outwards @ push)
+        outward -= self.plane.lifted_mass * gravity * here.slope.imag
+        outward += 0.5 * here.spinning * turns**2 - half_slope * grows**2
+        around_held = 0.0
+        if self.devices is not None:
+            held = self.devices.on_beam(beam_rate)
+            against = self.devices.against_rolling(grows, swings)
+            outward += here.slope.real * float(outwards @ held) - float(against[0])
+            outward -= self.devices.against_tilt(
+                x, here.shift.real, here.slope.real, grows, rolling=rolling
+            )
+            around_held = here.shift.real * float(around @ held) - x * float(against[1])
+        theta2 = outward / self.tilt_inertia(here.slope)
+        sweep = here.shift.real * float(around @ push) + around_held
+        sweep -= (here.spinning + 0.5 * here.twisting) * grows * turns
+        phi2 = sweep / here.inertia
+        out = np.empty(half)
+        out[:2] = (theta2 - swings * turns) * outwards + (x * phi2 + 2.0 * grows * turns) * around
+        out[2:] = (-forces / self.system.masses - ground[:2, None]).ravel()
+        return out
+
+    def energy(self, y: Array, *, rolling: bool) -> float:
+        """Kinetic and potential energy [J] relative to the ground; zero at rest."""
+        n, half = self.storeys, len(y) // 2
+        floors, rates = y[2:half].reshape(2, n), y[half + 2 :].reshape(2, n)
+        x = math.hypot(y[0], y[1])
+        energy = 0.5 * float(np.sum(self.system.masses * rates**2))
+        beam = np.zeros(2)
+        if x > 0.0:
+            outwards = y[:2] / x
+            here = self.section(x, rolling=rolling)
+            grows = float(outwards @ y[half : half + 2])
+            turns = float(outwards[0] * y[half + 1] - outwards[1] * y[half]) / x
+            energy += 0.5 * (self.tilt_inertia(here.slope) * grows**2 + here.inertia * turns**2)
+            energy += self.plane.lifted_mass * self.system.gravity * here.shift.imag
+            beam = here.shift.real * outwards
+        for i, spring in enumerate(self.springs):
+            drift = floors[i] - beam[i]
+            energy += 0.5 * float(drift @ spring @ drift)
+        return energy
 
 
 @dataclass
@@ -246,56 +442,47 @@ class SpatialSimulation(Stepper):
     def spare_turn(self) -> float:
         return math.pi * (math.sqrt(self.falling / self.going_round) - 1.0)
 
-    def turn(self, angle: float, scale: float) -> None:
-        """The tilt and, scaled, its rate are turned; floors stay where they are."""
-        c, s = math.cos(angle), math.sin(angle)
-        matrix, half = np.array([[c, -s], [s, c]]), self.half
-        self.y[:2] = matrix @ self.y[:2]
-        self.y[half : half + 2] = scale * (matrix @ self.y[half : half + 2])
+    def tilt_and_rate(self) -> tuple[complex, complex]:
+        x, v = self.y[:2], self.y[self.half :][:2]
+        return complex(x[0], x[1]), complex(v[0], v[1])
 
     def approach(self, ground: Array, slope: Array, time: float) -> None:
         """What the closest approach loses, and whether the storey comes down there."""
-        half = self.half
-        tilt = math.hypot(self.y[0], self.y[1])
-        around = float(self.y[0] * self.y[half + 1] - self.y[1] * self.y[half]) / tilt
+        z, rate = self.tilt_and_rate()
+        tilt = abs(z)
+        around = (z.conjugate() * rate).imag / tilt
         share = self.share_lost(tilt, abs(around))
-        before = self.motion.energy(self.y, rolling=self.rolling)
-        scale = math.sqrt(1.0 - share * (1.0 - self.restitution**2))
+        out = z / tilt * cmath.exp(-1j * math.copysign(share * self.spare_turn(), around))
         # exactly tangential: the next step shall not find this approach again
-        self.y[half : half + 2] = around / tilt * np.array([-self.y[1], self.y[0]])
-        self.turn(-math.copysign(share * self.spare_turn(), around), scale)
-        self.come_down(ground, slope, tilt, self.going_round * (scale * around) ** 2)
-        lost = before - self.motion.energy(self.y, rolling=self.rolling)
-        self.passes.append(Passed(time, tilt, share, lost))
+        beyond = Passed(time, tilt, share, self.going_round * around**2)
+        self.go_on(ground, slope, beyond, tilt * out, 1j * around * out)
 
     def cross(self, ground: Array, slope: Array, time: float) -> None:
         """Across the tip of the cone, unrolled: a straight line at the distance `near`."""
-        half = self.half
-        tilt = math.hypot(self.y[0], self.y[1])
-        outwards = self.y[:2] / tilt
-        rate = self.y[half : half + 2]
-        radial = float(outwards @ rate)
-        around = float(outwards[0] * rate[1] - outwards[1] * rate[0])
+        z, rate = self.tilt_and_rate()
+        tilt = abs(z)
+        turned = (z / tilt).conjugate() * rate
+        radial, around = turned.real, turned.imag
         opening = math.sqrt(self.going_round / self.falling)
         speed = math.hypot(radial, opening * around)
         near = tilt * opening * abs(around) / speed
-        share = 1.0 if self.contact_time else 0.0
+        share, out = (1.0 if self.contact_time else 0.0), -z / tilt
         if around != 0.0:
             share = self.share_lost(near, speed / opening)
-        scale = math.sqrt(1.0 - share * (1.0 - self.restitution**2))
-        before = self.motion.energy(self.y, rolling=self.rolling)
-        swept = 2.0 * math.acos(min(near / tilt, 1.0)) / opening - share * self.spare_turn()
-        angle = math.copysign(swept, around) if around else math.pi
-        c, s = math.cos(angle), math.sin(angle)
-        matrix = np.array([[c, -s], [s, c]])
-        if around == 0.0:
-            matrix = -np.eye(2)
-        out = matrix @ outwards
-        self.y[:2] = tilt * out
-        self.y[half : half + 2] = scale * (-radial * out + around * np.array([-out[1], out[0]]))
-        self.come_down(ground, slope, near, self.falling * (scale * speed) ** 2)
-        lost = before - self.motion.energy(self.y, rolling=self.rolling)
-        self.passes.append(Passed(time, near, share, lost))
+            swept = 2.0 * math.acos(min(near / tilt, 1.0)) / opening - share * self.spare_turn()
+            out = z / tilt * cmath.exp(1j * math.copysign(swept, around))
+        beyond = Passed(time, near, share, self.falling * speed**2)
+        self.go_on(ground, slope, beyond, tilt * out, (-radial + 1j * around) * out)
+
+    def go_on(self, ground: Array, slope: Array, passed: Passed, z: complex, rate: complex) -> None:
+        """From a pass; so far its `lost` is twice the kinetic energy of the tilt without loss."""
+        before, kept = self.motion.energy(self.y, rolling=self.rolling), 1.0
+        kept -= passed.share * (1.0 - self.restitution**2)
+        rate *= math.sqrt(kept)
+        self.y[:2], self.y[self.half :][:2] = (z.real, z.imag), (rate.real, rate.imag)
+        self.come_down(ground, slope, passed.tilt, kept * passed.lost)
+        passed.lost = before - self.motion.energy(self.y, rolling=self.rolling)
+        self.passes.append(passed)
 
     def come_down(self, ground: Array, slope: Array, tilt: float, twice_energy: float) -> None:
         """Full contact if neither this pass nor the next swing would be seen."""

@@ -11,8 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from oracles.compliant_storey import CompliantStorey
-from oracles.resolved_bed import resolved
+from oracles.compliant_storey import CompliantStorey, resolved
 from paper_structures import (
     Array,
     RecordLoader,
