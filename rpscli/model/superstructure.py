@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal
@@ -185,8 +184,11 @@ class Superstructure(Shown):
         lengths = set()
         for name in ("masses", "stiffnesses", "storey_heights", "strengths"):
             if (value := getattr(self, name)) is not None:
-                object.__setattr__(self, name, _positive(name, value))
-                lengths.add(len(value))
+                array = np.array(value, dtype=float)
+                if array.ndim != 1 or not all(map(is_size, array.tolist())):
+                    raise ValueError(f"{name} must be a list of finite sizes > 0, from the bottom")
+                object.__setattr__(self, name, frozen(array))
+                lengths.add(len(array))
         if lengths != {self.storeys} or not self.storeys:
             raise ValueError(
                 f"masses, stiffnesses, heights and strengths must have one length: {lengths}"
@@ -298,10 +300,3 @@ class Superstructure(Shown):
     def participation(self) -> Array:
         """Gamma_r = phi_r^T M 1 of the mass-normalised modes, (n,) [kg^1/2]."""
         return frozen(self.shapes.T @ self.masses)
-
-
-def _positive(name: str, values: Sequence[float] | Array) -> Array:
-    array = np.array(values, dtype=float)
-    if array.ndim != 1 or not all(map(is_size, array.tolist())):
-        raise ValueError(f"{name} must be a list of finite sizes > 0, from the bottom")
-    return frozen(array)

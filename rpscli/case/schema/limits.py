@@ -39,10 +39,6 @@ class LimitRule(Section):
         return self
 
 
-def _form(value: object) -> str:
-    return "rule" if isinstance(value, dict | LimitRule) else "number"
-
-
 def _limit(quantity: ResultQuantity) -> Any:
     """A number, or a mapping with more to say."""
     unit = quantity.unit if quantity.unit in KINDS else PLAIN
@@ -57,9 +53,8 @@ def _limit_of(unit: str, zero: bool, key: str) -> Any:  # noqa: FBT001 -- whethe
     rule = create_model(
         f"Limit_{unit}_{key}{zero:d}", __base__=LimitRule, __cls_kwargs__=_WITHOUT_SOURCE, **fields
     )
-    return Annotated[
-        Annotated[rule, Tag("rule")] | Annotated[number, Tag("number")], Discriminator(_form)
-    ]
+    form = Discriminator(lambda of: "rule" if isinstance(of, dict | LimitRule) else "number")
+    return Annotated[Annotated[rule, Tag("rule")] | Annotated[number, Tag("number")], form]
 
 
 def described(quantity: ResultQuantity) -> str:

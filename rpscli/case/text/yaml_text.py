@@ -35,33 +35,24 @@ REMEDIES = {
 def syntax_error(error: yaml.YAMLError, text: str, name: str) -> str:
     """One line: place, what is wrong, what to do."""
     if isinstance(error, yaml.reader.ReaderError):
-        return _forbidden_character(error, text, name)
+        before = text[: error.position]
+        line, column = before.count("\n") + 1, len(before) - before.rfind("\n")
+        code = error.character if isinstance(error.character, int) else ord(error.character)
+        return (
+            f"{name}:{line}:{column}: the character U+{code:04X} is not allowed in YAML; delete it"
+            " and save the file as UTF-8 text"
+        )
     assert isinstance(error, yaml.MarkedYAMLError), "PyYAML has no third kind of error"
-    mark = error.problem_mark or error.context_mark
+    mark, start = error.problem_mark or error.context_mark, error.context_mark
     place = f"{name}:{mark.line + 1}:{mark.column + 1}" if mark else name
     problem = error.problem or "cannot be read"
     remedy = next((remedy for part, remedy in REMEDIES.items() if part in problem), None)
     if remedy is None:
         return f"{place}: this is not YAML: {problem}; compare with what `rps init` writes"
-    return f"{place}: {remedy}{_opened(error)} (YAML: {problem})"
-
-
-def _opened(error: yaml.MarkedYAMLError) -> str:
-    """Position of the bracket or the quotation mark that is not closed."""
-    start = error.context_mark
-    if start is None or not any(word in (error.context or "") for word in ("flow", "quoted")):
-        return ""
-    return f"; it opens at line {start.line + 1}, column {start.column + 1}"
-
-
-def _forbidden_character(error: yaml.reader.ReaderError, text: str, name: str) -> str:
-    before = text[: error.position]
-    line, column = before.count("\n") + 1, len(before) - before.rfind("\n")
-    code = error.character if isinstance(error.character, int) else ord(error.character)
-    return (
-        f"{name}:{line}:{column}: the character U+{code:04X} is not allowed in YAML; delete it"
-        " and save the file as UTF-8 text"
-    )
+    if start and any(word in (error.context or "") for word in ("flow", "quoted")):
+        # The bracket or the quotation mark that is not closed.
+        remedy += f"; it opens at line {start.line + 1}, column {start.column + 1}"
+    return f"{place}: {remedy} (YAML: {problem})"
 
 
 DEEPEST = 40
