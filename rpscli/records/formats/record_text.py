@@ -16,13 +16,13 @@ from numpy.typing import NDArray
 from rpscli.errors import RecordError, stem_of
 from rpscli.records.ground_motion import UNKNOWN, GroundMotion, Recording
 from rpscli.records.quantities import (
+    ACCELERATIONS,
     KNOWN_UNITS,
     NUMBER_PATTERN,
     canonical_unit,
     last_digit,
     numbers_in,
     to_float,
-    unit_factor,
     why_no_numbers,
 )
 from rpscli.records.source import Source
@@ -131,12 +131,12 @@ class RecordText:
                 f" (or another of {KNOWN_UNITS}) after the file name, or write a header line"
                 " 'units: g'"
             )
-        if self.units is not None and unit_factor(self.units) != unit_factor(unit):
+        if self.units is not None and ACCELERATIONS[self.units] != ACCELERATIONS[unit]:
             raise self.fault(
                 f"units = {self.units} contradicts the file, which says {unit}; leave the units "
                 f"out, or correct the file if its header is wrong"
             )
-        return unit, unit_factor(unit)
+        return unit, ACCELERATIONS[unit]
 
     def agreed_dt(self, stated: float | None, tolerance: float = 1e-9) -> float:
         """The sampling interval [s], from the file or from a user who does not contradict it."""
@@ -312,7 +312,7 @@ class RecordText:
                     said.line,
                 )
         if (said := stated.peak) is not None:
-            of_peak = unit_factor(stated.peak_unit or unit) / factor
+            of_peak = ACCELERATIONS[stated.peak_unit or unit] / factor
             peak, wanted = float(np.max(np.abs(values))), of_peak * abs(self.number(said))
             if abs(peak - wanted) > 0.51 * of_peak * last_digit(said.value.strip()) + 1e-3 * wanted:
                 doubts += (f"the values peak at {peak:.6g} and the header says {wanted:.6g}",)
