@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path, PurePath
-from typing import Any, NamedTuple
+from typing import Any
 
 from rpscli.errors import (
     RecordError,
@@ -236,15 +236,8 @@ def _apart(one: str, other: str) -> float:
     return abs(first[-1] - second[-1]) if first[:-1] == second[:-1] else float("inf")
 
 
-class Expansion(NamedTuple):
-    """Single sources, and what is to be said of what was left out."""
-
-    sources: list[str]
-    notes: list[str]
-
-
-def expanded(sources: Sequence[str], *, folder: Path | None = None) -> Expansion:
-    """The single sources of a list that may hold folders, globs, lists and patterns of sets.
+def expanded(sources: Sequence[str], *, folder: Path | None = None) -> tuple[list[str], list[str]]:
+    """The single sources of a list that may hold folders, globs, lists and sets, and notes on it.
 
     What a source stands for keeps its place in the list, sorted by name, and nothing comes twice.
     Of a folder only files that are recognised as records count, each of their channels, not
@@ -252,7 +245,7 @@ def expanded(sources: Sequence[str], *, folder: Path | None = None) -> Expansion
     """
     notes = repeated(sources)
     found = [single for source in sources for single in _expand(source, folder, notes)]
-    return Expansion([*dict.fromkeys(found)], [*dict.fromkeys(notes)])
+    return [*dict.fromkeys(found)], [*dict.fromkeys(notes)]
 
 
 def single_source(text: str, folder: Path | None = None) -> Source:
@@ -260,7 +253,7 @@ def single_source(text: str, folder: Path | None = None) -> Source:
     of = Source.parse(text, folder)
     if not of.of_pair or of.components is not None:
         return of
-    first, *others = expanded([of], folder=folder).sources
+    first, *others = expand_sources([of], folder=folder)
     if others:
         raise RecordError(f"{of}: is {len(others) + 1} pairs; name one: {first}, ...")
     return Source.parse(first, folder)
@@ -268,7 +261,7 @@ def single_source(text: str, folder: Path | None = None) -> Source:
 
 def expand_sources(sources: Sequence[str], *, folder: Path | None = None) -> list[str]:
     """The sources of `expanded`."""
-    return expanded(sources, folder=folder).sources
+    return expanded(sources, folder=folder)[0]
 
 
 def repeated(sources: Sequence[str]) -> list[str]:

@@ -33,7 +33,7 @@ from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import RecordError
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.measures import displacement, velocity
-from rpscli.records.source import Query, Source, hint
+from rpscli.records.source import Source, hint
 
 Array = NDArray[np.float64]
 
@@ -94,17 +94,17 @@ def load_pulse(of: Source) -> GroundMotion:
     if name not in PULSES:
         raise RecordError(f"{of}: pulse {name!r} is not known; {hint(name, PULSES)}")
     own = ("velocity_amplitude", "cycles", "phase") if name == _MAVROEIDIS else ()
-    query = of.query("amplitude", "period", "dt", *own)
-    period = query.quantity("period", "time")
+    of.query("amplitude", "period", "dt", *own)
+    period = of.quantity("period", "time")
     if period <= 0.0:
         raise RecordError(f"{of}: period = {period} s must be positive")
     pulse, amplitude = (
-        _bell_of_waves(query, period) if own else (_PULSES[name], query.acceleration("amplitude"))
+        _bell_of_waves(of, period) if own else (_PULSES[name], of.acceleration("amplitude"))
     )
     if amplitude == 0.0:
-        key = next(key for key in ("amplitude", "velocity_amplitude") if key in query.values)
+        key = "amplitude" if "amplitude" in of.values else "velocity_amplitude"
         raise RecordError(f"{of}: {key} = 0 makes no pulse")
-    dt = query.quantity("dt", "time", period / _STEPS_PER_PERIOD)
+    dt = of.quantity("dt", "time", period / _STEPS_PER_PERIOD)
     length, fault = pulse.periods * period, ""
     whole = length / dt if dt else math.nan
     if not 0.0 < dt <= 0.25 * period:
@@ -120,9 +120,8 @@ def load_pulse(of: Source) -> GroundMotion:
     # The last sample of a pulse that fits is its end exactly, whatever the rounding of dt.
     step = pulse.periods / steps if pulse.fits else dt / period
     peak = abs(amplitude) / STANDARD_GRAVITY
-    bare = (query.values.get("amplitude") or "g").strip().replace(
-        ".", ""
-    ).isdigit() and peak < DOUBTFUL
+    written = of.values.get("amplitude") or "g"
+    bare = written.strip().replace(".", "").isdigit() and peak < DOUBTFUL
     doubt = f"{of}: an amplitude of {amplitude:g} m/s2 = {peak:.4g} g; was {amplitude:g}g meant?"
     return GroundMotion(
         amplitude * pulse.shape(np.arange(steps + 1, dtype=np.float64) * step),
@@ -135,21 +134,19 @@ def load_pulse(of: Source) -> GroundMotion:
     )
 
 
-def _bell_of_waves(query: Query, period: float) -> tuple[_Pulse, float]:
-    cycles = query.quantity("cycles", "ratio", 2.0)
-    phase = query.quantity("phase", "angle", 0.0)
+def _bell_of_waves(of: Source, period: float) -> tuple[_Pulse, float]:
+    cycles = of.quantity("cycles", "ratio", 2.0)
+    phase = of.quantity("phase", "angle", 0.0)
     if not 1.0 < cycles <= 100.0:
-        raise RecordError(f"{query}: cycles = {cycles:g} must lie between 1 and 100")
+        raise RecordError(f"{of}: cycles = {cycles:g} must lie between 1 and 100")
     dense = np.linspace(0.0, cycles, 1 + 2 * _STEPS_PER_PERIOD * math.ceil(cycles))
     peak = float(np.max(np.abs(_mavroeidis_papageorgiou(dense, cycles, phase))))
-    if ("amplitude" in query.values) == ("velocity_amplitude" in query.values):
-        raise RecordError(
-            f"{query}: give either amplitude (peak acceleration) or velocity_amplitude"
-        )
-    if "amplitude" in query.values:
-        amplitude = query.acceleration("amplitude")
+    if ("amplitude" in of.values) == ("velocity_amplitude" in of.values):
+        raise RecordError(f"{of}: give either amplitude (peak acceleration) or velocity_amplitude")
+    if "amplitude" in of.values:
+        amplitude = of.acceleration("amplitude")
     else:
-        amplitude = query.quantity("velocity_amplitude", "velocity") * peak / period
+        amplitude = of.quantity("velocity_amplitude", "velocity") * peak / period
     pulse = _Pulse(
         lambda tau: _mavroeidis_papageorgiou(tau, cycles, phase) / peak, cycles, fits=False
     )
@@ -172,12 +169,12 @@ def load_synthetic(of: Source) -> GroundMotion:
     (2.39 Hz) and `ground_damping` (0.6) of the soil, `cut_frequency` (0.239 Hz) and `cut_damping`
     (0.6) of the low cut; with `pulse_velocity`, also `pulse_period` (3 s) and `pulse_cycles` (2).
     """
-    query = of.query(*_OPTIONS)
-    seed, pga = query.integer("seed"), query.acceleration("pga")
-    duration, dt = query.quantity("duration", "time", 30.0), query.quantity("dt", "time", 0.01)
-    ground = query.quantity("ground_frequency", "frequency", _FIRM_GROUND)
-    cut = query.quantity("cut_frequency", "frequency", _FIRM_CUT)
-    dampings = [query.quantity(f"{name}_damping", "ratio", 0.6) for name in ("ground", "cut")]
+    of.query(*_OPTIONS)
+    seed, pga = of.integer("seed"), of.acceleration("pga")
+    duration, dt = of.quantity("duration", "time", 30.0), of.quantity("dt", "time", 0.01)
+    ground = of.quantity("ground_frequency", "frequency", _FIRM_GROUND)
+    cut = of.quantity("cut_frequency", "frequency", _FIRM_CUT)
+    dampings = [of.quantity(f"{name}_damping", "ratio", 0.6) for name in ("ground", "cut")]
     if min(pga, dt, ground, cut, *dampings) <= 0.0 or not 20 * dt <= duration <= 1e6 * dt:
         raise RecordError(
             f"{of}: pga, dt, frequencies and dampings must be positive and the duration "
@@ -189,10 +186,10 @@ def load_synthetic(of: Source) -> GroundMotion:
     noise = _filtered_noise(count, dt, seed, (ground, dampings[0]), (cut, dampings[1]))
     shaped = _brought_to_rest(noise * envelope(np.linspace(0.0, 1.0, count)), dt)
     pulse, label = np.zeros(count), ""
-    if "pulse_velocity" in query.values:
-        amplitude = query.quantity("pulse_velocity", "velocity")
-        period = query.quantity("pulse_period", "time", 3.0)
-        cycles = query.quantity("pulse_cycles", "ratio", 2.0)
+    if "pulse_velocity" in of.values:
+        amplitude = of.quantity("pulse_velocity", "velocity")
+        period = of.quantity("pulse_period", "time", 3.0)
+        cycles = of.quantity("pulse_cycles", "ratio", 2.0)
         time = np.arange(count, dtype=np.float64) * dt
         middle = 1.5 * _PEAK_AT * time[-1]  # a little after the envelope's peak
         start = max(0.0, middle - 0.5 * cycles * period)
@@ -204,7 +201,7 @@ def load_synthetic(of: Source) -> GroundMotion:
         shape = _mavroeidis_papageorgiou((time - start) / period, cycles, _PULSE_PHASE)
         pulse = _brought_to_rest(amplitude / period * shape, dt)
         label = f" with a velocity pulse of {amplitude:g} m/s, {period:g} s"
-    elif query.values.keys() & {"pulse_period", "pulse_cycles"}:
+    elif of.values.keys() & {"pulse_period", "pulse_cycles"}:
         raise RecordError(f"{of}: a pulse needs pulse_velocity=...")
     if (own := float(np.max(np.abs(pulse)))) >= pga:
         raise RecordError(

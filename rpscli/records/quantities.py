@@ -88,8 +88,3 @@ def canonical_unit(text: str) -> str | None:
     unit = re.sub(r"/s/s$", "/s2", unit)
     unit = {"gals": "gal", "gravity": "g", "g's": "g"}.get(unit, unit)
     return unit if unit in ACCELERATIONS else None
-
-
-def unit_factor(unit: str) -> float:
-    """The size of a canonical unit in m/s2."""
-    return ACCELERATIONS[unit]

@@ -20,7 +20,7 @@ from rpscli.constants import STANDARD_GRAVITY
 from rpscli.csv_text import csv_rows
 from rpscli.errors import RecordError, beginning, stem_of
 from rpscli.records.measures import Of
-from rpscli.records.quantities import KNOWN_UNITS, canonical_unit, unit_factor
+from rpscli.records.quantities import ACCELERATIONS, KNOWN_UNITS, canonical_unit
 from rpscli.records.source import hint, parse_query
 from rpscli.registry import Registry
 
@@ -322,7 +322,7 @@ def _table(path: Path, options: str, source: str) -> TargetSpectrum:
             f"{path}:1: {beginning(','.join(head))} should name two columns with units, as in"
             f" 'period [s],acceleration [g]'; accelerations are in {KNOWN_UNITS}"
         )
-    factor = unit_factor(unit)
+    factor = ACCELERATIONS[unit]
     scatters = len(head) > 2 and _DEVIATION.fullmatch(head[2]) is not None
     width = 3 if scatters else 2
     cells = np.array([_cells(row, width, f"{path}:{n}") for n, row in rows]).reshape(-1, width)

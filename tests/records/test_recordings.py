@@ -13,7 +13,7 @@ from rpscli.case.case import load_case
 from rpscli.commands.inputs import MotionRequest, single_motions
 from rpscli.errors import RecordError, UsageError
 from rpscli.records.ground_motion import Recording
-from rpscli.records.loading import expanded, load_components, load_record
+from rpscli.records.loading import expand_sources, expanded, load_components, load_record
 from rpscli.records.recordings import clusters, event_of, pairs
 from rpscli.records.source import Source
 
@@ -61,7 +61,7 @@ def test_titles_of_at2_files_tell_a_pair(tmp_path: Path) -> None:
     )
     assert clusters(["one.at2", "two.at2", "x.at2"], tmp_path) == (0, 0, 1)
     assert clusters(["one.at2", "two.at2"], tmp_path, "events") == (0, 0)
-    (pair,) = expanded([".?both"], folder=tmp_path).sources
+    (pair,) = expand_sources([".?both"], folder=tmp_path)
     assert pair == "one.at2?second=two.at2&both"
     up = load_components(pair, "own", folder=tmp_path).vertical
     assert up is not None
@@ -109,27 +109,27 @@ def stations(tmp_path: Path) -> Path:
 
 
 def test_a_folder_as_downloaded(stations: Path) -> None:
-    found = expanded(["."], folder=stations)
-    assert found.sources == [
+    found, notes = expanded(["."], folder=stations)
+    assert found == [
         "CHB002.EW", "CHB002.NS", "one.smc", "three.v2?channel=1", "three.v2?channel=3", "two.smc"
     ]  # fmt: skip
-    *refused, upright = found.notes
+    *refused, upright = notes
     assert upright.endswith("left out: CHB002.UD, three.smc, three.v2 channel 2")
     assert [text[:19] for text in refused] == [".: left out: raw.sm", ".: left out: raw.v1"]
     assert "'Uncorrected acceleration'; only corrected acceleration" in refused[1]
-    assert clusters(found.sources, stations) == (0, 0, 1, 2, 2, 1)
+    assert clusters(found, stations) == (0, 0, 1, 2, 2, 1)
     knet_pair, smc_pair = ("CHB002.EW", "CHB002.NS"), ("one.smc", "two.smc")
     channels = ("three.v2?channel=1", "three.v2?channel=3")
     measured = knet_pair, knet_pair, smc_pair, channels, channels, smc_pair
-    assert pairs(found.sources, folder=stations) == measured
-    both = expanded([".?both&factor=2"], folder=stations).sources
+    assert pairs(found, folder=stations) == measured
+    both = expand_sources([".?both&factor=2"], folder=stations)
     assert both == [
         "CHB002.EW?second=CHB002.NS&both&factor=2",
         "one.smc?second=two.smc&both&factor=2",
         "three.v2?channel=1,3&both&factor=2",
     ]
-    assert expanded(["three.v2"], folder=stations).sources == found.sources[3:5]
-    assert expanded(["*.v2?channel=1,3&both&factor=2"], folder=stations).sources == both[2:]
+    assert expand_sources(["three.v2"], folder=stations) == found[3:5]
+    assert expand_sources(["*.v2?channel=1,3&both&factor=2"], folder=stations) == both[2:]
     for source in both:
         assert load_components(source, "own", folder=stations).samples.shape == (3, 12)
     with pytest.raises(RecordError, match=r"no record file .* only corrected acceleration can be"):

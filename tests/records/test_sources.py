@@ -133,15 +133,14 @@ def test_verticals_are_no_horizontal_records(
 ) -> None:
     for name, component in zip((*names, up), ("0", "90", "UP"), strict=True):
         (tmp_path / name).write_text(AT2.format(component), encoding="utf-8")
-    found = expanded(["."], folder=tmp_path)
-    assert sorted(found.sources) == sorted(names)
-    assert found.notes == [f".: vertical components left out: {up}"]
-    pair = expanded([".?both"], folder=tmp_path)
-    assert pair.sources == [f"{names[0]}?second={names[1]}&both"]
+    found, notes = expanded(["."], folder=tmp_path)
+    assert sorted(found) == sorted(names)
+    assert notes == [f".: vertical components left out: {up}"]
+    assert expand_sources([".?both"], folder=tmp_path) == [f"{names[0]}?second={names[1]}&both"]
     assert expand_sources([up], folder=tmp_path) == [up]  # by its own name it is one
     (tmp_path / names[0]).unlink()
     (tmp_path / names[1]).unlink()
-    assert expanded(["."], folder=tmp_path).sources == [up]
+    assert expand_sources(["."], folder=tmp_path) == [up]
 
 
 def test_components_of_different_recordings_are_no_pair(tmp_path: Path) -> None:

@@ -271,9 +271,9 @@ def sources_of(
         try:
             single = isinstance(item, str) and item.strip()
             patterns = [item] if single else _product(item, (*place, index))
-            expansion = expanded(patterns, folder=folder)
-            sources += expansion.sources
-            notes += expansion.notes
+            found, told = expanded(patterns, folder=folder)
+            sources += found
+            notes += told
         except ValidationError:
             continue  # told key by key
         except (RecordError, ValueError) as error:

@@ -38,27 +38,28 @@ class Layout:
     """A format: how a channel begins, what its header says, and how the values are written.
 
     `begins` is the first line of a file, and of each channel in it, `corrected` that of a channel
-    that can be read, `refusal` the message for others. `header` is the number of its lines, or the
-    line that announces the values, its last one. It `says` the `count`, `step` [s], `rate` [1/s],
-    `duration` [s], `unit`, `peak`, `quantity` and `scale`, which may all be said again, alike, the
-    `place` of the station, and what a `Recording` has; for what is `needed` of these, and missing,
-    `lacks` is the message. `label` is the number and name of a channel in its header, empty for
-    formats with one channel; `unit` that of all files, and `width` that of a row, None where the
-    header says it. There may be several `series` of one length, without a line between, the first
-    one acceleration; a line `ends` them. `numbers` reads the blocks of numbers before or behind
-    the last line of the header, adds what they say, and tells where the values begin. Values are
-    `centred` if they have the offset of the sensor, which is removed, and that is said.
+    that can be read, `refusal` the message where others are possible. `header` is the number of its
+    lines, or the line that announces the values, its last one. It `says` the `count`, `step` [s],
+    `rate` [1/s], `duration` [s], `unit`, `peak`, `quantity` and `scale`, which may all be said
+    again, alike, the `place` of the station, and what a `Recording` has; for what is `needed` of
+    these, and missing, `lacks` is the message. `label` is the number and name of a channel in its
+    header, empty for formats with one channel; `unit` that of all files, and `width` that of a row,
+    None where the header says it. There may be several `series` of one length, without a line
+    between, the first one acceleration; a line `ends` them. `numbers` reads the blocks of numbers
+    before or behind the last line of the header, adds what they say, and tells where the values
+    begin. Values are `centred` if they have the offset of the sensor, which is removed, and that is
+    said.
     """
 
     name: str
     extensions: tuple[str, ...]
     begins: str
-    corrected: str
-    refusal: str
     header: int | str
     says: Mapping[str, Words]
     needed: tuple[str, ...]
     lacks: str = "the header lacks {}; fetch the file again"
+    corrected: str = ""
+    refusal: str = ""
     label: str = ""
     unit: str | None = None
     width: int | None = None
@@ -340,8 +341,6 @@ KNET = Layout(
     "K-NET ASCII",
     tuple(f".{way}{place}" for place in ("", "1", "2") for way in ("ns", "ew", "ud")),
     begins=r"Origin Time(?=[\s\S]*Scale Factor)",
-    corrected="",
-    refusal="",
     header=17,
     says=_keys(
         r"(?=\s)",
@@ -360,8 +359,6 @@ ESM = Layout(
     "ESM ASCII",
     (".asc",),
     begins=r"[A-Z][A-Z0-9_/^]*:(?=[\s\S]*\nSAMPLING_INTERVAL_S)",
-    corrected="",
-    refusal="",
     header=r"(?![A-Z][A-Z0-9_/^]*:)",
     says=_keys(
         ":",

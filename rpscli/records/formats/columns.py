@@ -47,10 +47,9 @@ _UNITS_KEY = (
     r"(?<![?&])\bunits?\b\s*(?:[=:]|(?:of|in|are|is)\b)"
     rf"(?:[\s(\[]*(?:({UNIT_PATTERN}))|\s*([^,;]+))"
 )
-_PEAK = re.compile(
+_PEAK = (
     rf"\b(?:peak|max\w*)\s*(?:ground\s*)?acc\w*\s*[\[(]\s*({UNIT_PATTERN})\s*[\])]"
-    rf"\s*[=:]\s*({NUMBER_PATTERN})(?=\s*$)",
-    re.IGNORECASE,
+    rf"\s*[=:]\s*({NUMBER_PATTERN})(?=\s*$)"
 )
 _CELL = re.compile(r"([^\[(]*?)[\s_]*(?:[\[(]([^\])]*)[\])]|\bin\s+(\S.*))?", re.IGNORECASE)
 _TIME = re.compile(r"time|t|seconds?|sec", re.IGNORECASE)
@@ -126,8 +125,23 @@ def read_columns(text: RecordText) -> GroundMotion:
     if even and width > 1 and (width == 2 or titles):
         return _columns(text, table, titles)
     text.single_channel()
-    note = [] if width == 1 and even else [_wrapped(text, table)]
-    return _sequence(text, table, titles[0] if width == 1 and titles else None, *note)
+    doubts = [] if width == 1 and even else [_wrapped(text, table)]
+    title = titles[0] if width == 1 and titles else None
+    stated, values = _stated(text, table, title), table.values
+    text.agreed_factor(stated.unit)
+    dt = text.agreed_dt(stated.step)
+    # A whole number before decimal ones is a count or a flag: 4000, or 1 and then the time step.
+    numerals = [word for line in table.lines[:2] for word in numerals_in(text.lines[line])]
+    flagged = values[0] != 0.0 and numerals[0].isdigit() and not numerals[1].isdigit()
+    if flagged or values[0] == values.size - 1 or values[1] == values.size - 2 > 0:
+        raise text.fault(
+            f"the first numbers, {numerals[0]} and {numerals[1]}, look like a header (a count or "
+            f"the time step), not like accelerations; remove them or begin their lines with #",
+            int(table.lines[0]),
+        )
+    if values[0] == dt:
+        doubts.append(f"the first value, {dt:g}, equals dt: see that it is not a header")
+    return text.motion(stated, values, "one-column text", table.words, *doubts)
 
 
 def _plain(line: str) -> str:
@@ -271,25 +285,6 @@ def _timed(
     return replace(stated, step=step, resolution=known_to / 0.51), late
 
 
-def _sequence(text: RecordText, table: _Table, title: _Title | None, *doubts: str) -> GroundMotion:
-    """All numbers, one after the other."""
-    stated, values = _stated(text, table, title), table.values
-    text.agreed_factor(stated.unit)
-    dt = text.agreed_dt(stated.step)
-    # A whole number before decimal ones is a count or a flag: 4000, or 1 and then the time step.
-    numerals = [word for line in table.lines[:2] for word in numerals_in(text.lines[line])]
-    flagged = values[0] != 0.0 and numerals[0].isdigit() and not numerals[1].isdigit()
-    if flagged or values[0] == values.size - 1 or values[1] == values.size - 2 > 0:
-        raise text.fault(
-            f"the first numbers, {numerals[0]} and {numerals[1]}, look like a header (a count or "
-            f"the time step), not like accelerations; remove them or begin their lines with #",
-            int(table.lines[0]),
-        )
-    if values[0] == dt:
-        doubts += (f"the first value, {dt:g}, equals dt: see that it is not a header",)
-    return text.motion(stated, values, "one-column text", table.words, *doubts)
-
-
 def _wrapped(text: RecordText, table: _Table) -> str:
     """A note on rows that were read one after the other; refuses rows that look otherwise."""
     width = int(table.widths[0])
@@ -319,14 +314,10 @@ def _stated(text: RecordText, table: _Table, title: _Title | None) -> Stated:
     """Statements of the header and of the title; two units, or steps, are refused."""
     lines = [(of.line, of.value) for of in table.header]
     units, steps = statements("units", _UNITS_KEY, lines), statements("dt", _STEP, lines)
+    peak = next(iter(statements("peak", _PEAK, lines)), None)
     if title and title.unit and (canonical_unit(title.unit) or not _NO_UNIT.fullmatch(title.unit)):
         units.append(Statement(f"the title {title.name}", title.unit, title.line))
-    stated = Stated(text.unit(units), text.agreed(steps, text.step))
-    for each in table.header:
-        if peak := _PEAK.search(each.value):
-            said = each._replace(name="peak", value=peak[2])
-            return replace(stated, peak=said, peak_unit=canonical_unit(peak[1]))
-    return stated
+    return Stated(text.unit(units), text.agreed(steps, text.step), peak=peak)
 
 
 def _refuse_other_quantities(text: RecordText, table: _Table, titles: list[_Title]) -> None:

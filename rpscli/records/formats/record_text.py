@@ -16,13 +16,13 @@ from numpy.typing import NDArray
 from rpscli.errors import RecordError, stem_of
 from rpscli.records.ground_motion import UNKNOWN, GroundMotion, Recording
 from rpscli.records.quantities import (
+    ACCELERATIONS,
     KNOWN_UNITS,
     NUMBER_PATTERN,
     canonical_unit,
     last_digit,
     numbers_in,
     to_float,
-    unit_factor,
     why_no_numbers,
 )
 from rpscli.records.source import Source
@@ -79,7 +79,7 @@ class Stated:
     """All that a file says of its values; None where it is silent.
 
     `unit` is a canonical one of acceleration, `step` [s] that of the samples, `resolution` [s] what
-    its printing leaves open, `peak` in `peak_unit` or in the unit of the values.
+    its printing leaves open, `peak` in a unit behind it or in that of the values.
     """
 
     unit: str | None = None
@@ -87,7 +87,6 @@ class Stated:
     resolution: float = 0.0
     duration: Statement | None = None
     peak: Statement | None = None
-    peak_unit: str | None = None
     recording: Recording = UNKNOWN
 
 
@@ -131,12 +130,12 @@ class RecordText:
                 f" (or another of {KNOWN_UNITS}) after the file name, or write a header line"
                 " 'units: g'"
             )
-        if self.units is not None and unit_factor(self.units) != unit_factor(unit):
+        if self.units is not None and ACCELERATIONS[self.units] != ACCELERATIONS[unit]:
             raise self.fault(
                 f"units = {self.units} contradicts the file, which says {unit}; leave the units "
                 f"out, or correct the file if its header is wrong"
             )
-        return unit, unit_factor(unit)
+        return unit, ACCELERATIONS[unit]
 
     def agreed_dt(self, stated: float | None, tolerance: float = 1e-9) -> float:
         """The sampling interval [s], from the file or from a user who does not contradict it."""
@@ -312,9 +311,11 @@ class RecordText:
                     said.line,
                 )
         if (said := stated.peak) is not None:
-            of_peak = unit_factor(stated.peak_unit or unit) / factor
-            peak, wanted = float(np.max(np.abs(values))), of_peak * abs(self.number(said))
-            if abs(peak - wanted) > 0.51 * of_peak * last_digit(said.value.strip()) + 1e-3 * wanted:
+            numeral, _, own = said.value.partition(" ")
+            of_peak = ACCELERATIONS[canonical_unit(own) or unit] / factor
+            wanted = of_peak * abs(self.number(said._replace(value=numeral)))
+            peak = float(np.max(np.abs(values)))
+            if abs(peak - wanted) > 0.51 * of_peak * last_digit(numeral) + 1e-3 * wanted:
                 doubts += (f"the values peak at {peak:.6g} and the header says {wanted:.6g}",)
         # A file that was written by rps says the unit of the one before it too.
         words = f"{re.sub('; values in [^;]*', '', words)}; values in {unit}"
@@ -326,11 +327,12 @@ class RecordText:
 
 def statements(name: str, pattern: str, lines: Iterable[tuple[int, str]]) -> list[Statement]:
     """Statements of one thing in numbered lines: a value, and a unit before or behind it."""
-    return [
-        Statement(name, " ".join(sorted(filter(None, each.groups()), key=str.isalpha)).strip(), i)
-        for i, line in lines
-        for each in re.finditer(pattern, line, re.IGNORECASE)
-    ]
+
+    def value(match: re.Match[str]) -> str:
+        return " ".join(sorted(filter(None, match.groups()), key=lambda word: word[0].isalpha()))
+
+    found = ((i, each) for i, line in lines for each in re.finditer(pattern, line, re.IGNORECASE))
+    return [Statement(name, value(each).strip(), i) for i, each in found]
 
 
 _STATES = re.compile(
