@@ -498,16 +498,14 @@ Run = tuple[list[int], Demands | str, dict[str, Array]]
 """Numbers of histories, what was found or why nothing was, and what their samples tell."""
 
 
-def _together(requests: list[Request], numbers: Sequence[int] = ()) -> Iterator[Run]:
+def _together(requests: list[Request]) -> Iterator[Run]:
     """Histories side by side."""
     every = _attempt(lambda: list(histories(requests)))
-    if not isinstance(every, str):
-        yield from (([*numbers] or members, ended, {}) for members, ended in every)
-    elif numbers:
-        yield [*numbers], every, {}
-    else:  # one of them cannot be had: which one shows when each is tried alone
-        for number, request in enumerate(requests):
-            yield from _together([request], [number])
+    if isinstance(every, str):  # one of them cannot be had: which one shows when each is alone
+        alone = (_attempt(lambda r: next(histories([r]))[1], request) for request in requests)
+        yield from (([number], ended, {}) for number, ended in enumerate(alone))
+    else:
+        yield from ((members, ended, {}) for members, ended in every)
 
 
 def _whole(requests: list[Request]) -> Iterator[Run]:
