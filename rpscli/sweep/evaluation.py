@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from rpscli.analyses import result_quantities as rq
 from rpscli.analyses.demand import Request, histories
-from rpscli.analyses.largest_demands import Demands, failure_text
+from rpscli.analyses.largest_demands import Demands, failure_text, outcomes_of
 from rpscli.analyses.modal import modal
 from rpscli.analyses.pushover import pushover
 from rpscli.analyses.result_quantities import LIMITED, ResultQuantity
@@ -481,7 +481,7 @@ def run_batch(context: StudyContext, points: Sequence[Point]) -> PointResults:
 
 def _keep(results: PointResults, at: Indices, ended: Demands, columns: dict[str, Array]) -> None:
     """Add histories at some rows; of those that failed, why."""
-    outcomes = ended.outcomes
+    outcomes = outcomes_of(ended.left)
     good = outcomes != FAILED
     results.outcomes[at] = outcomes
     for row, left, of in zip(
