@@ -107,7 +107,7 @@ def _compared(
         seen, told = (
             binned(table, points[kept], at[kept], of[kept] == 1.0) for of in (observed, computed)
         )
-        fell, clusters = (computed == 1.0, observed == 1.0), table.layout.clusters[points]
+        fell, clusters = (computed == 1.0, observed == 1.0), table.clusters[points]
         counts = agreement(*fell, clusters)
         found = Endings(counts, seen, told)
     return Compared(system.values, name, found, points, observed, computed, int((~known).sum()))
