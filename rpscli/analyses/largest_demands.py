@@ -19,7 +19,7 @@ from rpscli.analyses.result_quantities import (
     ResultQuantity,
     values_of,
 )
-from rpscli.analyses.trace import DeviceDemand, device_demands
+from rpscli.analyses.trace import DeviceDemand
 from rpscli.model.devices import own_laws
 from rpscli.model.podium import Array, Device, PodiumStructure
 from rpscli.model.statics import uplift_acceleration
@@ -52,11 +52,6 @@ class Demands:
     def of_one(cls, structure: PodiumStructure, history: Record) -> Demands:
         """A batch of one history."""
         return cls([structure], [0], np.array([history], dtype=_PLAIN))
-
-    @property
-    def outcomes(self) -> NDArray[np.str_]:
-        """Endings, in words."""
-        return outcomes_of(self.left)
 
     def column(self, name: str) -> Array:
         """The values of the attribute of `Demand` with this name."""
@@ -401,7 +396,19 @@ class Demand(Shown):
     @property
     def devices(self) -> tuple[DeviceDemand, ...]:
         """Demands of each device, in the order of the structure's."""
-        return device_demands(self.structure, self.history)
+        structure, history = self.structure, self.history
+        rotation = np.array([history["max_theta"]])
+        return tuple(
+            DeviceDemand(
+                device.kind,
+                float(history["device_force"][i]),
+                float(device.stroke(structure, rotation)[0]),
+                float(history["device_velocity"][i]),
+                float(history["device_energy"][i]),
+                device.remaining_prestress(float(history["permanent"][i])),
+            )
+            for i, device in enumerate(structure.devices)
+        )
 
     @property
     def quantities(self) -> tuple[ResultQuantity, ...]:

@@ -88,22 +88,6 @@ class DeviceDemand:
     remaining_prestress: float | None  # Of a tendon at the end, upright [N]; None of others
 
 
-def device_demands(structure: PodiumStructure, history: Record) -> tuple[DeviceDemand, ...]:
-    """Demands of each device from a `state.RESULT`, in the order of the structure's."""
-    rotation = np.array([history["max_theta"]])
-    return tuple(
-        DeviceDemand(
-            device.kind,
-            float(history["device_force"][i]),
-            float(device.stroke(structure, rotation)[0]),
-            float(history["device_velocity"][i]),
-            float(history["device_energy"][i]),
-            device.remaining_prestress(float(history["permanent"][i])),
-        )
-        for i, device in enumerate(structure.devices)
-    )
-
-
 class _Sampled:
     """Base of dataclasses with a value at each sample in every field, or None."""
 

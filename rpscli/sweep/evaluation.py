@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from rpscli.analyses import result_quantities as rq
 from rpscli.analyses.demand import Request, histories
-from rpscli.analyses.largest_demands import Demands, failure_text
+from rpscli.analyses.largest_demands import Demands, failure_text, outcomes_of
 from rpscli.analyses.modal import modal
 from rpscli.analyses.pushover import pushover
 from rpscli.analyses.result_quantities import LIMITED, ResultQuantity
@@ -481,7 +481,7 @@ def run_batch(context: StudyContext, points: Sequence[Point]) -> PointResults:
 
 def _keep(results: PointResults, at: Indices, ended: Demands, columns: dict[str, Array]) -> None:
     """Add histories at some rows; of those that failed, why."""
-    outcomes = ended.outcomes
+    outcomes = outcomes_of(ended.left)
     good = outcomes != FAILED
     results.outcomes[at] = outcomes
     for row, left, of in zip(
@@ -498,16 +498,14 @@ Run = tuple[list[int], Demands | str, dict[str, Array]]
 """Numbers of histories, what was found or why nothing was, and what their samples tell."""
 
 
-def _together(requests: list[Request], numbers: Sequence[int] = ()) -> Iterator[Run]:
+def _together(requests: list[Request]) -> Iterator[Run]:
     """Histories side by side."""
     every = _attempt(lambda: list(histories(requests)))
-    if not isinstance(every, str):
-        yield from (([*numbers] or members, ended, {}) for members, ended in every)
-    elif numbers:
-        yield [*numbers], every, {}
-    else:  # one of them cannot be had: which one shows when each is tried alone
-        for number, request in enumerate(requests):
-            yield from _together([request], [number])
+    if isinstance(every, str):  # one of them cannot be had: which one shows when each is alone
+        alone = (_attempt(lambda r: next(histories([r]))[1], request) for request in requests)
+        yield from (([number], ended, {}) for number, ended in enumerate(alone))
+    else:
+        yield from ((members, ended, {}) for members, ended in every)
 
 
 def _whole(requests: list[Request]) -> Iterator[Run]:

@@ -3,10 +3,15 @@
 from __future__ import annotations
 
 import math
+import re
+import tracemalloc
+from collections.abc import Iterator
 from dataclasses import replace
+from itertools import islice
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 from paper_structures import (
     COMPILED,
     FLAT,
@@ -20,15 +25,18 @@ from paper_structures import (
 
 from rpscli.analyses.demand import demand
 from rpscli.analyses.fixed_base import fixed_base_response, reference_shears
-from rpscli.analyses.kernels.history import FIRST_LOG
+from rpscli.analyses.kernels.history import FIRST_LOG, MOST_NUMBERS, numbers_of_a_sample
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
-from rpscli.errors import RecordError
+from rpscli.errors import CaseError, RecordError
+from rpscli.model.devices import ViscousDamper
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import ModalDamping, RayleighDamping, Superstructure
 from rpscli.records.ground_motion import MotionComponents
+from rpscli.report.bundles import timehistory_files
+from rpscli.report.figures.look import Look
 
 SECONDS = 5.0 if COMPILED else 1.5
 SETTINGS = TimeHistorySettings(free_vibration=1.0)
@@ -333,3 +341,48 @@ def test_a_frame_has_no_yardstick() -> None:
 def test_settings_that_no_history_ends_with_are_refused(name: str, value: object) -> None:
     with pytest.raises(ValueError, match=rf"{name} = .* must be"):
         TimeHistorySettings(**{name: value})  # type: ignore[arg-type]
+
+
+AT_ONCE = TimeHistorySettings(free_vibration=0.0)
+DAMPED = replace(podium(3), devices=(ViscousDamper(1e5),))
+FINE = 1e-5
+
+
+def swaying(samples: int) -> NDArray[np.float64]:
+    acceleration: NDArray[np.float64] = 3.0 * np.sin(np.arange(samples) * FINE * 12.0)
+    return acceleration
+
+
+@needs_compiled_kernels
+@pytest.mark.parametrize("structure", [podium(6), DAMPED], ids=["six storeys", "damper"])
+def test_memory_is_what_the_ceiling_counts(structure: PodiumStructure) -> None:
+    samples = 100_000
+    record = ground(swaying(samples), FINE)
+    time_history(structure, ground(swaying(100), FINE), AT_ONCE)  # loads the kernels
+    tracemalloc.start()
+    try:
+        result = time_history(structure, record, AT_ONCE)
+        files = dict(timehistory_files(result, "", Look(formats=())))
+        written = files["timehistory.csv"]
+        assert isinstance(written, Iterator)
+        pieces = [str(piece) for piece in islice(written, 11)]
+        assert "".join(pieces).count("\n") > 5000
+        held, peak = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    counted = 8.0 * samples * numbers_of_a_sample(structure)
+    lines = 1e7  # numbers and text of some thousand
+    assert 0.9 * counted < held < 1.02 * counted + lines
+    # Above it stands what is in the making: the floors on a fixed base, or a block of everything.
+    assert peak < 1.3 * counted + lines
+
+
+def test_histories_over_the_ceiling_are_refused() -> None:
+    many = podium(40)
+    record = ground(np.zeros(2), 1e-5)
+    rows = 12_000_003
+    assert rows * numbers_of_a_sample(many) > MOST_NUMBERS
+    with pytest.raises(CaseError, match=re.escape(f"{rows} samples of 40 storeys")) as refusal:
+        time_history(many, record)
+    assert "GB" in str(refusal.value)
+    assert "give a shorter analysis.free_vibration" in str(refusal.value)

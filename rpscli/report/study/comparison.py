@@ -117,7 +117,7 @@ def _compared(
         saw, fell = both = observed == 1.0, computed == 1.0
         cells = (saw & fell, fell & ~saw, saw & ~fell, ~saw & ~fell)
         counts = (int(cell.sum()) for cell in cells)
-        agreed = clustered(saw == fell, table.layout.clusters[points])
+        agreed = clustered(saw == fell, table.clusters[points])
         bins = (binned(table, points[kept], at[kept], of[kept]) for of in both)
         found = Endings._make((*counts, agreed, *bins))
     return Compared(system.values, name, found, points, observed, computed, int((~known).sum()))

@@ -31,7 +31,7 @@ from rpscli.sweep.statistics.fractiles import CONFIDENCE, Share, share_of
 from rpscli.sweep.statistics.grouping import INTENSITY, Grouping, Histories, grouping
 from rpscli.sweep.statistics.lognormal import Bootstrap, Lognormal, band, lognormal_fit
 from rpscli.sweep.statistics.verdicts import exceeds
-from rpscli.sweep.table import Array, Indices, Intensity, StudyResults, Table
+from rpscli.sweep.table import Array, Indices, Intensity, Outcomes, StudyResults, Table
 
 Item = TypeVar("Item")
 
@@ -256,7 +256,7 @@ def fragilities(study: StudyResults, options: FragilityOptions) -> Fragilities:
     limits = tuple(options.limits.states)
     systems = grouping(study.table, options.series, (INTENSITY,))
     curves = tuple(
-        _fragility(measured, options, (place, group), limit)
+        _fragility(study.table, measured, options, (place, group), limit)
         for limit in limits
         for place, group in enumerate(systems.groups)
     )
@@ -264,10 +264,14 @@ def fragilities(study: StudyResults, options: FragilityOptions) -> Fragilities:
 
 
 def _fragility(
-    measured: Intensity, options: FragilityOptions, placed: tuple[int, Histories], limit: LimitState
+    table: Table,
+    measured: Intensity,
+    options: FragilityOptions,
+    placed: tuple[int, Histories],
+    limit: LimitState,
 ) -> Fragility:
     place, group = placed
-    table, layout, points = group.table, group.table.layout, group.points
+    layout, points = table.layout, group.points
     kept = points[measured.values[points] > 0.0]
     intensity = measured.values[kept]
     beyond = exceeds(table, limit.result, limit.threshold or 0.0)[kept]
@@ -289,7 +293,7 @@ def _fragility(
     return Fragility(group.values, limit, fit, grid, seen, *counts, failed, place, total, largest)
 
 
-def binned(table: Table, kept: Indices, intensity: Array, beyond: NDArray[np.bool_]) -> Binned:
+def binned(table: Outcomes, kept: Indices, intensity: Array, beyond: NDArray[np.bool_]) -> Binned:
     """Shares at each intensity, or in bins of equal numbers of points if there are too many."""
     levels, place = np.unique(intensity, return_inverse=True)
     if len(levels) > 2 * MOST_BINS:

@@ -15,9 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.records.measures import measure_label
+from rpscli.shown import frozen
 from rpscli.sweep.points import StudyPoints
 from rpscli.sweep.statistics.fractiles import Share, demand, fractiles, share_of
-from rpscli.sweep.table import Array, Indices, Table, groups, leading_keys
+from rpscli.sweep.table import Array, Indices, Outcomes, Table, groups, leading_keys
 
 INTENSITY = "scale"
 """Name of the axis of factors and intensities in groups of a table."""
@@ -27,7 +28,7 @@ INTENSITY = "scale"
 class Histories:
     """The points of one group; those that failed are counted, and enter nothing else."""
 
-    table: Table
+    table: Outcomes
     values: tuple[object, ...]
     every: Indices
 
@@ -37,7 +38,7 @@ class Histories:
     @cached_property
     def points(self) -> Indices:
         """(m,) those that did not fail."""
-        return self.every[~self.table.failed[self.every]]
+        return frozen(self.every[~self.table.failed[self.every]])
 
     @property
     def failed(self) -> int:
@@ -49,7 +50,7 @@ class Histories:
         """(m,) which overturned."""
         return self.table.overturned[self.points]
 
-    @property
+    @cached_property
     def overturned(self) -> Share:
         """The share that overturned."""
         return share_of(self.table, self.points, self.fallen)
@@ -74,6 +75,7 @@ class Histories:
 
     def parts(self, keys: Sequence[str]) -> list[Histories]:
         """Its points grouped by further keys."""
+        assert isinstance(self.table, Table), "keys are those of a study"
         found = groups(self.table.layout, keys, self.every)
         return [Histories(self.table, group.values, group.points) for group in found]
 

@@ -15,22 +15,17 @@ from rpscli.physics.state import LANES
 from rpscli.records.ground_motion import LEAST, MOST
 from rpscli.records.measures import measure_label
 from rpscli.records.recordings import clusters
-from rpscli.shown import frozen
-from rpscli.sweep.statistics.fractiles import Share, Spread, demand, share_of, spread
-from rpscli.sweep.statistics.grouping import grouping
-from rpscli.sweep.table import Array, FixedBaseReferences, Indices, Outcomes, Table
+from rpscli.sweep.statistics.fractiles import Spread, demand, spread
+from rpscli.sweep.statistics.grouping import Histories, grouping
+from rpscli.sweep.table import Array, FixedBaseReferences, Outcomes, Table
 
 REDUCTION = next(quantity for quantity in LIMITED if quantity.name == "fixed_base_ratio")
 
 
 @dataclass(frozen=True, eq=False)
-class SummaryRow:
-    """Histories of one system at one intensity; `points` are those that did not fail."""
+class SummaryRow(Histories):
+    """Histories of one system at one intensity, and their demands."""
 
-    values: tuple[object, ...]
-    points: Indices
-    failed: int
-    overturned: Share
     spreads: tuple[Spread, ...]
 
 
@@ -71,7 +66,7 @@ def summary(table: Table, fixed: FixedBaseReferences) -> Summary:
         )
         known_of = np.isfinite(values).reshape(len(lacks), -1).any(axis=1)
         values[np.repeat(lacks & ~known_of, table.layout.points_of_system)] = np.nan
-    rows = (_row(table, known, each.points, each.failed, each.values) for each in found.groups)
+    rows = (_row(known, each) for each in found.groups)
     notes = [*found.notes]
     if any("ductility" not in system.lacking for system in table.layout.properties):
         notes.append("on the fixed base buildings stay elastic, also those whose storeys yield")
@@ -80,8 +75,8 @@ def summary(table: Table, fixed: FixedBaseReferences) -> Summary:
 
 def summary_of_records(records: Records) -> Summary:
     """One row."""
-    known, failed = _demands(records, {}), records.failed
-    row = _row(records, known, np.nonzero(~failed)[0], int(failed.sum()), ())
+    known = _demands(records, {})
+    row = _row(known, Histories(records, (), np.arange(len(records))))
     return Summary((), (), (), tuple(known), (row,))
 
 
@@ -95,19 +90,10 @@ def _demands(table: Outcomes, others: dict[ResultQuantity, Array]) -> dict[Resul
     }
 
 
-def _row(
-    table: Outcomes,
-    demands: dict[ResultQuantity, Array],
-    points: Indices,
-    failed: int,
-    values: tuple[object, ...],
-) -> SummaryRow:
-    overturned = share_of(table, points, table.overturned[points])
-    spreads = (
-        spread(column[points], from_below=quantity.from_below)
-        for quantity, column in demands.items()
-    )
-    return SummaryRow(values, frozen(points), failed, overturned, tuple(spreads))
+def _row(demands: dict[ResultQuantity, Array], of: Histories) -> SummaryRow:
+    known = ((column[of.points], quantity.from_below) for quantity, column in demands.items())
+    spreads = tuple(spread(values, from_below=below) for values, below in known)
+    return SummaryRow(of.table, of.values, of.every, spreads)
 
 
 def shear_over_fixed_base(table: Table, fixed: FixedBaseReferences) -> Array:
