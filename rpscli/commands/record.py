@@ -297,7 +297,7 @@ def select(
     every = [load_components(single[number]).horizontal for number in numbers]
     motions, left_out = search.kept(every, [search.parse_filter(text) for text in where])
     if not motions:
-        counts = ", ".join(f"{text} {sum(out.values())}" for text, out in left_out.items())
+        counts = ", ".join(f"{text} {sum(gone.values())}" for text, gone in left_out.items())
         raise UsageError(f"--where: leaves no motion of {len(every)}; out go by {counts}")
     looking = partial(watched, "candidates", out.terminal, many=100)
     selection = search.select(motions, spectrum, request, looking)

@@ -40,6 +40,8 @@ LONGEST_WORD, LONGEST_HEAD, MOST_LINES = 30, 14, 9
 """Letters of a word that is not broken, in cells and in heads; lines of heads."""
 ALL_FOLD = 0
 """Lines of heads where numbers are broken as well, since one column beside the keys is too wide."""
+LAST = -MOST_LINES
+"""The last way: columns that are as narrow as their words leave it to others to give room."""
 GAP = 3
 """Between two columns."""
 
@@ -109,7 +111,7 @@ def _widths(table: Table, columns: Sequence[int], room: int, *, fold: bool) -> l
     cells = [[visible(row[i]) for row in rows] for i in columns]
     wide = [max(map(len, [head, *own])) for head, own in zip(heads, cells, strict=True)]
     in_head = [min(max(map(len, head.split()), default=1), LONGEST_HEAD) for head in heads]
-    for lines in (1, 2, 3, MOST_LINES, *[ALL_FOLD] * fold):
+    for lines in (1, 2, 3, MOST_LINES, *[ALL_FOLD] * fold, LAST):
         widths, least = [], []
         for index, head, own, most, word in zip(columns, heads, cells, wide, in_head, strict=True):
             if index < table.words:
@@ -118,15 +120,17 @@ def _widths(table: Table, columns: Sequence[int], room: int, *, fold: bool) -> l
                 widths.append(most)
                 continue
             number = max([word, *map(len, own)])
-            broken = (w for w in range(number, most + 1) if len(wrap(head, w)) <= lines)
+            broken = (w for w in range(number, most + 1) if len(wrap(head, w)) <= abs(lines))
             widths.append(next(broken, most))
-            least.append(1 if lines == ALL_FOLD else widths[-1])
-        missing = sum(widths) + GAP * (len(widths) - 1) - room
-        for _ in range(missing):
-            free = [i for i, width in enumerate(widths) if width > least[i]]
-            if not free:
+            least.append({1: number, ALL_FOLD: 1}.get(lines, widths[-1]))
+        give = [i for i, n in enumerate(columns) if n < table.words or lines in {1, ALL_FOLD}]
+        for _ in range(sum(widths) + GAP * (len(widths) - 1) - room):
+            if lines == LAST:
+                give = [i for i in give if widths[i] > least[i]]
+            widest = max(give, key=widths.__getitem__, default=0)
+            if widths[widest] <= least[widest]:
                 break
-            widths[max(free, key=widths.__getitem__)] -= 1
+            widths[widest] -= 1
         else:
             return widths
     return []
