@@ -122,7 +122,9 @@ def scatter(study: StudyResults, options: ScatterOptions) -> Found:
     ]
     keys = (*found.keys, *shown_keys(table.layout, series))
     heads = f"point, outcome, {both[0].head}, {both[1].head}"
-    return Found({"": keyed(keys, heads, rows)}, _figure(found, clouds, both, series), found.notes)
+    return Found(
+        {"": keyed(keys, heads, rows)}, _figure(table, found, clouds, both, series), found.notes
+    )
 
 
 def demand(study: StudyResults, options: DemandOptions) -> Found:
@@ -154,7 +156,7 @@ def demand(study: StudyResults, options: DemandOptions) -> Found:
     notes, without = list(found.notes), [cloud.note for cloud in clouds if cloud.note]
     if without:
         notes.append(f"{len(without)} of {len(clouds)} panels have no curve: {without[0]}")
-    figure = _figure(found, clouds, both, series, curves=True)
+    figure = _figure(table, found, clouds, both, series, curves=True)
     return Found({"": keyed(found.keys, heads, rows)}, figure, notes)
 
 
@@ -169,6 +171,7 @@ def _clouds(found: Grouping, both: Sequence[Ordinate], kept: NDArray[np.bool_]) 
 
 
 def _figure(
+    table: Table,
     found: Grouping,
     clouds: Sequence[Cloud],
     both: Sequence[Ordinate],
@@ -177,7 +180,7 @@ def _figure(
     curves: bool = False,
 ) -> Callable[[str], bytes]:
     x, y = both
-    series_keys = shown_keys(found.groups[0].table.layout, series)
+    series_keys = shown_keys(table.layout, series)
     every = np.concatenate([cloud.shown.points for cloud in clouds])
     most = max(len(cloud.shown.parts(series)) for cloud in clouds)
     highest, top = (float(of.values[every].max(initial=0.0)) for of in both)
