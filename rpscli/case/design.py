@@ -42,7 +42,6 @@ from rpscli.case.text.document import Document, Fault, format_of
 from rpscli.case.text.yaml_text import read_yaml
 from rpscli.errors import LARGEST, CaseError, hint, listed
 from rpscli.records.recordings import clusters
-from rpscli.registry import Registry
 from rpscli.units import in_si
 
 GONE = {
@@ -279,7 +278,6 @@ def parse_design(
     study = study_of(
         replace(document, content=shared),
         of_base,
-        kinds=Registry("none", {}, None),
         folder=folder,
         digest=hashlib.sha256(text.encode()).hexdigest(),
     )

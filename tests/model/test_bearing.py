@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -16,32 +15,21 @@ from rpscli.model.bearing import Bearing
 from rpscli.model.podium import PodiumStructure
 from rpscli.physics import geometry
 
-
-class Geometry(NamedTuple):
-    """Printed digits of beta, theta_cr [rad], and of u_b and the lift v_b at theta_cr [m]."""
-
-    tan_alpha: float
-    rho: float
-    beta: str
-    critical_rotation: str
-    displacement: str
-    lift: str
-
-
-GEOMETRIES = (
-    Geometry(0.10, 0.25, "0.2014", "0.1974", "0.593", "0.030"),
-    Geometry(0.10, 0.5, "0.1002", "0.1984", "0.5975", "0.044"),
-    Geometry(0.10, 1.5, "0.0333", "0.1977", "0.5971", "0.054"),
-    Geometry(0.15, 0.25, "0.3047", "0.2915", "0.877", "0.065"),
-    Geometry(0.15, 0.5, "0.1506", "0.2946", "0.8917", "0.099"),
-    Geometry(0.15, 1.5, "0.0500", "0.2925", "0.8902", "0.120"),
-    Geometry(0.20, 0.25, "0.4115", "0.3805", "1.148", "0.113"),
-    Geometry(0.20, 0.5, "0.2014", "0.3876", "1.1807", "0.172"),
-    Geometry(0.20, 1.5, "0.0667", "0.3828", "1.1771", "0.208"),
-    Geometry(0.10, FLAT, "0.0000", "0.0997", "0.2985", "0.015"),
-    Geometry(0.15, FLAT, "0.0000", "0.1489", "0.4450", "0.033"),
-    Geometry(0.20, FLAT, "0.0000", "0.1974", "0.5883", "0.058"),
-)
+GEOMETRIES = [
+    # tan(alpha), rho; printed digits of beta, theta_cr, and of u_b and the lift v_b there
+    (0.10, 0.25, "0.2014", "0.1974", "0.593", "0.030"),
+    (0.10, 0.5, "0.1002", "0.1984", "0.5975", "0.044"),
+    (0.10, 1.5, "0.0333", "0.1977", "0.5971", "0.054"),
+    (0.15, 0.25, "0.3047", "0.2915", "0.877", "0.065"),
+    (0.15, 0.5, "0.1506", "0.2946", "0.8917", "0.099"),
+    (0.15, 1.5, "0.0500", "0.2925", "0.8902", "0.120"),
+    (0.20, 0.25, "0.4115", "0.3805", "1.148", "0.113"),
+    (0.20, 0.5, "0.2014", "0.3876", "1.1807", "0.172"),
+    (0.20, 1.5, "0.0667", "0.3828", "1.1771", "0.208"),
+    (0.10, FLAT, "0.0000", "0.0997", "0.2985", "0.015"),
+    (0.15, FLAT, "0.0000", "0.1489", "0.4450", "0.033"),
+    (0.20, FLAT, "0.0000", "0.1974", "0.5883", "0.058"),
+]
 
 
 def printed(digits: str, units: float = 0.5) -> object:
@@ -50,15 +38,17 @@ def printed(digits: str, units: float = 0.5) -> object:
 
 
 @pytest.mark.evidence("geometry of columns", "published")
-@pytest.mark.parametrize("row", GEOMETRIES)
-def test_table_of_geometry(row: Geometry) -> None:
-    bearing = Bearing(1.5, row.tan_alpha, 2.0 * row.tan_alpha, row.rho)
+@pytest.mark.parametrize(("tan", "rho", "beta", "critical", "displacement", "lift"), GEOMETRIES)
+def test_table_of_geometry(
+    tan: float, rho: float, beta: str, critical: str, displacement: str, lift: str
+) -> None:
+    bearing = Bearing(1.5, tan, 2.0 * tan, rho)
     _, u, v = PodiumStructure(bearing, 2e4, 2e5).path(np.array([bearing.critical_rotation]))
-    assert bearing.beta == printed(row.beta)
-    assert bearing.critical_rotation == printed(row.critical_rotation)
-    assert u[0] == printed(row.displacement)
+    assert bearing.beta == printed(beta)
+    assert bearing.critical_rotation == printed(critical)
+    assert u[0] == printed(displacement)
     # .098495 is printed as .099, rounded twice
-    assert v[0] == printed(row.lift, 0.51)
+    assert v[0] == printed(lift, 0.51)
 
 
 slopes = st.floats(0.01, 0.5)

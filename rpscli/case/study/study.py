@@ -145,12 +145,12 @@ def study_of(
     document: Document,
     base_overrides: Sequence[str],
     *,
-    kinds: Registry[Any],
+    kinds: Registry[Any] | None = None,
     folder: Folder,
     digest: str,
 ) -> Study:
-    """A study from its document, as `parse_study` says."""
-    whole, asked = written_out(document, kinds)
+    """A study from its document, as `parse_study` says; one of a design asks for no reports."""
+    whole, asked = (document, {}) if kinds is None else written_out(document, kinds)
     file = checked(format_with(asked), whole)
     reports = requests_of(whole, file)
     sources, faults, notes = sources_of(document, folder)
