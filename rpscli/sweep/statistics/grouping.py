@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.records.measures import measure_label
-from rpscli.shown import frozen
+from rpscli.shown import Frozen, frozen
 from rpscli.sweep.points import StudyPoints
 from rpscli.sweep.statistics.fractiles import Share, demand, fractiles, share_of
 from rpscli.sweep.table import Array, Indices, Outcomes, Table, groups, leading_keys
@@ -25,7 +25,7 @@ INTENSITY = "scale"
 
 
 @dataclass(frozen=True, eq=False)
-class Histories:
+class Histories(Frozen):
     """The points of one group; those that failed are counted, and enter nothing else."""
 
     table: Outcomes
@@ -48,7 +48,7 @@ class Histories:
     @property
     def fallen(self) -> NDArray[np.bool_]:
         """(m,) which overturned."""
-        return self.table.overturned[self.points]
+        return frozen(self.table.overturned[self.points])
 
     @cached_property
     def overturned(self) -> Share:
@@ -58,7 +58,7 @@ class Histories:
     @property
     def survivors(self) -> Indices:
         """Points that did not overturn."""
-        return self.points[~self.fallen]
+        return frozen(self.points[~self.fallen])
 
     def demands(self, values: Array) -> Array:
         """(m,) of a result of all points of the study, infinite where overturned."""
