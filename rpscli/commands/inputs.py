@@ -63,10 +63,11 @@ def case_folder(
 ) -> OutputFolder:
     """The folder of a command's results, claimed before the work begins."""
     case = given.case
-    resolved = {"case": case.document, "overrides": list(given.request.overrides), **inputs}
+    resolved = {"case": case.document, "overrides": list(given.request.overrides)}
     if motion is not None:
         record_source = motion_source(case, motion.request)
         resolved["record"] = motion_inputs(motion.ground)
+    resolved |= inputs
     run = Run(command, case.name, given.file, case.digest, resolved, record_source)
     place = out.place or RESULTS / case.name / command
     return OutputFolder(place, run, force=out.force)

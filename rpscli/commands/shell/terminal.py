@@ -109,7 +109,7 @@ def _widths(table: Table, columns: Sequence[int], room: int, *, fold: bool) -> l
     """
     heads, rows = [visible(table.heads[i]) for i in columns], table.rows
     cells = [[visible(row[i]) for row in rows] for i in columns]
-    wide = [max(map(len, [head, *own])) for head, own in zip(heads, cells, strict=True)]
+    wide = [max(1, *map(len, [head, *own])) for head, own in zip(heads, cells, strict=True)]
     in_head = [min(max(map(len, head.split()), default=1), LONGEST_HEAD) for head in heads]
     for lines in (1, 2, 3, MOST_LINES, *[ALL_FOLD] * fold, LAST):
         widths, least = [], []
