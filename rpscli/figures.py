@@ -34,8 +34,7 @@ from typing import Any, TypeVar, cast
 
 from rpscli.errors import UsageError, hint
 from rpscli.report.figures import bearing as _bearing
-from rpscli.report.figures import devices, floors, history, motions, pushover
-from rpscli.report.figures import orbit as _orbit
+from rpscli.report.figures import floors, history, motions
 from rpscli.report.figures import structure as _structure
 from rpscli.report.figures import style as _style
 from rpscli.report.figures.look import FIGURES
@@ -69,8 +68,8 @@ def _examined(draw: Panel) -> Panel:
 azimuth = _examined(history.draw_azimuth)
 bearing = _examined(_bearing.draw_bearing)
 bearing_end = _examined(_bearing.draw_end)
-capacity = _examined(pushover.draw_capacity)
-device = _examined(devices.draw_device)
+capacity = _examined(_structure.draw_capacity)
+device = _examined(_bearing.draw_device)
 displacements = _examined(history.draw_displacements)
 elastic_displacements = _examined(history.draw_drifts)
 energy = _examined(history.draw_energy)
@@ -78,15 +77,15 @@ events = _examined(history.draw_events)
 floor_accelerations = _examined(floors.draw_accelerations)
 floor_spectrum = _examined(floors.draw_floor_spectrum)
 ground_acceleration = _examined(history.draw_ground)
-lift = _examined(pushover.draw_lift)
+lift = _examined(_structure.draw_lift)
 mode = _examined(_structure.draw_mode)
 moment_rotation = _examined(history.draw_moment)
 motion = _examined(motions.draw_motion)
-orbit = _examined(_orbit.draw_orbit)
+orbit = _examined(history.draw_orbit)
 rotation = _examined(history.draw_rotation)
 spectra = _examined(motions.draw_spectra)
 spectrum = _examined(motions.draw_spectrum)
-storey_curve = _examined(pushover.draw_force)
+storey_curve = _examined(_structure.draw_force)
 storey_drifts = _examined(floors.draw_storey_drifts)
 storey_loop = _examined(floors.draw_loop)
 storey_shears = _examined(floors.draw_shears)

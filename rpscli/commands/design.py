@@ -20,7 +20,7 @@ from rpscli.report.design import (
     figures,
     nothing_passes,
 )
-from rpscli.report.figures.look import figure_files
+from rpscli.report.figures.style import figure_files
 from rpscli.report.files import OutputFolder, heading
 from rpscli.report.limits import VERDICT, verdict_texts
 from rpscli.report.study.statistics import (

@@ -20,8 +20,7 @@ from rpscli.commands.shell.terminal import Terminal
 from rpscli.errors import VerificationMismatch
 from rpscli.machine import available_cores
 from rpscli.registry import Registry
-from rpscli.report.figures.film import ENCODER
-from rpscli.report.figures.look import font_file
+from rpscli.report.figures.look import ENCODER, font_file
 from rpscli.report.files import heading, installed
 from rpscli.report.table import Table
 from rpscli.user_cache import VARIABLE, cache_places, user_cache

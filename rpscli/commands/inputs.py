@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -13,8 +12,7 @@ import click
 from rpscli.commands.shell import options
 from rpscli.commands.shell.terminal import Terminal, counted, passing_time
 from rpscli.errors import CaseError, RpsError, UsageError, all_made
-from rpscli.report.figures.film import FilmRequest
-from rpscli.report.figures.look import drawn_with
+from rpscli.report.figures.look import FilmRequest
 from rpscli.report.files import Drawing, OutputFolder, Run, heading
 from rpscli.report.table import Part
 from rpscli.units import as_written
@@ -97,8 +95,7 @@ def add_film(
         with counted("drawing the animation", out.terminal) as tell:
             return draw(tell)
 
-    make = partial(drawn_with, out.look, film.ending, drawn)
-    folder.add_at(film.file, Drawing(film.file.name, make))
+    folder.add_at(film.file, Drawing(film.file.name, drawn))
 
 
 def conclude(

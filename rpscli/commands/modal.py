@@ -11,7 +11,7 @@ import click
 from rpscli.commands.inputs import add_film, case_folder, conclude, read_case
 from rpscli.commands.shell import options
 from rpscli.errors import listed
-from rpscli.report.figures.film import FilmRequest
+from rpscli.report.figures.look import FilmRequest
 from rpscli.report.table import Heading, Part, Table, measured, shown
 
 if TYPE_CHECKING:
@@ -44,7 +44,7 @@ def command(
     if film is not None:
         from rpscli.report.figures.animation import modes_film
 
-        draw = partial(modes_film, result, given.case.title, film)
+        draw = partial(modes_film, result, given.case.title, film, out.look)
         add_film(folder, film, draw, out)
     tables = _tables(result, given.case.title, () if paper else (FIRST_ORDER,))
     conclude(given, folder, result.results(), tables, out.terminal)

@@ -78,7 +78,7 @@ def command(
         raise UsageError(f"-o {place}: the page is HTML; name a file that ends with .html")
     from rpscli.commands import report_page as pages
     from rpscli.commands.study import read
-    from rpscli.report.html.page import FORMATS
+    from rpscli.report.page import FORMATS
 
     style = {} if style_file is None else drawable_style(style_file)
     request = options.CaseRequest(subject, overrides)
@@ -130,7 +130,7 @@ def _require_free(file: Path, name: str, *, force: bool) -> None:
     require_writable(file.parent)
     if force or not file.exists():
         return
-    from rpscli.report.html.page import is_about
+    from rpscli.report.page import is_about
 
     try:
         own = is_about(file.read_bytes(), name)
@@ -146,7 +146,7 @@ def _require_free(file: Path, name: str, *, force: bool) -> None:
 def _write(
     file: Path, name: str, done: PageDone, signed: Mapping[str, str | None], terminal: Terminal
 ) -> None:
-    from rpscli.report.html.page import MOST_BYTES, Picture, page
+    from rpscli.report.page import MOST_BYTES, Picture, page
 
     made = datetime.now().astimezone().strftime("%d %B %Y, %H:%M %Z")
     subtitle = f"{done.subtitle}. Made by rps {VERSION} on {made}."

@@ -27,6 +27,7 @@ from rpscli.commands.study import swept
 from rpscli.errors import RecordError, RpsError, UsageError
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.source import Source
+from rpscli.report import case_page as parts
 from rpscli.report.figures.history import record_name
 from rpscli.report.files import (
     RUN_FILE,
@@ -37,9 +38,8 @@ from rpscli.report.files import (
     read_json,
     results_of,
 )
-from rpscli.report.html import case_page as parts
-from rpscli.report.html.page import Block, Notice, Picture, Section, pictures
 from rpscli.report.limits import verdicts_in_short
+from rpscli.report.page import Block, Notice, Picture, Section, pictures
 from rpscli.report.study.report import labels
 from rpscli.report.study.statistics import cut, of_first_system, summary_tables, verdict_table
 from rpscli.report.table import Heading, Table

@@ -12,7 +12,7 @@ from rpscli.commands.inputs import MotionRequest, motion_options, read_case, sin
 from rpscli.commands.shell import options
 from rpscli.commands.shell.terminal import announce_compilation
 from rpscli.errors import CaseError, UsageError, all_made
-from rpscli.report.figures.film import FilmRequest
+from rpscli.report.figures.look import FilmRequest
 
 
 @click.command("timehistory")

@@ -24,7 +24,7 @@ from rpscli.errors import AnalysisError, LimitExceeded, RecordError, RpsError, U
 from rpscli.records.ground_motion import MotionComponents
 from rpscli.report.bundles import floor_spectra_files, timehistory_files
 from rpscli.report.figures.animation import history_film
-from rpscli.report.figures.film import FilmRequest
+from rpscli.report.figures.look import FilmRequest
 from rpscli.report.files import OutputFolder, heading, json_text
 from rpscli.report.limits import VERDICT, excess_text, verdict_texts, worst_text
 from rpscli.report.study import statistics
@@ -199,7 +199,8 @@ def run_one(
     result = compute(history, conditions, out)
     beside, document = look_beside(history, result), history.document
     if film is not None:
-        inputs.add_film(history.folder, film, partial(history_film, result, title, film), out)
+        draw = partial(history_film, result, title, film, out.look)
+        inputs.add_film(history.folder, film, draw, out)
     inputs.write(_add_summary(history), terminal)
     document["warnings"] += history.folder.undrawn
     terminal.warn(document["warnings"])

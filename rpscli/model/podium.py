@@ -401,7 +401,7 @@ class Device(ABC):
     """The law of a device between ground and cap beam, which it pushes unless a law says otherwise.
 
     All that follows from a law is asked here; what resists motion alone need not answer most of it.
-    How it is drawn is told in `report.figures.devices`.
+    How it is drawn is told in `report.figures.bearing`.
     """
 
     in_each_column: ClassVar[bool] = False

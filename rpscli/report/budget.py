@@ -16,10 +16,10 @@ from rpscli.case.case import Case
 from rpscli.case.conditions import LIMITS, Condition, case_conditions
 from rpscli.errors import UsageError
 from rpscli.report.figures import style
-from rpscli.report.figures.look import Look, figure_files
+from rpscli.report.figures.look import Look
 from rpscli.report.files import Files
-from rpscli.report.html.page import Block, Picture, Section, page_look, pictures
 from rpscli.report.limits import bound_text
+from rpscli.report.page import Block, Picture, Section, page_look, pictures
 from rpscli.report.table import Table, columns_of, csv_text, headed, large, shown
 from rpscli.sweep.statistics.fractiles import HIGH, LOW, Share, fractiles, share_of
 from rpscli.sweep.statistics.summary import Records
@@ -190,7 +190,7 @@ class Budget:
         heads = ", ".join(("cause, change, options, outcome, refused", *known.values()))
         yield "budget.csv", csv_text(columns_of(heads, cells))
         draws = {e.name: partial(self.figure, e) for e in self.effects if e.quantity}
-        yield from figure_files(draws, look).items()
+        yield from style.figure_files(draws, look).items()
 
     def section(self, look: Look, record: str) -> Section:
         """Of a page: pictures above the tables, sentences and options."""
@@ -200,13 +200,13 @@ class Budget:
         ]
         return Section("Sensitivity of the results", [*blocks, *self.tables()])
 
-    def figure(self, effect: Effect) -> bytes:
+    def figure(self, effect: Effect, figure: style.Figure) -> None:
         """Bars from the value as it is to each changed one, records as points, limits as lines."""
         assert effect.quantity is not None, "events have no picture"
         label, unit = effect.quantity.label, effect.quantity.unit
         others = np.array([row.cause == RECORDS for row in self.rows])
         values, labels = effect.values[~others], [r.label for r in self.rows if r.cause != RECORDS]
-        names = [style.folded(text, 0.42 * style.room(style.WIDTH), 7.0) for text in labels]
+        names = [style.folded(text, 0.42 * style.room(figure), 7.0) for text in labels]
         most = max(1 + name.count("\n") for name in names)
         lines = [(values[0], style.BLACK, "-")]
         if effect.limit:
@@ -214,18 +214,14 @@ class Budget:
         sizes = np.array([*effect.values, *(line[0] for line in lines)])
         far = 1.15 * np.max(sizes[np.isfinite(sizes)], initial=0.0)
         factor, places = large(1.0, unit)[0] or 1.0, np.arange(len(names))
-
-        def draw(figure: style.Figure) -> None:
-            style.heading(figure, self.case.title, CAPTION)
-            axes, kind = figure.subplots(), np.array([style.BLUE, style.ORANGE, style.RED])
-            kinds = np.where(effect.turned, 2, effect.moved)[~others]
-            ends, points = (factor * np.clip(v, -far, far) for v in (values, effect.values[others]))
-            axes.barh(places, ends - ends[0], left=ends[0], height=0.65, color=kind[kinds])
-            axes.plot(points, [len(names)] * len(points), ".", color=style.GREY, alpha=0.6)
-            for value, colour, dash in lines:
-                axes.axvline(factor * min(value, far), color=colour, ls=dash)
-            axes.set_yticks([*places, len(names)], [*names, RECORDS], fontsize=7, parse_math=False)
-            axes.invert_yaxis()
-            axes.set_xlabel(headed(label, unit))
-
-        return style.picture(draw, 1.2 + (0.07 + 0.12 * most) * len(names))
+        style.begin(figure, (self.case.title, CAPTION), 1.2 + (0.07 + 0.12 * most) * len(names))
+        axes, kind = figure.subplots(), np.array([style.BLUE, style.ORANGE, style.RED])
+        kinds = np.where(effect.turned, 2, effect.moved)[~others]
+        ends, points = (factor * np.clip(v, -far, far) for v in (values, effect.values[others]))
+        axes.barh(places, ends - ends[0], left=ends[0], height=0.65, color=kind[kinds])
+        axes.plot(points, [len(names)] * len(points), ".", color=style.GREY, alpha=0.6)
+        for value, colour, dash in lines:
+            axes.axvline(factor * min(value, far), color=colour, ls=dash)
+        axes.set_yticks([*places, len(names)], [*names, RECORDS], fontsize=7, parse_math=False)
+        axes.invert_yaxis()
+        axes.set_xlabel(headed(label, unit))

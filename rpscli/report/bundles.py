@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from functools import partial
 from typing import Any
 
@@ -18,38 +18,33 @@ from rpscli.analyses.trace import Event, sampled
 from rpscli.model.podium import PodiumStructure
 from rpscli.report.figures import (
     bearing,
-    devices,
     floors,
     history,
-    orbit,
     structure,
     style,
 )
-from rpscli.report.figures import pushover as static
-from rpscli.report.figures.look import FIGURES, USUAL, Look, figure_files
+from rpscli.report.figures.look import FIGURES, USUAL, Look
+from rpscli.report.figures.style import Draw, figure_files
 from rpscli.report.files import Files
 from rpscli.report.table import Column, columns_of, csv_lines, csv_text
 from rpscli.report.timehistory import fixed_base_demands, isolated_demands
 
 
-def _figures(
-    figures: Mapping[str, Callable[[Any, str], bytes]], result: Any, title: str, look: Look
-) -> Files:
+def _figures(figures: Mapping[str, Draw], result: Any, title: str, look: Look) -> Files:
     """Our figures of a result, and those of other packages that are asked for."""
 
-    def drawn(name: str) -> bytes:
-        draw = FIGURES[name]
-        with FIGURES.blaming(name):  # errors in its labels surface when it is saved
-            return style.single(draw, result, (title, name), 3.4)
+    def drawn(name: str, figure: style.Figure) -> None:
+        with FIGURES.blaming(name):
+            style.single(FIGURES[name], result, (title, name), 3.4)(figure)
+            figure.draw_without_rendering()  # errors in its labels surface here
 
     added = {name: partial(drawn, name) for name in look.added}
-    own = {stem: partial(draw, result, title) for stem, draw in figures.items()}
-    yield from figure_files({**added, **own}, look).items()
+    yield from figure_files({**added, **figures}, look).items()
 
 
 def bearing_files(of: PodiumStructure, title: str, look: Look = USUAL) -> Files:
     """The drawing of the bearing."""
-    draw = partial(bearing.bearing_figure, pushover(of, patterns=()), title)
+    draw = partial(structure.bearing_figure, pushover(of, patterns=()), title)
     yield from figure_files({"bearing": draw}, look).items()
 
 
@@ -64,16 +59,17 @@ def modal_files(result: ModalResult, title: str, look: Look = USUAL) -> Files:
     ]
     heads = "state, mode, real [1/s], imaginary [rad/s]"
     yield "eigenvalues.csv", csv_text(columns_of(heads, rows))
-    yield from _figures({"modes": structure.modes_figure}, result, title, look)
+    figures: dict[str, Draw] = {"modes": partial(structure.modes_figure, result, title)}
+    yield from _figures(figures, result, title, look)
 
 
 def pushover_files(result: PushoverResult, title: str, look: Look = USUAL) -> Files:
     """Files of the static characteristics; without a building there are no capacity curves."""
     curve = [Column(q.name, q.unit, getattr(result.curve, q.name)) for q in STOREY_CURVE]
     yield "storey_curve.csv", csv_text(curve)  # one row a point, from the uplift on
-    figures: dict[str, Callable[[Any, str], bytes]] = {
-        "bearing": bearing.bearing_figure,
-        "storey_curve": static.storey_curve_figure,
+    figures: dict[str, Draw] = {
+        "bearing": partial(structure.bearing_figure, result, title),
+        "storey_curve": partial(structure.storey_curve_figure, result, title),
     }
     if result.capacity:
         heads = "pattern, roof_displacement [m], cap_beam_displacement [m], sum_of_floor_forces [N]"
@@ -86,7 +82,7 @@ def pushover_files(result: PushoverResult, title: str, look: Look = USUAL) -> Fi
             )
         ]  # fmt: skip
         yield "capacity.csv", csv_text(columns_of(heads, rows))
-        figures["capacity"] = static.capacity_figure
+        figures["capacity"] = partial(structure.capacity_figure, result, title)
     yield from _figures(figures, result, title, look)
 
 
@@ -95,24 +91,23 @@ def timehistory_files(result: TimeHistoryResult, title: str, look: Look = USUAL)
     yield "timehistory.csv", csv_lines(history_columns(result))
     yield "events.csv", csv_text(event_columns(result.events))
     yield "storeys.csv", csv_text(storey_columns(result))
-    of, few = result.structure, history.thinned(result)
+    of, of_pair = result.structure, result.trace.y is not None
+    words = title, history.record_name(result)
+    along = ("along the tilt, where going round drives too",) * of_pair
     known = (
         ("storey_shears", floors.profile_figure, of.storeys),
         ("storey_loops", floors.loops_figure, of.yields),
-        ("devices", devices.devices_figure, of.devices),
+        ("devices", bearing.devices_figure, of.devices),
         ("column", bearing.column_figure, result.column_demand),
-        ("orbit", orbit.orbit_figure, result.trace.y),
+        ("orbit", history.orbit_figure, of_pair),
         ("rotation", history.rotation_figure, True),
         ("displacements", history.displacement_figure, True),
-        ("moment_rotation", history.moment_figure, True),
-        ("energy", history.energy_figure, True),
     )
-
-    def drawn(draw: Callable[..., bytes], whole: TimeHistoryResult, title: str) -> bytes:
-        # Maxima over the height are those of all samples.
-        return draw(whole if draw is floors.profile_figure else few, title)
-
-    figures = {stem: partial(drawn, draw) for stem, draw, there in known if there}
+    figures: dict[str, Draw] = {
+        **{stem: partial(draw, result, title) for stem, draw, there in known if there},
+        "moment_rotation": style.single(history.draw_moment, result, (*words, *along), 4.2, 6.0),
+        "energy": style.single(history.draw_energy, result, words, 3.4),
+    }
     yield from _figures(figures, result, title, look)
 
 

@@ -14,7 +14,6 @@ import numpy as np
 from rpscli.case.conditions import LIMITS, RATE
 from rpscli.case.design import Objective
 from rpscli.report.figures import style
-from rpscli.report.figures.look import Draw
 from rpscli.report.limits import VERDICT, limit_unit, requirement_text, verdict_texts
 from rpscli.report.study.panels import MOST_TICKS
 from rpscli.report.study.report import axis_label, key_columns, label, reached, symbol
@@ -236,94 +235,87 @@ BEST: dict[str, Any] = {
 }  # fmt: skip
 
 
-def figures(answer: Answer, title: str) -> Mapping[str, Draw]:
+def figures(answer: Answer, title: str) -> Mapping[str, style.Draw]:
     """The figure of the search, by the name of its file."""
     if len(answer.task.unknowns) == 1:
         return {"requirements": partial(requirements_figure, answer, title)}
     return {"region": partial(region_figure, answer, title)}
 
 
-def requirements_figure(answer: Answer, title: str) -> bytes:
+def requirements_figure(answer: Answer, title: str, figure: style.Figure) -> None:
     """One unknown: the value of every requirement against it, with its limit and the answer."""
     order, best = np.argsort(answer.values[:, 0]), answer.best
     key, requirements = answer.values[order, 0], answer.requirements
-
-    def draw(figure: style.Figure) -> None:
-        style.heading(figure, title, _counts(answer))
-        grid = figure.subplots(len(requirements), 1, squeeze=False, sharex=True)[:, 0]
-        for row, (axes, requirement) in enumerate(zip(grid, requirements, strict=True)):
-            values, name = answer.results[row, 0, order], requirement.condition.name
-            shown = np.where(np.isfinite(values), values, np.nan)
+    style.begin(figure, (title, _counts(answer)), 1.9 + 2.3 * len(requirements))
+    grid = figure.subplots(len(requirements), 1, squeeze=False, sharex=True)[:, 0]
+    for row, (axes, requirement) in enumerate(zip(grid, requirements, strict=True)):
+        values, name = answer.results[row, 0, order], requirement.condition.name
+        shown = np.where(np.isfinite(values), values, np.nan)
+        if answer.resamples:
+            ends = 0.5 * (1.0 - CONFIDENCE), 0.5 * (1.0 + CONFIDENCE)
+            drawn = answer.results[row, 1:, order]
+            low, high = np.quantile(drawn, ends, axis=1, method="inverted_cdf")
+            axes.fill_between(key, low, np.where(np.isfinite(high), high, 1e9), alpha=0.3,
+                              color=style.SKY, lw=0.0, label="95 % of resamples")  # fmt: skip
+        axes.plot(key, shown, "o", ms=3.0, color=style.BLUE, label="designs")
+        axes.axhline(requirement.bound, color=style.RED, ls="--", label="admissible")
+        if best is not None:
+            axes.plot(answer.values[best, 0], answer.results[row, 0, best], **BEST)
             if answer.resamples:
-                ends = 0.5 * (1.0 - CONFIDENCE), 0.5 * (1.0 + CONFIDENCE)
-                drawn = answer.results[row, 1:, order]
-                low, high = np.quantile(drawn, ends, axis=1, method="inverted_cdf")
-                axes.fill_between(key, low, np.where(np.isfinite(high), high, 1e9), alpha=0.3,
-                                  color=style.SKY, lw=0.0, label="95 % of resamples")  # fmt: skip
-            axes.plot(key, shown, "o", ms=3.0, color=style.BLUE, label="designs")
-            axes.axhline(requirement.bound, color=style.RED, ls="--", label="admissible")
-            if best is not None:
-                axes.plot(answer.values[best, 0], answer.results[row, 0, best], **BEST)
-                if answer.resamples:
-                    axes.axvspan(*answer.interval(0), ymax=0.03, color=style.ORANGE, lw=0.0,
-                                 label="best of 95 % of resamples")  # fmt: skip
-            top = np.nanmax([*np.nan_to_num(shown), 2.0 * requirement.bound, 1e-12])
-            most = max(10.0 * requirement.bound, 0.0 if name == RATE else 1.0)
-            end = 1.05 * float(min(top, most))
-            axes.set_ylim(0.0, end)
-            if (off := np.nan_to_num(values, nan=0.0) > end).any():
-                axes.plot(key[off], np.full(off.sum(), end), "^", ms=4.0, color=style.RED,
-                          clip_on=False, label="off the scale, or overturned")  # fmt: skip
-            words, known = name, "overturned [1/year]" if name == RATE else "share of records"
-            if name in LIMITS:
-                words, known = LIMITS[name].label, LIMITS[name].axis_label
-            axes.set_ylabel(known)
-            axes.set_title(style.typeset(requirement_label(requirement).replace(name, words, 1)))
-        grid[-1].set_xlabel(axis_label(answer.task.keys[0]))
-        style.legend_below(figure, grid)
-
-    return style.picture(draw, 1.9 + 2.3 * len(requirements))
+                axes.axvspan(*answer.interval(0), ymax=0.03, color=style.ORANGE, lw=0.0,
+                             label="best of 95 % of resamples")  # fmt: skip
+        top = np.nanmax([*np.nan_to_num(shown), 2.0 * requirement.bound, 1e-12])
+        most = max(10.0 * requirement.bound, 0.0 if name == RATE else 1.0)
+        end = 1.05 * float(min(top, most))
+        axes.set_ylim(0.0, end)
+        if (off := np.nan_to_num(values, nan=0.0) > end).any():
+            axes.plot(key[off], np.full(off.sum(), end), "^", ms=4.0, color=style.RED,
+                      clip_on=False, label="off the scale, or overturned")  # fmt: skip
+        words, known = name, "overturned [1/year]" if name == RATE else "share of records"
+        if name in LIMITS:
+            words, known = LIMITS[name].label, LIMITS[name].axis_label
+        axes.set_ylabel(known)
+        axes.set_title(style.typeset(requirement_label(requirement).replace(name, words, 1)))
+    grid[-1].set_xlabel(axis_label(answer.task.keys[0]))
+    style.legend_below(figure, grid)
 
 
-def region_figure(answer: Answer, title: str) -> bytes:
+def region_figure(answer: Answer, title: str, figure: style.Figure) -> None:
     """Designs that pass and fail for each pair of unknowns, in the colour of their resamples."""
     pairs = list(itertools.combinations(range(len(answer.task.unknowns)), 2))
     shown = pairs[:MOST_PAIRS]
-    columns = 1 if style.narrow() else min(3, len(shown))
+    columns = 1 if style.narrow(figure) else min(3, len(shown))
     rows = math.ceil(len(shown) / columns)
     of = {"passes": answer.passes[0], "fails": answer.valid & ~answer.passes[0]}
     of["no valid case"] = ~answer.valid
+    from matplotlib import colormaps, rcParams
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import BoundaryNorm
 
-    def draw(figure: style.Figure) -> None:
-        from matplotlib import colormaps, rcParams
-        from matplotlib.cm import ScalarMappable
-        from matplotlib.colors import BoundaryNorm
-
-        more = f"{MOST_PAIRS} of {len(pairs)} pairs" if len(pairs) > MOST_PAIRS else ""
-        style.heading(figure, title, _counts(answer), more)
-        grid = figure.subplots(rows, columns, squeeze=False)
-        colours = colormaps[rcParams["image.cmap"]]
-        norm = BoundaryNorm(SHARES, colours.N)
-        look: dict[str, Any] = {"s": 18.0, "linewidths": 0.5, "clip_on": False}
-        style.blank(grid.flat[len(shown) :])
-        for axes, (x, y) in zip(grid.flat, shown, strict=False):
-            axes.locator_params(nbins=MOST_TICKS)
-            for name, marker, colour in MARKS:
-                at, share = answer.values[of[name]].T, answer.passing_share[of[name]]
-                kind: dict[str, Any] = {"color": colour}
-                if answer.resamples and name != "no valid case":
-                    kind = {"c": share, "cmap": colours, "norm": norm, "edgecolors": style.BLACK}
-                if len(share):
-                    axes.scatter(at[x], at[y], marker=marker, label=name, **look, **kind)
-            if answer.best is not None:
-                axes.plot(answer.values[answer.best, x], answer.values[answer.best, y], **BEST)
-            axes.set(xlabel=axis_label(answer.task.keys[x]), ylabel=axis_label(answer.task.keys[y]))
-        if answer.resamples:
-            words = "share of resamples of the records that pass"
-            figure.colorbar(ScalarMappable(norm, colours), ax=grid, label=words)
-        style.legend_below(figure, [grid[0, 0]])
-
-    return style.picture(draw, 1.1 + (4.2 if len(pairs) == 1 else 2.6) * rows)
+    more = f"{MOST_PAIRS} of {len(pairs)} pairs" if len(pairs) > MOST_PAIRS else ""
+    height = 1.1 + (4.2 if len(pairs) == 1 else 2.6) * rows
+    style.begin(figure, (title, _counts(answer), more), height)
+    grid = figure.subplots(rows, columns, squeeze=False)
+    colours = colormaps[rcParams["image.cmap"]]
+    norm = BoundaryNorm(SHARES, colours.N)
+    look: dict[str, Any] = {"s": 18.0, "linewidths": 0.5, "clip_on": False}
+    style.blank(grid.flat[len(shown) :])
+    for axes, (x, y) in zip(grid.flat, shown, strict=False):
+        axes.locator_params(nbins=MOST_TICKS)
+        for name, marker, colour in MARKS:
+            at, share = answer.values[of[name]].T, answer.passing_share[of[name]]
+            kind: dict[str, Any] = {"color": colour}
+            if answer.resamples and name != "no valid case":
+                kind = {"c": share, "cmap": colours, "norm": norm, "edgecolors": style.BLACK}
+            if len(share):
+                axes.scatter(at[x], at[y], marker=marker, label=name, **look, **kind)
+        if answer.best is not None:
+            axes.plot(answer.values[answer.best, x], answer.values[answer.best, y], **BEST)
+        axes.set(xlabel=axis_label(answer.task.keys[x]), ylabel=axis_label(answer.task.keys[y]))
+    if answer.resamples:
+        words = "share of resamples of the records that pass"
+        figure.colorbar(ScalarMappable(norm, colours), ax=grid, label=words)
+    style.legend_below(figure, [grid[0, 0]])
 
 
 def _counts(answer: Answer) -> str:

@@ -17,7 +17,8 @@ from rpscli.records.selection import Selection, misfit
 from rpscli.records.source import is_file
 from rpscli.records.target import COMPONENTS, NOT_VERIFIED
 from rpscli.report.figures import motions as figures
-from rpscli.report.figures.look import USUAL, Look, figure_files
+from rpscli.report.figures.look import USUAL, Look
+from rpscli.report.figures.style import figure_files
 from rpscli.report.files import Files
 from rpscli.report.table import Column, Part, Table, csv_lines, csv_text, picked, records, shown
 
@@ -67,7 +68,7 @@ def record_files(motion: GroundMotion, spectrum: ResponseSpectrum, look: Look = 
         Column("total_acceleration", "m/s2", spectrum.total_acceleration),
         Column("displacement", "m", spectrum.displacement),
     ])  # fmt: skip
-    draw = partial(figures.record_figure, motion, spectrum)
+    draw = partial(figures.record_figure, motion, spectrum, None)
     yield from figure_files({"record": draw}, look).items()
 
 

@@ -40,7 +40,7 @@ from rpscli.model.superstructure import (
 )
 from rpscli.physics import state
 from rpscli.records.loading import load_record
-from rpscli.report.figures.devices import DRAWN
+from rpscli.report.figures.bearing import DRAWN
 
 from .conftest import BUILDING, EQUIPPED, FRAME
 

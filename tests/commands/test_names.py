@@ -10,7 +10,7 @@ import pytest
 
 from rpscli.records.formats.at2 import at2_text
 from rpscli.records.loading import load_record
-from rpscli.report.html.page import page
+from rpscli.report.page import page
 
 from .conftest import SMALL_CASE, Invoke
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.timehistory import time_history
 from rpscli.case.case import load_case
 from rpscli.records.loading import load_record
+from rpscli.report.figures.history import rotation_figure
 
 from .conftest import Invoke, InvokeJson, columns
 
@@ -66,20 +68,22 @@ def test_files_and_numbers(rps_json: InvokeJson) -> None:
 def test_a_picture_that_fails_is_a_warning(
     rps: Invoke, rps_json: InvokeJson, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def fails(*_: object) -> bytes:
-        raise ValueError("y must contain only finite values")
+    def fails(draw: Any, *_: object) -> bytes:
+        if getattr(draw, "func", None) is rotation_figure:
+            raise ValueError("y must contain only finite values")
+        return b"a figure"
 
     with monkeypatch.context() as patch:
-        patch.setattr("rpscli.report.figures.history.energy_figure", fails)
+        patch.setattr("rpscli.report.figures.style.picture", fails)
         result = rps("timehistory", "small.yaml")
         warned = rps_json("timehistory", "small.yaml")["warnings"]
-    reason = "energy.png is not drawn: ValueError: y must contain only finite values"
+    reason = "rotation.png is not drawn: ValueError: y must contain only finite values"
     assert result.exit_code == 0
     assert f"warning: {reason}" in result.stderr
     assert any(text.startswith(reason) for text in warned)
-    assert {file.name for file in FOLDER.iterdir()} == {*FIGURES, *TABLES} - {"energy.png"}
+    assert {file.name for file in FOLDER.iterdir()} == {*FIGURES, *TABLES} - {"rotation.png"}
     assert rps("timehistory", "small.yaml", "-q").exit_code == 0
-    assert (FOLDER / "energy.png").exists()
+    assert (FOLDER / "rotation.png").exists()
 
 
 def check_history(table: dict[str, list[str]], result: TimeHistoryResult) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
@@ -111,7 +112,7 @@ def worst(study: StudyResults, options: WorstOptions) -> Found:
         axes.barh(range(len(names)), heights, tick_label=names)
         axes.set(xlabel="rotation ratio")
 
-    def figure(title: str) -> bytes:
+    def figure(title: str) -> Callable[..., None]:
         return single(draw, columns[RESULT][first].tolist(), (title,), 3.0)
 
     table = [Column("record", "-", names), Column(RESULT, "-", columns[RESULT][first])]

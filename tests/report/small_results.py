@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -18,6 +19,8 @@ from rpscli.model.bearing import Bearing
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import ModalDamping, Superstructure, profile_stiffnesses
 from rpscli.records.loading import load_record
+from rpscli.report.figures import style
+from rpscli.report.figures.look import USUAL, Look
 
 Array = NDArray[np.float64]
 
@@ -64,6 +67,11 @@ KINDS: dict[str, Callable[[], TimeHistoryResult]] = {
     "yields": lambda: history(yielding(), "pulse:half_sine?amplitude=0.3g&period=0.6"),
     "frame": lambda: history(structure(FLAT, 0), "pulse:half_sine?amplitude=0.4g&period=0.6"),
 }
+
+
+def drawn(function: Callable[..., None], *arguments: object, look: Look = USUAL) -> Figure:
+    """The figure that a function draws, with a look."""
+    return style.drawn(partial(function, *arguments), look)
 
 
 def curve(axes: Axes, label: str) -> tuple[Array, Array]:

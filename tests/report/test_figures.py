@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import shutil
 import sys
+from functools import partial
 from pathlib import Path
 
 import matplotlib as mpl
@@ -14,20 +15,23 @@ import pytest
 from report.small_results import CURVED, FLAT, KINDS, structure
 from rpscli.analyses.modal import modal
 from rpscli.errors import OutputError, UsageError
+from rpscli.report.figures import style
 from rpscli.report.figures.animation import frame_plan, modes_film
-from rpscli.report.figures.film import FilmRequest
 from rpscli.report.figures.history import rotation_figure, shown_floors
+from rpscli.report.figures.look import USUAL, FilmRequest
 
 
 def test_a_figure_depends_on_its_result_alone() -> None:
     result = KINDS["rolls"]()
-    first = rotation_figure(result, "title")
+    draw = partial(rotation_figure, result, "title")
+    first = style.picture(draw, USUAL, "png")
     with mpl.rc_context({"lines.linewidth": 9.0, "axes.facecolor": "black"}):
-        assert rotation_figure(result, "title") == first
+        assert style.picture(draw, USUAL, "png") == first
 
 
 def test_a_title_is_no_formula() -> None:
-    assert rotation_figure(KINDS["at rest"](), r"costs 5 $ or \frac$" + 200 * "x")
+    draw = partial(rotation_figure, KINDS["at rest"](), r"costs 5 $ or \frac$" + 200 * "x")
+    assert style.picture(draw, USUAL, "png")
 
 
 def test_floors_in_the_figure_are_floors_of_the_building() -> None:
@@ -105,7 +109,7 @@ def test_mp4_is_what_its_ending_says(monkeypatch: pytest.MonkeyPatch, tmp_path: 
         modal(structure(CURVED, 1)),
         "title",
         FilmRequest(file, 241),
-        lambda done, _: drawn.append(done),
+        progress=lambda done, _: drawn.append(done),
     )
     file.write_bytes(film)
     assert film[4:8] == b"ftyp"

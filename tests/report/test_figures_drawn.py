@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -11,7 +10,6 @@ from typing import Any
 import numpy as np
 import pytest
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import StepPatch
@@ -24,12 +22,14 @@ from report.small_results import (
     KINDS,
     ROLLER,
     curve,
+    drawn,
     is_drawn,
     legend,
     prefix,
     second_axis,
     structure,
 )
+from rpscli import figures
 from rpscli.analyses.modal import modal
 from rpscli.analyses.pushover import PushoverResult, pushover
 from rpscli.analyses.results import TimeHistoryResult
@@ -42,9 +42,9 @@ from rpscli.model.podium import Device
 from rpscli.records import measures
 from rpscli.records.loading import load_record
 from rpscli.records.measures import response_spectrum
+from rpscli.report.figures import style
 from rpscli.report.figures.animation import Scene, frame_plan, history_film, modes_film
-from rpscli.report.figures.devices import devices_figure
-from rpscli.report.figures.film import FilmRequest
+from rpscli.report.figures.bearing import devices_figure
 from rpscli.report.figures.floors import (
     MOST_STOREYS,
     draw_loop,
@@ -54,27 +54,17 @@ from rpscli.report.figures.floors import (
 )
 from rpscli.report.figures.history import (
     displacement_figure,
-    energy_figure,
-    moment_figure,
     rotation_figure,
 )
+from rpscli.report.figures.look import FilmRequest
 from rpscli.report.figures.motions import record_figure
-from rpscli.report.figures.pushover import capacity_figure, storey_curve_figure
-from rpscli.report.figures.structure import ELASTIC, level_heights, modes_figure
-
-Drawn = Callable[..., Figure]
-
-
-@pytest.fixture
-def drawn(figures: list[Figure]) -> Drawn:
-    """The figure that a function draws."""
-
-    def draw(function: Callable[..., bytes], *arguments: Any) -> Figure:
-        function(*arguments)
-        (figure,) = figures
-        return figure
-
-    return draw
+from rpscli.report.figures.structure import (
+    ELASTIC,
+    capacity_figure,
+    level_heights,
+    modes_figure,
+    storey_curve_figure,
+)
 
 
 @pytest.fixture(params=KINDS)
@@ -97,7 +87,7 @@ def steps(axes: Axes, label: str) -> StepPatch:
     return patch
 
 
-def test_rotation(drawn: Drawn, result: TimeHistoryResult) -> None:
+def test_rotation(result: TimeHistoryResult) -> None:
     trace, made = result.trace, result.structure
     figure = drawn(rotation_figure, result, "a title")
     words = " ".join(figure.get_suptitle().replace("|", " ").split())
@@ -106,7 +96,6 @@ def test_rotation(drawn: Drawn, result: TimeHistoryResult) -> None:
     ground, rotation, *events = figure.axes
 
     is_drawn(curve(ground, "_child0"), trace.time, trace.ground_acceleration)
-    assert ground.get_ylabel() == "ground\nacceleration [m/s²]"
     assert legend(ground) == ["$g\\,\\tan\\alpha$ (uplift)"]
     for place, sign in ((1, 1.0), (2, -1.0)):
         limit = sign * made.uplift_acceleration
@@ -114,12 +103,9 @@ def test_rotation(drawn: Drawn, result: TimeHistoryResult) -> None:
 
     blue = next(line for line in rotation.lines if len(np.asarray(line.get_xdata())) > 2)
     is_drawn(curve(rotation, str(blue.get_label())), trace.time, trace.rotation)
-    assert rotation.get_ylabel() == "rotation $\\theta$ [rad]"
     low, high = rotation.get_ylim()
-    assert -low == high
-    assert high > result.max_rotation
+    assert -low == high > result.max_rotation
     ratio = second_axis(rotation)
-    assert ratio.get_ylabel() == "$\\theta/\\theta_{cr}$ [-]"
     assert ratio.get_ylim()[1] == pytest.approx(high / made.critical_rotation, rel=1e-12)
 
     names = legend(rotation)
@@ -132,7 +118,6 @@ def test_rotation(drawn: Drawn, result: TimeHistoryResult) -> None:
             if value <= high:
                 assert curve(rotation, label)[1].tolist() == [value, value]
 
-    assert figure.axes[-1].get_xlabel() == "time [s]"
     assert figure.axes[-1].get_xlim() == (0.0, trace.time[-1])
     assert len(events) == bool(result.events)  # none at rest
     marks = {
@@ -150,7 +135,7 @@ def test_rotation(drawn: Drawn, result: TimeHistoryResult) -> None:
         assert marks.get(f"{name}: {len(times)}", []) == times
 
 
-def test_the_shades_of_the_phases_begin_and_end_with_them(drawn: Drawn) -> None:
+def test_the_shades_of_the_phases_begin_and_end_with_them() -> None:
     result = KINDS["overturns"]()
     time, phase = result.trace.time, result.trace.phase
     axes = drawn(rotation_figure, result, "").axes[1]
@@ -163,18 +148,13 @@ def test_the_shades_of_the_phases_begin_and_end_with_them(drawn: Drawn) -> None:
         assert x.max() in time[inside[-1] :][:2]
 
 
-def test_displacements(drawn: Drawn, result: TimeHistoryResult) -> None:
+def test_displacements(result: TimeHistoryResult) -> None:
     trace, storeys = result.trace, result.structure.storeys
     whole, *elastic = drawn(displacement_figure, result, "").axes
     is_drawn(curve(whole, "cap beam"), trace.time, trace.cap_beam_displacement)
-    assert whole.get_ylabel() == "displacement relative\nto the ground [m]"
-    assert "cap beam" in legend(whole)
-    last = [whole, *elastic][-1]
-    assert last.get_xlabel() == "time [s]"
-    assert last.get_xlim() == (0.0, trace.time[-1])
+    assert [whole, *elastic][-1].get_xlim() == (0.0, trace.time[-1])
     assert len(elastic) == (storeys > 0)
     for axes in elastic:
-        assert axes.get_ylabel() == "displacement relative\nto the cap beam [m]"
         for floor in range(1, storeys + 1):
             name = "roof" if floor == storeys else f"floor {floor}"
             displacement = trace.floor_displacements[:, floor - 1]
@@ -184,27 +164,32 @@ def test_displacements(drawn: Drawn, result: TimeHistoryResult) -> None:
             assert name in legend(axes)
 
 
-def test_energy(drawn: Drawn, result: TimeHistoryResult) -> None:
-    trace = result.trace
-    (axes,) = drawn(energy_figure, result, "").axes
+def energies(result: TimeHistoryResult, axes: Axes, *names: str) -> None:
+    """Require that parts of the energy stand on top of each other, with these between."""
+    trace, made = result.trace, result.structure
     factor = prefix(axes.get_ylabel(), "J")
-    assert axes.get_ylabel().startswith("energy [")
-    assert axes.get_xlabel() == "time [s]"
-    assert axes.get_xlim() == (0.0, trace.time[-1])
     is_drawn(curve(axes, "input"), trace.time, factor * trace.energy_input)
     below = np.zeros_like(trace.time)
     parts = [
-        ("damped in the building", trace.energy_damped),
-        *[("yielding of storeys", trace.energy_yielded)] * result.structure.yields,
+        *[("damped in the building", trace.energy_damped)] * bool(made.storeys),
+        *[("yielding of storeys", trace.energy_yielded)] * made.yields,
+        *zip(names, trace.devices.energy.T, strict=True),
         ("lost at impacts (net)", trace.energy_impact),
         ("kinetic, elastic and gravitational", trace.energy_stored),
-    ][result.structure.storeys == 0 :]
+    ]
     for name, part in parts:
         above = below + factor * part
         both = np.concatenate([below, above])
         assert reach(axes, name) == pytest.approx((np.nanmin(both), np.nanmax(both)), rel=1e-12)
         below = above
     assert {*legend(axes)} == {*(name for name, _ in parts), "input"}
+
+
+def test_energy(result: TimeHistoryResult) -> None:
+    axes = Figure().subplots()
+    figures.energy(axes, result)
+    assert axes.get_xlim() == (0.0, result.trace.time[-1])
+    energies(result, axes)
 
 
 DEVICES: tuple[Device, ...] = (
@@ -222,7 +207,7 @@ def equipped() -> TimeHistoryResult:
     return time_history(made, record, TimeHistorySettings(free_vibration=2.0))
 
 
-def test_loops_of_devices(drawn: Drawn, equipped: TimeHistoryResult) -> None:
+def test_loops_of_devices(equipped: TimeHistoryResult) -> None:
     trace = equipped.trace.devices
     panels = drawn(devices_figure, equipped, "").axes
     names = ["device 0: friction", "device 1: stop", "device 2: tendon", "device 3: viscous"]
@@ -241,28 +226,18 @@ def test_loops_of_devices(drawn: Drawn, equipped: TimeHistoryResult) -> None:
         stored = trace.stored[-1, index] / (4.0 if tendon else 1.0)
         size = float(np.max(np.abs(force)) * np.max(np.abs(trace.displacement[:, index])))
         assert work == pytest.approx(taken + stored, abs=0.05 * size)
+    axes = Figure().subplots()
+    figures.energy(axes, equipped)
+    energies(equipped, axes, *names)
 
 
-def test_energy_of_devices_stands_between(drawn: Drawn, equipped: TimeHistoryResult) -> None:
-    trace = equipped.trace
-    (axes,) = drawn(energy_figure, equipped, "").axes
-    names = ["device 0: friction", "device 1: stop", "device 2: tendon", "device 3: viscous"]
-    assert set(legend(axes)) > set(names)
-    factor, top = prefix(axes.get_ylabel(), "J"), trace.energy_damped
-    for index, name in enumerate(names):
-        below, top = top, top + trace.devices.energy[:, index]
-        both = factor * np.concatenate([below, top])
-        assert reach(axes, name) == pytest.approx((np.min(both), np.max(both)), rel=1e-12)
-
-
-def test_loops_of_storeys_that_yield(drawn: Drawn) -> None:
+def test_loops_of_storeys_that_yield() -> None:
     result = KINDS["yields"]()
     trace, above = result.trace, known(result.structure.superstructure)
     panels, F = drawn(loops_figure, result, "").axes, known(above.strengths)
     assert len(panels) == 2
     for i, axes in enumerate(panels):
         assert axes.get_title() == f"storey {i + 1}, ductility {result.ductilities[i]:.3g}"
-        assert axes.get_xlabel() == "storey drift $d$ [mm]"
         loop = curve(axes, "shear $f$ of springs")
         is_drawn(loop, 1e3 * trace.drifts[:, i], 1e-3 * trace.storey_shears[:, i])
         low, high = (np.asarray(line.get_ydata(), float) for line in axes.lines[:2])
@@ -278,12 +253,11 @@ def test_loops_of_storeys_that_yield(drawn: Drawn) -> None:
     assert shown_floors(9, MOST_STOREYS) == [1, 3, 4, 6, 7, 9]
 
 
-def test_moment(drawn: Drawn, result: TimeHistoryResult) -> None:
+def test_moment(result: TimeHistoryResult) -> None:
     trace = result.trace
-    (axes,) = drawn(moment_figure, result, "").axes
+    axes = Figure().subplots()
+    figures.moment_rotation(axes, result)
     factor = prefix(axes.get_ylabel(), "N m")
-    assert axes.get_ylabel().startswith("moment about the contact points [")
-    assert axes.get_xlabel() == "rotation $\\theta$ [rad]"
     names = legend(axes)
     driving, restoring = "driving moment (ground and building)", "restoring moment of the weight"
     swing = [name for name in names if name not in {driving, restoring}]
@@ -304,13 +278,11 @@ def test_moment(drawn: Drawn, result: TimeHistoryResult) -> None:
         assert axes.texts  # arrows
     left = curve(axes, restoring)
     is_drawn(left, left[0], factor * result.restoring_moment(left[0]))
-    low, high = axes.get_xlim()
-    assert left[0].min() == low == -high
-    assert high > result.max_rotation
+    assert left[0].min() == axes.get_xlim()[0] < -result.max_rotation
 
 
 @pytest.mark.parametrize("kind", ["rolls", "overturns", "flat, one storey, no heights"])
-def test_profiles(drawn: Drawn, kind: str) -> None:
+def test_profiles(kind: str) -> None:
     result = KINDS[kind]()
     made, fixed = result.structure, result.fixed_base
     assert made.superstructure is not None
@@ -319,9 +291,6 @@ def test_profiles(drawn: Drawn, kind: str) -> None:
     figure = drawn(profile_figure, result, "")
     shear, drift, acceleration = figure.axes
     factor = prefix(shear.get_xlabel(), "N")
-    assert shear.get_xlabel().startswith("storey shear [")
-    assert shear.get_ylabel() == "level (0 = cap beam)"
-    assert acceleration.get_xlabel() == "floor acceleration [m/s²]"
     ratio = "storey drift [mm]" if heights is None else "storey drift ratio [%]"
     assert drift.get_xlabel() == ratio
     unit = 1e-3 if heights is None else heights * 1e-2
@@ -341,11 +310,10 @@ def test_profiles(drawn: Drawn, kind: str) -> None:
     assert names == ["on bearings", "fixed base", peak]
     assert last.startswith(level)
     assert curve(shear, last)[0] == pytest.approx([static] * 2, rel=1e-13)
-    assert all(axes.get_xlim()[0] == 0.0 for axes in (shear, drift, acceleration))
 
 
 @pytest.mark.parametrize(("bearing", "storeys"), [(CURVED, 4), (FLAT, 1), (ROLLER, 0)])
-def test_modes(drawn: Drawn, bearing: Bearing, storeys: int) -> None:
+def test_modes(bearing: Bearing, storeys: int) -> None:
     result = modal(structure(bearing, storeys))
     states = {"rolling": result.rolling, "rocking": result.rocking}
     figure = drawn(modes_figure, result, "")
@@ -372,13 +340,9 @@ def test_modes(drawn: Drawn, bearing: Bearing, storeys: int) -> None:
                 fixed = [0.0, 0.0, *result.fixed_base.shapes[:, mode - 1]]
                 is_drawn(curve(axes, "full contact"), fixed, levels)
             assert axes.get_title().replace("\n", " ") == title
-    assert all(axes.get_xlabel() == "shape [-]" for axes in panels[-1])
     contact = ["full contact"] if storeys else []
     relative = [ELASTIC] if storeys else []
     assert {*legend(figure)} == {*contact, "uplifted", *relative}
-    low, high = panels[0, 0].get_xlim()
-    assert -low == high
-    assert high > max(np.abs(modes.shapes[:, :columns]).max() for modes in rows)
 
 
 @pytest.fixture
@@ -386,13 +350,10 @@ def pushed() -> PushoverResult:
     return pushover(structure(CURVED, 3))
 
 
-def test_storey_curve(drawn: Drawn, pushed: PushoverResult) -> None:
+def test_storey_curve(pushed: PushoverResult) -> None:
     found, beta = pushed.curve, pushed.structure.bearing.beta
     force, lift = drawn(storey_curve_figure, pushed, "").axes
     factor = prefix(force.get_ylabel(), "N")
-    assert force.get_ylabel().startswith("force at the cap beam [")
-    assert lift.get_ylabel() == "lift [mm]"
-    assert lift.get_xlabel() == "cap beam displacement $u_b$ [m]"
     assert legend(force) == ["full contact", "rolling", "rocking"]
     for name, inside in (("rolling", found.rotation <= beta), ("rocking", found.rotation >= beta)):
         assert 1 < np.count_nonzero(inside) < len(inside)
@@ -410,21 +371,16 @@ def test_storey_curve(drawn: Drawn, pushed: PushoverResult) -> None:
     end = where[f"$\\theta_{{cr}}$ = {pushed.critical_rotation:.3f} rad"]
     assert end == (pushed.critical_displacement, factor * found.force[-1])
     assert f"$\\beta$ = {beta:.3f} rad" in where
-    assert force.get_xlim()[1] > pushed.critical_displacement
-    assert force.get_ylim()[0] == lift.get_ylim()[0] == 0.0
     ratio = second_axis(force)
     assert ratio.get_ylabel() == "$F/(W \\tan\\alpha)$ [-]"
     top = force.get_ylim()[1] / (factor * pushed.uplift_force)
     assert ratio.get_ylim()[1] == pytest.approx(top, rel=1e-12)
 
 
-def test_capacity(drawn: Drawn, pushed: PushoverResult) -> None:
+def test_capacity(pushed: PushoverResult) -> None:
     figure = drawn(capacity_figure, pushed, "")
     whole, close = figure.axes
     factor = prefix(whole.get_ylabel(), "N")
-    assert whole.get_ylabel().startswith("sum of floor forces [")
-    assert whole.get_xlabel() == "roof displacement [m]"
-    assert close.get_xlabel() == "roof displacement [m]"
     assert close.get_title() == "near uplift"
     # curves that lie upon each other are all seen
     widths = [line.get_linewidth() for line in whole.lines if line.get_marker() != "o"]
@@ -439,17 +395,14 @@ def test_capacity(drawn: Drawn, pushed: PushoverResult) -> None:
             is_drawn(curve(axes, name), capacity.roof_displacement, shears)
         assert at == [capacity.roof_displacement_at_uplift]
         assert force == [factor * pushed.uplift_force]
-    assert whole.get_xlim()[0] == 0.0
-    # the force is back at zero at the critical rotation, but for rounding
-    assert whole.get_ylim()[0] == pytest.approx(0.0, abs=1e-12)
     uplift = max(c.roof_displacement_at_uplift for c in pushed.capacity)
     assert close.get_xlim() == (0.0, 3.0 * uplift)
 
 
-def test_record(drawn: Drawn) -> None:
+def test_record() -> None:
     motion = load_record("pulse:sine?amplitude=0.3g&period=0.8")
     spectrum = response_spectrum(motion, np.linspace(0.1, 2.0, 20))
-    figure = drawn(record_figure, motion, spectrum)
+    figure = drawn(record_figure, motion, spectrum, None)
     *panels, right = figure.axes
     a, dt = motion.acceleration, motion.dt
     for axes, label, values in zip(
@@ -465,13 +418,7 @@ def test_record(drawn: Drawn) -> None:
         peak = f"peak {abs(values[at]):.3g} at {motion.time[at]:.2f} s"
         peak += f", {motion.pga / 9.80665:.3g} g" * (axes is panels[0])
         assert axes.get_title(loc="right") == peak
-    assert panels[-1].get_xlabel() == "time [s]"
-    assert panels[-1].get_xlim() == (0.0, motion.duration)
     is_drawn(curve(right, "_child0"), spectrum.periods, spectrum.pseudo_acceleration)
-    assert right.get_xlabel() == "period [s]"
-    assert right.get_ylabel() == "pseudo-acceleration, 5 % damping [m/s²]"
-    assert right.get_xlim() == (0.0, spectrum.periods[-1])
-    assert right.get_ylim()[0] == 0.0
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -504,27 +451,6 @@ def test_a_scene_is_true_to_scale_but_for_the_drifts(kind: str) -> None:
     assert (high - low) / (right - left) == pytest.approx(axes.get_box_aspect(), rel=1e-12)
 
 
-def test_a_scene_with_devices(equipped: TimeHistoryResult) -> None:
-    trace = equipped.trace
-    scene = Scene(Figure().subplots(), equipped, "a title", 0.5)
-    half = 0.5 * scene.width
-    posts = [post for _, _, post in scene.devices.stops]
-    assert [side for side, _, _ in scene.devices.stops] == [-1.0, 1.0]
-    for sample in (0, int(np.argmax(np.abs(trace.rotation)))):
-        scene.show(sample)
-        shift = trace.cap_beam_displacement[sample]
-        for foot, tendon in zip(scene.feet, scene.devices.tendons, strict=True):
-            assert np.asarray(tendon.get_xdata()).tolist() == pytest.approx([foot, foot + shift])
-        for post, side in zip(posts, (-1.0, 1.0), strict=True):
-            foot, head = np.asarray(post.get_xdata(), float)
-            assert foot == pytest.approx(side * (half + 0.02))
-            assert head == pytest.approx(foot + side * max(side * shift - 0.02, 0.0))
-        red = [post.get_color() == "#D55E00" for post in posts]
-        assert red == [shift < -0.02, shift > 0.02]
-    assert any(red)
-    assert scene.devices.brace is not None
-
-
 GIF = FilmRequest(Path("film.gif"))
 
 
@@ -532,13 +458,13 @@ GIF = FilmRequest(Path("film.gif"))
 def filmed(monkeypatch: pytest.MonkeyPatch) -> list[Figure]:
     """Figures of which films were made."""
     found: list[Figure] = []
-    draw = FigureCanvasAgg.draw
 
-    def watch(canvas: FigureCanvasAgg) -> None:
-        found.append(canvas.figure)
-        draw(canvas)  # type: ignore[no-untyped-call]
+    def sheet() -> Figure:
+        found.append(made())
+        return found[-1]
 
-    monkeypatch.setattr(FigureCanvasAgg, "draw", watch)
+    made = style.sheet
+    monkeypatch.setattr(style, "sheet", sheet)
     return found
 
 
@@ -555,7 +481,7 @@ def test_an_animation_runs_along_the_record(filmed: list[Figure]) -> None:
         contacts.append(float(np.asarray(end.lines[1].get_xdata(), float)[0]))
         assert done == len(cursors)
 
-    history_film(result, "a title", GIF, progress)
+    history_film(result, "a title", GIF, progress=progress)
     assert cursors == trace.time[samples].tolist()
     # the contact of the enlarged end wanders with the rotation
     bearing, rotation = result.structure.bearing, trace.rotation[samples]
@@ -563,15 +489,12 @@ def test_an_animation_runs_along_the_record(filmed: list[Figure]) -> None:
     leaning = rotation != 0.0
     wanted = np.copysign(reach, rotation)[leaning]
     np.testing.assert_allclose(np.array(contacts)[leaning], wanted, rtol=1e-12)
-    assert len(filmed) == 1  # drawn whole once
     _, end, record = filmed[0].axes
     assert end.get_title() == "lower end of a column, enlarged"
     low, high = end.get_xlim()
     assert high - low < 4.0 * 0.3 * bearing.half_height  # less than twice its width
     is_drawn(curve(record, "x"), trace.time, trace.ground_acceleration)
     assert record.get_xlim() == (cursors[0], cursors[-1])
-    assert record.get_ylabel() == "$a_g$ [m/s²]"
-    assert record.get_xlabel() == "time [s]"
 
 
 def test_mode_shapes_swing_there_and_back(filmed: list[Figure]) -> None:
@@ -582,7 +505,7 @@ def test_mode_shapes_swing_there_and_back(filmed: list[Figure]) -> None:
     def progress(_done: int, _total: int) -> None:
         seen.append(np.array(curve(filmed[0].axes[0], "uplifted")[0]))
 
-    modes_film(result, "a title", GIF, progress)
+    modes_film(result, "a title", GIF, progress=progress)
     shape = np.array([0.0, *result.rolling.shapes[:, 0]])
     steps = np.cos(2.0 * np.pi * np.arange(len(seen)) / len(seen))
     assert len(seen) == 40

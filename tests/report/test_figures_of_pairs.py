@@ -13,12 +13,11 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
 from report.made_up_pairs import ANGLE, turned
-from report.small_results import KINDS, curve, is_drawn, legend, prefix
+from report.small_results import KINDS, curve, drawn, is_drawn, legend, prefix
 from rpscli import figures
 from rpscli.analyses.trace import Direction
 from rpscli.errors import UsageError
 from rpscli.report.figures.animation import PlanView, Scene, history_film
-from rpscli.report.figures.film import FilmRequest
 from rpscli.report.figures.floors import draw_accelerations
 from rpscli.report.figures.history import (
     component,
@@ -26,9 +25,10 @@ from rpscli.report.figures.history import (
     draw_moment,
     in_plane,
     lean_azimuth,
+    orbit_figure,
     rotation_figure,
 )
-from rpscli.report.figures.orbit import orbit_figure
+from rpscli.report.figures.look import FilmRequest
 
 
 @pytest.fixture(params=["rolls", "overturns", "frame", "at rest"])
@@ -68,21 +68,20 @@ def test_the_plane_turns_without_jumps_and_on_while_all_stands() -> None:
     assert np.abs(np.diff(found)).max() < 2.0 * pair.record.dt + 1e-9
 
 
-def test_displacements_in_x_and_in_y(figures: list[Figure]) -> None:
+def test_displacements_in_x_and_in_y() -> None:
     pair, plane = turned(), KINDS["rolls"]().trace
-    displacement_figure(pair, "a title")
-    axes = figures[0].axes
+    figure = drawn(displacement_figure, pair, "a title")
+    axes = figure.axes
     assert [of.get_ylabel()[:2] for of in axes] == ["x:", "y:"] * 2
     for of, part in zip(axes[:2], (np.cos(ANGLE), np.sin(ANGLE)), strict=True):
         is_drawn(curve(of, "cap beam"), plane.time, part * plane.cap_beam_displacement)
-    assert "x, y: y" in figures[0].get_suptitle()
+    assert "x, y: y" in figure.get_suptitle()
     assert component(pair, "y").trace.y is None
 
 
-def test_rotation_and_azimuth(figures: list[Figure]) -> None:
+def test_rotation_and_azimuth() -> None:
     pair = turned()
-    rotation_figure(pair, "a title")
-    ground, rotation, azimuth, events = figures[0].axes
+    ground, rotation, azimuth, events = drawn(rotation_figure, pair, "a title").axes
     assert legend(ground) == ["± resultant", "in y", "in x", "$g\\,\\tan\\alpha$ (uplift)"]
     (band,) = ground.collections
     resultant = np.asarray(band.get_paths()[0].vertices)[:, 1].max()
@@ -100,10 +99,9 @@ def circles(axes: Axes) -> list[float]:
     return [float(patch.radius) for patch in axes.patches if isinstance(patch, Circle)]
 
 
-def test_orbit_and_its_circles(figures: list[Figure]) -> None:
+def test_orbit_and_its_circles() -> None:
     pair, trace = turned("frame"), KINDS["frame"]().trace
-    orbit_figure(pair, "a title")
-    orbit, push, bar = figures[0].axes
+    orbit, push, bar = drawn(orbit_figure, pair, "a title").axes
     assert bar.get_xlabel() == "time [s]"
     made, critical = pair.structure, pair.structure.critical_rotation
     # One block rolls about its edges: 2 R times what leaning moves the middle of a flat end.

@@ -162,7 +162,6 @@ def test_the_table_of_overturning(histories: Open) -> None:
     assert len(np.unique(shares)) > 2
     (cells,) = axes.collections
     same(cells.get_array(), shares)
-    assert cells.get_clim() == (0.0, 1.0)
     written, wanted = [text.get_text().replace("\n", " ") for text in axes.texts], []
     for (y, x), part in np.ndenumerate(shares):
         of = [table[y][f"{heads[x]};{name}"] for name in ("number", "counted", "low", "high")]
@@ -231,7 +230,6 @@ def test_base_shear_against_rotation(histories: Open) -> None:
     _, points = histories("points")
     labelled(figure, r"$|\theta_{max}|/\theta_{cr}$ [-]", "$V_b/V_{st}$ [-]")
     stood = [row for row in points if row["outcome"] == "survived"]
-    highest = numbers(stood, "rotation_ratio").max()
     for fit in fits:
         axes = panels(figure)[f"tan α = {fit[ALPHA]}"]
         for rho, name in NAMES.items():
@@ -250,8 +248,6 @@ def test_base_shear_against_rotation(histories: Open) -> None:
         beyond = (turned > x * (1.0 + 1e-6)).sum()  # the break may be a point
         assert text.get_text().endswith(f"beyond,\nfrom {beyond} of {len(turned)}")
         assert text.get_text().startswith(f"saturation at {x:.3f}, {y:.2f}\n")
-        same(axes.get_xlim(), (0.0, 1.04 * highest))
-        assert axes.get_ylim()[0] == 0.0
     assert legend(figure) == [*NAMES.values(), "bilinear fit"]
 
 
@@ -275,12 +271,9 @@ def test_storey_shears_over_the_height(histories: Open) -> None:
         for label, column in looks.items():
             (patch,) = [p for p in axes.patches if p.get_label() == label]
             assert isinstance(patch, StepPatch)
-            assert patch.orientation == "horizontal"
             values, edges, _ = patch.get_data()
             same(values, numbers(profile, column))
             same(edges, range(4))
-        assert axes.get_ylim() == (0.0, 3.0)
-        assert axes.get_xlim()[0] == 0.0
 
 
 @needs_compiled_kernels
@@ -309,8 +302,6 @@ def test_incremental_dynamic_analysis(histories: Open) -> None:
         labels = [str(line.get_label()) for line in axes.lines[-4:]]
         names = ["single curves", "16 % fractile", "median", "84 % fractile"]
         assert labels == legend(figure) == names
-        same(axes.get_xlim(), (0.0, 0.97 * edge))
-        same(axes.get_ylim(), (0.0, 1.04 * SCALES[-1]))
     assert cut, "no curve that runs out of the frame was looked at"
 
 
@@ -356,8 +347,6 @@ def test_fragilities(histories: Open) -> None:
             same(numbers(data, "exceeded"), [beyond[pga == each].sum() for each in levels])
             same(numbers(data, "exceeded_share"), observed.get_ydata())
             assert all(float(row["exceeded_low"]) <= float(row["exceeded_high"]) for row in data)
-        assert axes.get_ylim() == (-0.02, 1.02)
-        assert axes.get_xlim()[0] == 0.0
     assert "overturning exceeds every limit" in figure.get_suptitle().replace("\n", " ")
 
 
@@ -385,7 +374,6 @@ def test_the_spectrum_of_pulses(tmp_path: Path) -> None:
             for ratio in ratios
         ]
         same(curve(axes, "least that overturns"), (ratios, least))
-        assert axes.get_xlim()[0] == axes.get_ylim()[0] == 0.0
 
 
 def test_modes_against_a_varied_key(tmp_path: Path) -> None:

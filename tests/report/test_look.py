@@ -5,22 +5,22 @@ from __future__ import annotations
 import io
 import re
 import warnings
+from functools import partial
 from pathlib import Path
 
 import pytest
 from matplotlib.figure import Figure
 from PIL import Image
 
-from report.small_results import KINDS
+from report.small_results import KINDS, drawn
 from rpscli.errors import UsageError
 from rpscli.report.figures import style
 from rpscli.report.figures.history import rotation_figure
-from rpscli.report.figures.look import Look, figure_files, put_in_force, read_style
+from rpscli.report.figures.look import USUAL, Look, read_style
 
 
-def drawn_as(ending: str, look: Look | None = None, title: str = "title") -> bytes:
-    with put_in_force(look or Look(), ending):
-        return rotation_figure(KINDS["rolls"](), title)
+def drawn_as(ending: str, look: Look = USUAL, title: str = "title") -> bytes:
+    return style.picture(partial(rotation_figure, KINDS["rolls"](), title), look, ending)
 
 
 def test_each_format_is_what_its_ending_says_and_the_same_for_the_same_data() -> None:
@@ -32,14 +32,14 @@ def test_each_format_is_what_its_ending_says_and_the_same_for_the_same_data() ->
 
 
 def test_formats_become_files() -> None:
-    def draw() -> bytes:
-        return style.picture(lambda figure: setattr(figure.subplots(), "axison", False), 1.0)
+    def draw(figure: Figure) -> None:
+        figure.subplots().set_axis_off()
 
-    files = figure_files({"a": draw}, Look(("svg", "pdf")))
+    files = style.figure_files({"a": draw}, Look(("svg", "pdf")))
     assert list(files) == ["a.svg", "a.pdf"]
     assert files["a.pdf"]().startswith(b"%PDF")
-    assert list(figure_files({"a": draw}, Look())) == ["a.png"]
-    assert figure_files({"a": draw}, Look(())) == {}
+    assert list(style.figure_files({"a": draw}, USUAL)) == ["a.png"]
+    assert style.figure_files({"a": draw}, Look(())) == {}
 
 
 @pytest.mark.parametrize(("columns", "inches"), [(1, 3.5), (2, 7.0)])
@@ -51,13 +51,10 @@ def test_a_figure_fills_columns_of_a_journal(columns: int, inches: float) -> Non
     assert float(found[1]) == pytest.approx(72.0 * inches)
 
 
-def test_a_style_file_goes_over_ours(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_style_file_goes_over_ours(tmp_path: Path) -> None:
     file = tmp_path / "paper.mplstyle"
     file.write_text("font.family: serif\nfont.size: 12\nfigure.figsize: 5, 9\nlines.linewidth: 3\n")
-    kept: list[Figure] = []
-    monkeypatch.setattr(Figure, "savefig", lambda figure, *_, **__: kept.append(figure))
-    drawn_as("png", Look(style=read_style(file)))
-    (figure,) = kept
+    figure = drawn(rotation_figure, KINDS["rolls"](), "title", look=Look(style=read_style(file)))
     assert figure.get_figwidth() == 5.0
     assert figure.get_figheight() != 9.0  # each figure knows how high it must be
     axes = figure.axes[1]

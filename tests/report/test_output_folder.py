@@ -10,8 +10,7 @@ from pathlib import Path
 import pytest
 
 from rpscli.errors import OutputError, Refused
-from rpscli.report.figures.look import USUAL, figure_files
-from rpscli.report.files import OutputFolder, Run, write_whole
+from rpscli.report.files import Drawing, OutputFolder, Run, write_whole
 
 
 def folder_of(
@@ -57,7 +56,8 @@ def test_results_are_written_before_anything_is_drawn(tmp_path: Path) -> None:
 
     def written(first: Callable[[], bytes]) -> OutputFolder:
         folder = folder_of(tmp_path)
-        folder.add_all(figure_files({"first": first, "second": draws}, USUAL).items())
+        for name, draw in {"first.png": first, "second.png": draws}.items():
+            folder.add(name, Drawing(name, draw))
         folder.add("a.csv", "1")
         folder.write()
         return folder

@@ -35,9 +35,9 @@ from rpscli.report import bundles
 from rpscli.report.budget import Budget, Row
 from rpscli.report.design import region_figure, requirements_figure
 from rpscli.report.figures import style
-from rpscli.report.figures.look import Look, figure_files, put_in_force
+from rpscli.report.figures.look import Look
 from rpscli.report.figures.motions import selection_figure
-from rpscli.report.figures.structure import structure_figure
+from rpscli.report.figures.structure import draw_structure
 from rpscli.report.files import Drawing
 from rpscli.report.motions import record_files
 from rpscli.report.study.heights import Floors, floor_spectra_figure
@@ -127,29 +127,28 @@ def shared(one: Any, other: Any, least: float) -> bool:
     return bool(across > least and upwards > 1.5 * least)
 
 
-def printed(drawing: Drawing, columns: int) -> list[str]:
-    with put_in_force(Look(columns=columns), "png"), style.in_style():
-        figure = style.kept_figure(drawing.draw)
-        assert isinstance(figure, Figure)
-        return [f"{drawing.name}: {fault}" for fault in faults(figure)]
+def printed(draw: style.Draw, columns: int) -> list[str]:
+    look = Look(columns=columns)
+    with style.in_style(look):
+        return [*faults(style.drawn(draw, look))]
 
 
 @pytest.mark.long
 @pytest.mark.parametrize("columns", [1, 2])
-def test_figures_of_analyses_can_be_read(columns: int) -> None:
+def test_figures_of_analyses_can_be_read(columns: int, monkeypatch: pytest.MonkeyPatch) -> None:
     devices = ViscousDamper(2e5), Stop(0.02, 4e6), Tendon(2e4, 1e6), FrictionDamper(1e5)
     made, look = replace(structure(CURVED, 6), devices=devices), Look(columns=columns)
     result = history(made, PULSE)
     storeys = [Floors((NAME.format(n),), np.ones((3, 2, 2, 6, len(PERIODS)))) for n in range(9)]
-    draw = {
-        "structure.png": lambda: structure_figure(made, TITLE),
-        "selection.png": lambda: selection_figure(a_selection(), TITLE),
-        "requirements.png": lambda: requirements_figure(of_one_unknown(), TITLE),
-        "region.png": lambda: region_figure(of_two_unknowns(), TITLE),
-        "spectra.png": lambda: floor_spectra_figure(("title",), storeys, "")(TITLE),
+    draw: dict[str, style.Draw] = {
+        "structure": style.single(draw_structure, made, (TITLE,), 4.4, 5.0),
+        "selection": partial(selection_figure, a_selection(), TITLE),
+        "requirements": partial(requirements_figure, of_one_unknown(), TITLE),
+        "region": partial(region_figure, of_two_unknowns(), TITLE),
+        "spectra": floor_spectra_figure(("title",), storeys, "")(TITLE),
     }
     files = [
-        *figure_files(draw, look).items(),
+        *style.figure_files(draw, look).items(),
         *bundles.timehistory_files(result, TITLE, look),
         *bundles.timehistory_files(turned(), TITLE, look),
         *bundles.timehistory_files(turned("yields"), TITLE, look),
@@ -163,7 +162,17 @@ def test_figures_of_analyses_can_be_read(columns: int) -> None:
     ]
     drawings = [each for _, each in files if isinstance(each, Drawing)]
     assert len(drawings) > 15
-    assert not [fault for each in drawings for fault in printed(each, columns)]
+    figures = list[Figure]()
+    monkeypatch.setattr(Figure, "savefig", lambda figure, *_, **__: figures.append(figure))
+    for each in drawings:
+        each.draw()
+    with style.in_style(look):
+        found = [
+            f"{each.name}: {fault}"
+            for each, of in zip(drawings, figures, strict=True)
+            for fault in faults(of)
+        ]
+    assert not found
 
 
 @pytest.mark.parametrize("of_rps", [False, True])
@@ -225,13 +234,10 @@ def result(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyP
 @pytest.mark.parametrize("columns", [1, 2])
 def test_reports_can_be_read(result: rpscli.StudyResult, columns: int) -> None:
     assert {*result.study.reports} == {*REPORT_NAMES}
-    found = []
-    for name in result.study.reports:
-        with put_in_force(Look(columns=columns), "png"), style.in_style():
-            figure = result.draw(name)
-            assert isinstance(figure, Figure)
-            found += [f"{name}: {fault}" for fault in faults(figure)]
-    assert not found
+    for name in REPORT_NAMES:
+        figure = result.report(name).figure
+        assert figure is not None, name
+        assert not printed(figure(TITLE), columns), name
 
 
 REPORT_NAMES = [next(iter(each)) if isinstance(each, dict) else each for each in REPORTS]
@@ -261,9 +267,8 @@ def test_a_budget_can_be_read(columns: int) -> None:
     ]
     made = Budget(case, rows)
     effect = next(effect for effect in made.effects if effect.quantity)
-    drawing = Drawing("budget.png", partial(made.figure, effect))
-    assert not printed(drawing, columns)
-    with put_in_force(Look(columns=columns), "png"):
-        (axes,) = style.kept_figure(drawing.draw).axes
+    draw = partial(made.figure, effect)
+    assert not printed(draw, columns)
+    (axes,) = style.drawn(draw, Look(columns=columns)).axes
     label = axes.get_yticklabels()[0].get_text().replace("\n", " ")
     assert label == f"damping: {change}"

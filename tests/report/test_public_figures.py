@@ -19,7 +19,7 @@ from matplotlib.figure import Figure
 from paper_structures import podium
 
 from report.made_up_pairs import turned
-from report.small_results import CURVED, KINDS, curve, history, is_drawn, structure
+from report.small_results import CURVED, KINDS, history, structure
 from rpscli import figures
 from rpscli.analyses.floor_spectra import fixed_base_floor_spectra, isolated_floor_spectra
 from rpscli.analyses.modal import modal
@@ -105,14 +105,6 @@ def test_a_panel_is_drawn_with_labels_and_units(name: str) -> None:
     parts = Figure().subfigures(1, 2, squeeze=False)[0]
     panel(name, parts[1].subplots())
     assert not parts[0].axes
-
-
-def test_its_numbers_are_those_of_the_result() -> None:
-    axes = Figure().subplots()
-    figures.displacements(axes, result())
-    trace = result().trace
-    is_drawn(curve(axes, "cap beam"), trace.time, trace.cap_beam_displacement)
-    is_drawn(curve(axes, "roof"), trace.time, trace.floor_displacements[:, -1])
 
 
 def test_fonts_are_the_users_and_style_is_ours() -> None:

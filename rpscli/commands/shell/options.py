@@ -17,8 +17,15 @@ from rpscli.case.conditions import parse_condition
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.constants import MOST_JOBS
 from rpscli.errors import UsageError, hint, listed
-from rpscli.report.figures.film import RATES, USUAL_SIZE, FilmRequest
-from rpscli.report.figures.look import FIGURES, FORMATS, USUAL, Look
+from rpscli.report.figures.look import (
+    FIGURES,
+    FORMATS,
+    RATES,
+    USUAL,
+    USUAL_SIZE,
+    FilmRequest,
+    Look,
+)
 from rpscli.report.figures.style import drawable_style
 
 FILE = click.Path(allow_dash=True, readable=False)

@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import io
+import subprocess
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -10,20 +15,19 @@ from numpy.typing import NDArray
 
 from rpscli.analyses.modal import ModalResult
 from rpscli.analyses.results import TimeHistoryResult
-from rpscli.errors import UsageError
+from rpscli.errors import OutputError, UsageError
 from rpscli.report.figures import style
-from rpscli.report.figures.bearing import BearingView, frame_end, leaning_outline
-from rpscli.report.figures.devices import SceneDevices
-from rpscli.report.figures.film import MOST_FRAMES, FilmRequest, Motion, Progress, film
+from rpscli.report.figures.bearing import BearingView, SceneDevices, displaced, frame_end, outline
 from rpscli.report.figures.history import in_plane, lean_azimuth
-from rpscli.report.figures.structure import draw_modes, level_heights, modes_size
+from rpscli.report.figures.look import ENCODER, MOST_FRAMES, USUAL, FilmRequest, Look
+from rpscli.report.figures.structure import COLUMNS, level_heights, modes_figure
 
 Array = NDArray[np.float64]
 
-BOX_ASPECT = 0.8  # height of the picture over its width
+Motion = tuple[int, Callable[[int], None]]  # how many frames, and what moves to each of them
+Progress = Callable[[int, int], None]  # is told how many frames are drawn, and of how many
 
-COLUMNS = 3
-"""Columns that are drawn where there is a cap beam; the model does not know their number."""
+BOX_ASPECT = 0.8  # height of the picture over its width
 
 
 class Scene:
@@ -44,22 +48,19 @@ class Scene:
         self.columns = [
             axes.fill([], [], fc="#C9C9C9", ec=style.BLACK, lw=0.8)[0] for _ in self.feet
         ]
-        look: dict[str, Any] = {"color": style.BLACK, "lw": 1.0}
         self.beam = axes.fill([], [], fc=style.BLUE, ec=style.BLACK, lw=0.8)[0]
         self.floors = [axes.plot([], [], color=style.BLUE, lw=3.0)[0] for _ in self.levels[1:]]
-        self.sides = [axes.plot([], [], **look)[0] for _ in (-1, 1)] if self.floors else []
+        self.sides = [axes.plot([], [], "k", lw=1.0)[0] for _ in (-1, 1)] if self.floors else []
         base = float(self.levels[0])
         self.devices = SceneDevices(axes, structure.devices, self.feet, 0.5 * self.width, base)
-        self.clock = axes.set_title("", loc="right", fontweight="bold")
+        clock: dict[str, Any] = {"xycoords": "axes fraction", "textcoords": "offset points"}
+        self.clock = axes.annotate("", (1, 1), (0, 6), ha="right", fontweight="bold", **clock)
         axes.figure.suptitle(title, fontsize=style.small(), parse_math=False)
         axes.axhline(0.0, color=style.BLACK, lw=1.0)
         drifts = f"; storey drifts x {self.magnification:g}" if self.floors else ""
         if of_pair:
             axes.set_title("along the tilt", loc="left", fontsize=style.small())
-        legend = f"bearings to scale{drifts}; {_pace(speed)}"
-        axes.set_xlabel(legend, fontsize=style.small())
-        parts = [*self.columns, self.beam, *self.sides, *self.floors, *self.devices.moving]
-        self.moving: list[style.Artist] = [*parts, self.clock]
+        axes.set_xlabel(f"bearings to scale{drifts}; {_pace(speed)}", fontsize=style.small())
         trace = result.trace
         shift = float(np.nanmax(np.abs(trace.cap_beam_displacement)))
         reach = 0.5 * self.width + shift + 0.12 * float(self.levels[-1])
@@ -75,15 +76,15 @@ class Scene:
         """Move everything to where it is at a sample."""
         trace, bearing = self.result.trace, self.result.structure.bearing
         shift, lift = float(trace.cap_beam_displacement[sample]), float(trace.lift[sample])
-        outline = leaning_outline(bearing, float(trace.rotation[sample]), shift, lift)
+        corners = outline(bearing, float(trace.rotation[sample]), shift, lift)
         for foot, column in zip(self.feet, self.columns, strict=True):
-            column.set_xy(outline + np.array([foot, 0.0]))
+            column.set_xy(corners + np.array([foot, 0.0]))
         base = float(self.levels[0]) + lift
         half = 0.5 * self.width
         if len(self.feet) > 1:
             top = base + self.thickness
-            corners = [(-half, base), (half, base), (half, top), (-half, top)]
-            self.beam.set_xy(np.array(corners) + np.array([shift, 0.0]))
+            left, right = shift - half, shift + half
+            self.beam.set_xy([(left, base), (right, base), (right, top), (left, top)])
         if self.floors:
             drift = trace.floor_displacements[sample] - shift
             x = np.concatenate([[shift], shift + self.magnification * drift])
@@ -109,8 +110,7 @@ class PlanView:
         radius = result.structure.bearing.end_half_width
         farthest = float(np.nanmax(trace.size("cap_beam_displacement")))
         self.reach = 1.15 * (radius + farthest)
-        limit = np.array([result.structure.critical_rotation])
-        critical = float(result.structure.path(limit)[1][0])
+        critical, _ = displaced(result.structure, result.structure.critical_rotation)
         for size, colour, line in ((radius, style.BLACK, ":"), (critical, style.RED, "--")):
             axes.add_patch(Circle((0.0, 0.0), size, fill=False, ec=colour, ls=line, lw=0.8))
         self.plane = axes.plot([], [], color=style.BLACK, lw=0.6, ls=(0, (6, 3)))[0]
@@ -121,11 +121,9 @@ class PlanView:
         look: dict[str, Any] = {"fontsize": style.small(), "ha": "center", "va": "center"}
         self.right = axes.text(0.0, 0.0, "right", **look)
         axes.set(xlim=(-self.reach, self.reach), ylim=(-self.reach, self.reach))
-        axes.set_aspect("equal", adjustable="box")
-        axes.set(xlabel="x [m]", ylabel="y [m]")
+        axes.set(xlabel="x [m]", ylabel="y [m]", aspect="equal")
         axes.locator_params(nbins=5)
         axes.set_title("a column from above", fontsize=style.small())
-        self.moving: list[style.Artist] = [self.plane, self.way, self.head, self.middle, self.right]
 
     def show(self, sample: int) -> None:
         """Move the head to where it is at a sample, and turn the plane in which columns lean."""
@@ -189,19 +187,31 @@ def frame_plan(result: TimeHistoryResult, wanted: FilmRequest) -> tuple[NDArray[
 
 
 def history_film(
-    result: TimeHistoryResult, title: str, wanted: FilmRequest, progress: Progress = lambda *_: None
+    result: TimeHistoryResult,
+    title: str,
+    wanted: FilmRequest,
+    look: Look = USUAL,
+    progress: Progress = lambda *_: None,
 ) -> bytes:
     """The structure where its columns lean, an end enlarged or one from above, and the record."""
     samples, speed = frame_plan(result, wanted)
 
     def draw(figure: style.Figure) -> Motion:
+        figure.set_size_inches(6.2, 4.4)
         panels = figure.subplot_mosaic(
             [["scene", "detail"], ["record", "record"]], width_ratios=[1.7, 1.0],
             height_ratios=[4.2, 1.0],
         )  # fmt: skip
         scene = Scene(panels["scene"], result, title, speed)
         trace, record = result.trace, panels["record"]
-        show_detail, moving = _detail(panels["detail"], result)
+        detail: PlanView | BearingView
+        shown: Any
+        if trace.y is not None:
+            detail, shown = PlanView(panels["detail"], result), samples
+        else:
+            detail, shown = BearingView(panels["detail"], result.structure), trace.rotation[samples]
+            frame_end(panels["detail"], result.structure.bearing)
+            panels["detail"].set_title("lower end of a column, enlarged", fontsize=style.small())
         for name, of, colour in (("y", trace.y, style.RED), ("x", trace, style.BLACK)):
             if of is not None:
                 record.plot(trace.time, of.ground_acceleration, color=colour, lw=0.6, label=name)
@@ -214,34 +224,25 @@ def history_film(
         def show(frame: int) -> None:
             sample = int(samples[frame])
             scene.show(sample)
-            show_detail(sample)
+            detail.show(shown[frame])
             cursor.set_xdata([trace.time[sample]] * 2)
 
-        return Motion(len(samples), show, [*scene.moving, *moving, cursor])
+        return len(samples), show
 
-    return film(draw, 6.2, 4.4, wanted, progress)
-
-
-def _detail(
-    axes: style.Axes, result: TimeHistoryResult
-) -> tuple[Callable[[int], object], Sequence[style.Artist]]:
-    """The picture beside the scene: a function that shows it at a sample, and what of it moves."""
-    if result.trace.y is not None:
-        above = PlanView(axes, result)
-        return above.show, above.moving
-    end, rotation = BearingView(axes, result.structure), result.trace.rotation
-    frame_end(axes, result.structure.bearing)
-    axes.set_title("lower end of a column, enlarged", fontsize=style.small())
-    return lambda sample: end.show(float(rotation[sample])), end.moving
+    return film(draw, wanted, look, progress)
 
 
 def modes_film(
-    result: ModalResult, title: str, wanted: FilmRequest, progress: Progress = lambda *_: None
+    result: ModalResult,
+    title: str,
+    wanted: FilmRequest,
+    look: Look = USUAL,
+    progress: Progress = lambda *_: None,
 ) -> bytes:
     """The figure of the modes, its shapes swinging, all at one pace."""
 
     def draw(figure: style.Figure) -> Motion:
-        draw_modes(figure, result, f"{title}   |   all modes at one pace")
+        modes_figure(result, f"{title}   |   all modes at one pace", figure)
         lines = [line for axes in figure.axes for line in axes.lines]
         shapes = [np.asarray(line.get_xdata(), dtype=float) for line in lines]
         frames = int(SWING * wanted.rate)
@@ -250,6 +251,60 @@ def modes_film(
             for line, shape in zip(lines, shapes, strict=True):
                 line.set_xdata(shape * np.cos(2.0 * np.pi * frame / frames))
 
-        return Motion(frames, show, lines)
+        return frames, show
 
-    return film(draw, *modes_size(result), wanted, progress)
+    return film(draw, wanted, look, progress)
+
+
+def film(
+    draw: Callable[[style.Figure], Motion],
+    wanted: FilmRequest,
+    look: Look = USUAL,
+    progress: Progress = lambda *_: None,
+) -> bytes:
+    """The file of a film: `draw` fills a figure and says how it moves."""
+    with style.in_style(look), TemporaryDirectory() as folder:
+        from matplotlib.animation import FFMpegWriter, PillowWriter
+
+        figure = style.sheet()
+        count, show = draw(figure)
+        # The encoder takes even numbers of pixels alone.
+        width, height = figure.get_size_inches()
+        pixels = 2.0 * np.round(0.5 * wanted.size * np.array([1.0, height / width]))
+        figure.set_dpi(wanted.size / width)
+        figure.set_size_inches(*(pixels / figure.dpi))
+        show(0)
+        _as_image(figure, partial(show, count - 1))
+        file = Path(folder, f"film{wanted.ending}")
+        writer = (FFMpegWriter if wanted.ending == ".mp4" else PillowWriter)(wanted.rate)
+        try:
+            with writer.saving(figure, str(file), figure.dpi):
+                for frame in range(count):
+                    show(frame)
+                    writer.grab_frame()
+                    progress(frame + 1, count)
+        except (BrokenPipeError, subprocess.CalledProcessError) as error:
+            reason = getattr(error, "stderr", b"") or str(error)
+            raise OutputError(f"{ENCODER} could not make the film: {reason!r:.200}") from error
+        return file.read_bytes()
+
+
+def _as_image(figure: style.Figure, move: Callable[[], None]) -> None:
+    """Put an image in the place of all that does not move: frames are drawn five times faster."""
+    figure.draw_without_rendering()  # which gives all their places
+    figure.set_layout_engine("none")
+    move()
+    drawn = (each for axes in figure.axes for each in (*axes.lines, *axes.patches, *axes.texts))
+    moving = [each for each in drawn if each.stale]
+    for each in moving:
+        each.set_visible(False)
+    still = io.BytesIO()
+    figure.savefig(still, format="rgba", dpi=figure.dpi)
+    for part in figure.findobj(lambda artist: not artist.get_children()):
+        part.set_visible(part in moving)
+    for axes in figure.axes:
+        axes.xaxis.set_visible(False)
+        axes.yaxis.set_visible(False)
+    width, height = (round(size) for size in figure.bbox.size)
+    image = np.frombuffer(still.getvalue(), np.uint8).reshape(height, width, 4)
+    figure.figimage(image, zorder=-1.0)

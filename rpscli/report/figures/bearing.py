@@ -1,46 +1,73 @@
-"""A column with its bearings: dimensions, states, and its forces where its moment is largest."""
+"""A column with its bearings and devices: dimensions, states, largest forces, loops."""
 
 from __future__ import annotations
 
 import math
-from typing import Any
+from collections.abc import Sequence
+from functools import partial
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.analyses.column_design import ColumnDemand
-from rpscli.analyses.pushover import PushoverResult
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.errors import UsageError
+from rpscli.model import devices as laws
 from rpscli.model.bearing import Bearing
 from rpscli.model.contact import Bed
-from rpscli.model.podium import PodiumStructure
+from rpscli.model.podium import Device, PodiumStructure
 from rpscli.report.figures import style
-from rpscli.report.figures.devices import SceneDevices
 from rpscli.report.figures.history import record_name
-from rpscli.report.figures.pushover import draw_force
+
+if TYPE_CHECKING:
+    from matplotlib.lines import Line2D
 
 Array = NDArray[np.float64]
+
+BRACE, POSTS, CABLES, NOWHERE = range(4)  # signs for devices in pictures of the structure
+
+
+class Drawn(NamedTuple):
+    """The drawing of a law; resistance, the force on the cap beam turned round, has the sign -1."""
+
+    scene: int
+    force: str = "resistance"
+    stroke: str = "$u_b$ [m]"
+    sign: float = -1.0
+
+
+DRAWN: dict[type[Device], Drawn] = {
+    laws.ViscousDamper: Drawn(BRACE),
+    laws.FrictionDamper: Drawn(BRACE),
+    laws.OwnDamper: Drawn(BRACE),
+    laws.Stop: Drawn(POSTS),
+    laws.Tendon: Drawn(CABLES, "tension of one", "elongation of one [m]", 1.0),
+    laws.RollingResistance: Drawn(NOWHERE),
+}
+"""All laws; the one place that a new one is drawn from."""
 
 ARC_POINTS = 12
 
 
-def upright_outline(bearing: Bearing) -> Array:
-    """Corners of the upright column about its centre, (points, 2) [m], counter-clockwise."""
+def outline(
+    bearing: Bearing, rotation: float = 0.0, displacement: float = 0.0, lift: float = 0.0
+) -> Array:
+    """Corners of the column, (points, 2) [m], counter-clockwise; turned clockwise by `rotation`."""
     # Up to B the ends are flat, then arcs of radius r up to B', and sides are straight.
     H, B, r = bearing.half_height, bearing.half_width, bearing.radius
-    turn = np.linspace(0.0, bearing.beta, ARC_POINTS if bearing.beta > 0.0 else 1)
-    corner = np.column_stack([B + r * np.sin(turn), -H + r * (1.0 - np.cos(turn))])
+    arc = np.linspace(0.0, bearing.beta, ARC_POINTS if bearing.beta > 0.0 else 1)
+    corner = np.column_stack([B + r * np.sin(arc), -H + r * (1.0 - np.cos(arc))])
     right = np.vstack([corner, corner[::-1] * (1.0, -1.0)])  # upwards
-    return np.vstack([right, -right])
-
-
-def leaning_outline(bearing: Bearing, rotation: float, displacement: float, lift: float) -> Array:
-    """Corners of the column, (points, 2) [m], turned clockwise by `rotation` [rad]."""
     cosine, sine = math.cos(rotation), math.sin(rotation)
-    turn = np.array([[cosine, -sine], [sine, cosine]])
-    centre = (0.5 * displacement, bearing.half_height + 0.5 * lift)
-    return np.asarray(upright_outline(bearing) @ turn + centre)
+    turned = np.vstack([right, -right]) @ np.array([[cosine, -sine], [sine, cosine]])
+    return np.asarray(turned + np.array([0.5 * displacement, H + 0.5 * lift]))
+
+
+def displaced(structure: PodiumStructure, rotation: float) -> tuple[float, float]:
+    """u_b, to the side of the rotation [rad], and v_b [m]."""
+    _, u, v = structure.path(np.array([abs(rotation)]))
+    return math.copysign(float(u[0]), rotation), float(v[0])
 
 
 def contact_points(bearing: Bearing, rotation: float, displacement: float, lift: float) -> Array:
@@ -56,11 +83,50 @@ ASPECT = 1.15  # largest height of the picture of a column over its width
 LEAST_ASPECT = 0.2
 """Smallest one: stops may stand far from the column, and layouts need some height."""
 END_ASPECT = 1.0  # largest height of the picture of an end over its width
-LOWER_HEIGHT = 2.7  # of the end of a column and the restoring force [in]
 NARROW = 1.5  # width of a picture in which a title needs more lines [in]
 BESIDE = 0.35  # length of the cap beam to either side of the column, over the column's width
 ROOM = (0.16, 0.10, 0.03, 0.13)
 """For dimensions: left, right, below and above the column, as parts of the picture."""
+
+
+class SceneDevices:
+    """Devices in pictures of the structure, moved with the cap beam; a legend has their names."""
+
+    # Posts stand at the gap of each stop, red and pushed aside beyond it; dampers share a brace;
+    # cables stand where the feet of the columns do. `half` is half the width of the beam, `base`
+    # the height of its underside at rest [m].
+    def __init__(
+        self, axes: style.Axes, devices: Sequence[Device], feet: Array, half: float, base: float
+    ) -> None:
+        self.feet, self.half, self.base = feet, half, base
+        by_scene: dict[int, list[Any]] = {BRACE: [], POSTS: [], CABLES: [], NOWHERE: []}
+        for device in devices:
+            by_scene[DRAWN[type(device)].scene].append(device)
+        self.stops: list[tuple[float, float, Line2D]] = [
+            (side, stop.gap, axes.plot([], [], color=style.BLACK, lw=2.5, label="stop")[0])
+            for stop in by_scene[POSTS]
+            for side in (-1.0, 1.0)
+        ]
+        cable: dict[str, Any] = {"color": style.PINK, "lw": 1.5, "label": "tendon"}
+        count = len(feet) if by_scene[CABLES] else 0
+        self.tendons = [axes.plot([], [], **cable)[0] for _ in range(count)]
+        kinds = dict.fromkeys(device.kind.replace("_", " ") for device in by_scene[BRACE])
+        look: dict[str, Any] = {"color": style.GREEN, "lw": 1.5, "marker": "s", "markevery": [1]}
+        look["label"] = f"{' and '.join(kinds)} damper"
+        self.brace = axes.plot([], [], **look, ms=5.0)[0] if kinds else None
+
+    def show(self, shift: float, lift: float) -> None:
+        """Move them with the cap beam, displaced and lifted [m]."""
+        for side, gap, post in self.stops:
+            at, pushed = side * (self.half + gap), max(side * shift - gap, 0.0)
+            post.set_data([at, at + side * pushed], [0.0, 1.06 * self.base])
+            post.set_color(style.RED if pushed else style.BLACK)
+        for foot, tendon in zip(self.feet, self.tendons, strict=False):
+            tendon.set_data([foot, foot + shift], [0.0, self.base + lift])
+        if self.brace is not None:
+            start, end = -0.75 * self.half, shift - 0.45 * self.half
+            top = self.base + lift
+            self.brace.set_data([start, 0.5 * (start + end), end], [0.0, 0.5 * top, top])
 
 
 class BearingView:
@@ -82,17 +148,13 @@ class BearingView:
         self.devices = SceneDevices(axes, structure.devices, np.zeros(1), self.half, self.height)
         axes.set(xticks=[], yticks=[])
         axes.grid(visible=False)
-        beam = [] if self.beam is None else [self.beam]
-        parts = [self.column, *beam, self.thrust, self.contacts, *self.devices.moving]
-        self.moving: list[style.Artist] = parts
 
     def show(self, rotation: float) -> tuple[float, float]:
         """Lean the column to a rotation [rad]; u_b and v_b there [m]."""
         # The dashed line joins the contacts: the weight restores as long as it leans the other way.
         bearing = self.structure.bearing
-        _, u, v = self.structure.path(np.array([abs(rotation)]))
-        shift, lift = math.copysign(float(u[0]), rotation), float(v[0])
-        self.column.set_xy(leaning_outline(bearing, rotation, shift, lift))
+        shift, lift = displaced(self.structure, rotation)
+        self.column.set_xy(outline(bearing, rotation, shift, lift))
         touching = contact_points(bearing, rotation, shift, lift)
         self.thrust.set_data(*touching.T)
         if rotation == 0.0:  # both edges of the flat part
@@ -109,39 +171,6 @@ class BearingView:
         return shift, lift
 
 
-def bearing_figure(result: PushoverResult, title: str) -> bytes:
-    """The states of a column, an end of it enlarged, and the restoring force with the states."""
-    structure = result.structure
-    beta, critical = structure.bearing.beta, structure.critical_rotation
-    states = [0.0, *([beta] if 0.0 < beta < critical else []), critical]
-    narrow = style.narrow()
-    rows, columns = (2, 2) if narrow else (1, 3)
-
-    def draw(figure: style.Figure) -> None:
-        style.heading(figure, title)
-        grid = figure.add_gridspec(2, 1)
-        above, below = (figure.add_subfigure(grid[row]) for row in (0, 1))
-        cells = above.subplots(rows, columns).ravel()
-        for axes, rotation in zip(cells, states, strict=False):
-            draw_bearing(axes, structure, rotation)
-        if len(states) < len(cells):
-            end, force = cells[len(states)], below.subplots()
-        else:
-            end, force = below.subplots(1, 2, width_ratios=[1.0, 2.0])
-        style.blank(cells[len(states) + 1 :])
-        draw_end(end, structure.bearing, structure.bed)
-        draw_force(force, result)
-        # As high as columns are with their titles: wide ones leave no gap.
-        width = style.inches(figure)[0]
-        heights = [rows * (width / columns * float(cells[0].get_box_aspect()) + 0.6), LOWER_HEIGHT]
-        grid.set_height_ratios(heights)
-        if style.given() is None:
-            figure.set_size_inches(width, 0.3 + sum(heights))
-        style.legend_below(figure, cells[: len(states)])
-
-    return style.picture(draw, 6.2)
-
-
 def draw_bearing(axes: style.Axes, structure: PodiumStructure, rotation: float = 0.0) -> None:
     """A column at a rotation [rad]: its dimensions at rest, displacement and lift if it leans."""
     if not abs(rotation) < 0.5 * math.pi:
@@ -150,12 +179,12 @@ def draw_bearing(axes: style.Axes, structure: PodiumStructure, rotation: float =
     view = BearingView(axes, structure)
     u, v = view.show(rotation)
     height, half = view.height, view.half
-    _, far, high = structure.path(np.array([max(abs(rotation), critical)]))
+    far, high = displaced(structure, max(abs(rotation), critical))
     posts = [half + gap for _, gap, _ in view.devices.stops]
-    right, left = max(float(far[0]) + half, *posts, 0.0), max(half, *posts, 0.0)
+    right, left = max(far + half, *posts, 0.0), max(half, *posts, 0.0)
     if rotation < 0.0:
         left, right = right, left
-    corners = (-left, right, 0.0, height + float(high[0]) + view.thickness)
+    corners = (-left, right, 0.0, height + high + view.thickness)
     _frame(axes, corners, ROOM, ASPECT)
     axes.set_axis_off()
     title = _state(bearing, critical, rotation, u, v)
@@ -166,23 +195,23 @@ def draw_bearing(axes: style.Axes, structure: PodiumStructure, rotation: float =
         _draw_dimensions(axes, bearing)
         return
     grey: dict[str, Any] = {"color": style.GREY, "lw": 0.7, "ls": ":"}
-    x, y = leaning_outline(bearing, 0.0, 0.0, 0.0).T
+    x, y = outline(bearing).T
     axes.plot([*x, x[0]], [*y, y[0]], **grey)
     top = height + v + 2.2 * view.thickness
     for at in (0.0, u):
         axes.plot([at, at], [height, top], **grey)
-    _arrow(axes, (0.0, top), (u, top), "$u_b$", (0.0, 2.0))
+    measure(axes, (0.0, top), (u, top), "$u_b$", offset=(0.0, 2.0))
     at = u + math.copysign(0.75 * half, rotation)
     axes.plot([0.0, at], [height, height], **grey)
     if view.beam is None:
         axes.plot([u, at], [height + v, height + v], **grey)
-    _arrow(axes, (at, height), (at, height + v), "$v_b$", (0.0, -2.0), at_end=True)
+    measure(axes, (at, height), (at, height + v), "$v_b$", offset=(0.0, -2.0), part=0.0)
 
 
 def draw_end(axes: style.Axes, bearing: Bearing, bed: Bed | None = None) -> None:
     """The lower end of a column at rest, enlarged: its widths, the radius, the edge's height."""
     half, B = bearing.end_half_width, bearing.half_width
-    x, y = leaning_outline(bearing, 0.0, 0.0, 0.0).T
+    x, y = outline(bearing).T
     axes.axhline(0.0, color=style.BLACK, lw=1.2)
     axes.fill(x, y, fc=COLUMN, ec=style.BLACK, lw=1.0)
     axes.plot([-B, B], [0.0, 0.0], color=style.RED, lw=2.5, solid_capstyle="butt")
@@ -267,63 +296,49 @@ def _frame(
 
 
 def measure(
-    axes: style.Axes, start: style.At, end: style.At, text: str, *, turned: bool = False
-) -> None:
-    """A dimension line with arrows at both ends and its text beside: on its left or below."""
-    offset = (-3.0, 0.0) if start[0] == end[0] else (0.0, -3.0)
-    _arrow(axes, start, end, text, offset, turned=turned)
-
-
-def _arrow(
     axes: style.Axes,
     start: style.At,
     end: style.At,
     text: str,
-    offset: style.At,
     *,
+    offset: style.At | None = None,
+    part: float = 0.5,
     turned: bool = False,
-    at_end: bool = False,
 ) -> None:
-    """A double arrow with a text, offset [pt] from its middle or from its start."""
+    """A double arrow and, offset [pt] from a part of it, its text: on its left or below."""
     line = {"arrowstyle": "<->", "lw": 0.6, "color": style.BLACK, "shrinkA": 0, "shrinkB": 0}
     axes.annotate("", end, start, arrowprops=line)
-    at = start if at_end else (0.5 * (start[0] + end[0]), 0.5 * (start[1] + end[1]))
-    style.note(axes, text, at, offset, rotation=90.0 if turned else 0.0)
+    at = start[0] + part * (end[0] - start[0]), start[1] + part * (end[1] - start[1])
+    beside = (-3.0, 0.0) if start[0] == end[0] else (0.0, -3.0)
+    style.note(axes, text, at, offset or beside, rotation=90.0 if turned else 0.0)
 
 
 POINTS = 81
 LONGEST = 0.4  # of the arrow of the larger force, over the height of the column
 
 
-def column_figure(result: TimeHistoryResult, title: str) -> bytes:
+def column_figure(result: TimeHistoryResult, title: str, figure: style.Figure) -> None:
     """The tilted column with its end forces beside axial force, shear and moment."""
-    narrow, demand = style.narrow(), result.column_demand
+    narrow, demand = style.narrow(figure), result.column_demand
     assert demand is not None, "it is drawn where it was computed"
-
-    def draw(figure: style.Figure) -> None:
-        at = f"t = {demand.instants[0].time:.5g} s, θ = {demand.instants[0].rotation:.3g} rad"
-        style.heading(figure, title, record_name(result), f"most loaded column at {at}")
-        if narrow:
-            grid = figure.add_gridspec(2, 3, height_ratios=[1.2, 1.0])
-            places = [grid[0, :], *(grid[1, i] for i in range(3))]
-        else:
-            grid = figure.add_gridspec(1, 4, width_ratios=[2.0, 1.0, 1.0, 1.4])
-            places = [grid[0, i] for i in range(4)]
-        panels = [figure.add_subplot(place) for place in places]
-        draw_end_forces(panels[0], result.structure, demand)
-        draw_section_forces(panels[1:], result.structure, demand)
-
-    return style.picture(draw, 6.0 if narrow else 3.6)
+    at = f"t = {demand.instants[0].time:.5g} s, θ = {demand.instants[0].rotation:.3g} rad"
+    words = title, record_name(result), f"most loaded column at {at}"
+    style.begin(figure, words, 6.0 if narrow else 3.6)
+    if narrow:
+        panels = figure.subplot_mosaic("AAA;BCD", height_ratios=[1.2, 1.0])
+    else:
+        panels = figure.subplot_mosaic("ABCD", width_ratios=[2.0, 1.0, 1.0, 1.4])
+    tilted, *sections = panels.values()
+    draw_end_forces(tilted, result.structure, demand)
+    draw_section_forces(sections, result.structure, demand)
 
 
 def draw_end_forces(axes: style.Axes, structure: PodiumStructure, demand: ColumnDemand) -> None:
     """The column to scale; arrows of the forces on it, to a scale of their own."""
     bearing, s, x = structure.bearing, demand.at_largest_moment, demand.instants[0].rotation
-    _, u, v = structure.path(np.array([abs(x)]))
-    shift, lift = math.copysign(float(u[0]), x), float(v[0])
+    shift, lift = displaced(structure, x)
     height, wide = 2.0 * bearing.half_height, bearing.end_half_width
-    outline = leaning_outline(bearing, x, shift, lift)
-    axes.fill(*outline.T, fc=COLUMN, ec=style.BLACK, lw=1.0)
+    axes.fill(*outline(bearing, x, shift, lift).T, fc=COLUMN, ec=style.BLACK, lw=1.0)
     foot, head = contact_points(bearing, x, shift, lift)
     if x == 0.0:  # in full contact, where the forces pass beside the axis
         foot, head = (np.array([s.side * s.lever, 0.0]), np.array([-s.side * s.lever, height]))
@@ -369,3 +384,30 @@ def draw_section_forces(
         if axes is not panels[0]:
             axes.tick_params(labelleft=False)
     panels[0].set_ylabel("height along the column [m]")
+
+
+def devices_figure(result: TimeHistoryResult, title: str, figure: style.Figure) -> None:
+    """The loops of all devices."""
+    narrow, count = style.narrow(figure), len(result.structure.devices)
+    columns = min(count, 2 if narrow else 3)
+    rows = -(-count // columns)
+    words = title, result.record.name, result.sampling
+    style.begin(figure, words, 0.5 + 2.7 * rows, max(2.6 * columns, 4.0))
+    draws = [partial(draw_device, result=result, index=index) for index in range(count)]
+    for axes in style.grid(figure, draws, columns):
+        axes.locator_params(axis="x", nbins=3 if narrow else 5)
+
+
+def draw_device(axes: style.Axes, result: TimeHistoryResult, index: int) -> None:
+    """Resistance of a device against displacement, of tendons tension against elongation."""
+    style.require("devices", index, range(len(result.structure.devices)))
+    trace, device = result.trace.devices, result.structure.devices[index]
+    drawn = DRAWN[type(device)]
+    force = drawn.sign * trace.force[:, index]
+    factor, prefix = style.engineering(float(np.nanmax(np.abs(force), initial=0.0)))
+    axes.plot(trace.displacement[:, index], factor * force, color=style.BLUE, lw=0.8)
+    style.cross(axes)
+    axes.set_title(f"device {index}: {device.kind.replace('_', ' ')}", fontsize=style.small())
+    stroke = drawn.stroke if result.motion.y is None else drawn.stroke.replace("u_b", "|u_b|")
+    axes.set(xlabel=stroke, ylabel=f"{drawn.force} [{prefix}N]")
+    axes.locator_params(axis="x", nbins=5)

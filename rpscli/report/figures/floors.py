@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -24,24 +25,19 @@ from rpscli.report.timehistory import StoreyDemands, fixed_base_demands, isolate
 Array = NDArray[np.float64]
 
 
+# The shear is the same all the way up a storey: storey i reaches from level i - 1 to i.
+STAIRS: dict[str, Any] = {"orientation": "horizontal", "lw": 1.3}
 ISOLATED: dict[str, Any] = {"color": style.BLUE, "label": "on bearings"}
 FIXED: dict[str, Any] = {"color": style.BLACK, "ls": "--", "label": "fixed base"}
 
 
-def profile_figure(result: TimeHistoryResult, title: str) -> bytes:
+def profile_figure(result: TimeHistoryResult, title: str, figure: style.Figure) -> None:
     """Largest storey shears beside V_st, drifts and floor accelerations."""
-
-    def draw(figure: style.Figure) -> None:
-        resultants = "largest resultants" if result.trace.y is not None else ""
-        style.heading(figure, title, record_name(result), resultants)
-        panels = figure.subplots(1, 3, sharey=True)
-        draws = draw_shears, draw_storey_drifts, draw_accelerations
-        for axes, draw_one in zip(panels, draws, strict=True):
-            draw_one(axes, result)
-            axes.label_outer()
-        style.legend_below(figure, (panels[-1], panels[0]))
-
-    return style.picture(draw, 4.2)
+    resultants = "largest resultants" if result.trace.y is not None else ""
+    style.begin(figure, (title, record_name(result), resultants), 4.2)
+    draws = draw_shears, draw_storey_drifts, draw_accelerations
+    panels = style.grid(figure, [partial(each, result=result) for each in draws], 3, sharey=True)
+    style.legend_below(figure, (panels[-1], panels[0]))
 
 
 def draw_shears(axes: style.Axes, result: TimeHistoryResult) -> None:
@@ -49,7 +45,7 @@ def draw_shears(axes: style.Axes, result: TimeHistoryResult) -> None:
     series = [*_series(result)]
     factor, prefix = style.engineering(max(float(of.storey_shears.max()) for of, _ in series))
     for demands, look in series:
-        _stairs(axes, demands.storey_shears * factor, look)
+        axes.stairs(demands.storey_shears * factor, **STAIRS, **look)
     axes.set_xlabel(STOREY_SHEARS.in_unit(f"{prefix}N"))
     static = result.structure.static_base_shear * factor
     if static > 0.0:
@@ -64,7 +60,7 @@ def draw_storey_drifts(axes: style.Axes, result: TimeHistoryResult) -> None:
         values, label = demands.storey_drifts * 1e3, STOREY_DRIFTS.in_unit("mm")
         if demands.storey_drift_ratios is not None:
             values, label = demands.storey_drift_ratios * 100.0, STOREY_DRIFT_RATIOS.in_unit("%")
-        _stairs(axes, values, look)
+        axes.stairs(values, **STAIRS, **look)
         axes.set_xlabel(label)
     _levels(axes, result.structure.storeys)
 
@@ -89,11 +85,6 @@ def _series(result: TimeHistoryResult) -> Iterator[tuple[StoreyDemands, dict[str
         yield fixed, FIXED | yields
 
 
-def _stairs(axes: style.Axes, values: Array, look: dict[str, Any]) -> None:
-    # The shear is the same all the way up a storey: storey i reaches from level i - 1 to i.
-    axes.stairs(values, np.arange(len(values) + 1), orientation="horizontal", **look, lw=1.3)
-
-
 def _levels(axes: style.Axes, storeys: int) -> None:
     axes.set(xlim=(0.0, None), ylim=(0.0, storeys + 0.15), ylabel="level (0 = cap beam)")
     axes.set_yticks(range(0, storeys + 1, max(1, storeys // 10)))
@@ -113,27 +104,28 @@ def shown_floors(count: int, most: int = MOST_FLOORS) -> list[int]:
 
 
 def floor_spectra_figure(
-    isolated: FloorSpectra, fixed: FloorSpectra | None, title: str, record: str
-) -> bytes:
+    isolated: FloorSpectra,
+    fixed: FloorSpectra | None,
+    title: str,
+    record: str,
+    figure: style.Figure,
+) -> None:
     """Pseudo-acceleration above, displacement below; one column a floor."""
     floors = shown_floors(len(isolated.displacement))
-
-    def draw(figure: style.Figure) -> None:
-        damping = f"{style.percent(isolated.damping)} damping"
-        style.heading(figure, title, record, damping, "steps of 1 ms or less")
-        grid = figure.subplots(2, len(floors), squeeze=False, sharex=True, sharey="row")
-        for column, floor in enumerate(floors):
-            for row, name in enumerate(SPECTRA):
-                draw_floor_spectrum(grid[row, column], isolated, fixed, floor, name)
-            grid[0, column].set_title(f"floor {floor}")
-        for axes in grid.flat:
-            axes.label_outer()
-        for axes in grid[:, 0]:  # once all are drawn, since a row shares its limits
-            axes.set_ylim(bottom=0.0)
-            axes.set_ylabel(axes.get_ylabel().partition(", ")[2])
-        style.legend_below(figure, grid.flat)
-
-    return style.picture(draw, 4.8)
+    damping = f"{style.percent(isolated.damping)} damping"
+    style.begin(figure, (title, record, damping, "steps of 1 ms or less"), 4.8)
+    draws = [
+        partial(draw_floor_spectrum, isolated=isolated, fixed=fixed, floor=floor, name=name)
+        for name in SPECTRA
+        for floor in floors
+    ]
+    panels = style.grid(figure, draws, len(floors), sharex=True, sharey="row")
+    for axes, floor in zip(panels, floors, strict=False):
+        axes.set_title(f"floor {floor}")
+    for axes in panels[:: len(floors)]:  # once all are drawn, since a row shares its limits
+        axes.set_ylim(bottom=0.0)
+        axes.set_ylabel(axes.get_ylabel().partition(", ")[2])
+    style.legend_below(figure, panels)
 
 
 def draw_floor_spectrum(
@@ -158,29 +150,14 @@ def draw_floor_spectrum(
 MOST_STOREYS = 6  # in the picture; columns of timehistory.csv have all
 
 
-def loops_figure(result: TimeHistoryResult, title: str) -> bytes:
+def loops_figure(result: TimeHistoryResult, title: str, figure: style.Figure) -> None:
     """Shear over drift of storeys from the first one up, to one scale."""
     storeys = shown_floors(result.structure.storeys, MOST_STOREYS)
-    columns = min(len(storeys), 2 if style.narrow() else 3)
+    columns = min(len(storeys), 2 if style.narrow(figure) else 3)
     rows = -(-len(storeys) // columns)
-
-    def draw(figure: style.Figure) -> None:
-        style.heading(figure, title, record_name(result), result.sampling)
-        grid = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
-        for axes, storey in zip(grid.flat, storeys, strict=False):
-            draw_loop(axes, result, storey)
-        for axes in grid.flat[len(storeys) :]:
-            axes.set_visible(False)
-        for place, axes in enumerate(grid.flat):
-            if place % columns:
-                axes.set_ylabel("")
-            if place + columns < len(storeys):
-                axes.set_xlabel("")
-            else:  # the last one of its column, maybe above a place that stays empty
-                axes.xaxis.set_tick_params(labelbottom=True)
-        style.legend_below(figure, grid.flat)
-
-    return style.picture(draw, 0.9 + 2.1 * rows)
+    style.begin(figure, (title, record_name(result), result.sampling), 0.9 + 2.1 * rows)
+    draws = [partial(draw_loop, result=result, storey=storey) for storey in storeys]
+    style.legend_below(figure, style.grid(figure, draws, columns, sharex=True, sharey=True))
 
 
 def draw_loop(axes: style.Axes, result: TimeHistoryResult, storey: int) -> None:

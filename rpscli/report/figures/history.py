@@ -1,12 +1,12 @@
-"""Rotation, events, displacements, moments and energy of a time history."""
+"""Rotation, events, displacements, moments, energy and orbit of a time history."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import fields, replace
 from functools import partial
-from itertools import cycle
-from typing import Any, Literal, get_args
+from itertools import cycle, pairwise
+from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,11 @@ from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.trace import Trace
 from rpscli.errors import UsageError
 from rpscli.report.figures import style
+
+if TYPE_CHECKING:
+    from matplotlib.collections import LineCollection
+
+Array = NDArray[np.float64]
 
 Way = Literal["x", "y"]
 WAYS: tuple[Way, ...] = get_args(Way)
@@ -67,62 +72,19 @@ def in_plane(result: TimeHistoryResult, *, one_sided: bool = False) -> TimeHisto
     return replace(result, trace=seen)
 
 
-MOST = 50_000  # samples that are drawn as they are
-
-STRETCHES = 2_000  # more than a figure has points across
-
-
-def extremes(*curves: NDArray[Any]) -> NDArray[np.intp]:
-    """Samples of curves (samples,) to draw: first, last, and least and largest of each stretch."""
-    count = len(curves[0])
-    if count <= MOST:
-        return np.arange(count)
-    length = -(-count // STRETCHES)
-    ends = np.array([0, count - 1])
-    found = [ends]
-    for curve in curves:
-        rows = np.pad(curve, (0, -count % length), mode="edge").reshape(-1, length)
-        starts = np.arange(len(rows)) * length
-        found += [starts + rows.argmin(axis=1), starts + rows.argmax(axis=1)]
-    return np.unique(np.minimum(np.concatenate(found), count - 1))
-
-
-def thinned(result: TimeHistoryResult) -> TimeHistoryResult:
-    """The history with the samples that its figures need; maxima stay what they are."""
-    # But for those of velocities, which are of all samples, and are not drawn: these are no
-    # numbers.
-    trace = result.trace
-    if len(trace.time) <= MOST:
-        return result
-    floors = [floor - 1 for floor in shown_floors(result.structure.storeys)]
-    kept = extremes(
-        trace.rotation, trace.phase, trace.energy_input, trace.energy_stored,
-        *trace.devices.force.T, *trace.devices.displacement.T,
-        *(curve for of in (trace, trace.y) if of is not None for curve in (
-            of.ground_acceleration, of.cap_beam_displacement, of.driving_moment,
-            *of.floor_displacements.T[floors], *(of.drifts.T if result.structure.yields else ()),
-        )),
-    )  # fmt: skip
-    few, fixed = trace.at(kept), result.fixed_base
-    few = replace(few, floor_velocities=np.full_like(few.floor_velocities, np.nan))
-    if fixed is not None:
-        none = np.empty((0, result.structure.storeys))
-        fixed = replace(fixed, floor_displacements=none, acceleration_histories=none)
-    return replace(result, trace=few, fixed_base=fixed)
-
-
 FLOOR_COLOURS = (style.RED, style.ORANGE, style.GREEN)
 PALE = "#B5B5B5"
 """Of what lies below something else."""
 
 
-def displacement_figure(result: TimeHistoryResult, title: str) -> bytes:
+def displacement_figure(result: TimeHistoryResult, title: str, figure: style.Figure) -> None:
     """Roof and cap beam over the ground; below, roof and floors at mid-height over the cap beam."""
     draws = [draw_displacements, draw_drifts][: 2 if result.structure.storeys else 1]
     ways = WAYS if result.trace.y is not None else WAYS[:1]
     panels = [partial(draw_one, result=result, way=way) for draw_one in draws for way in ways]
     words = title, record_name(result), result.sampling
-    return style.stacked(panels, words, 1.2 + 1.8 * len(panels))
+    style.begin(figure, words, 1.2 + 1.8 * len(panels))
+    style.grid(figure, panels, sharex=True)
 
 
 def draw_displacements(axes: style.Axes, result: TimeHistoryResult, way: Way = "x") -> None:
@@ -131,38 +93,28 @@ def draw_displacements(axes: style.Axes, result: TimeHistoryResult, way: Way = "
     base = "cap beam" if result.structure.cap_beam_mass > 0.0 else "top of the columns"
     wide: dict[str, Any] = {"color": PALE, "lw": 3.0} if result.structure.storeys else {}
     axes.plot(trace.time, trace.cap_beam_displacement, **{"color": style.BLACK} | wide, label=base)
-    _draw_floors(axes, result, trace.floor_displacements, 1, lw=0.8)
-    axes.set_ylabel(f"{_in(result, way)}displacement relative\nto the ground [m]")
-    style.legend_above(axes)
-
-
-def _in(result: TimeHistoryResult, way: Way) -> str:
-    """Begins a label where both components act."""
-    return "" if result.trace.y is None else f"{way}: "
+    _draw_floors(axes, result, way, trace.floor_displacements, "ground", 1)
 
 
 def draw_drifts(axes: style.Axes, result: TimeHistoryResult, way: Way = "x") -> None:
     """Floors relative to the cap beam."""
     trace = component(result, way).trace
     drifts = trace.floor_displacements - trace.cap_beam_displacement[:, None]
-    _draw_floors(axes, result, drifts, lw=0.8)
-    axes.set_ylabel(f"{_in(result, way)}displacement relative\nto the cap beam [m]")
-    style.legend_above(axes)
+    _draw_floors(axes, result, way, drifts, "cap beam")
 
 
 def _draw_floors(
-    axes: style.Axes,
-    result: TimeHistoryResult,
-    values: NDArray[np.float64],
-    most: int = 3,
-    **look: Any,
+    axes: style.Axes, result: TimeHistoryResult, way: Way, values: Array, over: str, most: int = 3
 ) -> None:
     """Some columns of (samples, n), the roof's first, with time below."""
     time, storeys = result.trace.time, result.structure.storeys
     for floor, colour in zip(shown_floors(storeys)[:most], FLOOR_COLOURS, strict=False):
         name = "roof" if floor == storeys else f"floor {floor}"
-        axes.plot(time, values[:, floor - 1], color=colour, label=name, **look)
+        axes.plot(time, values[:, floor - 1], color=colour, label=name, lw=0.8)
+    both = f"{way}: " * (result.trace.y is not None)
     axes.set(xlim=(0.0, time[-1]), xlabel="time [s]")
+    axes.set_ylabel(f"{both}displacement relative\nto the {over} [m]")
+    style.legend_above(axes)
 
 
 def shown_floors(storeys: int) -> list[int]:
@@ -171,9 +123,7 @@ def shown_floors(storeys: int) -> list[int]:
     return sorted({round(third * k) for k in (1, 2, 3)} - {0}, reverse=True)
 
 
-EventRow = tuple[tuple[str, ...], str, str]
-
-EVENT_ROWS: tuple[EventRow, ...] = (
+EVENT_ROWS = (
     (("uplift",), "uplift", style.GREEN),
     (("impact",), "impact", style.BLACK),
     (("pass",), "pass", style.BLACK),
@@ -188,24 +138,20 @@ PHASES = ((1, "rolling", style.ROLLING_SHADE), (2, "rocking", style.ROCKING_SHAD
 NEAR = 8.0  # a level up to so many times the largest rotation is brought into view
 
 
-def rotation_figure(result: TimeHistoryResult, title: str) -> bytes:
+def rotation_figure(result: TimeHistoryResult, title: str, figure: style.Figure) -> None:
     """Ground acceleration, rotation with its phases, and events; of pairs the azimuth as well."""
     rows, both = _rows(result), result.trace.azimuth is not None
     draws: list[Callable[..., None]]
     draws = [draw_ground, draw_rotation, *[draw_azimuth] * both, *[draw_events] * bool(rows)]
     heights = [1.3 if both else 1.0, 2.4, *[0.9] * both, *[0.18 * len(rows)] * bool(rows)]
-
-    def draw_last(axes: style.Axes) -> None:
-        draws[-1](axes, result)
-        axes.set(xlim=(0.0, result.trace.time[-1]), xlabel="time [s]")
-
-    panels = [partial(draw_one, result=result) for draw_one in draws[:-1]]
-    words = title, record_name(result), result.sampling
-    height = 4.6 + 0.15 * len(rows) + 1.3 * both + 0.6 * style.narrow()
-    return style.stacked([*panels, draw_last], words, height, ratios=heights)
+    height = 4.6 + 0.15 * len(rows) + 1.3 * both + 0.6 * style.narrow(figure)
+    style.begin(figure, (title, record_name(result), result.sampling), height)
+    panels = [partial(draw_one, result=result) for draw_one in draws]
+    style.grid(figure, panels, ratios=heights, sharex=True)
+    figure.axes[-1].set_xlim(0.0, result.trace.time[-1])
 
 
-def _rows(result: TimeHistoryResult) -> list[EventRow]:
+def _rows(result: TimeHistoryResult) -> list[tuple[tuple[str, ...], str, str]]:
     """Kinds of event that there are."""
     return [row for row in EVENT_ROWS if any(event.kind in row[0] for event in result.events)]
 
@@ -244,11 +190,11 @@ def draw_azimuth(axes: style.Axes, result: TimeHistoryResult) -> None:
 
 QUARTER = 90.0  # turns between two samples that are larger are not drawn as a line [deg]
 
-Level = tuple[str, float, str, str]  # symbol, rotation [rad], line and colour
 
-
-def levels(result: TimeHistoryResult, near: float = NEAR) -> tuple[list[Level], float]:
-    """beta and theta_cr, and how far to look to see the motion and those that are near [rad]."""
+def levels(
+    result: TimeHistoryResult, near: float = NEAR
+) -> tuple[list[tuple[str, float, str, str]], float]:
+    """Of beta and theta_cr symbol, value, line and colour; how far to look to see the near ones."""
     critical, beta = result.structure.critical_rotation, result.structure.bearing.beta
     found = [("\\beta", beta, ":", style.PINK)] if beta > 0.0 else []
     found.append(("\\theta_{cr}", critical, "--", style.RED))
@@ -279,7 +225,8 @@ def draw_rotation(axes: style.Axes, result: TimeHistoryResult) -> None:
         if not one_sided:
             axes.axhline(-value, color=colour, ls=line)
     axes.set(ylabel="rotation $\\theta$ [rad]", xlabel="time [s]")
-    ratio = axes.secondary_yaxis("right", functions=style.over(critical))
+    over = (lambda rotation: rotation / critical), (lambda ratio: ratio * critical)
+    ratio = axes.secondary_yaxis("right", functions=over)
     ratio.set_ylabel("$\\theta/\\theta_{cr}$ [-]")
     style.legend_above(axes)
 
@@ -297,12 +244,6 @@ def draw_events(axes: style.Axes, result: TimeHistoryResult) -> None:
         names.append(f"{name}: {len(times)}")
     axes.set_yticks(range(len(rows)), names)
     axes.set_xlabel("time [s]")
-
-
-def moment_figure(result: TimeHistoryResult, title: str) -> bytes:
-    """Moment against rotation."""
-    note = "" if result.trace.y is None else "along the tilt, where going round drives too"
-    return style.single(draw_moment, result, (title, record_name(result), note), 4.2, 6.0)
 
 
 def draw_moment(axes: style.Axes, result: TimeHistoryResult) -> None:
@@ -356,29 +297,19 @@ DEVICE_COLOURS = (style.RED, style.PINK, style.BLUE, style.GREY)
 """Of what each device dissipates, from the first on."""
 
 
-def energy_figure(result: TimeHistoryResult, title: str) -> bytes:
-    """Input and where it went."""
-    return style.single(draw_energy, result, (title, record_name(result)), 3.4)
-
-
 def draw_energy(axes: style.Axes, result: TimeHistoryResult) -> None:
     """Input against what is stored and lost on the way, one on top of the other."""
     trace, made = result.trace, result.structure
     largest = np.nanmax(np.abs([trace.energy_input, trace.energy_stored]))
     factor, prefix = style.engineering(float(largest))
     passes = result.both_components and not result.structure.passes_smoothly
-    devices = [
-        (energy, f"device {index}: {device.kind.replace('_', ' ')}", colour)
-        for index, (device, energy, colour) in enumerate(
-            zip(made.devices, trace.devices.energy.T, cycle(DEVICE_COLOURS), strict=False)
-        )
-    ]
+    names = [f"device {i}: {each.kind.replace('_', ' ')}" for i, each in enumerate(made.devices)]
     parts = [
         *[(trace.energy_damped, "damped in the building", style.SKY)] * bool(made.storeys),
         *[(trace.energy_damped_vertical, "damped vertically", style.PINK)] * bool(made.upwards),
         *[(trace.energy_bed, "dissipated in the joints", style.BLUE)] * bool(made.bed),
         *[(trace.energy_yielded, "yielding of storeys", YIELDED)] * made.yields,
-        *devices,
+        *zip(trace.devices.energy.T, names, cycle(DEVICE_COLOURS), strict=False),
         (trace.energy_impact, f"lost at {'passes' if passes else 'impacts'} (net)", style.ORANGE),
         (trace.energy_stored, "kinetic, elastic and gravitational", style.GREEN),
     ]
@@ -390,3 +321,104 @@ def draw_energy(axes: style.Axes, result: TimeHistoryResult) -> None:
     axes.plot(trace.time, factor * trace.energy_input, color=style.BLACK, label="input")
     axes.set(xlim=(0.0, trace.time[-1]), xlabel="time [s]", ylabel=f"energy [{prefix}J]")
     style.legend_above(axes)
+
+
+PIECES = 240  # of a path, each of one colour
+CIRCLE_NEAR = 3.0  # a circle up to so many times the largest displacement is brought into view
+DARK = 0.88  # colours up to this part of a map can be seen on white
+
+
+def orbit_figure(result: TimeHistoryResult, title: str, figure: style.Figure) -> None:
+    """The orbit of the cap beam beside that of the driving moment, time in colour."""
+    narrow = style.narrow(figure)
+    words = title, record_name(result), result.sampling
+    style.begin(figure, words, 7.6 if narrow else 4.7)
+    panels = figure.subplots(*((2, 1) if narrow else (1, 2)))
+    lines = draw_path(panels[0], result)
+    draw_push(panels[1], result)
+    place: dict[str, Any] = {"location": "bottom", "shrink": 0.6, "aspect": 40, "pad": 0.03}
+    figure.colorbar(lines, ax=panels, label="time [s]", **place)
+
+
+def draw_orbit(axes: style.Axes, result: TimeHistoryResult) -> None:
+    """The orbit of the cap beam with the circles of beta and theta_cr, and what colours mean."""
+    axes.figure.colorbar(draw_path(axes, result), ax=axes, label="time [s]")
+
+
+def draw_path(axes: style.Axes, result: TimeHistoryResult) -> LineCollection:
+    """The orbit, without what its colours mean."""
+    trace = result.trace
+    if trace.y is None:
+        raise UsageError("a panel of orbit: needs a history under both horizontal components")
+    drawn = (trace.cap_beam_displacement, trace.y.cap_beam_displacement)
+    found, reach = levels(result, CIRCLE_NEAR)
+    ends = result.structure.path(np.array([reach, *(value for _, value, *_ in found)]))[1]
+    circles = [
+        (float(u), f"${symbol}$: {u:.3g} m", line, colour)
+        for u, (symbol, _, line, colour) in zip(ends[1:], found, strict=True)
+    ]
+    lines = _in_colours(axes, result, drawn, float(ends[0]), circles)
+    axes.set(xlabel="cap beam $u_{b,x}$ [m]", ylabel="cap beam $u_{b,y}$ [m]")
+    return lines
+
+
+def draw_push(axes: style.Axes, result: TimeHistoryResult) -> None:
+    """Moment of ground and building about the contacts, x against y, with the uplift circle."""
+    trace, structure = result.trace, result.structure
+    assert trace.y is not None, "both components act"
+    both = np.array([trace.driving_moment, trace.y.driving_moment])
+    lifts = np.finfo(float).tiny if structure.bed is None else structure.bed.uplift_rotation
+    least = float(result.restoring_moment(np.array([lifts]))[0])
+    factor, prefix = style.engineering(max(least, float(np.nanmax(np.hypot(*both)))))
+    alone = structure.devices or result.motion.vertical is not None
+    name = f"uplift{', by the weight alone' if alone else ''}: {factor * least:.3g} {prefix}N m"
+    circles = [(factor * least, name, "--", style.BLACK)]
+    if structure.bearing.is_spherical:
+        circles = []  # they roll from the first moment on
+    reach = 1.08 * factor * max(least, float(np.nanmax(np.abs(both))))
+    _in_colours(axes, result, (factor * both[0], factor * both[1]), reach, circles)
+    axes.set(xlabel=f"driving moment, x [{prefix}N m]", ylabel=f"driving moment, y [{prefix}N m]")
+
+
+def _in_colours(
+    axes: style.Axes,
+    result: TimeHistoryResult,
+    path: tuple[Array, Array],
+    reach: float,
+    circles: list[tuple[float, str, str, str]],
+) -> LineCollection:
+    """A path and circles about the origin, of one scale both ways."""
+    import matplotlib as mpl
+    from matplotlib.collections import LineCollection
+    from matplotlib.colors import ListedColormap
+    from matplotlib.patches import Circle
+    from matplotlib.patheffects import withStroke
+
+    time = result.trace.time
+    leans = np.flatnonzero(result.trace.rotation > 0.0)
+    first, last = (max(leans[0] - 1, 0), leans[-1]) if leans.size else (0, len(time) - 1)
+    edges = np.unique(np.linspace(first, last, PIECES + 1).astype(int))
+    points = np.column_stack(path)
+    pieces = list(pairwise(edges))
+    shades = mpl.colormaps[str(mpl.rcParams["image.cmap"])](np.linspace(0.0, DARK, 256))
+    lines = LineCollection([points[a : b + 1] for a, b in pieces], cmap=ListedColormap(shades))
+    lines.set(linewidth=0.7, capstyle="round")
+    lines.set_array(np.array([0.5 * (time[a] + time[b]) for a, b in pieces]))
+    lines.set_clim(time[first], time[last])
+    axes.add_collection(lines)
+    for radius, label, line, colour in circles:
+        outside = " (outside)" * (radius > 1.4 * reach)
+        axes.plot([], [], color=colour, ls=line, label=f"{label}{outside}")
+        look: dict[str, Any] = {"ec": colour, "ls": line, "lw": 1.3, "zorder": 3.0}
+        look["path_effects"] = [withStroke(linewidth=3.0, foreground="white")]
+        axes.add_patch(Circle((0.0, 0.0), radius, fill=False, **look))
+    axes.axhline(0.0, color=style.GREY, lw=0.4)
+    axes.axvline(0.0, color=style.GREY, lw=0.4)
+    axes.set(xlim=(-reach, reach), ylim=(-reach, reach))
+    axes.set_aspect("equal", adjustable="box")
+    axes.locator_params(nbins=5)
+    if axes.get_window_extent().width < 2.6 * axes.figure.dpi:
+        end = float(f"{0.7 * reach:.0e}")
+        axes.set(xticks=(-end, end), yticks=(-end, 0.0, end))
+    style.legend_above(axes)
+    return lines

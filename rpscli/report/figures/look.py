@@ -1,22 +1,21 @@
-"""The look of figures: formats, width, and what a user's own style file says."""
+"""The look of figures and films: formats, width, and what a user's own style file says."""
 
 from __future__ import annotations
 
 import logging
 import os
 import re
+import shutil
 import sys
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from contextvars import ContextVar
 from dataclasses import dataclass, field
-from functools import partial
 from pathlib import Path
-from typing import Any, TypeAlias, cast
+from typing import Any, cast
 
 from rpscli.errors import UsageError
 from rpscli.registry import Registry
-from rpscli.report.files import Drawing
+from rpscli.report.files import require_writable_file
 from rpscli.user_cache import is_writable, user_cache, users_folder
 
 FORMATS = ("png", "svg", "pdf")
@@ -68,39 +67,49 @@ class Look:
         return {**sizes, **self.style}
 
 
-Draw: TypeAlias = Callable[[], bytes]  # makes the file of a figure
+RATES = {".gif": 20, ".mp4": 30}  # frames a second, by the ending of the file
+USUAL_SIZE = 900  # width [pixels]
+MOST_FRAMES = 3000
+ENCODER = "ffmpeg"
+
+
+@dataclass(frozen=True)
+class FilmRequest:
+    """A film to be made, whose ending says the format; it is refused before the work."""
+
+    file: Path
+    size: int = USUAL_SIZE  # width [pixels]
+    speed: float | None = None  # times real time; None fits the motion into some seconds
+    first: float | None = None  # [s]; None where the motion begins
+    last: float | None = None
+
+    def __post_init__(self) -> None:
+        """Refuse before anything is computed."""
+        if self.ending not in RATES:
+            raise UsageError(f"--animate {self.file}: must end with {' or '.join(RATES)}")
+        if self.ending == ".mp4" and shutil.which(ENCODER) is None:
+            raise UsageError(
+                f"--animate {self.file}: MP4 needs the program {ENCODER}, which is not on the"
+                f" path; install it, or write {self.file.with_suffix('.gif')}"
+            )
+        if self.last is not None and (self.first or 0.0) >= self.last:
+            raise UsageError(
+                f"--animate-to {self.last:g} must be later than --animate-from {self.first or 0:g}"
+            )
+        require_writable_file(self.file)
+
+    @property
+    def ending(self) -> str:
+        """Of the file."""
+        return self.file.suffix.lower()
+
+    @property
+    def rate(self) -> int:
+        """Frames a second."""
+        return RATES[self.ending]
+
 
 USUAL = Look()  # the look for a user who asks for nothing
-
-
-IN_FORCE: ContextVar[tuple[Look, str]] = ContextVar("look", default=(USUAL, "png"))
-"""The look of a figure that is drawn now, and the ending of its file."""
-
-
-@contextmanager
-def put_in_force(look: Look, ending: str) -> Iterator[None]:
-    """Figures are drawn with this look, in the format of this ending."""
-    token = IN_FORCE.set((look, ending))
-    try:
-        yield
-    finally:
-        IN_FORCE.reset(token)
-
-
-def drawn_with(look: Look, ending: str, draw: Draw) -> bytes:
-    """The file of a figure with a look, in the format of an ending."""
-    with put_in_force(look, ending):
-        return draw()
-
-
-def figure_files(figures: Mapping[str, Draw], look: Look) -> dict[str, Drawing]:
-    """The files of figures, given by their names without ending, in each format that is wanted."""
-    return {
-        name: Drawing(name, partial(drawn_with, look, ending, draw))
-        for stem, draw in figures.items()
-        for ending in look.endings
-        for name in [f"{stem}.{ending}"]
-    }
 
 
 def quiet_matplotlib() -> None:

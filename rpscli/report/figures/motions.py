@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from itertools import cycle
 from typing import Any, Literal
 
@@ -15,7 +16,6 @@ from rpscli.records.measures import ResponseSpectrum, displacement, velocity
 from rpscli.records.selection import Selection
 from rpscli.records.target import COMPONENTS
 from rpscli.report.figures import style
-from rpscli.report.figures.history import extremes
 
 LOOKS = [
     (line, colour)
@@ -34,28 +34,23 @@ QUANTITIES: dict[Quantity, tuple[str, str]] = {
 
 
 def record_figure(
-    motion: GroundMotion, spectrum: ResponseSpectrum, period: float | None = None
-) -> bytes:
+    motion: GroundMotion, spectrum: ResponseSpectrum, period: float | None, figure: style.Figure
+) -> None:
     """Time histories, and the spectrum with the first period of a building [s] if it is known."""
-
-    def draw(figure: style.Figure) -> None:
-        style.heading(figure, motion.name, motion.description[:90])
-        rows, columns = (2, 1) if style.narrow() else (1, 2)
-        left, right = figure.subfigures(
-            rows, columns, width_ratios=[1.45, 1.0][:columns], height_ratios=[1.6, 1.0][:rows],
-            squeeze=False,
-        ).flat  # fmt: skip
-        for axes, quantity in zip(left.subplots(3, 1, sharex=True), QUANTITIES, strict=True):
-            draw_motion(axes, motion, quantity)
-            axes.label_outer()
-        left.align_ylabels()
-        axes = right.subplots()
-        draw_spectrum(axes, spectrum)
-        if period is not None:
-            axes.axvline(period, color=style.BLUE, ls="--", label=f"$T_1$ = {period:.3g} s")
-            style.legend_above(axes)
-
-    return style.picture(draw, 6.4 if style.narrow() else 4.2, 8.0)
+    narrow = style.narrow(figure)
+    style.begin(figure, (motion.name, motion.description[:90]), 6.4 if narrow else 4.2, 8.0)
+    rows, columns = (2, 1) if narrow else (1, 2)
+    left, right = figure.subfigures(
+        rows, columns, width_ratios=[1.45, 1.0][:columns], height_ratios=[1.6, 1.0][:rows],
+        squeeze=False,
+    ).flat  # fmt: skip
+    draws = [partial(draw_motion, motion=motion, quantity=q) for q in QUANTITIES]
+    style.grid(left, draws, sharex=True)
+    axes = right.subplots()
+    draw_spectrum(axes, spectrum)
+    if period is not None:
+        axes.axvline(period, color=style.BLUE, ls="--", label=f"$T_1$ = {period:.3g} s")
+        style.legend_above(axes)
 
 
 def draw_motion(
@@ -69,8 +64,7 @@ def draw_motion(
         integral = velocity if quantity == "velocity" else displacement
         values = integral(values, motion.dt)
     time, peak = motion.time, int(np.argmax(np.abs(values)))
-    kept = extremes(values)
-    axes.plot(time[kept], values[kept], color=colour, lw=0.7)
+    axes.plot(time, values, color=colour, lw=0.7)
     axes.plot(time[peak], values[peak], "o", color=style.RED, ms=4.0)
     axes.set(xlim=(0.0, motion.duration), xlabel="time [s]", ylabel=f"{quantity}\n[{unit}]")
     text = f"peak {abs(values[peak]):.3g} at {time[peak]:.2f} s"
@@ -91,11 +85,6 @@ def _frame(axes: style.Axes, spectrum: ResponseSpectrum) -> None:
     axes.set(xlabel="period [s]", xlim=(0.0, spectrum.periods[-1]), ylim=(0.0, None))
 
 
-def spectra_figure(spectra: Sequence[ResponseSpectrum], title: str) -> bytes:
-    """Spectra of several records under a title."""
-    return style.single(draw_spectra, spectra, (title,), 3.2)
-
-
 def draw_spectra(axes: style.Axes, spectra: Sequence[ResponseSpectrum]) -> None:
     """Pseudo-acceleration against period: each record thin, the median thick."""
     if not spectra:
@@ -110,25 +99,19 @@ def draw_spectra(axes: style.Axes, spectra: Sequence[ResponseSpectrum]) -> None:
     style.legend_above(axes)
 
 
-def selection_figure(selection: Selection, title: str) -> bytes:
+def selection_figure(selection: Selection, title: str, figure: style.Figure) -> None:
     """Spectra on the left, PGV against PGD of the scaled motions on the right."""
-    of = COMPONENTS[selection.of]
     note = (
-        f"{len(selection.chosen)} of {selection.candidates}, {of}; misfit of the mean"
-        f" {selection.misfit:.3f}, factors at a bound: {selection.clamped}"
+        f"{len(selection.chosen)} of {selection.candidates}, {COMPONENTS[selection.of]}; misfit of"
+        f" the mean {selection.misfit:.3f}, factors at a bound: {selection.clamped}"
     )
-
-    def draw(figure: style.Figure) -> None:
-        style.heading(figure, title, note)
-        if style.narrow():
-            left, right = figure.subplots(2, 1, height_ratios=[1.6, 1.0])
-        else:
-            left, right = figure.subplots(1, 2, width_ratios=[1.6, 1.0])
-        _draw_spectra(left, selection)
-        _draw_peaks(right, selection)
-        style.legend_below(figure, [left])
-
-    return style.picture(draw, 6.0 if style.narrow() else 3.8, 8.0)
+    narrow, ratios = style.narrow(figure), [1.6, 1.0]
+    style.begin(figure, (title, note), 6.0 if narrow else 3.8, 8.0)
+    way: dict[str, Any] = {"height_ratios": ratios} if narrow else {"width_ratios": ratios}
+    left, right = figure.subplots(*((2, 1) if narrow else (1, 2)), **way)
+    _draw_spectra(left, selection)
+    _draw_peaks(right, selection)
+    style.legend_below(figure, [left])
 
 
 def _draw_spectra(axes: style.Axes, selection: Selection) -> None:

@@ -1,14 +1,26 @@
-"""The structure at rest, drawn to scale with its dimensions; and its modes."""
+"""The structure at rest, to scale with its dimensions; its modes; its forces when pushed."""
 
 from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.analyses.modal import ModalResult
+from rpscli.analyses.pushover import PushoverResult
+from rpscli.errors import UsageError
 from rpscli.model.podium import PodiumStructure
 from rpscli.report.figures import style
-from rpscli.report.figures.bearing import BEAM, COLUMN, leaning_outline, measure
+from rpscli.report.figures.bearing import (
+    BEAM,
+    COLUMN,
+    draw_bearing,
+    draw_end,
+    measure,
+    outline,
+)
 
 STOREY_HEIGHT = 3.0  # drawn for a case that gives none [m]
 
@@ -28,11 +40,6 @@ COLUMNS = 3  # columns under a cap beam: their number and distances are not draw
 MOST_LEVELS = 20  # with more storeys, their heights are not written one by one
 
 
-def structure_figure(structure: PodiumStructure, title: str) -> bytes:
-    """Elevation with heights and masses."""
-    return style.single(draw_structure, structure, (title,), 4.4, 5.0)
-
-
 def draw_structure(axes: style.Axes, structure: PodiumStructure) -> None:
     """Columns, cap beam and storeys at rest."""
     axes.set_aspect("equal")
@@ -41,9 +48,8 @@ def draw_structure(axes: style.Axes, structure: PodiumStructure) -> None:
     height = float(levels[0])
     width = 1.5 * max(height, 0.35 * float(levels[-1]))
     count = COLUMNS if structure.cap_beam_mass > 0.0 else 1
-    outline = leaning_outline(structure.bearing, 0.0, 0.0, 0.0)
     for foot in np.linspace(-0.4, 0.4, count) * width if count > 1 else np.zeros(1):
-        x, y = (outline + np.array([foot, 0.0])).T
+        x, y = (outline(structure.bearing) + np.array([foot, 0.0])).T
         axes.fill(x, y, fc=COLUMN, ec=style.BLACK, lw=0.7)
     edge = 0.62 * width
     axes.plot([-edge, edge], [0.0, 0.0], color=style.BLACK, lw=1.2)
@@ -56,11 +62,9 @@ def draw_structure(axes: style.Axes, structure: PodiumStructure) -> None:
     left, top = -0.5 * width, height + thickness
     corners = [(left, height), (-left, height), (-left, top), (left, top)]
     axes.fill(*zip(*corners, strict=True), fc=BEAM, ec=style.BLACK, lw=0.7)
-    for at, text in (
-        (0.5 * height, columns),
-        (height + 0.5 * thickness, f"cap beam: {_tonnes(structure.cap_beam_mass)}"),
-    ):
-        axes.text(edge, at, f" {text}", va="center", fontsize=style.small())
+    beside = partial(axes.text, edge, va="center", fontsize=style.small())
+    beside(0.5 * height, f" {columns}")
+    beside(height + 0.5 * thickness, f" cap beam: {_tonnes(structure.cap_beam_mass)}")
     building = structure.superstructure
     if building is None:
         return
@@ -68,8 +72,7 @@ def draw_structure(axes: style.Axes, structure: PodiumStructure) -> None:
     for below, level, mass in zip(levels, levels[1:], building.masses, strict=False):
         axes.plot([-0.5 * width, 0.5 * width], [level + thickness] * 2, color=style.BLUE, lw=2.2)
         if few:
-            text = f" {_tonnes(float(mass))}"
-            axes.text(edge, level + thickness, text, va="center", fontsize=style.small())
+            beside(level + thickness, f" {_tonnes(float(mass))}")
         if few and building.storey_heights is not None:
             feet = (-edge, below + thickness), (-edge, level + thickness)
             measure(axes, *feet, f"{level - below:.4g} m")
@@ -90,32 +93,20 @@ ELASTIC = "elastic shape (over the cap beam)"
 NORMALISED = "shapes scaled to 1 at their largest component"
 
 
-def modes_figure(result: ModalResult, title: str) -> bytes:
+def modes_figure(result: ModalResult, title: str, figure: style.Figure) -> None:
     """The storey's own mode and the first vibration modes: one column a mode, one row a state."""
-    width, height = modes_size(result)
-    return style.picture(lambda figure: draw_modes(figure, result, title), height, width)
-
-
-def modes_size(result: ModalResult) -> tuple[float, float]:
-    """Width and height of the figure [in]."""
-    width = 1.0 + 1.5 * (1 + min(MOST_MODES, result.structure.storeys))
-    return max(width, 4.0), 0.9 + 2.1 * len(result.uplifted)
-
-
-def draw_modes(figure: style.Figure, result: ModalResult, title: str) -> None:
-    """Fill an empty figure."""
     states = list(result.uplifted)
     vibrations = min(MOST_MODES, result.structure.storeys)
-    style.heading(figure, title, NORMALISED)
-    panels = figure.subplots(len(states), 1 + vibrations, sharex=True, sharey=True, squeeze=False)
-    for row, state in zip(panels, states, strict=True):
-        for mode, axes in enumerate(row):
-            draw_mode(axes, result, state, mode)
-            axes.label_outer()
-        row[0].set_ylabel(f"{state}\nheight [m]")
-    reach = 1.05 * max(abs(limit) for limit in panels[0, 0].get_xlim())
-    panels[0, 0].set_xlim(-reach, reach)
-    style.legend_below(figure, [panels[0, -1]])
+    width = max(1.0 + 1.5 * (1 + vibrations), 4.0)
+    style.begin(figure, (title, NORMALISED), 0.9 + 2.1 * len(states), width)
+    both = [(state, mode) for state in states for mode in range(1 + vibrations)]
+    draws = [partial(draw_mode, result=result, state=state, mode=mode) for state, mode in both]
+    panels = style.grid(figure, draws, 1 + vibrations, sharex=True, sharey=True)
+    for axes, state in zip(panels[:: 1 + vibrations], states, strict=True):
+        axes.set_ylabel(f"{state}\nheight [m]")
+    reach = 1.05 * max(abs(limit) for limit in panels[0].get_xlim())
+    panels[0].set_xlim(-reach, reach)
+    style.legend_below(figure, [panels[vibrations]])
 
 
 def draw_mode(axes: style.Axes, result: ModalResult, state: str, mode: int) -> None:
@@ -145,3 +136,153 @@ def draw_mode(axes: style.Axes, result: ModalResult, state: str, mode: int) -> N
         axes.set_title(f"storey: $p_{{ext}}$ = {rate}")
     else:
         axes.set_title(f"mode {mode}: $\\omega$ = {modes.frequencies[mode - 1]:#.3g} rad/s")
+
+
+LOWER_HEIGHT = 2.7  # of the end of a column and the restoring force [in]
+
+
+def bearing_figure(result: PushoverResult, title: str, figure: style.Figure) -> None:
+    """The states of a column, an end of it enlarged, and the restoring force with the states."""
+    structure = result.structure
+    beta, critical = structure.bearing.beta, structure.critical_rotation
+    states = [0.0, *([beta] if 0.0 < beta < critical else []), critical]
+    rows, columns = (2, 2) if style.narrow(figure) else (1, 3)
+    style.begin(figure, (title,), 6.2)
+    grid = figure.add_gridspec(2, 1)
+    above, below = (figure.add_subfigure(grid[row]) for row in (0, 1))
+    cells = above.subplots(rows, columns).ravel()
+    for axes, rotation in zip(cells, states, strict=False):
+        draw_bearing(axes, structure, rotation)
+    if len(states) < len(cells):
+        end, force = cells[len(states)], below.subplots()
+    else:
+        end, force = below.subplots(1, 2, width_ratios=[1.0, 2.0])
+    style.blank(cells[len(states) + 1 :])
+    draw_end(end, structure.bearing, structure.bed)
+    draw_force(force, result)
+    # As high as columns are with their titles: wide ones leave no gap.
+    width = style.inches(figure)[0]
+    heights = [rows * (width / columns * float(cells[0].get_box_aspect()) + 0.6), LOWER_HEIGHT]
+    grid.set_height_ratios(heights)
+    figure.set_size_inches(width, 0.3 + sum(heights))
+    style.legend_below(figure, cells[: len(states)])
+
+
+DISPLACEMENT = "cap beam displacement $u_b$ [m]"
+
+
+def storey_curve_figure(result: PushoverResult, title: str, figure: style.Figure) -> None:
+    """Force and lift of the cap beam against its displacement, to the critical rotation."""
+    style.begin(figure, (title, "storey of the bearings alone"), 4.8, 5.8)
+    panels = [partial(draw_one, result=result) for draw_one in (draw_force, draw_lift)]
+    style.grid(figure, panels, ratios=[2.6, 1.0], sharex=True)
+
+
+def draw_force(axes: style.Axes, result: PushoverResult) -> None:
+    """Force against displacement, rolling and rocking, and back where the way back is another."""
+    curve, beta = result.curve, result.structure.bearing.beta
+    factor, prefix = style.engineering(float(np.max(curve.force)))
+    u, F, back = curve.displacement, factor * curve.force, factor * curve.unloading_force
+    returns = bool(np.any(back != F))
+    if returns:
+        axes.axhline(0.0, color=style.GREY, lw=0.6)
+    if F[0] > 0.0:
+        axes.plot([0.0, 0.0], [0.0, F[0]], color=style.BLACK, lw=2.0, label="full contact")
+    for inside, colour, name in _phases(result):
+        axes.plot(u[inside], F[inside], color=colour, lw=2.0, label=name)
+        if returns:
+            axes.plot(u[inside], back[inside], color=colour, lw=1.5, ls="--")
+    if returns:
+        axes.plot([], [], color=style.GREY, lw=1.5, ls="--", label="on the way back")
+    rises = F[1] > F[0] > 0.15 * F.max()  # and there is room below
+    # Above the name of beta, if that stands to the left of its point.
+    higher = 18.0 if returns else 6.0
+    if F[0] > 0.0:
+        _mark(axes, 0.0, F[0], "uplift", (8.0, -4.0 if rises else higher))
+    if 0.0 < beta < result.critical_rotation:
+        at = int(np.searchsorted(curve.rotation, beta))
+        side = (-7.0 if F[at + 1] > F[at] else 7.0, 6.0)
+        _mark(axes, u[at], F[at], f"$\\beta$ = {beta:.3f} rad", side)
+    critical = f"$\\theta_{{cr}}$ = {result.critical_rotation:.3f} rad"
+    _mark(axes, u[-1], F[-1], critical, (-44.0, 3.0))
+    low = min(0.0, back.min()) if returns or result.structure.bed else 0.0
+    axes.set(xlim=(-0.02 * u[-1], 1.04 * u[-1]), ylim=(1.1 * low, 1.18 * F.max()))
+    axes.set(xlabel=DISPLACEMENT, ylabel=f"force at the cap beam [{prefix}N]")
+    if result.structure.uplift_force > 0.0:
+        uplift = factor * result.structure.uplift_force
+        over = (lambda force: force / uplift), (lambda ratio: ratio * uplift)
+        ratio = axes.secondary_yaxis("right", functions=over)
+        ratio.set_ylabel("$F/(W \\tan\\alpha)$ [-]")
+    style.legend_above(axes)
+
+
+def draw_lift(axes: style.Axes, result: PushoverResult) -> None:
+    """Lift against displacement."""
+    u, lift = result.curve.displacement, 1e3 * result.curve.lift
+    for inside, colour, _ in _phases(result):
+        axes.plot(u[inside], lift[inside], color=colour, lw=2.0)
+    axes.set(ylim=(0.0, None), ylabel="lift [mm]", xlabel=DISPLACEMENT)
+
+
+def _phases(result: PushoverResult) -> Iterator[tuple[NDArray[np.bool_], str, str]]:
+    """Points of the curve in each phase that there is, its colour and its name."""
+    rotation, beta = result.curve.rotation, result.structure.bearing.beta
+    phases = (rotation <= beta, style.BLUE, "rolling"), (rotation >= beta, style.RED, "rocking")
+    yield from (phase for phase in phases if np.count_nonzero(phase[0]) > 1)
+
+
+def _mark(axes: style.Axes, x: float, y: float, text: str, offset: style.At) -> None:
+    """A point with its name, offset [pt] to the side on which no curve runs."""
+    axes.plot(x, y, "o", color=style.BLACK, ms=5.0, zorder=5, clip_on=False)
+    style.note(axes, text, (x, y), offset)
+
+
+LOOKS = ((style.SKY, "-"), (style.RED, "-"), (style.BLACK, "-"), (style.PINK, ":"))
+
+
+def capacity_figure(result: PushoverResult, title: str, figure: style.Figure) -> None:
+    """Sum of floor forces against roof displacement, whole and close to the uplift."""
+    lifts = np.array([curve.roof_displacement_at_uplift for curve in result.capacity])
+    never = bool(np.isnan(lifts).all())
+    ending = "a mechanism" if never else "the critical rotation"
+    style.begin(figure, (title, f"floor forces pushed to {ending}"), 3.6)
+    ratios = [1.6] if never else [1.6, 1.0]
+    panels = figure.subplots(1, len(ratios), sharey=True, width_ratios=ratios, squeeze=False)[0]
+    for axes in panels:
+        draw_capacity(axes, result)
+    if not never:
+        whole, close = panels
+        uplift = float(np.nanmax(lifts))
+        close.set_xlim(0.0, 3.0 * uplift or 0.1 * whole.get_xlim()[1])
+        close.locator_params(axis="x", nbins=3 if style.narrow(figure) else 5)
+        close.set(ylabel="", title="near uplift" if uplift else "where rolling begins")
+    style.legend_below(figure, panels[-1:])
+
+
+def draw_capacity(axes: style.Axes, result: PushoverResult) -> None:
+    """Sum of floor forces against roof displacement by pattern, and where it uplifts."""
+    if not result.capacity:
+        raise UsageError("a structure without storeys has no capacity curve; draw `storey_curve`")
+    factor, prefix = style.engineering(max(c.sum_of_floor_forces.max() for c in result.capacity))
+    for k, curve in enumerate(result.capacity):
+        colour, line = LOOKS[k % len(LOOKS)]  # curves may coincide: the first is the widest
+        axes.plot(
+            curve.roof_displacement, factor * curve.sum_of_floor_forces,
+            color=colour, ls=line, lw=3.6 / (k + 1), label=curve.pattern.replace("_", " "),
+        )  # fmt: skip
+        axes.plot(
+            curve.roof_displacement_at_uplift, factor * result.uplift_force, "o",
+            color=colour, ms=4.5, clip_on=False,
+        )  # fmt: skip
+        for force in sorted(curve.yielding.values())[:1]:
+            at = int(np.argmax(curve.sum_of_floor_forces >= force))
+            roof = curve.roof_displacement[at]
+            axes.plot(roof, factor * force, "D", color=colour, ms=4.5, clip_on=False)
+    if any(curve.roof_displacement_at_uplift >= 0.0 for curve in result.capacity):
+        begins = "uplift" if result.uplift_force else "rolling begins"
+        axes.plot([], [], "o", color=style.GREY, ms=4.5, label=begins)
+    if any(curve.yielding for curve in result.capacity):
+        axes.plot([], [], "D", color=style.GREY, ms=4.5, label="first storey yields")
+    lowest = min(0.0, *(factor * np.min(c.sum_of_floor_forces) for c in result.capacity))
+    axes.set(xlim=(0.0, None), ylim=(lowest, None), xlabel="roof displacement [m]")
+    axes.set_ylabel(f"sum of floor forces [{prefix}N]")

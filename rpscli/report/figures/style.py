@@ -5,15 +5,22 @@ from __future__ import annotations
 import io
 import re
 import warnings
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
-from contextvars import ContextVar
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias, cast
 
 from rpscli.errors import UsageError
-from rpscli.report.figures import look
-from rpscli.report.figures.look import IN_FORCE, SMALL, Look
+from rpscli.report.figures.look import (
+    SMALL,
+    USUAL,
+    Look,
+    complaints,
+    quiet_matplotlib,
+    read_style,
+)
+from rpscli.report.files import Drawing
 
 if TYPE_CHECKING:
     from matplotlib import artist, axes, figure
@@ -72,29 +79,17 @@ SAVED: dict[str, dict[str, Any]] = {
 """Options of each format, which leave out what matplotlib says of itself and the time."""
 
 
-def picture(
-    draw: Callable[[Figure], None],
-    height: float,
-    width: float = WIDTH,
-) -> bytes:
-    """The file of a figure (width, height) [in], with the look and in the format in force."""
-    if (target := given()) is not None:
-        draw(cast("Figure", target))
-        fit(_every(target))
-        return b""
-    in_use, ending = IN_FORCE.get()
-    with in_style(), warnings.catch_warnings():
+Draw: TypeAlias = Callable[[Any], None]
+"""Fills a figure, whose size and heading `begin` sets."""
+
+
+def picture(draw: Draw, look: Look, ending: str) -> bytes:
+    """The file of a figure with a look, in the format of an ending."""
+    with in_style(look), warnings.catch_warnings():
         # Letters that the font lacks show in the picture; matplotlib prints a line for each.
         warnings.filterwarnings("ignore", message="Glyph .* missing from font")
         warnings.filterwarnings("ignore", message="Matplotlib currently does not support")
-        from matplotlib.figure import Figure
-
-        figure = Figure(figsize=(in_use.width(width), height), layout="constrained")
-        draw(figure)
-        fit(figure.axes)
-        if (kept := _kept.get()) is not None:
-            kept.append(figure)
-            return b""
+        figure = drawn(draw, look)
         engine = figure.get_layout_engine()
         assert engine is not None, "it was asked for"
         # Once, and no more: matplotlib would do it in a trial drawing, and again in the real one,
@@ -108,27 +103,64 @@ def picture(
     return buffer.getvalue()
 
 
-def _every(target: Target) -> Iterator[Axes]:
-    """Axes of a figure and of its parts."""
-    yield from target.axes
-    for part in target.subfigs:
-        yield from _every(part)
+def sheet(look: Look = USUAL) -> Figure:
+    """An empty figure of ours, which knows its look."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(layout="constrained")
+    figure.rps_look = look  # type: ignore[attr-defined]
+    return figure
+
+
+def drawn(draw: Draw, look: Look = USUAL) -> Figure:
+    """A figure of ours, which is no file yet."""
+    with in_style(look):
+        figure = sheet(look)
+        draw(figure)
+        fit(figure.axes)
+    return figure
+
+
+def drawn_into(target: Target | Axes, draw: Draw) -> Target:
+    """Somebody's figure or a part of it; axes give their place to a part."""
+    from matplotlib.axes import Axes
+
+    if isinstance(target, Axes):
+        if (place := target.get_subplotspec()) is None:
+            raise UsageError("the axes are no subplot: give a figure, or axes of plt.subplots()")
+        axes, target = target, target.figure.add_subfigure(place)
+        axes.remove()
+    if (whole := root(target)).get_layout_engine() is None:
+        whole.set_layout_engine("constrained")
+    draw(cast("Figure", target))
+    fit(cast("list[Axes]", target.findobj(Axes)))
+    return target
+
+
+def figure_files(figures: Mapping[str, Draw], look: Look) -> dict[str, Drawing]:
+    """The files of figures, given by their names without ending, in each format that is wanted."""
+    return {
+        name: Drawing(name, partial(picture, draw, look, ending))
+        for stem, draw in figures.items()
+        for ending in look.endings
+        for name in [f"{stem}.{ending}"]
+    }
 
 
 def drawable_style(path: Path) -> dict[str, Any]:
     """The settings of a style file, with which something small was drawn."""
-    settings = look.read_style(path)
+    settings = read_style(path)
 
     def draw(figure: Figure) -> None:
+        begin(figure, ("title", "remark"), 3.0)
         axes = figure.subplots()
         axes.plot([0.0, 1.0], label="$\\theta$ text")
         axes.legend()
-        heading(figure, "title", "remark")
 
-    with look.complaints() as texts:
+    with complaints() as texts:
         try:
             for ending in SAVED:
-                look.drawn_with(Look(style=settings), ending, lambda: picture(draw, 3.0))
+                picture(draw, Look(style=settings), ending)
             reason = ""
         except Exception as error:  # noqa: BLE001 -- it may fail in any way
             reason = " ".join(str(error).split())[:160]
@@ -146,34 +178,38 @@ def single(
     words: Sequence[str],
     height: float,
     width: float = WIDTH,
-) -> bytes:
-    """The file of a figure of one picture under a heading."""
+) -> Draw:
+    """A figure of one picture under a heading."""
 
     def fill(figure: Figure) -> None:
-        heading(figure, *words)
+        begin(figure, words, height, width)
         draw(figure.subplots(), shown)
 
-    return picture(fill, height, width)
+    return fill
 
 
-def stacked(
+def grid(
+    figure: Figure,
     draws: Sequence[Callable[[Axes], None]],
-    words: Sequence[str],
-    height: float,
-    width: float = WIDTH,
+    columns: int = 1,
     ratios: Sequence[float] | None = None,
-) -> bytes:
-    """The file of a figure of panels on top of each other, over one axis, under a heading."""
-
-    def fill(figure: Figure) -> None:
-        heading(figure, *words)
-        grid = figure.subplots(len(draws), 1, sharex=True, squeeze=False, height_ratios=ratios)
-        for axes, draw in zip(grid[:, 0], draws, strict=True):
-            draw(axes)
+    **shared: Any,
+) -> list[Axes]:
+    """Panels in rows, the last maybe not full; labels of `shared` axes stand outside."""
+    rows = -(-len(draws) // columns)
+    cells = figure.subplots(rows, columns, squeeze=False, height_ratios=ratios, **shared).ravel()
+    blank(cells[len(draws) :])
+    for place, (axes, draw) in enumerate(zip(cells, draws, strict=False)):
+        draw(axes)
+        if shared:
+            label = axes.get_xlabel()
             axes.label_outer()
-        figure.align_ylabels([axes for axes in grid[:, 0] if axes.get_ylabel()])
-
-    return picture(fill, height, width)
+            if place + columns >= len(draws):  # maybe above a place that stays empty
+                axes.set_xlabel(label)
+                axes.tick_params(labelbottom=True)
+    if columns == 1:
+        figure.align_ylabels([axes for axes in cells if axes.get_ylabel()])
+    return [*cells[: len(draws)]]
 
 
 def note(axes: Axes, text: str, at: At, offset: At, **look: Any) -> None:
@@ -198,61 +234,40 @@ def cross(axes: Axes) -> None:
     axes.axvline(0.0, color=BLACK, lw=0.5)
 
 
-_kept: ContextVar[list[Target] | None] = ContextVar("kept", default=None)
-"""A figure is kept in this, in place of becoming a file; drawn into what is in it already."""
+def root(of: Target) -> Figure:
+    """The whole figure."""
+    return of.canvas.figure
 
 
-def kept_figure(draw: Callable[[], bytes], target: Target | Axes | None = None) -> Target:
-    """The figure that `draw` would make a file of; drawn into the target if there is one."""
-    from matplotlib.axes import Axes
-
-    if isinstance(target, Axes):
-        if (place := target.get_subplotspec()) is None:
-            raise UsageError("the axes are no subplot: give a figure, or axes of plt.subplots()")
-        axes, target = target, target.figure.add_subfigure(place)
-        axes.remove()
-    kept: list[Target] = [] if target is None else [target]
-    whole = None if target is None else target.get_figure(root=True)
-    if whole is not None and whole.get_layout_engine() is None:
-        whole.set_layout_engine("constrained")
-    token = _kept.set(kept)
-    try:
-        draw()
-    finally:
-        _kept.reset(token)
-    return kept[0]
+def given(figure: Target) -> bool:
+    """True of somebody's figure, whose size is theirs."""
+    return not hasattr(root(figure), "rps_look")
 
 
-def given() -> Target | None:
-    """Somebody's figure that is to be drawn into."""
-    return next(iter(_kept.get() or ()), None)
+def room(figure: Target, usual: float = WIDTH) -> float:
+    """Width of somebody's figure, or that of ours of a usual width [in]."""
+    look: Look | None = getattr(root(figure), "rps_look", None)
+    return inches(figure)[0] if look is None else look.width(usual)
 
 
-def room(usual: float) -> float:
-    """Width that a figure will have [in]; its own one, where nothing else is said."""
-    target = given()
-    return IN_FORCE.get()[0].width(usual) if target is None else inches(target)[0]
-
-
-def tight() -> bool:
+def tight(figure: Target) -> bool:
     """True of a figure of somebody in which there is no room for numbers inside panels."""
-    target = given()
-    return target is not None and inches(target)[1] < TIGHT
+    return given(figure) and inches(figure)[1] < TIGHT
 
 
-def narrow() -> bool:
-    """True if the figure will be narrower than a page."""
-    return room(WIDTH) < WIDTH
+def narrow(figure: Target) -> bool:
+    """True if the figure is narrower than a page."""
+    return room(figure) < WIDTH
 
 
 @contextmanager
-def in_style() -> Iterator[None]:
+def in_style(look: Look = USUAL) -> Iterator[None]:
     """Figures that are made inside look like those that the program writes."""
-    look.quiet_matplotlib()
+    quiet_matplotlib()
     import matplotlib.style
 
     # "default" first: a user's own matplotlibrc must not change what a report looks like.
-    with matplotlib.style.context(["default", STYLE, IN_FORCE.get()[0].settings]):
+    with matplotlib.style.context(["default", STYLE, look.settings]):
         yield
 
 
@@ -268,15 +283,17 @@ def small() -> float:
     return SMALL * float(mpl.rcParams["font.size"])
 
 
-def heading(figure: Figure, *parts: str) -> None:
-    """Title and remarks above a figure, in one line or the title above the others."""
-    title, *others = [part for part in parts if part] or [""]
-    room, height = inches(figure)
+def begin(figure: Figure, words: Sequence[str], height: float, width: float = WIDTH) -> None:
+    """Size of a figure of ours [in]; title and remarks above it, in one line or the title above."""
+    if not given(figure):
+        figure.set_size_inches(room(figure, width), height)
+    title, *others = [part for part in words if part] or [""]
+    across, upwards = inches(figure)
     lines = ["   |   ".join((title, *others))]
-    if width_of(lines[0], small()) > room - 0.2:
-        lines = folded(title, room - 0.2, small()).split("\n")[:2]
-        lines += folded("   |   ".join(others), room - 0.2, small()).split("\n")
-    most = len(lines) if given() is None else max(2, int(0.15 * height / LINE))
+    if width_of(lines[0], small()) > across - 0.2:
+        lines = folded(title, across - 0.2, small()).split("\n")[:2]
+        lines += folded("   |   ".join(others), across - 0.2, small()).split("\n")
+    most = max(2, int(0.15 * upwards / LINE)) if given(figure) else len(lines)
     if len(lines) > most:
         lines = [*lines[: most - 1], f"{lines[most - 1][:-3]}..."]
     grow(figure, len(lines) - 2)
@@ -286,7 +303,7 @@ def heading(figure: Figure, *parts: str) -> None:
 
 def grow(figure: Figure, lines: int) -> None:
     """Make room for further lines of text, unless the figure is somebody's."""
-    if given() is None and lines > 0:
+    if not given(figure) and lines > 0:
         width, height = inches(figure)
         figure.set_size_inches(width, height + LINE * lines)
 
@@ -337,7 +354,9 @@ def fit(panels: Iterable[Axes]) -> None:
     for axes in panels:
         # Labels are centred on panels, and each of a row gives some width to what is beside it.
         across = _room(axes) * (1.0 - BESIDE / inches(axes.figure)[0])
-        upwards = (0.6 if tight() else 1.3) * axes.get_window_extent().height / axes.figure.dpi
+        upwards = (
+            (0.6 if tight(axes.figure) else 1.3) * axes.get_window_extent().height / axes.figure.dpi
+        )
         # Beside its texts the children of axes are three titles.
         inside = (each for each in axes.get_children() if each not in axes.texts)
         for text in (*(each for each in inside if isinstance(each, Text)), axes.xaxis.label):
@@ -372,7 +391,7 @@ def legend_above(axes: Axes) -> None:
     room = _room(axes)
     if not (found := entries([axes])):
         return
-    place, engine = axes.get_subplotspec(), axes.get_figure(root=True).get_layout_engine()  # type: ignore[union-attr]
+    place, engine = axes.get_subplotspec(), root(axes.figure).get_layout_engine()
     if engine is None and place is not None and place.rowspan.start:
         axes.legend(fontsize=small(), loc="best")  # nothing makes room below other axes
         return
@@ -397,7 +416,7 @@ def legend_below(figure: Figure, panels: Iterable[Axes]) -> None:
     """One legend for several axes, below them; in somebody's figure the first entries only."""
     if found := entries(panels):
         width, height = inches(figure)
-        most = None if given() is None else max(1, int(0.15 * height / LINE))
+        most = max(1, int(0.15 * height / LINE)) if given(figure) else None
         arranged = _arranged(found, width - 0.2, most)
         rows = -(-len(arranged["labels"]) // arranged["ncols"])
         grow(figure, rows * max(1 + name.count("\n") for name in arranged["labels"]) - 1)
@@ -428,11 +447,6 @@ def _arranged(found: dict[str, Any], room: float, most: int | None) -> dict[str,
         "handles": [found[name] for name in order], "labels": order, "ncols": columns,
         "columnspacing": 1.4, "handlelength": 1.8, "fontsize": size,
     }  # fmt: skip
-
-
-def over(unit: float) -> tuple[Callable[[Any], Any], Callable[[Any], Any]]:
-    """Functions of a secondary axis that shows values as multiples of `unit`."""
-    return (lambda value: value / unit), (lambda ratio: ratio * unit)
 
 
 def engineering(largest: float) -> tuple[float, str]:

@@ -91,9 +91,10 @@ def comparison(study: StudyResults, options: ComparisonOptions) -> Found:
                 compared.append(_compared(*of))
     kinds = {"": Endings, "_maxima": Maxima}
     shown = [s for s, kind in kinds.items() if any(isinstance(c.found, kind) for c in compared)]
+    draw = partial(comparison_figure, systems.keys, compared, intensity)
     return Found(
         _tables(systems.keys, compared, intensity, layout),
-        partial(comparison_figure, systems.keys, compared, intensity) if compared else None,
+        (lambda title: partial(draw, title)) if compared else None,
         [*pairs.notes, *systems.notes],
         shown={suffix: dict.fromkeys((*systems.keys, *SHOWN[suffix]), "") for suffix in shown},
         remark="agreed: in brackets the 95 % interval of the share" * ("" in shown),
@@ -155,27 +156,28 @@ def _tables(
 
 
 def comparison_figure(
-    keys: Sequence[str], compared: Sequence[Compared], intensity: Intensity, title: str
-) -> bytes:
+    keys: Sequence[str],
+    compared: Sequence[Compared],
+    intensity: Intensity,
+    title: str,
+    figure: style.Figure,
+) -> None:
     """One panel a system and quantity."""
-    across = 1 if len(compared) == 1 or style.narrow() else 2
-    shown, cut = panels.first(compared, across, MOST_ROWS * across, 5)
+    across = 1 if len(compared) == 1 or style.narrow(figure) else 2
+    shown, cut = panels.first(figure, compared, across, MOST_ROWS * across, 5)
     down = -(-len(shown) // across)
-
-    def draw(figure: style.Figure) -> None:
-        style.heading(figure, title, cut)
-        grid = figure.subplots(down, across, squeeze=False)
-        style.blank(grid.flat[len(shown) :])
-        for axes, each in zip(grid.flat, shown, strict=False):
-            if isinstance(each.found, Endings):
-                line = _draw_outcomes(axes, each, each.found, intensity)
-            else:
-                line = _draw_maxima(axes, each, each.found)
-            system = labels(keys, each.values)
-            axes.set_title(f"{system}\n{line}" if system else line, fontsize=style.small())
-        style.legend_below(figure, grid.flat)
-
-    return style.picture(draw, 0.6 + 3.1 * down, style.WIDTH if across > 1 else 0.7 * style.WIDTH)
+    width = style.WIDTH if across > 1 else 0.7 * style.WIDTH
+    style.begin(figure, (title, cut), 0.6 + 3.1 * down, width)
+    grid = figure.subplots(down, across, squeeze=False)
+    style.blank(grid.flat[len(shown) :])
+    for axes, each in zip(grid.flat, shown, strict=False):
+        if isinstance(each.found, Endings):
+            line = _draw_outcomes(axes, each, each.found, intensity)
+        else:
+            line = _draw_maxima(axes, each, each.found)
+        system = labels(keys, each.values)
+        axes.set_title(f"{system}\n{line}" if system else line, fontsize=style.small())
+    style.legend_below(figure, grid.flat)
 
 
 def _draw_outcomes(axes: style.Axes, each: Compared, found: Endings, intensity: Intensity) -> str:

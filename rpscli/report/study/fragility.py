@@ -229,7 +229,7 @@ class Fragilities:
         groups: Mapping[str, list[Item]],
         draw: Callable[[style.Axes, list[Item]], None],
         **words: Any,
-    ) -> Callable[[str], bytes]:
+    ) -> Callable[[str], style.Draw]:
         """A figure of panels by their titles."""
         x_label = f"{measure_name(self.intensity)} [{self.intensity.unit}]"
         row, shown = 2 if len(groups) == 4 else 3, [*groups.values()]
@@ -404,7 +404,7 @@ def what_bands_hold(layout: StudyPoints, options: FragilityOptions) -> str:
     return f"{level} (bootstrap of {options.resamples}); {beyond}; -: not determined"
 
 
-def fragility_figure(report: Fragilities) -> Callable[[str], bytes]:
+def fragility_figure(report: Fragilities) -> Callable[[str], style.Draw]:
     """One panel a limit state with a fit; markers are observed shares, shades the bands."""
     from scipy.special import ndtr
 

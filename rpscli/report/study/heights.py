@@ -87,7 +87,7 @@ def storey_shear(study: StudyResults, options: StoreyShearOptions) -> Found:
         axes.set_ylim(0.0, len(edges) - 1)
         axes.locator_params(axis="y", integer=True)
         survivors, every = len(profile.histories.survivors), len(profile.histories)
-        text = f"{survivors} survivors{panels.break_if_narrow()}of {every}"
+        text = f"{survivors} survivors{panels.break_if_narrow(axes)}of {every}"
         panels.corner(axes, "right", "top", text)
 
     in_kn_label = STOREY_SHEARS.in_unit("kN", STOREY_SHEARS.symbol)
@@ -191,7 +191,7 @@ def floor_spectra(study: StudyResults, options: FloorSpectraOptions) -> Found:
 
 def floor_spectra_figure(
     keys: Sequence[str], floors: Sequence[Floors], note: str
-) -> Callable[[str], bytes]:
+) -> Callable[[str], style.Draw]:
     """Median and 84 % fractile of the pseudo-acceleration, on the lowest floor and the roof."""
     shown = [
         Floors((*one.values, number), one.fractiles[:, :, 0, number - 1])

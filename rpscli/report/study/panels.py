@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 from rpscli.analyses.result_quantities import ResultQuantity
@@ -61,7 +62,7 @@ def in_panels(
     panels: Sequence[Any],
     draw: Callable[[style.Axes, Any], None],
     **words: Any,
-) -> Callable[[str], bytes]:
+) -> Callable[[str], style.Draw]:
     """Panels that have `values` of keys; the last key's stand side by side if they fill a table."""
     across = len(dict.fromkeys(str(panel.values[-1]) for panel in panels)) if keys else 1
     fills = 1 < across <= 5 and len(panels) % across == 0
@@ -80,11 +81,13 @@ def panel_figure(
     share: Literal["both", "x"] = "both",
     limits: Callable[[style.Axes], object] | None = None,
     note: str = "",
-) -> Callable[[str], bytes]:
+) -> Callable[[str], style.Draw]:
     """A figure that waits for its title: panels with titles, so many of them side by side."""
 
-    def picture(title: str) -> bytes:
-        width = style.room(style.WIDTH)
+    def fill(title: str, figure: style.Figure) -> None:
+        from matplotlib import rcParams
+
+        width = style.room(figure)
         widest = columns = max(1, min(in_row, len(panels)))
         if width < style.WIDTH:
             columns = min(1 if len(panels) == 3 else 2, widest)  # three leave a hole
@@ -94,59 +97,52 @@ def panel_figure(
             for name in names
         ]
         lines = 1 + max((text.count("\n") for text in titles), default=0)
-        shown, cut = first(panels, columns, MOST_PANELS, lines)
+        shown, cut = first(figure, panels, columns, MOST_PANELS, lines)
         rows = max(1, math.ceil(len(shown) / columns))
-
-        def draw_all(figure: style.Figure) -> None:
-            from matplotlib import rcParams
-
-            style.heading(figure, title, remarks(note, cut))
-            grid = figure.subplots(
-                rows, columns, squeeze=False, sharex=True, sharey=share == "both"
-            )
-            for axes, panel, name in zip(grid.flat, shown, titles, strict=False):
-                axes.locator_params(nbins=2 if style.tight() else MOST_TICKS)
-                draw(axes, panel)
-                # Without a height matplotlib would look for ticks under the title, at great length.
-                axes.set_title(name, y=1.0, fontsize=style.small())
-            for place, axes in enumerate(grid.flat):
-                if place >= len(shown):
-                    axes.set_axis_off()
-                elif place + columns >= len(shown):
-                    axes.set_xlabel(style.typeset(x_label))
-                    axes.tick_params(labelbottom=True)
-            if rows == 1:
-                grid[0, 0].set_ylabel(style.typeset(y_label))
-            else:
-                letters = rcParams["font.size"]
-                room = 0.7 * style.inches(figure)[1]
-                folded = style.folded(style.typeset(y_label), room, letters)
-                figure.supylabel(folded, fontsize=letters, multialignment="center")
-            if limits is not None:
-                limits(grid.flat[0])
-            style.legend_below(figure, grid.flat)
-
         each = 2.6 if columns < 3 and width >= style.WIDTH else 2.1
         height = 3.8 if rows == 1 and columns == 1 else 1.0 + each * rows
-        return style.picture(draw_all, height, style.WIDTH if widest > 1 else 0.72 * style.WIDTH)
+        own = style.WIDTH if widest > 1 else 0.72 * style.WIDTH
+        style.begin(figure, (title, remarks(note, cut)), height, own)
+        grid = figure.subplots(rows, columns, squeeze=False, sharex=True, sharey=share == "both")
+        for axes, panel, name in zip(grid.flat, shown, titles, strict=False):
+            axes.locator_params(nbins=2 if style.tight(figure) else MOST_TICKS)
+            draw(axes, panel)
+            # Without a height matplotlib would look for ticks under the title, at great length.
+            axes.set_title(name, y=1.0, fontsize=style.small())
+        for place, axes in enumerate(grid.flat):
+            if place >= len(shown):
+                axes.set_axis_off()
+            elif place + columns >= len(shown):
+                axes.set_xlabel(style.typeset(x_label))
+                axes.tick_params(labelbottom=True)
+        if rows == 1:
+            grid[0, 0].set_ylabel(style.typeset(y_label))
+        else:
+            letters = rcParams["font.size"]
+            room = 0.7 * style.inches(figure)[1]
+            folded = style.folded(style.typeset(y_label), room, letters)
+            figure.supylabel(folded, fontsize=letters, multialignment="center")
+        if limits is not None:
+            limits(grid.flat[0])
+        style.legend_below(figure, grid.flat)
 
-    return picture
+    return lambda title: partial(fill, title)
 
 
 def first(
-    panels: Sequence[Panel], columns: int, most: int, title_lines: int
+    figure: style.Figure, panels: Sequence[Panel], columns: int, most: int, title_lines: int
 ) -> tuple[Sequence[Panel], str]:
     """The panels that have room, so many in a row, and a remark on the others."""
-    if (target := style.given()) is not None:
+    if style.given(figure):
         each = LEAST_HEIGHT + style.LINE * title_lines
-        most = columns * max(1, int((style.inches(target)[1] - NO_PANEL) / each))
+        most = columns * max(1, int((style.inches(figure)[1] - NO_PANEL) / each))
     shown = panels[:most]
     return shown, f"the first {most} of {len(panels)} panels" * (len(panels) > most)
 
 
-def break_if_narrow() -> str:
+def break_if_narrow(axes: style.Axes) -> str:
     """The sign between parts of a text inside a panel: a new line in narrow figures."""
-    return "\n" if style.narrow() else " "
+    return "\n" if style.narrow(axes.figure) else " "
 
 
 def log_ticks(axis: Axis) -> None:

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from rpscli.analyses.result_quantities import DEMANDS
 from rpscli.case.schema.fields import Quantity
 from rpscli.case.study.reports import Options, ReportKind
-from rpscli.report.figures.look import USUAL, Look, figure_files
-from rpscli.report.figures.style import Target, kept_figure
+from rpscli.report.figures.look import USUAL, Look
+from rpscli.report.figures.style import Draw, Target, drawn, drawn_into, figure_files
 from rpscli.report.files import Drawing
 from rpscli.report.table import (
     Column,
@@ -55,13 +55,13 @@ Tables = Mapping[str, list[Column]]
 class Found:
     """Tables, figure and notes of a report.
 
-    `figure` makes the file of its figure under a title; None where nothing can be drawn. `notes`
+    `figure` draws its figure under a title; None where nothing can be drawn. `notes`
     are what the user should know about the numbers. `shown` has labels of columns of tables that
     are for the terminal too, none if all are; `remark` stands below them.
     """
 
     tables: Tables
-    figure: Callable[[str], bytes] | None
+    figure: Callable[[str], Draw] | None
     notes: Sequence[str] = ()
     shown: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
     remark: str = ""
@@ -90,8 +90,8 @@ class Found:
 
     def drawn(self, title: str, target: Target | Axes | None = None) -> Target:
         """Its figure, which is no file yet; drawn into the target if there is one."""
-        assert self.figure is not None, "asked before"
-        return kept_figure(partial(self.figure, title), target)
+        draw = partial(self._draw, title)
+        return drawn(draw) if target is None else drawn_into(target, draw)
 
     def files(
         self, stem: str, title: str, look: Look = USUAL
@@ -100,7 +100,11 @@ class Found:
         for suffix, columns in self.tables.items():
             yield f"{stem}{suffix}.csv", csv_text(columns)
         if self.figure is not None:
-            yield from figure_files({stem: partial(self.figure, title)}, look).items()
+            yield from figure_files({stem: partial(self._draw, title)}, look).items()
+
+    def _draw(self, title: str, figure: Target) -> None:
+        assert self.figure is not None, "asked before"
+        self.figure(title)(figure)
 
 
 def with_band(value: float, low: float, high: float) -> str:

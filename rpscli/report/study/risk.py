@@ -230,15 +230,17 @@ def _report_notes(found: Fragilities, risks: Sequence[Risk], of: Of | None) -> I
     yield from found.told((each.fragility, "; ".join(each.notes)) for each in risks)
 
 
-def risk_figure(found: Fragilities, risks: Sequence[Risk], years: float) -> Callable[[str], bytes]:
+def risk_figure(
+    found: Fragilities, risks: Sequence[Risk], years: float
+) -> Callable[[str], style.Draw]:
     """One panel a limit state: what share of its rate comes from which intensities."""
     groups = found.in_panels(risks, lambda each: each.fragility)
     rows, (low, high) = min(max(map(len, groups.values())), MOST_BANDS), _shown(risks)
     last = float(risks[0].edges[-2])
 
-    def line() -> float:
+    def line(axes: style.Axes) -> float:
         """Height of the numbers above the steps: two lines where panels are narrow."""
-        return 0.15 if style.narrow() else 0.075
+        return 0.15 if style.narrow(axes.figure) else 0.075
 
     def draw(axes: style.Axes, panel: list[Risk]) -> None:
         for row, each in enumerate(panel):
@@ -248,11 +250,11 @@ def risk_figure(found: Fragilities, risks: Sequence[Risk], years: float) -> Call
             axes.stairs(shares[:-1], each.edges[:-1], color=shade, lw=1.4, label=name or None)
             if high > last:
                 axes.stairs(shares[-1:], [last, high], color=shade, lw=1.4, ls=":")
-            if len(panel) <= MOST_BANDS and not style.tight():
+            if len(panel) <= MOST_BANDS and not style.tight(axes.figure):
                 band = with_band(*each.probabilities(years))
-                words = f"P = {band.replace(' (', f'{panels.break_if_narrow()}(')}"
+                words = f"P = {band.replace(' (', f'{panels.break_if_narrow(axes)}(')}"
                 axes.text(
-                    0.02, 0.98 - line() * row, words, color=shade, transform=axes.transAxes,
+                    0.02, 0.98 - line(axes) * row, words, color=shade, transform=axes.transAxes,
                     va="top", fontsize=0.85 * style.small(),
                 )  # fmt: skip
         fragile.beyond_computed(axes, max(each.fragility.largest for each in panel), high)
@@ -261,7 +263,7 @@ def risk_figure(found: Fragilities, risks: Sequence[Risk], years: float) -> Call
         axes.set_xscale("log")  # of all panels at the end: ticks of logarithms are of another kind
         panels.log_ticks(axes.xaxis)
         axes.set_xlim(low, high)
-        axes.set_ylim(0.0, axes.get_ylim()[1] / (0.97 - line() * rows))
+        axes.set_ylim(0.0, axes.get_ylim()[1] / (0.97 - line(axes) * rows))
 
     note = panels.remarks(
         f"P in {years:g} years, {style.percent(found.confidence)} bands of the choice of records",

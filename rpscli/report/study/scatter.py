@@ -178,7 +178,7 @@ def _figure(
     series: tuple[str, ...],
     *,
     curves: bool = False,
-) -> Callable[[str], bytes]:
+) -> Callable[[str], style.Draw]:
     x, y = both
     series_keys = shown_keys(table.layout, series)
     every = np.concatenate([cloud.shown.points for cloud in clouds])
@@ -215,7 +215,8 @@ def _draw_curve(
     axes: style.Axes, fit: Bilinear | None, x: Array, highest: float, top: float
 ) -> None:
     """The curve as far as its points (m,) go, with its numbers where it leaves room for them."""
-    apart, text, place = panels.break_if_narrow(), "no curve: too few points", ("right", "bottom")
+    apart, text = panels.break_if_narrow(axes), "no curve: too few points"
+    place = ("right", "bottom")
     if fit is not None:
         ends = np.array([x.min(), fit.break_x, x.max()])
         axes.plot(ends, fit(ends), color=style.BLACK, lw=1.6, label="bilinear fit")
@@ -226,7 +227,7 @@ def _draw_curve(
         )
         if np.min(fit(np.linspace(0.3, 1.0, 8) * highest)) < 0.35 * top:
             place = ("left", "top")  # the curve runs through the lower right
-    if not style.tight():
+    if not style.tight(axes.figure):
         box = {"fc": "white", "ec": "none", "alpha": 0.8, "pad": 1.5}
         panels.corner(axes, *place, text, bbox=box)
 

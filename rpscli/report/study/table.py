@@ -132,7 +132,8 @@ def table_report(study: StudyResults, options: TableOptions) -> Found:
         names.append(", ".join(parts[len([*same]) :]))
         before = parts
     above = [over(rows.pooled), words, left_out(rows.failed)]
-    return Found({"": written}, partial(_picture, names, heads, cells, above), rows.notes)
+    draw = partial(_picture, names, heads, cells, above)
+    return Found({"": written}, lambda title: partial(draw, title), rows.notes)
 
 
 def overturning(study: StudyResults, options: OverturningOptions) -> Found:
@@ -148,9 +149,11 @@ def _picture(
     cells: list[list[Cell]],
     above: list[str],
     title: str,
-) -> bytes:
+    figure: style.Figure,
+) -> None:
     """The first rows and columns, on cells that are the darker the larger their numbers."""
-    width, target = style.room(min(style.WIDTH, 3.4 + 1.25 * len(heads))), style.given()
+    own = min(style.WIDTH, 3.4 + 1.25 * len(heads))
+    width = style.room(figure, own)
     size = SMALL * FONT_SIZE
 
     def wide(texts: Iterable[str]) -> float:
@@ -171,35 +174,29 @@ def _picture(
     ]
     height = max(0.19 + 0.11 * max(map(lines, below)), 0.1 + LINE * lines(names))
     other, most = 0.6 + LINE * lines(few), len(names)
-    if target is not None:
-        most = min(most, max(1, int((style.inches(target)[1] - other) / height)))
+    if style.given(figure):
+        most = min(most, max(1, int((style.inches(figure)[1] - other) / height)))
     counts = ("rows", most, len(cells)), ("columns", columns, len(heads))
     cut = [f"the first {some} of {of} {what}" for what, some, of in counts if some < of]
-
-    def draw(figure: style.Figure) -> None:
-        style.heading(figure, title, *above, *cut)
-        axes = figure.subplots()
-        shades = [[cell.shade for cell in row] for row in drawn[:most]]
-        axes.pcolormesh(shades, cmap="Blues", vmin=0.0, vmax=1.0, alpha=0.75)
-        inside: dict[str, Any] = {"ha": "center", "in_layout": False}
-        for y, x in np.ndindex(most, columns):
-            first, further = drawn[y][x].texts[0], below[y][x]
-            up = 0.055 * lines([further]) * bool(further)
-            fits, at = size * min(1.0 / SMALL, 0.95 * room / wide([first])), y + 0.5
-            axes.text(
-                x + 0.5, at - (up - 0.07) / height, first, va="bottom", fontsize=fits, **inside
-            )
-            axes.text(
-                x + 0.5, at - (up - 0.08) / height, further, va="top", fontsize=SMALLER * size,
-                **inside,
-            )  # fmt: skip
-        axes.set_xticks(np.arange(columns) + 0.5, few)
-        axes.set_yticks(np.arange(most) + 0.5, names[:most])
-        axes.tick_params(length=0, labeltop=True, labelbottom=False, labelsize=size)
-        axes.invert_yaxis()
-        axes.grid(visible=False)
-
-    return style.picture(draw, other + most * height, width)
+    style.begin(figure, (title, *above, *cut), other + most * height, own)
+    axes = figure.subplots()
+    shades = [[cell.shade for cell in row] for row in drawn[:most]]
+    axes.pcolormesh(shades, cmap="Blues", vmin=0.0, vmax=1.0, alpha=0.75)
+    inside: dict[str, Any] = {"ha": "center", "in_layout": False}
+    for y, x in np.ndindex(most, columns):
+        first, further = drawn[y][x].texts[0], below[y][x]
+        up = 0.055 * lines([further]) * bool(further)
+        fits, at = size * min(1.0 / SMALL, 0.95 * room / wide([first])), y + 0.5
+        axes.text(x + 0.5, at - (up - 0.07) / height, first, va="bottom", fontsize=fits, **inside)
+        axes.text(
+            x + 0.5, at - (up - 0.08) / height, further, va="top", fontsize=SMALLER * size,
+            **inside,
+        )  # fmt: skip
+    axes.set_xticks(np.arange(columns) + 0.5, few)
+    axes.set_yticks(np.arange(most) + 0.5, names[:most])
+    axes.tick_params(length=0, labeltop=True, labelbottom=False, labelsize=size)
+    axes.invert_yaxis()
+    axes.grid(visible=False)
 
 
 TABLE = Report(TableOptions, table_report, results=lambda options: [options.result])

@@ -5,12 +5,14 @@ from __future__ import annotations
 import json
 import shlex
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import partial
 from importlib import resources
 from typing import Any
 
 import numpy as np
 
 from rpscli.analyses.column_design import WITHOUT_IMPULSE
+from rpscli.analyses.pushover import pushover
 from rpscli.analyses.results import STEEL_ROTATION, TimeHistoryResult
 from rpscli.analyses.timehistory import Neighbour
 from rpscli.case.case import Case
@@ -21,15 +23,14 @@ from rpscli.model.superstructure import Superstructure
 from rpscli.records.ground_motion import GroundMotion, MotionComponents
 from rpscli.records.measures import DAMPING, drawn_spectrum, intensity_measures
 from rpscli.report import derived, timehistory
-from rpscli.report.bundles import bearing_files
 from rpscli.report.figures import style
-from rpscli.report.figures.look import Draw, Look, figure_files
-from rpscli.report.figures.motions import record_figure, spectra_figure
-from rpscli.report.figures.structure import structure_figure
+from rpscli.report.figures.look import Look
+from rpscli.report.figures.motions import draw_spectra, record_figure
+from rpscli.report.figures.structure import bearing_figure, draw_structure
 from rpscli.report.files import leaves, versions
-from rpscli.report.html.page import Block, Code, Notice, Picture, Section, page_look, pictures
 from rpscli.report.limits import limits_table, verdicts_in_short
 from rpscli.report.motions import record_table
+from rpscli.report.page import Block, Code, Notice, Picture, Section, page_look, pictures
 from rpscli.report.table import Column, Table
 from rpscli.sweep.statistics.verdicts import Verdict
 
@@ -42,16 +43,17 @@ def motion_pictures(
 ) -> Picture:
     """Acceleration, velocity, displacement and response spectrum of a motion, with T1."""
     period = None if building is None else float(building.periods[0])
-    return _picture(
-        lambda: record_figure(motion, drawn_spectrum(motion), period),
-        look,
+    caption = (
         f"{motion.name}: acceleration, velocity and displacement of the ground, and the response"
-        f" spectrum at {style.percent(DAMPING)} of critical damping.",
+        f" spectrum at {style.percent(DAMPING)} of critical damping."
     )
+    draw = partial(record_figure, motion, drawn_spectrum(motion), period)
+    return _picture(draw, look, caption)
 
 
-def _picture(draw: Draw, look: Look, caption: str) -> Picture:
-    return Picture(pictures(figure_files({"": draw}, page_look(look)).items())[""], caption)
+def _picture(draw: style.Draw, look: Look, caption: str) -> Picture:
+    files = style.figure_files({"figure": draw}, page_look(look))
+    return Picture({each.ending: each for each in files.values()}, caption)
 
 
 def motions_section(
@@ -76,7 +78,7 @@ def motions_section(
             f"Response spectra of {len(spectra)} records {which}, at {style.percent(DAMPING)} of"
             " critical damping, with their median."
         )
-        blocks.append(_picture(lambda: spectra_figure(spectra, title), look, caption))
+        blocks.append(_picture(style.single(draw_spectra, spectra, (title,), 3.2), look, caption))
     if len(motions) > MOST_ROWS:
         blocks.append(f"The table shows the first {MOST_ROWS} of {len(motions)} records.")
     return Section("Ground motions", blocks)
@@ -149,9 +151,11 @@ def listing(rows: Iterable[tuple[str, str]]) -> Table:
 
 def structure_blocks(structure: PodiumStructure, title: str, look: Look) -> list[Block]:
     """The drawings, and the storeys."""
-    made = figure_files({"s": lambda: structure_figure(structure, title)}, page_look(look))
-    files = [*made.items(), *bearing_files(structure, title, page_look(look))]
-    blocks: list[Block] = [Picture(each, CAPTIONS[stem]) for stem, each in pictures(files).items()]
+    draws: dict[str, style.Draw] = {
+        "s": style.single(draw_structure, structure, (title,), 4.4, 5.0),
+        "bearing": partial(bearing_figure, pushover(structure, patterns=()), title),
+    }
+    blocks: list[Block] = [_picture(draws[name], look, CAPTIONS[name]) for name in draws]
     if structure.superstructure is not None:
         blocks += ["Storeys, the roof on top:", _storeys(structure)]
     return blocks

@@ -124,7 +124,9 @@ def _drawing(of: Picture, prefix: str) -> Markup:
     text = f'{root} role="img" aria-label="{escape(of.caption)}">{rest}'
     # Names inside are kept apart from those of other drawings, points are told to a hundredth.
     text = _NAMES.sub(rf"\g<0>{prefix}", text.replace("xlink:href", "href"))
-    return Markup(_POINTS.sub(lambda at: _NUMBER.sub(_rounded, at[0]), text))
+    return Markup(
+        _POINTS.sub(lambda at: _NUMBER.sub(lambda number: f"{float(number[0]):.2f}", at[0]), text)
+    )
 
 
 _UNWANTED = re.compile(r"<!--.*?-->|<(metadata|style)\b.*?</\1>", re.DOTALL)
@@ -222,10 +224,7 @@ def _signatures(signed: Mapping[str, str | None]) -> Markup | None:
 
 def is_about(content: bytes, name: str) -> bool:
     """True if a file is a page about the case or the study of this name."""
-    return _mark(name).encode("utf-8", "backslashreplace") in content[:MARK_WITHIN]
-
-
-MARK_WITHIN = 2000
+    return _mark(name).encode("utf-8", "backslashreplace") in content[:2000]
 
 
 def _mark(name: str) -> Markup:

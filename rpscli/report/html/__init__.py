@@ -1,1 +1,0 @@
-"""Results as one page that needs nothing besides itself."""
