@@ -111,6 +111,24 @@ def test_starts_and_ends_on_zero(b: Quintic, expected: float) -> None:
     assert descent(b) == expected
 
 
+def test_two_crossings_right_after_a_start_on_zero() -> None:
+    # t (t - a)(t - 2 a) (4 - t)^2 leaves upwards, dips below between a and 2 a
+    for a in (0.3, 1e-2, 1e-4, 1e-7):
+        powers = np.polymul(np.poly([0.0, a, 2.0 * a]), [1.0, -8.0, 16.0])
+        b = to_bernstein(powers)
+        # the conversion leaves the start on zero; coefficients round at 1e-16, slope there is a^2
+        assert b[0] == 0.0
+        assert descent(b) == pytest.approx(a, rel=1e-14 / a**2 + 1e-12)
+
+
+@pytest.mark.parametrize("touch", [0.1, 0.37, 0.5, 0.9])
+@pytest.mark.parametrize("above", [1e-12, 1e-8, 1e-3])
+def test_a_curve_that_stays_above_by_any_margin_is_left_alone(touch: float, above: float) -> None:
+    powers = np.convolve([1.0, -2.0 * touch, touch**2], [1.0, 0.0, 0.0, 1.0])
+    powers[-1] += above
+    assert descent(to_bernstein(powers)) == NO_PASSAGE
+
+
 class Failure(NamedTuple):
     """A history that fails, words that say how, and what is left behind."""
 
