@@ -56,5 +56,7 @@ def command(
         return
     if film is not None:
         raise UsageError(f"--animate {film.file}: shows one history, not {len(histories)}")
-    look = out.look if out.look.formats else replace(out.look, formats=())
-    run_all(histories, conditions, replace(out, look=look))
+    if out.look.formats is None:
+        out = replace(out, look=replace(out.look, formats=()))
+        out.terminal.note("no figures of several histories: --figures png draws those of each")
+    run_all(histories, conditions, out)
