@@ -297,6 +297,10 @@ DEVICE_COLOURS = (style.RED, style.PINK, style.BLUE, style.GREY)
 """Of what each device dissipates, from the first on."""
 
 
+MOST = 20_000
+"""Samples of an area at most: matplotlib thins out lines, not areas."""
+
+
 def draw_energy(axes: style.Axes, result: TimeHistoryResult) -> None:
     """Input against what is stored and lost on the way, one on top of the other."""
     trace, made = result.trace, result.structure
@@ -313,10 +317,13 @@ def draw_energy(axes: style.Axes, result: TimeHistoryResult) -> None:
         (trace.energy_impact, f"lost at {'passes' if passes else 'impacts'} (net)", style.ORANGE),
         (trace.energy_stored, "kinetic, elastic and gravitational", style.GREEN),
     ]
-    below = np.zeros_like(trace.time)
+    few = slice(None, None, 1 + len(trace.time) // MOST)
+    below = np.zeros_like(trace.time[few])
     for part, name, colour in parts:
-        above = below + factor * part
-        axes.fill_between(trace.time, below, above, color=colour, lw=0.0, label=name, alpha=0.8)
+        above = below + factor * part[few]
+        axes.fill_between(
+            trace.time[few], below, above, color=colour, lw=0.0, label=name, alpha=0.8
+        )
         below = above
     axes.plot(trace.time, factor * trace.energy_input, color=style.BLACK, label="input")
     axes.set(xlim=(0.0, trace.time[-1]), xlabel="time [s]", ylabel=f"energy [{prefix}J]")
