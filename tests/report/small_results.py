@@ -103,6 +103,6 @@ def prefix(label: str, unit: str) -> float:
 
 def second_axis(axes: Axes) -> Any:
     """The axis on the other side, with the limits that it is drawn with."""
-    axes.get_figure(root=True).draw_without_rendering()  # type: ignore[union-attr]
+    axes.get_figure().draw_without_rendering()  # type: ignore[union-attr]
     (second,) = axes.child_axes
     return second

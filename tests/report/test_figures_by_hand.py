@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
+from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle, StepPatch
 from numpy.typing import NDArray
 
@@ -149,8 +150,8 @@ def test_overturning_beside_what_was_observed(compared: dict[str, Axes]) -> None
     # The pairs are those of the last points first.
     same(curve(axes, "above: computed only"), ((3.0, 2.0), (1.05, 1.05)))
     same(curve(axes, "below: observed only"), ([5.0], [-0.05]))
-    figure = axes.get_figure(root=True)
-    assert figure is not None
+    figure = axes.get_figure()
+    assert isinstance(figure, Figure)
     assert {*legend(figure)} == {
         "observed", "computed", "above: computed only", "below: observed only"
     }  # fmt: skip
