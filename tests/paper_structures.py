@@ -6,8 +6,8 @@ import math
 import os
 import subprocess
 import sys
-from collections.abc import Callable
-from dataclasses import replace
+from collections.abc import Callable, Mapping
+from dataclasses import astuple, replace
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, TypeVar
@@ -28,7 +28,7 @@ from rpscli.constants import STANDARD_GRAVITY
 from rpscli.model.bearing import Bearing
 from rpscli.model.devices import FrictionDamper, RollingResistance, Stop, Tendon, ViscousDamper
 from rpscli.model.impact import ImpactLaw
-from rpscli.model.podium import PodiumStructure
+from rpscli.model.podium import Device, PodiumStructure
 from rpscli.model.superstructure import (
     ModalDamping,
     Profile,
@@ -155,14 +155,28 @@ def part(record: GroundMotion, start: float, seconds: float, factor: float = 1.0
     return ground(factor * record.acceleration[first : first + count], record.dt)
 
 
-def printed_by(*arguments: str, **environment: str) -> str:
-    """What Python prints in another process, which imports the tests as this one does."""
+def python(
+    *arguments: str,
+    folder: Path | None = None,
+    exit_code: int = 0,
+    encoding: str = "utf-8",
+    environment: Mapping[str, str] | None = None,
+) -> subprocess.CompletedProcess[str]:
+    """Python in another process, which imports the tests as this one does, to its end."""
     here = Path(__file__).parent
-    places = {"PYTHONPATH": os.pathsep.join([str(here), str(here.parent), *sys.path])}
-    command = [sys.executable, *arguments]
-    variables = os.environ | places | environment
-    done = subprocess.run(command, env=variables, capture_output=True, text=True, check=True)
-    return done.stdout
+    variables = {"PYTHONPATH": os.pathsep.join([str(here), str(here.parent), *sys.path])}
+    variables |= {"PYTHONIOENCODING": encoding, **(environment or {})}
+    done = subprocess.run(
+        [sys.executable, *arguments], cwd=folder, env=os.environ | variables,
+        capture_output=True, encoding=encoding, check=False,
+    )  # fmt: skip
+    assert done.returncode == exit_code, done.stderr
+    return done
+
+
+def printed_by(*arguments: str, **environment: str) -> str:
+    """What Python prints in another process."""
+    return python(*arguments, environment=environment).stdout
 
 
 def bisected(
@@ -213,19 +227,20 @@ def oracle_system(structure: PodiumStructure) -> OracleSystem:
     )
 
 
+ORACLE_KINDS: dict[type[Device], Callable[..., oracle_kinds.OracleDevice]] = {
+    ViscousDamper: oracle_kinds.Viscous,
+    FrictionDamper: oracle_kinds.Friction,
+    Stop: oracle_kinds.Stop,
+    RollingResistance: oracle_kinds.RollingResistance,
+}
+
+
 def oracle_devices(structure: PodiumStructure) -> tuple[oracle_kinds.OracleDevice, ...]:
     """Its devices as the second integrator wants them."""
-    found: list[oracle_kinds.OracleDevice] = []
-    for device in structure.devices:
-        if isinstance(device, ViscousDamper):
-            found.append(oracle_kinds.Viscous(device.coefficient, device.exponent))
-        elif isinstance(device, FrictionDamper):
-            found.append(oracle_kinds.Friction(device.force))
-        elif isinstance(device, Stop):
-            found.append(oracle_kinds.Stop(device.gap, device.stiffness, device.damping))
-        elif isinstance(device, Tendon):
-            forces = device.prestress, device.stiffness, device.yield_force
-            found.append(oracle_kinds.Tendon(structure.columns, *forces))
-        elif isinstance(device, RollingResistance):
-            found.append(oracle_kinds.RollingResistance(device.lever))
-    return tuple(found)
+
+    def other(device: Device) -> oracle_kinds.OracleDevice:
+        if isinstance(device, Tendon):
+            return oracle_kinds.Tendon(structure.columns, *astuple(device))
+        return ORACLE_KINDS[type(device)](*astuple(device))
+
+    return tuple(map(other, structure.devices))

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from paper_structures import podium, waves
+from paper_structures import known, podium, waves
 
 import rpscli
 from rpscli.errors import RecordError
@@ -113,8 +113,7 @@ def test_arrays_are_read_only_in_copies_too(name: str) -> None:
 
 
 def test_a_result_cannot_be_changed_in_place() -> None:
-    above = STRUCTURE.superstructure
-    assert above is not None
+    above = known(STRUCTURE.superstructure)
     before = rpscli.demand(STRUCTURE, RECORD).max_base_shear
     with pytest.raises(ValueError, match="read-only"):
         above.frequencies[:] *= 1.5

@@ -13,7 +13,6 @@ import re
 import shutil
 import signal
 import sqlite3
-import subprocess
 import sys
 import tempfile
 import threading
@@ -22,6 +21,7 @@ from typing import Any
 
 import pytest
 from click.testing import CliRunner, Result
+from paper_structures import python
 
 from rpscli import user_cache
 from rpscli.cli import program
@@ -209,20 +209,9 @@ def test_consoles_that_are_not_utf_8_show_all_that_they_can(tmp_path: Path, enco
     """Lines of tables, Greek letters and Cyrillic titles: what cannot be shown becomes `?`."""
     text = (ROOT / "cases" / "free_standing_block.yaml").read_text("utf-8")
     (tmp_path / "блок.yaml").write_text(text.replace("title: ", "title: Блок на краю, "), "utf-8")
-    result = subprocess.run(
-        [sys.executable, "-m", "rpscli", "check", "блок.yaml"],
-        cwd=tmp_path,
-        env={
-            **os.environ,
-            "PYTHONPATH": str(ROOT),
-            "PYTHONIOENCODING": encoding,
-            "PYTHONUTF8": "0",
-        },
-        capture_output=True,
-        check=False,
-    )
-    assert result.returncode == 0, result.stderr
-    shown = result.stdout.decode(encoding)
+    words = ("-m", "rpscli", "check", "блок.yaml")
+    plain = {"PYTHONUTF8": "0"}
+    shown = python(*words, folder=tmp_path, encoding=encoding, environment=plain).stdout
     assert ("Блок на краю" in shown) == (encoding == "cp866")
     assert "peak acceleration 4.413 m/s2" in " ".join(shown.split())
 
@@ -243,16 +232,7 @@ for line in sys.argv[1:]:
         "init case.yaml", "init --example rigid_frame", "check case.yaml", "explain slenderness",
         "sweep study.yaml --figures none", "record info cases/records/synthetic_far_field.at2",
     ]  # fmt: skip
-    done = subprocess.run(
-        [sys.executable, "-X", "warn_default_encoding", "-c", script, *lines],
-        cwd=tmp_path,
-        env={**os.environ, "PYTHONPATH": str(ROOT)},
-        capture_output=True,
-        text=True,
-        encoding="utf-8",
-        check=False,
-    )
-    assert done.returncode == 0, done.stderr
+    python("-X", "warn_default_encoding", "-c", script, *lines, folder=tmp_path)
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from oracles.test_assumptions import SIZES
-from paper_structures import Array, podium
+from paper_structures import Array, known, podium
 from scipy.optimize import brentq
 
 from rpscli.constants import STANDARD_GRAVITY
@@ -25,8 +25,12 @@ LABEL = re.compile(r"^(?: {4,6}|\|).* \((\d+)\.(\d+)\)(?: \|)?$", re.MULTILINE)
 """At the right of a formula, or in the last column of a table of formulas."""
 
 LABELS = [(int(section), int(number)) for section, number in LABEL.findall(TEXT)]
-CITED = re.compile(r"\((\d+\.\d+)\)")
-CITATION = re.compile(r"T(?:heory|HEORY\.md),? (\(\d+\.\d+\)(?:(?:, | and | to )\(\d+\.\d+\))*)")
+SECTIONS = [int(number) for number in re.findall(r"^## (\d+)\. ", TEXT, re.MULTILINE)]
+KNOWN = {
+    r"\(\d+\.\d+\)": {f"({section}.{number})" for section, number in LABELS},
+    r"\d+": set(map(str, SECTIONS)),
+}
+"""Numbers that are cited: those of formulas and of sections."""
 
 PRINTED = {
     "springs pass no impulse": ("springs", "base shear {most:.0f} to {least:.1f} %"),
@@ -49,10 +53,11 @@ PRINTED = {
 """Where the table of section 2 has sizes of assumptions, and how; nothing but 0.1 % where None."""
 
 
-def cited_by(text: str) -> list[str]:
-    """Numbers after "Theory", also over the ends of lines of docstrings and comments."""
-    joined = re.sub(r"\s*\n\s*(?:#:? ?)?", " ", text)
-    return [number for group in CITATION.findall(joined) for number in CITED.findall(group)]
+def cited_by(text: str, number: str) -> set[str]:
+    """Numbers after "Theory", perhaps of sections, also over line ends of docstrings, comments."""
+    joined = re.sub(r"\s*\n\s*(?:#:?\s*)?", " ", text)
+    lists = rf"T(?:heory|HEORY\.md),? (?:sections? )?({number}(?:(?:, | and | to ){number})*)"
+    return {each for group in re.findall(lists, joined) for each in re.findall(number, group)}
 
 
 SOURCES = sorted(
@@ -71,9 +76,8 @@ def test_formulas_are_numbered_in_order() -> None:
     ]
     assert expected == LABELS
     assert len(LABELS) > 100
-    headings = [int(n) for n in re.findall(r"^## (\d+)\. ", TEXT, re.MULTILINE)]
     parts = re.split(r"^## \d+\. .*$", TEXT, flags=re.MULTILINE)[1:]
-    for section, part in zip(headings, parts, strict=True):
+    for section, part in zip(SECTIONS, parts, strict=True):
         assert {int(found[0]) for found in LABEL.findall(part)} <= {section}
 
 
@@ -84,37 +88,16 @@ def test_every_displayed_formula_has_a_number() -> None:
     assert [block for block in blocks if not LABEL.search(block.splitlines()[-1])] == []
 
 
-def test_formulas_that_are_cited_exist() -> None:
-    known = {f"{section}.{number}" for section, number in LABELS}
-    assert set(CITED.findall(TEXT)) <= known
-    cited = {path: cited_by(path.read_text("utf-8")) for path in SOURCES}
+@pytest.mark.parametrize("number", KNOWN)
+def test_what_is_cited_exists(number: str) -> None:
+    assert [*range(1, len(SECTIONS) + 1)] == SECTIONS
+    assert set(re.findall(r"\(\d+\.\d+\)", TEXT)) <= KNOWN[r"\(\d+\.\d+\)"]
+    cited = {path: cited_by(path.read_text("utf-8"), number) for path in SOURCES}
     assert sum(path.suffix == ".py" for path, numbers in cited.items() if numbers) > 10
-    assert {
-        path.name: sorted(set(numbers) - known)
-        for path, numbers in cited.items()
-        if set(numbers) - known
-    } == {}
-
-
-def referred_sections(text: str) -> set[int]:
-    """Numbers after "Theory, section" (also "sections 1 and 2", over line ends) and "Theory 8"."""
-    joined = re.sub(r"\s*\n\s*(?:#:?\s*)?", " ", text)
-    lists = re.findall(
-        r"T(?:heory|HEORY\.md),? (?:sections? )?(\d+(?:(?:, | and | to )\d+)*)", joined
-    )
-    return {int(number) for group in lists for number in re.findall(r"\d+", group)}
-
-
-def test_sections_of_the_theory_that_are_cited_exist() -> None:
-    sections = [int(number) for number in re.findall(r"^## (\d+)\. ", TEXT, re.MULTILINE)]
-    assert sections == list(range(1, len(sections) + 1))
-    cited = {path: referred_sections(path.read_text("utf-8")) for path in SOURCES}
-    assert sum(map(len, cited.values())) > 20
-    assert {
-        path.name: numbers - set(sections)
-        for path, numbers in cited.items()
-        if numbers - set(sections)
-    } == {}
+    missing = {
+        path.name: found for path, numbers in cited.items() if (found := numbers - KNOWN[number])
+    }
+    assert missing == {}
 
 
 @pytest.mark.parametrize(("storeys", "per_cent"), [(3, 0.5), (9, 1.7)])
@@ -163,8 +146,7 @@ def test_where_ends_that_give_way_lift_to_first_order(
     """The bearing itself has the stiffness (2 rho - 1) W/2H, which joints add to."""
     soft = Contact(kind, period_ratio=1.5)
     structure = replace(podium(6, 0.15, rho, law=ImpactLaw()), contact=soft)
-    bed = structure.bed
-    assert bed is not None
+    bed = known(structure.bed)
     relative = 2.0 * structure.bearing.half_height * bed.stiffness / structure.weight
     first = 0.15 / (share * (1.0 - 2.0 * rho + relative))
     # what the text says of the rest: a seventh of it is of a higher order still

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import pytest
 
-from rpscli.case.case import parse_case
+from rpscli.case.case import Case, parse_case
 from rpscli.errors import CaseError
 
 BUILDING = """\
@@ -56,17 +56,15 @@ record""",
     1,
 )
 
-Faults = Callable[..., str]
+
+def case_of(*overrides: str, text: str = BUILDING) -> Case:
+    """The case of a text, and of what is put over it."""
+    return parse_case(text, name="c.yaml", overrides=overrides)
 
 
-@pytest.fixture
-def faults() -> Faults:
+def refusal(text: str, old: str = "", new: str = "", overrides: Sequence[str] = ()) -> str:
     """What a case is refused with, after one replacement in its text."""
-
-    def of(text: str, old: str = "", new: str = "", overrides: Sequence[str] = ()) -> str:
-        assert old in text
-        with pytest.raises(CaseError) as refusal:
-            parse_case(text.replace(old, new) if old else text, name="c.yaml", overrides=overrides)
-        return str(refusal.value)
-
-    return of
+    assert old in text
+    with pytest.raises(CaseError) as refused:
+        case_of(*overrides, text=text.replace(old, new) if old else text)
+    return str(refused.value)

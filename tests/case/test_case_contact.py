@@ -9,16 +9,16 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 from matplotlib.figure import Figure
+from paper_structures import known
 
 from rpscli.analyses.modal import modal
 from rpscli.analyses.pushover import pushover
-from rpscli.case.case import Case, parse_case
 from rpscli.cli import program
 from rpscli.model.podium import PodiumStructure
 from rpscli.report.figures.bearing import draw_end
 from rpscli.report.figures.structure import draw_mode
 
-from .conftest import BUILDING
+from .conftest import BUILDING, case_of
 
 FLAT = (
     "podium.bearing.wedge_slenderness=0.15", "podium.bearing.curvature_ratio=0",
@@ -28,31 +28,26 @@ PLANE = "podium.contact={kind: plane, period_ratio: 1.2}"
 EDGES = "podium.contact={kind: edges, period_ratio: 1.2}"
 
 
-def case_of(*overrides: str) -> Case:
-    return parse_case(BUILDING, name="c.yaml", overrides=[*FLAT, *overrides])
-
-
 def structure_of(*overrides: str) -> PodiumStructure:
-    return case_of(*overrides).structure
+    return case_of(*FLAT, *overrides).structure
 
 
 def test_keys_and_their_defaults() -> None:
     """The three sizes describe the same joint; without the key ends are rigid."""
     assert structure_of().bed is None
     first = structure_of(PLANE)
-    bed = first.bed
-    assert bed is not None
+    bed = known(first.bed)
     assert (first.contact.damping, first.impact_law.loss) == (0.03, 0.3)
     assert structure_of(EDGES).impact_law.loss == 1.0
     assert structure_of(PLANE, "podium.impact.loss=0.8").impact_law.loss == 0.8
     for given in (f"stiffness: {bed.stiffness!r}", f"settlement: {bed.settlement!r}"):
-        other = structure_of(f"podium.contact={{kind: plane, {given}}}").bed
-        assert other is not None
+        other = known(structure_of(f"podium.contact={{kind: plane, {given}}}").bed)
         assert other.period_ratio == pytest.approx(1.2, rel=1e-9)
     units = structure_of("podium.contact={kind: edges, stiffness: 60 MN/m}")
     assert units.contact.stiffness == 6e7
-    written = case_of(PLANE, "analysis.recontact_tolerance=1e-6")
-    assert written.structure.bed is not None  # the default, as in a case that was written out whole
+    assert structure_of(
+        PLANE, "analysis.recontact_tolerance=1e-6"
+    ).bed  # the default, as in a case that was written out whole
 
 
 def printed(command: str, contact: str, folder: Path) -> str:
@@ -113,8 +108,7 @@ def test_the_drawing_has_the_length_in_contact() -> None:
         draw_end(axes, structure.bearing, structure.bed)
         return [text for each in axes.texts if "contact" in (text := each.get_text())]
 
-    bed = structure_of(PLANE).bed
-    assert bed is not None
+    bed = known(structure_of(PLANE).bed)
     alpha = math.atan(0.15)
     length = 3000.0 * math.sin(alpha) * math.sqrt(10.0 * bed.uplift_rotation / alpha)
     assert drawn(PLANE) == [f"{length:.3g} mm in contact at α/10"]

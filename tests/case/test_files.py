@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from rpscli.analyses.verification import answers_of_file
-from rpscli.case.case import load_case, parse_case
+from rpscli.case.case import load_case
 from rpscli.case.study.observed import read_observed
 from rpscli.case.text import files
 from rpscli.case.text.document import Document
@@ -21,10 +21,11 @@ from rpscli.records.loading import expand_sources, load_record
 from rpscli.records.target import load_target
 from rpscli.sweep.statistics.hazard import read_hazard
 
-from .conftest import BUILDING
+from .conftest import BUILDING, refusal
 
 
-def refusal(source: Path | str) -> str:
+def of_file(source: Path | str) -> str:
+    """What a file is refused with."""
     with pytest.raises(CaseError) as error:
         load_case(source)
     return str(error.value)
@@ -40,34 +41,34 @@ def test_a_case_knows_where_it_comes_from(tmp_path: Path) -> None:
 
 def test_missing_file_names_the_nearest(tmp_path: Path) -> None:
     (tmp_path / "six_storey.yaml").write_text(BUILDING)
-    message = refusal(tmp_path / "six_story.yaml")
+    message = of_file(tmp_path / "six_story.yaml")
     assert "six_story.yaml: there is no such file" in message
     assert f"did you mean {tmp_path / 'six_storey.yaml'}?" in message
-    assert "rps init" in refusal(tmp_path / "other.txt")
-    assert "does not exist either" in refusal(tmp_path / "nowhere" / "a.yaml")
+    assert "rps init" in of_file(tmp_path / "other.txt")
+    assert "does not exist either" in of_file(tmp_path / "nowhere" / "a.yaml")
 
 
 def test_a_folder_is_no_file(tmp_path: Path) -> None:
     (tmp_path / "one.yaml").write_text(BUILDING)
-    message = refusal(tmp_path)
+    message = of_file(tmp_path)
     assert "is a folder" in message
     assert str(tmp_path / "one.yaml") in message
 
 
 def test_a_file_as_folder_is_refused(tmp_path: Path) -> None:
     (tmp_path / "one.yaml").write_text(BUILDING)
-    assert "cannot be read" in refusal(tmp_path / "one.yaml" / "two.yaml")
-    assert "do not show; rename the file" in refusal("with\0zero.yaml")
+    assert "cannot be read" in of_file(tmp_path / "one.yaml" / "two.yaml")
+    assert "do not show; rename the file" in of_file("with\0zero.yaml")
 
 
 def test_other_encodings_are_refused_with_the_place(tmp_path: Path) -> None:
     path = tmp_path / "latin.yaml"
     path.write_bytes("rps: 1\ntitle: Geb\xe4ude\n".encode("latin-1"))
-    message = refusal(path)
+    message = of_file(path)
     assert message.startswith(f"{path}:2:11: the byte 0xe4 is not UTF-8")
     assert "save" in message
     path.write_bytes("rps: 1\n".encode("utf-16"))
-    assert "is not UTF-8" in refusal(path)
+    assert "is not UTF-8" in of_file(path)
 
 
 def test_standard_input(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -75,20 +76,14 @@ def test_standard_input(monkeypatch: pytest.MonkeyPatch) -> None:
     case = load_case("-", ["title=From a pipe"])
     assert (case.name, case.title, case.folder) == ("stdin", "From a pipe", Path())
     monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO(b"rps: 2\n")))
-    assert refusal("-").startswith("<stdin>:1:1: superstructure is missing")
+    assert of_file("-").startswith("<stdin>:1:1: superstructure is missing")
     monkeypatch.setattr("sys.stdin", None)
-    assert refusal("-").startswith("<stdin>: the standard input is closed; name a file")
-
-
-def text_refusal(text: str) -> str:
-    with pytest.raises(CaseError) as error:
-        parse_case(text, name="c.yaml")
-    return str(error.value)
+    assert of_file("-").startswith("<stdin>: the standard input is closed; name a file")
 
 
 def test_a_name_too_long_is_refused() -> None:
-    assert "cannot be read: File name too long; check" in refusal("x" * 5000)
-    assert len(refusal("x" * 5000)) < 400
+    assert "cannot be read: File name too long; check" in of_file("x" * 5000)
+    assert len(of_file("x" * 5000)) < 400
     for read in (load_record, lambda source: expand_sources([source])):
         with pytest.raises(RecordError, match="cannot be read: File name too long"):
             read("x" * 5000)
@@ -107,7 +102,7 @@ def test_any_refusal_of_the_system_is_an_error_in_plain_words(
         raise PermissionError(13, "Permission denied", "a")
 
     monkeypatch.setattr(Path, "stat", denied)
-    assert "cannot be read: Permission denied" in refusal(tmp_path / "c.yaml")
+    assert "cannot be read: Permission denied" in of_file(tmp_path / "c.yaml")
     for read in (load_record, lambda source: expand_sources([source])):
         with pytest.raises(RecordError, match="cannot be read: Permission denied"):
             read(str(tmp_path / "rec.at2"))
@@ -115,14 +110,14 @@ def test_any_refusal_of_the_system_is_an_error_in_plain_words(
 
 @pytest.mark.parametrize("device", ["/dev/zero", "/dev/null", "/dev/urandom"])
 def test_devices_are_refused(device: str) -> None:
-    assert "is a device; name a file" in refusal(device)
+    assert "is a device; name a file" in of_file(device)
 
 
 def test_a_pipe_is_read_if_somebody_writes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     pipe = tmp_path / "pipe"
     os.mkfifo(pipe)
     monkeypatch.setattr(files, "_PATIENCE", 0.05)
-    assert "nothing writes to this pipe" in refusal(pipe)
+    assert "nothing writes to this pipe" in of_file(pipe)
     monkeypatch.setattr(files, "_PATIENCE", 10.0)
     writer = threading.Thread(target=lambda: pipe.write_text(BUILDING))
     writer.start()
@@ -133,11 +128,11 @@ def test_a_pipe_is_read_if_somebody_writes(tmp_path: Path, monkeypatch: pytest.M
 def test_sizes_are_refused_before_they_are_read(tmp_path: Path) -> None:
     path = tmp_path / "large.yaml"
     path.write_bytes(b"rps: 1\ntitle: " + b"x" * files.LARGEST)
-    assert "more than 2 MB is not a case or a study" in refusal(path)
+    assert "more than 2 MB is not a case or a study" in of_file(path)
 
 
 def test_of_many_faults_the_first_hundred_are_told() -> None:
-    lines = text_refusal(
+    lines = refusal(
         "title: t\n" + "".join(f"key_{number}: 1\n" for number in range(3000))
     ).splitlines()
     assert len(lines) == 101
@@ -146,22 +141,22 @@ def test_of_many_faults_the_first_hundred_are_told() -> None:
 
 
 def test_long_keys_are_cut() -> None:
-    assert max(map(len, text_refusal("title: t\n" + "k" * 5000 + ": 1\n").splitlines())) < 300
+    assert max(map(len, refusal("title: t\n" + "k" * 5000 + ": 1\n").splitlines())) < 300
 
 
 def test_nothing_is_told_of_a_file_that_is_no_case() -> None:
-    message = text_refusal("key_of_somebody: 1\nsecret:\n")
+    message = refusal("key_of_somebody: 1\nsecret:\n")
     assert "rps is missing" in message
     assert not {"key_of_somebody", "secret"} & {*message.replace(":", " ").split()}
 
 
 def test_a_decimal_comma_in_braces_is_named() -> None:
     text = "rps: 1\nsuperstructure: {storeys: 3, period: 0,3, storey_height: 3}\n"
-    lines = text_refusal(text).splitlines()
+    lines = refusal(text).splitlines()
     named = [line for line in lines if "period" in line]
     assert named == ["c.yaml:2:38: superstructure.period = 0,3 has a decimal comma; write 0.3"]
     assert not any("the key 3" in line for line in lines)
-    assert "the key 3 must be text" in text_refusal("a: {b: 0, 3}\n")
+    assert "the key 3 must be text" in refusal("a: {b: 0, 3}\n")
 
 
 TABLES: dict[str, Callable[[Path], object]] = {

@@ -5,12 +5,11 @@ from __future__ import annotations
 import pytest
 
 from rpscli.analyses.result_quantities import LIMITED
-from rpscli.case.case import parse_case
 from rpscli.case.conditions import Condition, conditions_of, parse_condition
 from rpscli.errors import UsageError
 from rpscli.report.limits import requirement_text
 
-from .conftest import BUILDING
+from .conftest import BUILDING, case_of
 
 WITH_COLUMNS = BUILDING.replace(
     "  profile: sine\n", "  vertical_period: 0.1 s\n  yield: {ratio: 1.3}\n"
@@ -25,7 +24,7 @@ WITH_COLUMNS = BUILDING.replace(
 def limited(text: str) -> tuple[Condition, ...]:
     """Conditions of a case with these limits."""
     changed = WITH_COLUMNS.replace("limits: {rotation_ratio: 0.5}", f"limits: {text}")
-    return conditions_of(parse_case(changed, name="c.yaml").limits, "the case")
+    return conditions_of(case_of(text=changed).limits, "the case")
 
 
 def condition(

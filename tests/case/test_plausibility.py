@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from rpscli.case.case import parse_case
 from rpscli.case.plausibility import Doubt, doubts_of_many
+
+from .conftest import case_of
 
 CASE = """\
 rps: 1
@@ -25,7 +26,7 @@ podium:
 
 def doubts(old: str = "", new: str = "") -> list[str]:
     assert old in CASE
-    return list(parse_case(CASE.replace(old, new), name="c.yaml").warnings)
+    return list(case_of(text=CASE.replace(old, new)).warnings)
 
 
 SLIPS = [
@@ -74,7 +75,7 @@ def test_the_first_period_is_looked_at() -> None:
     text = text.replace("[850 kN/mm, 600 kN/mm, 400 kN/mm]", "900").replace(
         "  storey_height: 3.0\n", ""
     )
-    (doubt,) = parse_case(text, name="c.yaml").warnings
+    (doubt,) = case_of(text=text).warnings
     assert "T1 = 93.66 s is unusual: 0.02 to 5 s is" in doubt
 
 

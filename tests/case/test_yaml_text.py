@@ -10,16 +10,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from rpscli.case.case import parse_case
 from rpscli.case.text.document import MISSING
 from rpscli.case.text.yaml_text import read_value, read_yaml
 from rpscli.errors import CaseError
 
-
-def refusal(text: str) -> str:
-    with pytest.raises(CaseError) as error:
-        parse_case(text, name="c.yaml")
-    return str(error.value)
+from .conftest import refusal
 
 
 def test_positions_of_keys_and_values() -> None:

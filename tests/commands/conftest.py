@@ -7,7 +7,7 @@ import json
 import os
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -62,10 +62,16 @@ def _figures_cost_nothing(request: pytest.FixtureRequest, monkeypatch: pytest.Mo
 
 @pytest.fixture
 def rps(workplace: Path) -> Invoke:
-    """Run `rps` with these arguments in this process."""
+    """Run `rps` in this process, to the end with this exit code; what it says on standard error."""
 
-    def invoke(*arguments: str, **options: Any) -> Result:
-        return CliRunner().invoke(program, list(arguments), **options)
+    def invoke(
+        *arguments: str, exit_code: int | None = 0, says: str | Sequence[str] = (), **options: Any
+    ) -> Result:
+        result = CliRunner().invoke(program, arguments, **options)
+        assert exit_code in {None, result.exit_code}, result.stderr
+        for text in (says,) if isinstance(says, str) else says:
+            assert text in result.stderr
+        return result
 
     return invoke
 
@@ -75,8 +81,7 @@ def rps_json(rps: Invoke) -> InvokeJson:
     """Run `rps ... --json`; the standard output must hold one document and nothing else."""
 
     def invoke(*arguments: str, exit_code: int = 0, **options: Any) -> dict[str, Any]:
-        result = rps(*arguments, "--json", **options)
-        assert result.exit_code == exit_code, result.stderr
+        result = rps(*arguments, "--json", exit_code=exit_code, **options)
         document: dict[str, Any] = json.loads(result.stdout, parse_constant=_refuse)
         assert document["schema_version"] == 1
         return document

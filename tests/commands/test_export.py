@@ -3,12 +3,8 @@
 from __future__ import annotations
 
 import ast
-import csv
 import importlib.util
 import json
-import os
-import subprocess
-import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -16,13 +12,13 @@ from xml.etree.ElementTree import fromstring
 
 import numpy as np
 import pytest
-from paper_structures import known, needs_compiled_kernels
+from paper_structures import known, needs_compiled_kernels, python
 from scipy.integrate import solve_ivp
 
 from rpscli.case.case import load_case
 from rpscli.records.loading import load_record
 
-from .conftest import SMALL_CASE, Invoke
+from .conftest import SMALL_CASE, Invoke, columns
 
 pytestmark = needs_compiled_kernels
 
@@ -43,25 +39,11 @@ analysis: {free_vibration: 3}
 """
 
 
-def ran(folder: Path, **environment: str) -> subprocess.CompletedProcess[str]:
-    """The script, run to its end."""
-    script = [sys.executable, str(folder / "rerun.py")]
-    return subprocess.run(
-        script, check=False, capture_output=True, text=True, timeout=300,
-        env={**os.environ, **environment},
-    )  # fmt: skip
-
-
 def rerun(folder: Path) -> tuple[dict[str, Any], dict[str, Any]]:
     """Columns of both programs after the script has run."""
-    done = ran(folder)
-    assert done.returncode == 0, done.stderr
+    python(str(folder / "rerun.py"))
     assert (folder / "rerun.png").stat().st_size > 10_000
-    both = []
-    for name in ("timehistory.csv", "rerun.csv"):
-        rows = list(csv.DictReader((folder / name).read_text(encoding="utf-8").splitlines()))
-        both.append({head: [row[head] for row in rows] for head in rows[0]})
-    return both[0], both[1]
+    return columns(folder / "timehistory.csv"), columns(folder / "rerun.csv")
 
 
 def gap(of: str, ours: dict[str, Any], theirs: dict[str, Any]) -> float:
@@ -85,7 +67,7 @@ def test_mujoco_finds_the_same(workplace: Path, rps: Invoke, vertical: str) -> N
     case = SMALL_CASE.replace("period=0.6", "period=0.6&dt=0.01")
     (workplace / "small.yaml").write_text(case, encoding="utf-8")
     short = ("--set", "analysis.free_vibration=0.3", "--set", vertical)
-    assert rps("export", "small.yaml", "mujoco", "-o", "m", *short).exit_code == 0
+    rps("export", "small.yaml", "mujoco", "-o", "m", *short)
     ours, theirs = rerun(workplace / "m")
     # contacts close within 0.1 ms, a part of a thousand of the period; the rest are its corners
     assert gap("cap_beam_displacement [m]", ours, theirs) < 5e-3
@@ -98,7 +80,7 @@ def test_opensees_finds_the_same_where_impacts_take_nothing(workplace: Path, rps
     if importlib.util.find_spec("openseespy") is None:
         pytest.skip("pip install openseespy")
     (workplace / "slender.yaml").write_text(SLENDER, encoding="utf-8")
-    assert rps("export", "slender.yaml", "opensees", "-o", "o").exit_code == 0
+    rps("export", "slender.yaml", "opensees", "-o", "o")
     ours, theirs = rerun(workplace / "o")
     # 0.8 % are of the spring, which is soft up to uplift (6 % if that is ten times as far), and
     # 0.2 % of tan(alpha)^2 = 0.0036
@@ -120,9 +102,9 @@ def test_the_damper_takes_as_much_as_an_impact(
     }
     mass = found["BEAM"] + sum(found["MASSES"])
     u, force = found["DISPLACEMENTS"], found["FORCES"]
-    history = (workplace / "o" / "timehistory.csv").read_text(encoding="utf-8").splitlines()
     # between samples it may be a little more
-    released = max(abs(float(r["cap_beam_displacement [m]"])) for r in csv.DictReader(history))
+    history = columns(workplace / "o" / "timehistory.csv")["cap_beam_displacement [m]"]
+    released = max(abs(float(displacement)) for displacement in history)
 
     def rates(_: float, y: Any) -> list[float]:
         return [y[1], -(np.interp(y[0], u, force) + found["LOSS"] * y[1]) / mass]
@@ -138,10 +120,10 @@ def test_the_damper_takes_as_much_as_an_impact(
     before, after = (np.trapezoid(np.interp(at * end, u, force), at * end) for end in ends)
     # the damper itself slows the swing: second order in what it takes, which is 2 %
     assert 1.0 - after / before == pytest.approx(1.0 - 0.99**2, rel=0.02)
-    columns = found["PUSHED"] / 10.5  # of which half moves with a cap beam of ten times their mass
+    moved = found["PUSHED"] / 10.5  # of which half moves with a cap beam of ten times their mass
     # half-way at the speed of a half, and turning, I_o/(m_c R^2) = 4/3, by du_b/(2 R cos(alpha))
     moving = 10.0 + 0.25 + 0.25 * (4.0 / 3.0 - 1.0) * (1.0 + 0.15**2)
-    assert found["BEAM"] == pytest.approx(moving * columns, rel=1e-9)
+    assert found["BEAM"] == pytest.approx(moving * moved, rel=1e-9)
 
 
 def test_what_a_model_lacks_is_refused(workplace: Path, rps: Invoke) -> None:
@@ -154,36 +136,33 @@ def test_what_a_model_lacks_is_refused(workplace: Path, rps: Invoke) -> None:
         f"record={{source: '{pulse}', vertical: '{pulse}'}}": "--set record.vertical=null",
         f"record={{x: '{pulse}', y: '{pulse}'}}": "name one of both components by --record",
     }.items():
-        result = rps("export", "small.yaml", "opensees", "--set", given)
-        assert result.exit_code == 2
-        assert remedy in result.stderr
+        rps("export", "small.yaml", "opensees", "--set", given, exit_code=2, says=remedy)
         found = remedy.split()[1:] if "--set" in remedy else [pulse]
         rest = ("--set", *found) if "--set" in remedy else ("--record", *found)
         words = ("--set", given, *rest, "--force")
-        assert rps("export", "small.yaml", "opensees", *words).exit_code == 0
-    assert rps("export", "small.yaml", "opensees", *two, "-o", "two").exit_code == 2
+        rps("export", "small.yaml", "opensees", *words)
+    rps("export", "small.yaml", "opensees", *two, "-o", "two", exit_code=2)
     assert not (workplace / "two").exists()
 
 
 def test_storeys_that_yield_are_springs_of_opensees(workplace: Path, rps: Invoke) -> None:
     """`Steel01` has their law: strength, stiffness, kinematic hardening."""
     yields = "--set", "superstructure.yield={shears: 900 kN, hardening: 0.02}"
-    refused = rps("export", "small.yaml", "mujoco", *yields)
-    assert refused.exit_code == 2
+    refused = rps("export", "small.yaml", "mujoco", *yields, exit_code=2)
     assert "--set superstructure.yield=null" in refused.stderr
     stiffnesses = known(load_case("small.yaml").structure.superstructure).stiffnesses.tolist()
     for laws, options in (([(9e5, k, 0.02) for k in stiffnesses], yields),
                           ([(k, 0.0) for k in stiffnesses], ())):  # fmt: skip
-        assert rps("export", "small.yaml", "opensees", "-o", "o", *options).exit_code == 0
+        rps("export", "small.yaml", "opensees", "-o", "o", *options)
         assert f"SPRINGS = {laws}" in (workplace / "o/model.py").read_text(encoding="utf-8")
 
 
 def test_vertical_motion_is_beside_the_model(workplace: Path, rps: Invoke) -> None:
     pulse = SMALL_CASE.replace("period=0.6", "period=0.6&dt=0.01")
     (workplace / "small.yaml").write_text(pulse, encoding="utf-8")
-    assert rps("export", "small.yaml", "mujoco", "-o", "m", "--set", UP).exit_code == 0
-    rows = (workplace / "m" / "timehistory.csv").read_text(encoding="utf-8").splitlines()
-    up = [float(row["ground_acceleration_up [m/s2]"]) for row in csv.DictReader(rows)]
+    rps("export", "small.yaml", "mujoco", "-o", "m", "--set", UP)
+    history = columns(workplace / "m" / "timehistory.csv")
+    up = [float(value) for value in history["ground_acceleration_up [m/s2]"]]
     motion = load_record(UP.partition("=")[2]).acceleration
     assert up[: len(motion)] == pytest.approx(motion.tolist(), rel=1e-8)  # ten digits are written
     assert not any(up[len(motion) :])
@@ -209,27 +188,26 @@ def other_program(folder: Path, text: str) -> str:
 
 
 def test_a_model_that_overturns_stops_and_says_so(workplace: Path, rps: Invoke) -> None:
-    assert rps("export", "small.yaml", "opensees", "-o", "o").exit_code == 0
+    rps("export", "small.yaml", "opensees", "-o", "o")
     (workplace / "o" / "model.py").write_text(OTHER, encoding="utf-8")
-    done = ran(workplace / "o", PYTHONPATH=other_program(workplace, ""))
-    assert done.returncode == 0, done.stderr
+    places = {"PYTHONPATH": other_program(workplace, "")}
+    done = python(str(workplace / "o/rerun.py"), environment=places)
     assert done.stdout.startswith("overturned at ")
-    found = (workplace / "o" / "rerun.csv").read_text(encoding="utf-8").splitlines()
-    *_, before, last = (abs(float(line.split(",")[1])) for line in found[1:])
+    _, found, *_ = columns(workplace / "o" / "rerun.csv").values()
+    *_, before, last = (abs(float(displacement)) for displacement in found)
     beyond = float(done.stdout.split(" m\n")[0].split()[-1])
     assert before < beyond <= last
     assert beyond < 4.0  # columns are 3 m long
 
 
 def test_what_the_other_program_lacks_is_one_sentence(workplace: Path, rps: Invoke) -> None:
-    assert rps("export", "small.yaml", "opensees", "-o", "o").exit_code == 0
+    rps("export", "small.yaml", "opensees", "-o", "o")
     site = other_program(
         workplace,
         "try:\n    raise ImportError('libblas.so.3: cannot open')\n"
         "except ImportError:\n    raise RuntimeError('Failed to import openseespy')\n",
     )
-    done = ran(workplace / "o", PYTHONPATH=site)
-    assert done.returncode == 1
+    done = python(str(workplace / "o/rerun.py"), environment={"PYTHONPATH": site}, exit_code=1)
     (line,) = done.stderr.splitlines()
     assert line.startswith("openseespy cannot be loaded: libblas.so.3: cannot open; install it")
 
@@ -258,7 +236,7 @@ def test_a_title_stays_text(workplace: Path, rps: Invoke) -> None:
     text = SMALL_CASE.replace('"Three storeys [test]"', json.dumps(title))
     (workplace / "small.yaml").write_text(text, encoding="utf-8")
     for program in ("mujoco", "opensees"):
-        assert rps("export", "small.yaml", program, "-o", program).exit_code == 0
+        rps("export", "small.yaml", program, "-o", program)
     shown = title.replace("\x07", "\ufffd")
     model = fromstring((workplace / "mujoco/model.xml").read_text("utf-8"))  # noqa: S314 -- ours
     assert model.attrib == {"model": shown}

@@ -31,7 +31,7 @@ def test_info(rps_json: InvokeJson, rps: Invoke) -> None:
 
 def test_a_file_that_states_neither_step_nor_unit(rps: Invoke, rps_json: InvokeJson) -> None:
     Path("bare.txt").write_text("0.0\n0.1\n-0.2\n0.05\n", encoding="utf-8")
-    assert rps("record", "info", "bare.txt").exit_code == 3
+    rps("record", "info", "bare.txt", exit_code=3)
     document = rps_json("record", "info", "bare.txt", "--dt", "0.02", "--units", "g")
     assert document["pga"] == pytest.approx(0.2 * 9.80665, rel=1e-12)
     assert document["duration"] == pytest.approx(0.06, rel=1e-12)
@@ -59,9 +59,7 @@ def test_both_components_are_told_drawn_and_written(rps: Invoke, rps_json: Invok
     for values, read in ((along, pair.horizontal), (across, pair.y)):
         # AT2 has seven digits of g
         np.testing.assert_allclose(read.acceleration[: 2 * len(values) : 2], values, atol=2e-6)
-    result = rps("record", "convert", source, "-o", "both.at2")
-    assert result.exit_code == 2
-    assert "name a folder" in result.stderr
+    rps("record", "convert", source, "-o", "both.at2", exit_code=2, says="name a folder")
 
 
 @pytest.mark.usefixtures("figures")
@@ -102,32 +100,22 @@ def test_a_converted_record_is_the_same_record(
 
 
 def test_a_scaled_conversion(rps: Invoke) -> None:
-    assert rps("record", "convert", SINE, "--scale", "2", "-o", "twice.at2").exit_code == 0
+    rps("record", "convert", SINE, "--scale", "2", "-o", "twice.at2")
     assert load_record("twice.at2").pga == pytest.approx(2.0 * load_record(SINE).pga, rel=1e-7)
 
 
 def test_a_file_is_not_overwritten(rps: Invoke) -> None:
     Path("mine.at2").write_text("precious", encoding="utf-8")
-    result = rps("record", "convert", SINE, "-o", "mine.at2")
-    assert result.exit_code == 7
-    assert "--force" in result.stderr
+    rps("record", "convert", SINE, "-o", "mine.at2", exit_code=7, says="--force")
     assert Path("mine.at2").read_text(encoding="utf-8") == "precious"
-    assert rps("record", "convert", SINE, "-o", "mine.at2", "--force").exit_code == 0
+    rps("record", "convert", SINE, "-o", "mine.at2", "--force")
     assert load_record("mine.at2").npts == load_record(SINE).npts
 
 
-def test_a_contradiction(rps: Invoke) -> None:
-    result = rps("record", "convert", SINE, "-o", "a.txt", "--to", "at2")
-    assert result.exit_code == 2
-    assert "contradicts" in result.stderr
-
-
 def test_synth_says_that_nobody_recorded_it(rps: Invoke) -> None:
-    assert rps("record", "synth", NOISE, "-o", "made.at2").exit_code == 0
+    rps("record", "synth", NOISE, "-o", "made.at2")
     assert "SYNTHETIC, NOT A RECORDING" in Path("made.at2").read_text(encoding="utf-8")
-    again = rps("record", "synth", "made.at2")
-    assert again.exit_code == 2
-    assert "convert" in again.stderr
+    rps("record", "synth", "made.at2", exit_code=2, says="convert")
 
 
 SELECT = ("record", "select", "--target", "en1998:?ag=0.2g&soil=B", "--per-event", "1", "-n", "2")
@@ -161,11 +149,10 @@ def test_select(rps_json: InvokeJson, rps: Invoke) -> None:
     pgv = intensity_measures(load_record(again)).pgv
     assert pgv == pytest.approx(document["motions"][0]["pgv"], rel=1e-5)  # six digits
     # EN 1998-1 asks for three.
-    made = rps(*SELECT, "pool", "-o", "made/inside")
+    made = rps(*SELECT, "pool", "-o", "made/inside", exit_code=10)
     said = " ".join(made.stdout.split())
     assert "Sa(T1) is a poor measure for rocking" in said
     assert "number of motions >= 3 2 NOT MET" in said
-    assert made.exit_code == 10
     assert "not met: number of motions, 2; required >= 3" in made.stderr
     by_pgv = rps_json(
         *SELECT, "pool", "-o", "made/inside", "--scale-by", "PGV", "--pgv", "0.2", "--rules", "none"
@@ -200,11 +187,3 @@ def test_select_for_a_case(rps_json: InvokeJson, rps: Invoke) -> None:
     more = ("--case", str(case), "--rules", "none", "--set", period, "-o", "other")
     other = rps_json(*SELECT, "pool", *more)
     assert other["periods"][0] == pytest.approx(0.04, rel=1e-5)
-    assert "name it by --case" in rps(*SELECT, "pool", "--set", period).stderr
-
-
-def test_select_refuses(rps: Invoke) -> None:
-    made = rps(*SELECT, NOISE)
-    assert made.exit_code == 3
-    assert "only 1 of 1 motions" in made.stderr
-    assert rps(*SELECT, NOISE, "--pgv", "0.2").exit_code == 2

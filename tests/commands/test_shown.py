@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import re
 import sys
-from html.parser import HTMLParser
 from pathlib import Path
 
 import numpy as np
 import pytest
+from paper_structures import known
 from report.small_results import CURVED, KINDS, structure
 
 import rpscli
@@ -19,30 +20,29 @@ ROOT = Path(__file__).parents[2]
 
 
 def shown() -> list[Shown]:
-    result = KINDS["rolls"]()
-    made = structure(CURVED, 40)
+    result, made = KINDS["rolls"](), structure(CURVED, 40)
     modes, static = rpscli.modal(made), rpscli.pushover(made)
-    assert modes.fixed_base is not None
-    assert result.fixed_base is not None
-    assert made.superstructure is not None
     return [
-        result, result.trace, result.fixed_base, result.record, made, made.superstructure, modes,
-        modes.fixed_base, modes.rocking, static, static.curve, static.capacity[0],
+        result, result.trace, known(result.fixed_base), result.record, made,
+        known(made.superstructure), modes, known(modes.fixed_base), modes.rocking, static,
+        static.curve, static.capacity[0],
     ]  # fmt: skip
 
 
-@pytest.mark.parametrize("which", range(12))
-def test_results_are_short(which: int) -> None:
-    one = shown()[which]
-    line = repr(one)
-    assert line.startswith(f"{type(one).__name__}(")
-    assert len(line) < LONGEST
-    assert "\n" not in line
-    assert "[[" not in line
-    assert len(one._repr_html_()) < 6000
+def test_results_are_short() -> None:
+    for one in shown():
+        line = repr(one)
+        assert line.startswith(f"{type(one).__name__}(")
+        assert len(line) < LONGEST
+        assert "\n" not in line
+        assert "[[" not in line
+        assert len(one._repr_html_()) < 6000
 
 
-def test_a_history_says_what_happened() -> None:
+def test_a_history_and_a_case_say_what_they_are_about() -> None:
+    case = rpscli.load_case(ROOT / "cases" / "free_standing_block.yaml")
+    assert case.title in repr(case)
+    assert len(repr(case)) < LONGEST
     result = KINDS["rolls"]()
     line = repr(result)
     assert line.startswith(f"TimeHistoryResult(record={result.record.name}, outcome=survived, ")
@@ -51,29 +51,10 @@ def test_a_history_says_what_happened() -> None:
     assert f"<th>max_base_shear</th><td>{result.max_base_shear:.4g} N</td>" in table
 
 
-def test_a_case_says_what_it_is_about() -> None:
-    case = rpscli.load_case(ROOT / "cases" / "free_standing_block.yaml")
-    assert case.title in repr(case)
-    assert len(repr(case)) < LONGEST
-
-
-class Tags(HTMLParser):
-    """Tags of a document."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.found: list[str] = []
-
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        self.found.append(tag)
-        assert attrs == []
-
-
 def test_names_are_no_tags() -> None:
     motion = rpscli.GroundMotion(np.array([0.0, 1.0]), 0.1, name="<script>alert(1)</script>")
-    tags = Tags()
-    tags.feed(motion._repr_html_())
-    assert set(tags.found) == {"table", "caption", "tr", "th", "td"}
+    tags = {tag.removeprefix("/") for tag in re.findall("<(.*?)>", motion._repr_html_())}
+    assert tags == {"table", "caption", "tr", "th", "td"}
 
 
 def test_a_motion_of_an_array_needs_no_names() -> None:
@@ -89,23 +70,6 @@ def test_a_motion_scales_itself_to_a_measure(measure: str) -> None:
     scaled = motion.scaled_to(measure, 0.7, period=period)
     # a scaled motion is measured by the same sums
     assert measured(scaled, measure, period) == pytest.approx(0.7, rel=1e-12)
-
-
-@pytest.mark.parametrize(
-    ("arguments", "says"),
-    [
-        (("PGX", 1.0), "PGX is not a measure; there are PGA"),
-        (("Sa", 1.0), "give period="),
-        (("PGA", 0.0), "must be a number > 0"),
-        (("PGA", float("nan")), "must be a number > 0"),
-    ],
-)
-def test_what_cannot_be_scaled_to_is_told(arguments: tuple[str, float], says: str) -> None:
-    motion = rpscli.GroundMotion(np.array([0.0, 2.0, -3.0]), 0.5)
-    with pytest.raises(rpscli.RpsError, match=says):
-        motion.scaled_to(*arguments)
-    with pytest.raises(rpscli.RpsError, match="is 0"):
-        rpscli.GroundMotion(np.zeros(3), 0.5).scaled_to("PGA", 1.0)
 
 
 @pytest.mark.parametrize("name", rpscli.__all__)

@@ -28,8 +28,8 @@ def asked(records: list[str]) -> list[str]:
 
 def test_each_record_leaves_its_own_results(rps: Invoke) -> None:
     for record in PULSES:
-        assert rps("timehistory", "small.yaml", "--record", record).exit_code == 0
-    assert rps("timehistory", "small.yaml", "--record", PULSES[0], "--scale", "1.5").exit_code == 0
+        rps("timehistory", "small.yaml", "--record", record)
+    rps("timehistory", "small.yaml", "--record", PULSES[0], "--scale", "1.5")
     folders = list(Path("results/small/timehistory").iterdir())
     assert len(folders) == 4
     ratios = [json.loads((f / "summary.json").read_bytes())["max_rotation"] for f in folders]
@@ -37,10 +37,9 @@ def test_each_record_leaves_its_own_results(rps: Invoke) -> None:
 
 
 def test_a_folder_belongs_to_one_record(rps: Invoke) -> None:
-    assert rps("timehistory", "small.yaml", "--record", PULSES[0], "-o", "out").exit_code == 0
+    rps("timehistory", "small.yaml", "--record", PULSES[0], "-o", "out")
     before = Path("out/summary.json").read_bytes()
-    other = rps("timehistory", "small.yaml", "--record", PULSES[1], "-o", "out")
-    assert other.exit_code == 7
+    other = rps("timehistory", "small.yaml", "--record", PULSES[1], "-o", "out", exit_code=7)
     assert f"on small (../small.yaml) under {PULSES[0]}" in other.stderr
     assert Path("out/summary.json").read_bytes() == before
     scaled = ("timehistory", "small.yaml", "--record", PULSES[0], "--scale", "2", "-o", "out")
@@ -117,7 +116,7 @@ def test_an_overturned_history_is_larger_than_any_demand(rps: Invoke, rps_json: 
 
 def test_one_kind_of_warning_is_one_line(rps: Invoke) -> None:
     slides = ("--set", "podium.friction=0.01")
-    warned = rps("timehistory", "small.yaml", *slides, *asked(PULSES)).stderr
+    warned = rps("timehistory", "small.yaml", *slides, *asked(PULSES), exit_code=10).stderr
     (line,) = (line for line in warned.splitlines() if "the columns slide" in line)
     assert line.startswith("warning: 3 of 3 histories, such as small, ")
 
@@ -149,7 +148,7 @@ def test_a_least_force_judges_the_set_from_below(rps: Invoke, rps_json: InvokeJs
         "verdicts"
     ]
     assert verdict["beyond"]["count"] == 2
-    assert "overturned" in rps(*words, "min_column_force=-1e9").stdout
+    assert "overturned" in rps(*words, "min_column_force=-1e9", exit_code=10).stdout
 
 
 def test_several_cases_are_judged_by_one_exit_code(rps: Invoke, rps_json: InvokeJson) -> None:
@@ -158,8 +157,7 @@ def test_several_cases_are_judged_by_one_exit_code(rps: Invoke, rps_json: Invoke
     document = rps_json("timehistory", "small.yaml", "strict.yaml", exit_code=10)
     assert [history["case"]["name"] for history in document["histories"]] == ["small", "strict"]
     assert [[v["exceeded"] for v in s["verdicts"]] for s in document["sets"]] == [[], [False, True]]
-    result = rps("timehistory", "small.yaml", "strict.yaml")
-    assert result.exit_code == 10
+    result = rps("timehistory", "small.yaml", "strict.yaml", exit_code=10)
     assert "limit exceeded: strict: rotation_ratio" in result.stderr
     assert "EXCEEDED" in result.stdout
 
@@ -167,23 +165,11 @@ def test_several_cases_are_judged_by_one_exit_code(rps: Invoke, rps_json: Invoke
 def test_everything_is_read_before_anything_is_computed(rps: Invoke) -> None:
     Path("bad.yaml").write_text("rps: 1\nsuperstructure: 3\n", encoding="utf-8")
     Path("worse.yaml").write_text("rps: 2\n", encoding="utf-8")
-    result = rps("timehistory", "small.yaml", "bad.yaml", "worse.yaml")
-    assert result.exit_code == 3
+    result = rps("timehistory", "small.yaml", "bad.yaml", "worse.yaml", exit_code=3)
     assert "bad.yaml:2" in result.stderr
     assert "worse.yaml:1" in result.stderr
-    result = rps("timehistory", "small.yaml", *asked([PULSES[0], "pulse:sine?period=1"]))
-    assert result.exit_code == 3
+    rps("timehistory", "small.yaml", *asked([PULSES[0], "pulse:sine?period=1"]), exit_code=3)
     assert not Path("results").exists()
-
-
-def test_what_belongs_to_one_history_alone(rps: Invoke) -> None:
-    for words in (("--vertical", PULSES[0]), ("--animate", "film.gif")):
-        result = rps("timehistory", "small.yaml", *asked(PULSES), *words)
-        assert result.exit_code == 2
-        assert "not 3" in result.stderr
-    result = rps("timehistory", "small.yaml", "--scale", "2", "--scale-to", "PGA=1")
-    assert result.exit_code == 2
-    assert rps("timehistory", "-", "-").exit_code == 2
 
 
 @pytest.mark.parametrize(
@@ -199,34 +185,15 @@ def test_records_are_scaled_to_a_measure(
     assert info[measure] == pytest.approx(value, rel=1e-12)
 
 
-def test_a_case_scales_its_record_too(rps_json: InvokeJson, rps: Invoke) -> None:
+def test_a_case_scales_its_record_too(rps_json: InvokeJson) -> None:
     scaled = "record.scale_to={measure: PGA, value: 0.2 g}"
     document = rps_json("timehistory", "small.yaml", "--set", scaled)
     assert document["record"]["pga"] == pytest.approx(0.2 * 9.80665, rel=1e-12)
     assert rps_json("check", "small.yaml", "--set", scaled)["record"]["scale"] == pytest.approx(
         2 / 3
     )
-    both = rps("check", "small.yaml", "--set", scaled, "--set", "record.scale=2")
-    assert both.exit_code == 3
-    assert "record.scale_to and record.scale" in both.stderr
     again = rps_json("timehistory", "small.yaml", "--set", scaled, "--scale", "1")
     assert again["record"]["scale"] == 1.0
-
-
-@pytest.mark.parametrize(
-    ("target", "reason"),
-    [
-        ("PGA", "write MEASURE=VALUE"),
-        ("PGB=1", "did you mean PG"),
-        ("PGA=0.4 m", "is a length"),
-        ("PGV=-1", "must be > 0 m/s"),
-        ("PGA(0.5 s)=1 g", "belongs to measures such as Sa"),
-    ],
-)
-def test_a_target_that_cannot_be_meant(rps: Invoke, target: str, reason: str) -> None:
-    result = rps("timehistory", "small.yaml", "--scale-to", target)
-    assert result.exit_code == 2
-    assert reason in result.stderr
 
 
 def test_resampled_between_the_samples() -> None:
@@ -246,11 +213,8 @@ def test_resampled_between_the_samples() -> None:
 
 def test_convert_resamples(rps: Invoke, rps_json: InvokeJson) -> None:
     words = ("record", "convert", PULSES[2], "-o", "fine.txt", "--resample", "0.002")
-    assert rps(*words).exit_code == 0
+    rps(*words)
     assert rps_json("record", "info", "fine.txt")["dt"] == 0.002
-    result = rps("record", "convert", PULSES[2], "-o", "no.txt", "--resample", "-1")
-    assert result.exit_code == 3
-    assert "give a step above 0" in result.stderr
 
 
 @needs_recorded_motions

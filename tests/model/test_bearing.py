@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -129,18 +130,12 @@ def test_an_arc_of_no_width_is_a_flat_end() -> None:
         ({"wedge_slenderness": 0.1}, "wedge_slenderness = 0.1 must be >= slenderness = 0.15"),
         ({"wedge_slenderness": math.nan}, "wedge_slenderness = nan must be"),
         ({"curvature_ratio": 0.07}, "curvature_ratio = 0.07 must be >= 0.075"),
+        ({"inertia_ratio_axial": 0.0}, "inertia_ratio_axial = 0.0 must be > 0"),
     ],
 )
 def test_shapes_that_cannot_be_built_are_refused(changes: dict[str, float], said: str) -> None:
-    shape = {
-        "semi_diagonal": 1.5,
-        "slenderness": 0.15,
-        "wedge_slenderness": 0.30,
-        "curvature_ratio": 0.5,
-        "inertia_ratio": 4.0 / 3.0,
-    }
     with pytest.raises(ValueError, match=said):
-        Bearing(**(shape | changes))
+        replace(Bearing(1.5, 0.15, 0.30, 0.5, 4.0 / 3.0), **changes)
 
 
 @pytest.mark.parametrize("rho", [0.0, 0.08, 0.25, 0.5, 2.0])
@@ -163,5 +158,3 @@ def test_the_axial_inertia_is_that_of_a_solid_round_column() -> None:
     assert arc.inertia_ratio_axial == pytest.approx(0.5 * (half_width / 1.5) ** 2, rel=1e-14)
     assert flat.inertia_ratio_axial == pytest.approx(0.5 * math.sin(flat.alpha) ** 2, rel=1e-14)
     assert Bearing(1.5, 0.15, 0.3, 0.5, inertia_ratio_axial=0.02).inertia_ratio_axial == 0.02
-    with pytest.raises(ValueError, match=r"inertia_ratio_axial = 0.0 must be > 0"):
-        Bearing(1.5, 0.15, 0.3, 0.5, inertia_ratio_axial=0.0)
