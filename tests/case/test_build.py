@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from model.test_device_statics import EQUIPMENT, equipped
 from paper_structures import known
 
 from rpscli.analyses.demand import demand
@@ -29,7 +30,7 @@ from rpscli.model.devices import (
     Tendon,
     ViscousDamper,
 )
-from rpscli.model.podium import PodiumStructure
+from rpscli.model.podium import Device, PodiumStructure
 from rpscli.model.superstructure import (
     ModalDamping,
     RayleighDamping,
@@ -365,6 +366,20 @@ def test_a_moat_counts_as_overturning(share: float, overturns: bool) -> None:
     reached = demand(free.structure, record, free.analysis).max_cap_beam_displacement
     moat = load_case(RIGID_FRAME, [f"analysis.overturning_displacement={share * reached!r}"])
     assert demand(moat.structure, record, moat.analysis).overturned == overturns
+
+
+@pytest.mark.parametrize("device", EQUIPMENT, ids=repr)
+def test_bounds_cover_the_stiffness_at_rest(device: Device) -> None:
+    structure = equipped(0.5, device)
+    x = np.linspace(0.0, structure.critical_rotation, 2001)
+    force = np.broadcast_to(device.at_rest(structure, x, 0.0).restoring, x.shape)
+    slope = np.diff(force) / np.diff(structure.path(x)[1])
+    tension = 0.0
+    if isinstance(device, Tendon):
+        most = device.prestress + device.stiffness * device.stroke(structure, x).max()
+        tension = 6.0 * min(most, device.yield_force)
+    curvature = tension / structure.bearing.half_height  # what a constant tension adds
+    assert np.max(slope) <= device.bounds(structure)[0] * (1.0 + 1e-9) + curvature
 
 
 @pytest.mark.parametrize("name", DEVICES)
