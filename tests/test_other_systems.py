@@ -20,8 +20,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from click.testing import CliRunner, Result
-from paper_structures import python
+from click.testing import CliRunner
+from paper_structures import known, python
 
 from rpscli import user_cache
 from rpscli.cli import program
@@ -56,8 +56,11 @@ SEAMS = {
 """What is not the same everywhere, and the only files that may name it."""
 
 
-def rps(*words: str) -> Result:
-    return CliRunner().invoke(program, words)
+def rps(*words: str, exit_code: int = 0) -> str:
+    """What a command prints, which ends with this exit code."""
+    result = CliRunner().invoke(program, words)
+    assert result.exit_code == exit_code, result.output
+    return result.output
 
 
 @pytest.fixture
@@ -95,8 +98,7 @@ def test_commands_run_without_what_windows_lacks(
         ("sweep", "study.yaml", *none),
         ("sweep", "study.yaml", *none),  # over the results of the first
     ):
-        result = rps(*words)
-        assert result.exit_code == 0, result.output
+        rps(*words)
     assert available_cores() == os.cpu_count()
 
 
@@ -125,9 +127,8 @@ def test_homes_get_no_folders_of_names_that_nobody_uses(
     monkeypatch.setattr(tempfile, "gettempdir", lambda: str(tmp_path / "temporary"))
     monkeypatch.chdir(tmp_path)
     (tmp_path / "home").mkdir()
-    place = user_cache.user_cache()
+    place = known(user_cache.user_cache())
     quiet_matplotlib()
-    assert place is not None
     assert place.is_relative_to(tmp_path / ("temporary" if home == "~" else "home/.cache"))
     assert os.environ.get("MPLCONFIGDIR") == (str(place / "matplotlib") if home == "~" else None)
     left = {path.name for path in (tmp_path / "home").iterdir()}
@@ -245,9 +246,8 @@ def test_folders_of_any_name_hold_cases_and_results(
     folder.mkdir()
     monkeypatch.chdir(folder)
     for words in (("init", "--example", "rigid_frame"), ("check", "cases/rigid_frame.yaml")):
-        assert rps(*words).exit_code == 0
-    drawn = rps("pushover", str(folder / "cases/rigid_frame.yaml"), "--figures", "none", "-o", name)
-    assert drawn.exit_code == 0, drawn.output
+        rps(*words)
+    rps("pushover", str(folder / "cases/rigid_frame.yaml"), "--figures", "none", "-o", name)
     assert (folder / name / "run.json").is_file()
 
 
@@ -264,10 +264,9 @@ def test_a_path_that_is_too_long_is_named(
         load_record(str(tmp_path / ("d" * 300)))
     monkeypatch.chdir(tmp_path)
     shutil.copy(ROOT / "cases" / "free_standing_block.yaml", "block.yaml")
-    result = rps("pushover", "block.yaml", "--figures", "none", "-o", "d" * 300)
-    assert result.exit_code == 1
-    assert "cannot be written" in result.output
-    assert "name another place with -o" in result.output
+    output = rps("pushover", "block.yaml", "--figures", "none", "-o", "d" * 300, exit_code=1)
+    assert "cannot be written" in output
+    assert "name another place with -o" in output
 
 
 @pytest.mark.parametrize(

@@ -122,13 +122,7 @@ def test_commands_run_in_their_order(
             for line in COMMANDS
             if OF_THEM not in line
         ]
-    results = [(line, run(line)) for line in lines]
-    assert len(results) > 10
-    assert [
-        f"{line}: exit code {result.exit_code}\n{result.output}"
-        for line, result in results
-        if result.exit_code != command(line).exit_code
-    ] == []
+    assert len(run_all(lines)) > 10
     written = {file.suffix for file in (here / "results/stronger").iterdir()}
     assert written == {".png", ".csv", ".json"}
 
@@ -276,10 +270,7 @@ def test_the_job_for_a_pipeline_runs(here: Path) -> None:
         for line in step.get("run", "").splitlines()
         if line.startswith("rps ")
     ]
-    assert lines
-    for line in lines:
-        result = run(line)
-        assert result.exit_code == 0, result.output
+    assert run_all(lines)
     assert (here / "results/acceptance/six_storey/summary.json").is_file()
     (cached,) = (step["with"] for step in job["steps"] if "actions/cache" in step.get("uses", ""))
     for variable in (VARIABLE, "MPLCONFIGDIR"):
@@ -356,15 +347,12 @@ def test_relative_links_exist(document: Path) -> None:
     assert not missing
 
 
-CASES = Path(__file__).parents[1] / "cases"
-
-
 @needs_compiled_kernels
 def test_the_notebook_runs(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    shutil.copytree(CASES, "cases")
+    shutil.copytree(ROOT / "cases", "cases")
     plt.switch_backend("Agg")
     try:
         left: dict[str, Any] = runpy.run_path("cases/notebook.py")

@@ -55,6 +55,15 @@ EQUIPPED = BUILDING.replace("  cap_beam_mass_ratio: 10\n", COLUMNS).replace(
 record""",
     1,
 )
+FLAT = (
+    "podium.bearing.wedge_slenderness=0.15", "podium.bearing.curvature_ratio=0",
+    "podium.impact.law=flexible", "podium.columns=4",
+)  # fmt: skip
+"""Ends that may bear on joints, put over the building; and joints."""
+
+PLANE, EDGES = (
+    f"podium.contact={{kind: {kind}, period_ratio: 1.2}}" for kind in ("plane", "edges")
+)
 
 
 def case_of(*overrides: str, text: str = BUILDING) -> Case:

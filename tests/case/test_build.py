@@ -96,14 +96,12 @@ def test_strengths_follow_a_ratio_or_are_given() -> None:
         (structure.superstructure, np.sin(0.5 * np.pi * height)),
         (structure.superstructure_y, height),
     ):
-        assert above is not None
         shears = shape[::-1].cumsum()[::-1]
         wanted = 1.3 * 6e5 * STANDARD_GRAVITY * 0.15 * shears / shears[0]
-        assert above.strengths == pytest.approx(wanted, rel=1e-9)
-        assert above.hardening == 0.0
+        assert known(above).strengths == pytest.approx(wanted, rel=1e-9)
+        assert known(above).hardening == 0.0
     given = floors("superstructure.yield={shears: [3 MN, 2e6, 1 MN], hardening: 0.05}")
-    assert given.strengths is not None
-    assert given.strengths.tolist() == [3e6, 2e6, 1e6]
+    assert known(given.strengths).tolist() == [3e6, 2e6, 1e6]
     assert given.hardening == 0.05
     assert floors().strengths is None
 
@@ -274,9 +272,7 @@ def test_a_pair_of_sources() -> None:
 
 def test_another_stiffness_in_y() -> None:
     structure = built("superstructure.y={period: 0.5}")
-    x, y = structure.superstructure, structure.superstructure_y
-    assert x is not None
-    assert y is not None
+    x, y = known(structure.superstructure), known(structure.superstructure_y)
     assert y.periods[0] == pytest.approx(0.5, rel=1e-9)
     assert y.stiffnesses / x.stiffnesses == pytest.approx([0.36] * 3, rel=1e-12)
     assert (y.masses.tolist(), y.damping) == (x.masses.tolist(), x.damping)

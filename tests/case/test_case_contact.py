@@ -18,14 +18,7 @@ from rpscli.model.podium import PodiumStructure
 from rpscli.report.figures.bearing import draw_end
 from rpscli.report.figures.structure import draw_mode
 
-from .conftest import BUILDING, case_of
-
-FLAT = (
-    "podium.bearing.wedge_slenderness=0.15", "podium.bearing.curvature_ratio=0",
-    "podium.impact.law=flexible", "podium.columns=4",
-)  # fmt: skip
-PLANE = "podium.contact={kind: plane, period_ratio: 1.2}"
-EDGES = "podium.contact={kind: edges, period_ratio: 1.2}"
+from .conftest import BUILDING, EDGES, FLAT, PLANE, case_of
 
 
 def structure_of(*overrides: str) -> PodiumStructure:
@@ -118,8 +111,7 @@ def test_the_drawing_has_the_length_in_contact() -> None:
 def test_moments_of_plane_joints_end_before_the_critical_rotation() -> None:
     """Which stays that of rigid ends: alpha [1 - (2/3) sqrt(phi_u/alpha)] of slender columns."""
     structure = structure_of(PLANE)
-    result, bed = pushover(structure), structure.bed
-    assert bed is not None
+    result, bed = pushover(structure), known(structure.bed)
     assert result.critical_rotation == structure_of().critical_rotation
     curve = result.curve
     last = curve.rotation[curve.force > 0.0].max() / math.atan(0.15)
@@ -133,7 +125,6 @@ def test_the_picture_of_modes_has_the_cap_beam_that_moves_in_full_contact() -> N
     result, figure = modal(structure_of(PLANE)), Figure()
     draw_mode(figure.subplots(), result, "rocking", 1)
     dashed = next(line for line in figure.axes[0].lines if line.get_label() == "full contact")
-    assert result.full_contact is not None
-    shape = [0.0, *result.full_contact.shapes[:, 0].tolist()]
-    assert np.asarray(dashed.get_xdata()).tolist() == shape
-    assert result.full_contact.shapes[0, 0] > 0.05  # on a fixed base it would not move
+    shapes = known(result.full_contact).shapes
+    assert np.asarray(dashed.get_xdata()).tolist() == [0.0, *shapes[:, 0].tolist()]
+    assert shapes[0, 0] > 0.05  # on a fixed base it would not move

@@ -35,6 +35,15 @@ def columns(path: Path) -> dict[str, list[str]]:
     return {name: list(values) for name, values in zip(head, zip(*rows, strict=True), strict=True)}
 
 
+def write_case(name: str, *changes: tuple[str, str], more: str = "") -> None:
+    """Write the case that takes no time into the working folder, with changes and more below."""
+    text = SMALL_CASE
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new)
+    Path(name).write_text(text + more, encoding="utf-8")
+
+
 def _refuse(constant: str) -> None:
     raise AssertionError(f"{constant} is no JSON")
 
@@ -44,7 +53,7 @@ def workplace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """An empty working folder with a case that takes no time."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.delenv("COLUMNS", raising=False)
-    (tmp_path / "small.yaml").write_text(SMALL_CASE, encoding="utf-8")
+    write_case("small.yaml")
     return tmp_path
 
 

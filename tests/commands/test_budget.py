@@ -14,7 +14,7 @@ from paper_structures import needs_compiled_kernels
 
 from rpscli.records.loading import load_components
 
-from .conftest import SMALL_CASE, Invoke
+from .conftest import SMALL_CASE, Invoke, write_case
 
 pytestmark = needs_compiled_kernels
 
@@ -33,9 +33,7 @@ def _by_hand(rps: Invoke, options: str) -> dict[str, Any]:
 def test_each_row_is_that_of_the_command_by_hand(
     workplace: Path, rps: Invoke, rps_json: Json
 ) -> None:
-    (workplace / "limited.yaml").write_text(
-        SMALL_CASE + "limits: {rotation_ratio: 0.2, base_shear_ratio: 9}\n", encoding="utf-8"
-    )
+    write_case("limited.yaml", more="limits: {rotation_ratio: 0.2, base_shear_ratio: 9}\n")
     records = [word for pulse in PULSES for word in ("--record", pulse)]
     found = rps_json("budget", "limited.yaml", *records, *NONE)
     results = {each["name"]: each for each in found["results"]}

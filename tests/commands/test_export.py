@@ -18,7 +18,7 @@ from scipy.integrate import solve_ivp
 from rpscli.case.case import load_case
 from rpscli.records.loading import load_record
 
-from .conftest import SMALL_CASE, Invoke, columns
+from .conftest import Invoke, columns, write_case
 
 pytestmark = needs_compiled_kernels
 
@@ -64,8 +64,7 @@ UP = "record.vertical=pulse:half_sine?amplitude=0.4g&period=0.6&dt=0.01"
 @pytest.mark.parametrize("vertical", ["record.vertical=null", UP])
 def test_mujoco_finds_the_same(workplace: Path, rps: Invoke, vertical: str) -> None:
     pytest.importorskip("mujoco", reason="pip install rpscli[contact]")
-    case = SMALL_CASE.replace("period=0.6", "period=0.6&dt=0.01")
-    (workplace / "small.yaml").write_text(case, encoding="utf-8")
+    write_case("small.yaml", ("period=0.6", "period=0.6&dt=0.01"))
     short = ("--set", "analysis.free_vibration=0.3", "--set", vertical)
     rps("export", "small.yaml", "mujoco", "-o", "m", *short)
     ours, theirs = rerun(workplace / "m")
@@ -91,8 +90,8 @@ def test_the_damper_takes_as_much_as_an_impact(
     workplace: Path, rps_json: Callable[..., Any]
 ) -> None:
     """Of a rigid building: a swing is integrated here, and its energy is lost as (1 - e^2)."""
-    case = SMALL_CASE.replace("podium:", "podium:\n  impact: {law: value, restitution: 0.99}")
-    (workplace / "stiff.yaml").write_text(case, encoding="utf-8")
+    law = "podium:\n  impact: {law: value, restitution: 0.99}"
+    write_case("stiff.yaml", ("podium:", law))
     rps_json("export", "stiff.yaml", "opensees", "-o", "o")
     text = (workplace / "o" / "model.py").read_text(encoding="utf-8")
     found = {
@@ -158,8 +157,7 @@ def test_storeys_that_yield_are_springs_of_opensees(workplace: Path, rps: Invoke
 
 
 def test_vertical_motion_is_beside_the_model(workplace: Path, rps: Invoke) -> None:
-    pulse = SMALL_CASE.replace("period=0.6", "period=0.6&dt=0.01")
-    (workplace / "small.yaml").write_text(pulse, encoding="utf-8")
+    write_case("small.yaml", ("period=0.6", "period=0.6&dt=0.01"))
     rps("export", "small.yaml", "mujoco", "-o", "m", "--set", UP)
     history = columns(workplace / "m" / "timehistory.csv")
     up = [float(value) for value in history["ground_acceleration_up [m/s2]"]]
@@ -233,8 +231,7 @@ def test_the_time_up_to_which_programs_compare_is_said(
 
 def test_a_title_stays_text(workplace: Path, rps: Invoke) -> None:
     title = 'a --> <b> & """ \'\' \\ {c} \x07'
-    text = SMALL_CASE.replace('"Three storeys [test]"', json.dumps(title))
-    (workplace / "small.yaml").write_text(text, encoding="utf-8")
+    write_case("small.yaml", ('"Three storeys [test]"', json.dumps(title)))
     for program in ("mujoco", "opensees"):
         rps("export", "small.yaml", program, "-o", program)
     shown = title.replace("\x07", "\ufffd")

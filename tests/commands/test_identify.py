@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 from paper_structures import needs_compiled_kernels
 
-from .conftest import SMALL_CASE, Invoke, columns
+from .conftest import Invoke, columns, write_case
 
 pytestmark = needs_compiled_kernels
 
@@ -86,9 +86,8 @@ def test_a_longer_period_tells_how_the_columns_bear(
     workplace: Path, rps_json: Callable[..., Any]
 ) -> None:
     """Three storeys of the paper at r = 1.2: 63.4 MN/m and 47 um, from another derivation."""
-    case = SMALL_CASE.replace("[200000, 200000, 150000]", "20 t")
-    case = case.replace("    curvature_ratio: 0.5\n", "    curvature_ratio: 0\n")
-    (workplace / "paper.yaml").write_text(case, encoding="utf-8")
+    masses = ("[200000, 200000, 150000]", "20 t")
+    write_case("paper.yaml", masses, ("curvature_ratio: 0.5", "curvature_ratio: 0"))
     times = [0.005 * i for i in range(2000)]
     w, zeta = 2.0 * math.pi / 0.36, 0.05
     damped = w * math.sqrt(1.0 - zeta**2)

@@ -12,7 +12,7 @@ from rpscli.records.formats.at2 import at2_text
 from rpscli.records.loading import load_record
 from rpscli.report.page import page
 
-from .conftest import SMALL_CASE, Invoke
+from .conftest import Invoke, write_case
 
 PULSE = at2_text(load_record("pulse:half_sine?amplitude=0.3g&period=0.6&dt=0.05"))
 HISTORY = ("timehistory", "small.yaml", "--figures", "none")
@@ -38,7 +38,6 @@ def test_names_of_dots_and_of_capitals_have_folders_of_their_own(
 @pytest.mark.parametrize("name", ["a\x1b[31mb.at2", "a\nb.at2", "a\u202eb.at2"])
 def test_names_that_a_terminal_obeys_are_refused(workplace: Path, rps: Invoke, name: str) -> None:
     (workplace / name).write_text(PULSE)
-    (workplace / "b.yaml").write_text(SMALL_CASE)
     for words in (("record", "info", name), ("check", name), (*HISTORY, "--record", "*.at2")):
         result = rps(*words, exit_code=3, says="rename the file")
         assert name not in result.stderr
@@ -47,9 +46,8 @@ def test_names_that_a_terminal_obeys_are_refused(workplace: Path, rps: Invoke, n
 def test_texts_of_files_cannot_change_the_terminal(workplace: Path, rps: Invoke) -> None:
     lines = PULSE.split("\n")
     (workplace / "r.at2").write_text("\n".join([lines[0], "\x1b[2Jclear \u202e", *lines[2:]]))
-    title = SMALL_CASE.replace("Three", "\\e[31mThree\\a")
-    (workplace / "t.yaml").write_text(title)
-    (workplace / "k.yaml").write_text(SMALL_CASE.replace("  storeys", '  "\\e[31m": 1\n  storeys'))
+    write_case("t.yaml", ("Three", "\\e[31mThree\\a"))
+    write_case("k.yaml", ("  storeys", '  "\\e[31m": 1\n  storeys'))
     for line, code in (("record info r.at2", 0), ("check t.yaml", 0), ("check k.yaml", 3)):
         result = rps(*line.split(), exit_code=code)
         assert "\ufffd[" in result.stdout + result.stderr

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from .conftest import Invoke, Shell
+from .conftest import SMALL_CASE, Invoke, Shell, write_case
 
 
 def contents(folder: str) -> dict[str, bytes]:
@@ -24,8 +24,7 @@ def test_the_same_run_gives_the_same_bytes(rps: Invoke) -> None:
 
 def test_an_edited_case_replaces_its_own_results_and_says_so(rps: Invoke) -> None:
     rps("modal", "small.yaml", "-o", "out")
-    case = Path("small.yaml")
-    case.write_text(case.read_text(encoding="utf-8") + "# edited\n", encoding="utf-8")
+    write_case("small.yaml", more="# edited\n")
     result = rps("modal", "small.yaml", "-o", "out")
     assert "replaces results of the same case with other inputs" in result.stderr
 
@@ -33,7 +32,7 @@ def test_an_edited_case_replaces_its_own_results_and_says_so(rps: Invoke) -> Non
 def test_another_command_or_case_is_refused(rps: Invoke) -> None:
     rps("modal", "small.yaml", "-o", "out")
     before = contents("out")
-    Path("other.yaml").write_text(Path("small.yaml").read_text(encoding="utf-8"), encoding="utf-8")
+    write_case("other.yaml")
     for command, case in (("pushover", "small.yaml"), ("modal", "other.yaml")):
         rps(command, case, "-o", "out", exit_code=7, says=("`rps modal` on small", "--force"))
         assert contents("out") == before
@@ -51,10 +50,8 @@ def test_strange_files_are_refused_unless_nothing_touches_them(rps: Invoke) -> N
 
 
 def test_a_case_from_a_pipe_is_known_by_its_text(rps: Invoke) -> None:
-    text = Path("small.yaml").read_text(encoding="utf-8")
-    rps("modal", "-", "-o", "out", input=text)
-    rps("modal", "-", "-o", "out", input=text)
-    rps("modal", "-", "-o", "out", input=text + "# other", exit_code=7)
+    for text, exit_code in ((SMALL_CASE, 0), (SMALL_CASE, 0), (SMALL_CASE + "# other", 7)):
+        rps("modal", "-", "-o", "out", input=text, exit_code=exit_code)
 
 
 def test_a_place_that_is_no_folder(rps: Invoke) -> None:

@@ -21,6 +21,7 @@ from shown_commands import ROOT, command, of_blocks, run_in_shell
 import rpscli
 from rpscli import registry
 from rpscli.case.schema.scale_to import scale_to_of
+from rpscli.commands.init import schema_of
 from rpscli.commands.record import select
 from rpscli.errors import CaseError, PluginError, RecordError
 from rpscli.records.formats import FORMATS
@@ -28,7 +29,7 @@ from rpscli.records.measures import MEASURES
 from rpscli.records.target import CODES, load_target
 from rpscli.sweep.evaluation import System
 
-from .conftest import Invoke, InvokeJson
+from .conftest import Invoke, InvokeJson, write_case
 
 EXAMPLE = Path(__file__).parents[1] / "example_package"
 BROKEN = """\
@@ -162,15 +163,7 @@ def test_what_is_installed_is_listed(example: None, rps_json: InvokeJson) -> Non
     )
     report = rps_json("explain", "worst")
     assert [option["key"] for option in report["options"]] == ["name", "title", "count"]
-    schema = rps_json_schema()
-    assert "worst" in schema
-
-
-def rps_json_schema(of: str = "study") -> str:
-    """The JSON schema of a format as text."""
-    from rpscli.commands.init import schema_of
-
-    return str(schema_of(of))
+    assert "worst" in str(schema_of("study"))
 
 
 OIL = "{kind: oil, closed_coefficient: 2 MN s/m, relief_force: 300 kN, open_share: 0.1}"
@@ -190,16 +183,15 @@ def test_laws_in_a_case(example: None, rps: Invoke, rps_json: InvokeJson, workpl
     assert (workplace / "here" / "devices.png").exists()
     modes = rps_json("modal", "small.yaml", *WITH_LAWS)
     assert modes["rolling"] != rps_json("modal", "small.yaml")["rolling"]
-    assert "relief_force" in rps_json_schema("case")
+    assert "relief_force" in str(schema_of("case"))
     refused = rps("export", "small.yaml", "mujoco", *WITH_LAWS, exit_code=2)
     assert "podium.devices is not exported" in refused.stderr
     rps("export", "small.yaml", "opensees", *WITH_LAWS[2:], exit_code=2, says="podium.impact")
 
 
 def test_constants_of_laws_are_axes(example: None, rps_json: InvokeJson, workplace: Path) -> None:
-    text = (workplace / "small.yaml").read_text() + "# with laws\n"
     devices = f"  devices: [{OIL}]\n  impact: {CRUSHING}\nrecord:"
-    (workplace / "laws.yaml").write_text(text.replace("record:", devices))
+    write_case("laws.yaml", ("record:", devices))
     vary = "vary: [{podium.devices.0.relief_force: [200 kN, 400 kN]},"
     vary += " {podium.impact.fast_restitution: [0.6, 0.9]}]\n"
     study = STUDY.replace("small.yaml", "laws.yaml").replace("ASI, values: [1", "PGA, values: [3")
@@ -387,7 +379,7 @@ def test_laws_that_lie_are_named(liars: None, workplace: Path) -> None:
     for name, said in LAWS.items():
         with pytest.raises(PluginError, match=f"{name} of liars 1.0 .*({said})"):
             used(name)
-    assert "c_own" in rps_json_schema("case")
+    assert "c_own" in str(schema_of("case"))
     with pytest.raises(PluginError, match=r"impact law bounces: its restitution is 1\.5"):
         rpscli.load_case("small.yaml", ["podium.impact=bounces"])
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Callable, Sequence
 from html import unescape
 from pathlib import Path
 from typing import Any
@@ -13,7 +14,7 @@ import pytest
 from rpscli.report.table import shown
 from rpscli.sweep.run import Progress
 
-from .conftest import Invoke, InvokeJson
+from .conftest import Invoke, InvokeJson, write_case
 
 STUDY = """\
 rps: 1
@@ -48,6 +49,22 @@ def compared(text: str) -> int:
     return int(found[0])
 
 
+Page = Callable[..., str]
+
+
+@pytest.fixture
+def page(rps: Invoke) -> Page:
+    """Write a page, on which all of these stand; its text."""
+
+    def made(*arguments: str, exit_code: int = 0, shows: Sequence[str] = ()) -> str:
+        rps("report", *arguments, "-o", "out.html", exit_code=exit_code)
+        text = text_of("out.html")
+        assert [part for part in shows if part not in text] == []
+        return text
+
+    return made
+
+
 @pytest.fixture
 def study(workplace: Path) -> str:
     (workplace / "study.yaml").write_text(STUDY, encoding="utf-8")
@@ -59,65 +76,46 @@ def test_a_case_and_its_history_are_on_one_page(rps: Invoke, rps_json: InvokeJso
     assert document["command"] == "report"
     assert document["files"] == ["out.html"]
     text = text_of("out.html")
-    for title in ("In short", "The structure", "Input", "Derived quantities", "Ground motion"):
-        assert title in text
-    for part in ("superstructure.storey_height 3", "atan(0.15)", "columns never slide"):
-        assert part in text
-    assert "rps timehistory small.yaml --set limits.drift_ratio=0.9" in text
-    assert Path("out.html").stat().st_size < 1_000_000
-    # The same numbers as those of the history itself.
+    # The same numbers as those of the history itself, and how much one history says.
     history = rps_json("timehistory", "small.yaml", "-o", "history")
     assert document["max_rotation"] == history["max_rotation"]
-    assert f"{shown(history['max_rotation'])} rad" in text
-    # And how much one history says.
-    for part in ("one history: with 1 % less or more motion", "judge by several records"):
+    for part in (
+        "In short", "The structure", "Input", "Derived quantities", "Ground motion",
+        "superstructure.storey_height 3", "atan(0.15)", "columns never slide",
+        "rps timehistory small.yaml --set limits.drift_ratio=0.9", "restitution at impact: e = ",
+        f"{shown(history['max_rotation'])} rad", "ne horizontal direction at a time",
+        "one history: with 1 % less or more motion", "judge by several records",
+    ):  # fmt: skip
         assert part in text
-    assert "restitution at impact: e = " in text
-    assert "one horizontal direction at a time" in text.lower()
+    assert Path("out.html").stat().st_size < 1_000_000
     assert len(document["neighbours"]) == 7
 
 
-def test_a_case_without_a_record_ends_with_statics(rps: Invoke) -> None:
-    given = Path("small.yaml").read_text(encoding="utf-8")
-    without = "".join(line for line in given.splitlines(True) if not line.startswith("record"))
-    Path("bare.yaml").write_text(without, encoding="utf-8")
-    rps("report", "bare.yaml", "-o", "out.html")
-    text = text_of("out.html")
-    assert "The case names no ground motion" in text
-    assert "Derived quantities" in text
+def test_a_case_without_a_record_ends_with_statics(page: Page) -> None:
+    write_case("bare.yaml", ("record:", "# record:"))
+    text = page("bare.yaml", shows=("The case names no ground motion", "Derived quantities"))
     assert "rps timehistory" not in text
 
 
-def test_limits_are_judged_and_the_page_is_there_all_the_same(rps: Invoke) -> None:
-    rps("report", "small.yaml", "-o", "out.html", "--fail-on", "rotation_ratio=1e-6", exit_code=10)
-    assert "1 of 1 limits exceeded" in text_of("out.html")
-    assert "EXCEEDED" in text_of("out.html")
+def test_limits_are_judged_and_the_page_is_there_all_the_same(page: Page) -> None:
+    limit = ("--fail-on", "rotation_ratio=1e-6")
+    page("small.yaml", *limit, exit_code=10, shows=("1 of 1 limits exceeded", "EXCEEDED"))
 
 
-def test_a_folder_is_computed_anew_and_compared(rps: Invoke) -> None:
-    options = ("--scale", "1.2", "--set", "podium.bearing.slenderness=0.14")
-    rps("timehistory", "small.yaml", "-o", "old", *options)
-    rps("report", "old", "-o", "out.html")
-    text = text_of("out.html")
-    assert compared(text) > 40
-    assert "--set podium.bearing.slenderness=0.14" in text
-    assert "--scale 1.2" in text
+def test_a_folder_is_computed_anew_and_compared(rps: Invoke, page: Page) -> None:
+    slenderness = "podium.bearing.slenderness=0.14"
+    rps("timehistory", "small.yaml", "-o", "old", "--scale", "1.2", "--set", slenderness)
+    assert compared(page("old", shows=(f"--set {slenderness}", "--scale 1.2"))) > 40
 
 
-def test_a_folder_whose_numbers_or_case_have_changed_says_so(rps: Invoke) -> None:
+def test_a_folder_whose_numbers_or_case_have_changed_says_so(rps: Invoke, page: Page) -> None:
     rps("timehistory", "small.yaml", "-o", "old")
     summary = Path("old/summary.json")
     document = json.loads(summary.read_text(encoding="utf-8"))
     summary.write_text(json.dumps(document | {"max_rotation": 0.5}), encoding="utf-8")
-    case = Path("small.yaml")
-    changed = case.read_text(encoding="utf-8").replace("0.15", "0.12")
-    case.write_text(changed, encoding="utf-8")
-    rps("report", "old", "-o", "out.html")
-    text = text_of("out.html")
-    assert "Different: 1;" in text
-    assert "max_rotation 0.5" in text
-    assert "small.yaml has changed since" in text
-    assert "podium.bearing.slenderness 0.15" in text
+    write_case("small.yaml", ("0.15", "0.12"))
+    found = ("Different: 1;", "max_rotation 0.5", "podium.bearing.slenderness 0.15")
+    page("old", shows=("small.yaml has changed since", *found))
 
 
 def changed(document: dict[str, Any], path: str, value: object) -> str:
@@ -165,11 +163,10 @@ def test_results_that_cannot_be_compared_are_said(rps: Invoke, text: str) -> Non
     assert "so nothing was compared" in shown or "Different: 1;" in shown
 
 
-def test_the_record_of_the_command_line_is_found_again(rps: Invoke) -> None:
+def test_the_record_of_the_command_line_is_found_again(rps: Invoke, page: Page) -> None:
     pulse = "pulse:sine?amplitude=0.2g&period=0.8"
     rps("timehistory", "small.yaml", "-o", "old", "--record", pulse)
-    rps("report", "old", "-o", "out.html")
-    text = text_of("out.html")
+    text = page("old")
     assert compared(text)
     assert "Different:" not in text
     assert "any more" not in text
@@ -196,7 +193,7 @@ def test_only_an_earlier_page_of_the_same_is_replaced(rps: Invoke) -> None:
     assert Path("mine.html").read_text(encoding="utf-8") == "my notes"
     rps("report", "small.yaml", "-o", "mine.html", "--force")
     rps("report", "small.yaml", "-o", "mine.html")
-    Path("other.yaml").write_text(Path("small.yaml").read_text("utf-8"), encoding="utf-8")
+    write_case("other.yaml")
     rps("report", "other.yaml", "-o", "mine.html", exit_code=7)
 
 
@@ -209,6 +206,9 @@ def test_only_an_earlier_page_of_the_same_is_replaced(rps: Invoke) -> None:
         (("empty",), "has no run.json of rps"),
         (("above",), "name one of the folders in it"),
         (("modes",), "holds results of `rps modal`"),
+        (("begun",), "`rps sweep STUDY -o begun` goes on with it"),
+        (("design.yaml", "--record", "x.at2"), "a design has records of its own"),
+        (("design.yaml", "--fail-on", "uplift"), "limits of its own"),
         (("study.yaml", "--budget"), "--budget is about one history"),
         (("small.yaml", "--set", "record=null", "--budget"), "--budget needs a ground motion"),
     ],
@@ -220,14 +220,15 @@ def test_what_makes_no_page_is_said(
     rps("timehistory", "small.yaml", "-o", "above/one", "--figures", "none")
     rps("modal", "small.yaml", "-o", "modes", "--figures", "none")
     Path("empty").mkdir()
+    Path("begun").mkdir()
+    Path("begun/study.sqlite").touch()
+    Path("design.yaml").write_text(DESIGN, encoding="utf-8")
     rps("report", *arguments, exit_code=2, says=said)
     assert not list(Path().rglob("*.html"))
 
 
 def test_titles_with_tags_are_harmless(rps: Invoke) -> None:
-    text = Path("small.yaml").read_text(encoding="utf-8")
-    hostile = text.replace("Three storeys [test]", "<script>x</script> & co")
-    Path("small.yaml").write_text(hostile, encoding="utf-8")
+    write_case("small.yaml", ("Three storeys [test]", "<script>x</script> & co"))
     rps("report", "small.yaml", "-o", "out.html")
     assert "<script" not in Path("out.html").read_text(encoding="utf-8")
 
@@ -272,9 +273,7 @@ def test_what_moves_the_worst_history_stands_on_its_page(
     rps: Invoke, rps_json: InvokeJson, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """As `rps budget` tells it of the record that turns the columns most."""
-    Path("small.yaml").write_text(
-        Path("small.yaml").read_text("utf-8") + "limits: {rotation_ratio: 0.2}\n", encoding="utf-8"
-    )
+    write_case("small.yaml", more="limits: {rotation_ratio: 0.2}\n")
     weak, strong = (f"pulse:sine?amplitude=0.{peak}g&period=0.8" for peak in (2, 4))
     given = ("--record", weak, "--record", strong)
     rps("report", "small.yaml", *given, "--budget", "-o", "out.html", exit_code=10)
@@ -346,11 +345,3 @@ def test_a_design_has_a_page(rps: Invoke) -> None:
     rps("design", "design.yaml", "--figures", "none", *SOFT, exit_code=result.exit_code)
     rps("report", "results/design/design", "-o", "again.html", exit_code=result.exit_code)
     assert "A small design" in text_of("again.html")
-    for option, said in (("--record=x.at2", "records"), ("--fail-on=uplift", "limits")):
-        rps("report", "design.yaml", option, exit_code=2, says=f"{said} of its own")
-
-
-def test_the_folder_of_a_study_that_has_not_ended_says_what_to_do(rps: Invoke) -> None:
-    Path("begun").mkdir()
-    Path("begun/study.sqlite").touch()
-    rps("report", "begun", exit_code=2, says="`rps sweep STUDY -o begun` goes on with it")

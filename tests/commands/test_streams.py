@@ -16,7 +16,7 @@ from rpscli.commands.record import command as record
 from rpscli.commands.shell.terminal import MANY, Terminal, counted, rendered, watched
 from rpscli.report.table import Table
 
-from .conftest import Invoke, InvokeJson, Shell
+from .conftest import SMALL_CASE, Invoke, InvokeJson, Shell
 
 SINE = "pulse:sine?amplitude=0.3g&period=1"
 EXAMPLES: list[tuple[str, ...]] = [
@@ -186,8 +186,7 @@ def test_no_arguments_show_the_help(rps: Invoke) -> None:
 
 
 def test_standard_input(rps: Invoke, rps_json: InvokeJson) -> None:
-    text = Path("small.yaml").read_text(encoding="utf-8")
-    document = rps_json("modal", "-", input=text)
+    document = rps_json("modal", "-", input=SMALL_CASE)
     assert document["case"]["name"] == "stdin"
     assert Path("results/stdin/modal/modes.csv").is_file()
     result = rps("check", "-", input="rps: 1\nsuperstructure: {storeys: 0}\n", exit_code=3)

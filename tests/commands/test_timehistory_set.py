@@ -3,20 +3,19 @@
 from __future__ import annotations
 
 import json
-import math
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from paper_structures import needs_recorded_motions
-from scipy.integrate import cumulative_trapezoid
 from sweep.small_studies import csv_rows
 
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.loading import load_record
+from rpscli.records.measures import intensity_measures, pair_measure
 
-from .conftest import Invoke, InvokeJson
+from .conftest import Invoke, InvokeJson, write_case
 
 PULSES = [f"pulse:half_sine?amplitude={a}g&period=0.6" for a in (0.1, 0.2, 0.3)]
 OVERTURNING = "pulse:sine?amplitude=0.9g&period=1.5"
@@ -152,8 +151,7 @@ def test_a_least_force_judges_the_set_from_below(rps: Invoke, rps_json: InvokeJs
 
 
 def test_several_cases_are_judged_by_one_exit_code(rps: Invoke, rps_json: InvokeJson) -> None:
-    text = Path("small.yaml").read_text(encoding="utf-8")
-    Path("strict.yaml").write_text(text + "limits: {rotation_ratio: 1.0e-6}\n", encoding="utf-8")
+    write_case("strict.yaml", more="limits: {rotation_ratio: 1.0e-6}\n")
     document = rps_json("timehistory", "small.yaml", "strict.yaml", exit_code=10)
     assert [history["case"]["name"] for history in document["histories"]] == ["small", "strict"]
     assert [[v["exceeded"] for v in s["verdicts"]] for s in document["sets"]] == [[], [False, True]]
@@ -221,23 +219,19 @@ def test_convert_resamples(rps: Invoke, rps_json: InvokeJson) -> None:
 def test_one_factor_scales_both_components_of_a_recording(rps_json: InvokeJson) -> None:
     pair = "fema_p695:farfield/4"
     a, b = (load_record(f"{pair}/{side}") for side in "ab")
-    turned = [
-        math.cos(t) * a.acceleration + math.sin(t) * b.acceleration
-        for t in np.radians(np.arange(180.0))
-    ]
-    over = [np.abs(cumulative_trapezoid(each, dx=a.dt)).max() for each in turned]
+    median, largest_of = (pair_measure(a, b, "PGV", of) for of in ("rotd50", "rotd100"))
 
     def found(record: str, *words: str) -> list[dict[str, Any]]:
         document = rps_json("timehistory", "small.yaml", "--record", record, *words)
         return [each["record"] for each in document.get("histories", [document])]
 
     both = found(f"{pair}/*", "--scale-to", "PGV=0.2")
-    assert [each["scale"] for each in both] == pytest.approx([0.2 / np.median(over)] * 2, rel=1e-9)
+    assert [each["scale"] for each in both] == pytest.approx([0.2 / median] * 2, rel=1e-9)
     assert both[1]["scaled_to"] == "PGV(RotD50) = 0.2 m/s"
     (largest,) = found(f"{pair}?angle=30", "--scale-to", "PGV(RotD100)=0.2")
-    assert largest["scale"] == pytest.approx(0.2 / max(over), rel=1e-9)
+    assert largest["scale"] == pytest.approx(0.2 / largest_of, rel=1e-9)
     (alone,) = found(f"{pair}/a", "--scale-to", "PGV=0.2")
-    assert alone["scale"] == pytest.approx(0.2 / over[0], rel=1e-9)
+    assert alone["scale"] == pytest.approx(0.2 / intensity_measures(a).pgv, rel=1e-9)
     assert alone["scaled_to"] == "PGV = 0.2 m/s"
     own = (
         *("--set", f"record.source={pair}?angle=30"),

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import json
 import math
 
 import pytest
-from click.testing import CliRunner
 from paper_structures import needs_compiled_kernels
 
 from rpscli.analyses import verification
 from rpscli.analyses.verification import LEFT_OUT, Comparison, certified
-from rpscli.cli import program
 from rpscli.commands.verify import OWN_DIGITS
+
+from .conftest import Invoke, InvokeJson
 
 
 @pytest.fixture
@@ -23,10 +22,8 @@ def short(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @needs_compiled_kernels
-def test_this_installation_can_be_trusted() -> None:
-    result = CliRunner().invoke(program, ["verify", "--json"])
-    assert result.exit_code == 0, result.stderr
-    document = json.loads(result.stdout)
+def test_this_installation_can_be_trusted(rps_json: InvokeJson) -> None:
+    document = rps_json("verify")
     assert document["status"] == "ok"
     assert document["mismatches"] == 0
     assert document["not_answered"] == [*LEFT_OUT]
@@ -38,24 +35,22 @@ def test_this_installation_can_be_trusted() -> None:
         assert line["digits"] >= min(OWN_DIGITS, line["certified_digits"])
 
 
-def test_the_table_has_a_verdict_for_each_number(short: None) -> None:
+def test_the_table_has_a_verdict_for_each_number(short: None, rps: Invoke) -> None:
     # Wide enough that no name is broken, wherever the test runs.
-    result = CliRunner().invoke(program, ["verify"], env={"COLUMNS": "200"})
-    assert result.exit_code == 0
+    result = rps("verify", env={"COLUMNS": "200"})
     assert "6 numbers compared, none off" in result.stdout
     assert result.stdout.count(" digits\n") == 6
     assert "critical rotation [rad]" in result.stdout
 
 
-def test_a_number_that_is_off_ends_with_6(short: None, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_number_that_is_off_ends_with_6(short: None, rps: Invoke, rps_json: InvokeJson) -> None:
     known = verification.certified()
     known["capacity", "critical rotation"] = ("rad", 12, [0.24738])
-    result = CliRunner().invoke(program, ["verify"])
-    assert result.exit_code == 6
+    result = rps("verify", exit_code=6)
     assert "6 numbers compared, 1 off" in result.stdout
     assert "1 of 6 numbers differ from what is known: do not trust" in result.stderr
     assert "critical rotation: 0.2473784284 instead of 0.2473800000 rad" in result.stderr
-    document = json.loads(CliRunner().invoke(program, ["verify", "--json"]).stdout)
+    document = rps_json("verify", exit_code=6)
     assert document["status"] == "error"
     assert document["error"]["type"] == "VerificationMismatch"
     off = [line["quantity"] for line in document["comparisons"] if not line["holds"]]

@@ -103,23 +103,24 @@ def test_loss_is_where_the_impulse_acts(
     assert law.ratio(bearing, gamma, eta) == pytest.approx(own, abs=1e-11)
 
 
-def test_loss_and_factor_together() -> None:
-    bearing = Bearing(1.5, 0.15, 0.3, 0.5)
-    e = flexible_restitution(bearing, 10.0, 3.0)
-    assert ImpactLaw().ratio(bearing, 10.0, 3.0) == pytest.approx(e, rel=1e-15)
-    assert ImpactLaw(loss=0.0).ratio(bearing, 10.0, 3.0) == 1.0
-    less = ImpactLaw(loss=0.4, factor=0.98).ratio(bearing, 10.0, 3.0)
-    assert less == pytest.approx(0.98 * (0.6 + 0.4 * e), rel=1e-15)
+BEARING = Bearing(1.5, 0.15, 0.3, 0.5)
+FLEXIBLE, RIGID = (law(BEARING, 10.0, 3.0) for law in (flexible_restitution, rigid_restitution))
 
 
-def test_value_and_factor() -> None:
-    bearing = Bearing(1.5, 0.15, 0.3, 0.5)
-    assert ImpactLaw("value", 0.7).ratio(bearing, 10.0, 3.0) == 0.7
-    assert ImpactLaw("value", 0.7, factor=0.5).ratio(bearing, 10.0, 3.0) == 0.35
-    e = rigid_restitution(bearing, 10.0, 3.0)
-    assert ImpactLaw("rigid", factor=0.9).ratio(bearing, 10.0, 3.0) == pytest.approx(0.9 * e)
-    assert ImpactLaw("value", 0.7).floors_jump
-    assert not ImpactLaw("flexible").floors_jump
+@pytest.mark.parametrize(
+    ("law", "expected"),
+    [
+        (ImpactLaw(), FLEXIBLE),
+        (ImpactLaw(loss=0.0), 1.0),
+        (ImpactLaw(loss=0.4, factor=0.98), 0.98 * (0.6 + 0.4 * FLEXIBLE)),
+        (ImpactLaw("value", 0.7), 0.7),
+        (ImpactLaw("value", 0.7, factor=0.5), 0.35),
+        (ImpactLaw("rigid", factor=0.9), 0.9 * RIGID),
+    ],
+)
+def test_loss_value_and_factor(law: ImpactLaw, expected: float) -> None:
+    assert law.ratio(BEARING, 10.0, 3.0) == pytest.approx(expected, rel=1e-15)
+    assert law.floors_jump == (law.kind != "flexible")
 
 
 @pytest.mark.parametrize(
