@@ -497,7 +497,8 @@ def test_an_animation_runs_along_the_record(filmed: list[Figure]) -> None:
     assert record.get_xlim() == (cursors[0], cursors[-1])
 
 
-def test_mode_shapes_swing_there_and_back(filmed: list[Figure]) -> None:
+def test_mode_shapes_swing_there_and_back_and_the_rest_stays(filmed: list[Figure]) -> None:
+    """Curves and the frames themselves: between two of them only what moves has changed."""
     result = modal(structure(CURVED, 2))
     assert result.rolling is not None
     seen: list[Any] = []
@@ -505,18 +506,12 @@ def test_mode_shapes_swing_there_and_back(filmed: list[Figure]) -> None:
     def progress(_done: int, _total: int) -> None:
         seen.append(np.array(curve(filmed[0].axes[0], "uplifted")[0]))
 
-    modes_film(result, "a title", GIF, progress=progress)
+    made, frames = modes_film(result, "a title", GIF, progress=progress), []
     shape = np.array([0.0, *result.rolling.shapes[:, 0]])
     steps = np.cos(2.0 * np.pi * np.arange(len(seen)) / len(seen))
     assert len(seen) == 40
     np.testing.assert_allclose(seen, steps[:, None] * shape, atol=1e-12)
-
-
-def test_what_moves_is_seen_moving_and_the_rest_stays() -> None:
-    """The frames themselves: between two of them only what moves has changed."""
-    result = modal(structure(CURVED, 2))
-    with Image.open(io.BytesIO(modes_film(result, "a title", GIF))) as film:
-        frames = []
+    with Image.open(io.BytesIO(made)) as film:
         for number in (0, 10, 20):
             film.seek(number)
             frames.append(np.asarray(film.convert("L"), dtype=int))

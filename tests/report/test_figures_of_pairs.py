@@ -12,8 +12,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
-from report.made_up_pairs import ANGLE, turned
-from report.small_results import KINDS, curve, drawn, is_drawn, legend, prefix
+from report.small_results import ANGLE, KINDS, curve, drawn, is_drawn, legend, prefix, turned
 from rpscli import figures
 from rpscli.analyses.trace import Direction
 from rpscli.errors import UsageError

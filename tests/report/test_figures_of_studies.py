@@ -81,7 +81,7 @@ reports:
 """
 
 
-def opened(text: str, folder: Path, *options: str) -> Open:
+def opened(text: str, folder: Path) -> Open:
     """Run a study; figures are kept as objects, by their titles."""
     (folder / "base.yaml").write_text(BASE, encoding="utf-8")
     (folder / "study.yaml").write_text(text, encoding="utf-8")
@@ -92,10 +92,8 @@ def opened(text: str, folder: Path, *options: str) -> Open:
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(Figure, "savefig", keep)
-        made = CliRunner().invoke(
-            program,
-            ["sweep", str(folder / "study.yaml"), "-o", str(folder / "made"), "--quiet", *options],
-        )
+        command = ["sweep", str(folder / "study.yaml"), "-o", str(folder / "made"), "--quiet"]
+        made = CliRunner().invoke(program, command)
     assert made.exit_code == 0, made.stderr
 
     def open_(name: str) -> tuple[Figure, list[Row]]:
@@ -180,22 +178,6 @@ def test_the_table_of_overturning(histories: Open) -> None:
     ]
     names = [text.get_text().replace("\n", " ") for text in axes.get_yticklabels()]
     assert names == named  # what they have in common stands once
-
-
-@needs_compiled_kernels
-def test_texts_of_a_narrow_table_stay_in_their_columns(tmp_path: Path) -> None:
-    study = (
-        PULSES[: PULSES.index("reports")]
-        + f"reports: [table: {{title: table, rows: {RHO}, columns: scale}}]\n"
-    )
-    figure, _ = opened(study, tmp_path, "--columns", "1")("table")
-    figure.canvas.draw()
-    (axes,) = figure.axes
-    frame = axes.get_window_extent()
-    for text in (*axes.texts, *axes.get_xticklabels()):
-        of = text.get_window_extent()
-        assert of.width < 1.1 * frame.width / 5, text.get_text()
-        assert frame.x0 - 5.0 < of.x0 < of.x1 < frame.x1 + 5.0, text.get_text()
 
 
 @needs_compiled_kernels

@@ -71,16 +71,6 @@ def test_results_are_written_before_anything_is_drawn(tmp_path: Path) -> None:
     assert (tmp_path / "first.png").read_bytes() == (tmp_path / "second.png").read_bytes() == b"PNG"
 
 
-def test_a_file_that_someone_put_there_is_not_ours(tmp_path: Path) -> None:
-    folder_of(tmp_path).write()
-    (tmp_path / "a.csv").write_text("mine", encoding="utf-8")
-    folder = folder_of(tmp_path)
-    folder.add("a.csv", "ours")
-    with pytest.raises(Refused, match=r"a\.csv exists"):
-        folder.write()
-    assert (tmp_path / "a.csv").read_text(encoding="utf-8") == "mine"
-
-
 def test_nothing_outside_the_folder_is_taken_away(tmp_path: Path) -> None:
     film = tmp_path / "film.gif"
     first = folder_of(tmp_path / "out")

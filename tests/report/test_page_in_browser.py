@@ -59,15 +59,10 @@ document.title = JSON.stringify(found);
 def browse(profile: Path, *options: str) -> str:
     assert BROWSER is not None
     quiet = [
-        "--headless",
-        "--no-sandbox",
-        "--disable-gpu",
-        "--no-first-run",
-        "--disable-background-networking",
-        "--disable-component-update",
-        "--disable-sync",
+        "--headless", "--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-sync",
+        "--disable-background-networking", "--disable-component-update",
         f"--user-data-dir={profile}",
-    ]
+    ]  # fmt: skip
     done = subprocess.run(
         [BROWSER, *quiet, *options], capture_output=True, text=True, check=True, timeout=120
     )
@@ -118,12 +113,6 @@ def test_only_tables_and_figures_scroll_sideways(
     assert min(found["letters"]) >= 12.0  # pixels of a telephone, which are points on paper
     # Drawings keep letters of 9 points on 7 inches readable: no smaller than 6 points.
     assert min(size[0] for size in found["drawings"]) >= 7.0 * 96.0 * 6.0 / 9.0
-
-
-def test_names_are_used_once_and_nothing_is_loaded(
-    measured: Callable[[int], dict[str, Any]],
-) -> None:
-    found = measured(SCREEN)
     assert len(found["names"]) == len(set(found["names"])) > 50
     assert not [name for name in found["loaded"] if not name.startswith("data:")]
 

@@ -18,8 +18,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from paper_structures import podium
 
-from report.made_up_pairs import turned
-from report.small_results import CURVED, KINDS, history, structure
+from report.small_results import CURVED, KINDS, history, structure, turned
 from rpscli import figures
 from rpscli.analyses.floor_spectra import fixed_base_floor_spectra, isolated_floor_spectra
 from rpscli.analyses.modal import modal

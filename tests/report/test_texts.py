@@ -1,4 +1,4 @@
-"""CSV and JSON: what is written is what was computed."""
+"""CSV and JSON are what was computed; texts and numbers by example."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import csv
 import io
 import json
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,7 +14,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rpscli.analyses.result_quantities import plain
+from rpscli.report import table
+from rpscli.report.figures import floors, style
 from rpscli.report.files import json_text
+from rpscli.report.study.fragility import LimitState
+from rpscli.report.study.report import add_notes, label, with_band
 from rpscli.report.table import Column, Table, csv_text, records
 
 values = st.recursive(
@@ -86,3 +91,35 @@ def test_a_table_has_one_row_for_readers_files_and_documents() -> None:
     assert Table(columns).rows == [("El Centro, 1940.at2", "1500"), ("b", "-")]
     assert csv_text(columns).splitlines()[1:] == ['"El Centro, 1940.at2",1500000', "b,"]
     assert records(columns)[1] == {"record": "b", "max_base_shear": None}
+
+
+EXAMPLES: dict[str, list[tuple[Any, Any]]] = {
+    "figures": [
+        (floors.shown_floors(6), [1, 4, 6]),
+        (style.folded(r"$|\theta_{max}|$ [-], flat", 0.6, 8.0), "$|\\theta_{max}|$ [-],\nflat"),
+        (style.folded("a_name_of_many_letters", 0.6, 8.0), "a_name_of\n_many_let\nters"),
+        ([style.engineering(size)[1] for size in (999.0, 1e3, 5e5, 1e6)], ["", "k", "k", "M"]),
+        (LimitState("min_column_force", 1e5).label, "min_column_force < 100000"),
+        (label("superstructure.period", "300 ms"), "T₁ = 300 ms"),
+    ],
+    "numbers": [
+        ([table.shown(value) for value in (0.10501282, 17321.4, 3)], ["0.1050", "17321", "3"]),
+        ([table.shown(value) for value in (None, 2.4e-9)], ["-", "2.400e-09"]),
+        ([table.large(*of) for of in ((0.1, "rad"), (0.2, "-"))], [(0.1, "rad"), (0.2, "")]),
+        ([table.measured(*of) for of in ((1.5e6, "N"), (None, "s"))], ["1500 kN", "-"]),
+        ([table.percent(1.0, of) for of in (3.0, 0.0)], ["33.3 %", "-"]),
+        (with_band(*[math.nan] * 3), "-"),
+    ],
+}
+
+
+@pytest.mark.parametrize("of", EXAMPLES)
+def test_examples(of: str) -> None:
+    for found, wanted in EXAMPLES[of]:
+        assert found == wanted
+
+
+def test_notes_of_several_reports_are_said_once() -> None:
+    notes = ["fragility: the data are separated"]
+    add_notes(notes, "risk", ["the data are separated", "the hazard curve is continued"])
+    assert notes == ["fragility: the data are separated", "risk: the hazard curve is continued"]

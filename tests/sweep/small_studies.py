@@ -1,17 +1,23 @@
-"""Texts of a small case and study, ways to read a file with one, and what a sweep leaves."""
+"""A small case and study, what a sweep leaves, and made-up results whose statistics are known."""
 
 from __future__ import annotations
 
 import csv
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import Any
+from types import SimpleNamespace
+from typing import Any, NamedTuple, cast
 
+import numpy as np
 from click.testing import Result
 
 from rpscli.case.study.study import Study
+from rpscli.report.study.report import Found
 from rpscli.studies import Study as LaidOut
 from rpscli.studies import load_study
+from rpscli.sweep.evaluation import FAILED, MISSING, SCALARS, PointResults, at_path, stacked
+from rpscli.sweep.points import StudyPoints, lay_out
+from rpscli.sweep.table import StudyResults, Table
 
 ROOT = Path(__file__).parents[2]
 FOLDER = Path("results/study/sweep")
@@ -64,3 +70,80 @@ def csv_rows(name: str, folder: Path | str = FOLDER) -> list[dict[str, str]]:
     """Lines of a CSV file."""
     with (Path(folder) / name).open(encoding="utf-8", newline="") as file:
         return list(csv.DictReader(file))
+
+
+class Stored(NamedTuple):
+    """What a study might hold of a point."""
+
+    outcome: str
+    message: str | None
+    results: dict[str, Any]
+
+
+Place = dict[str, Any]
+"""Values of the varied keys of a point, the last digit of its record, its scale and its number."""
+Answer = Callable[[Place], Stored | None]
+
+RHO, ALPHA = "podium.bearing.curvature_ratio", "podium.bearing.slenderness"
+BROKEN = Stored("failed", "why", {})
+
+
+def stored(outcome: str = "survived", **results: object) -> Stored:
+    """A made-up result."""
+    whole: dict[str, object] = dict.fromkeys(SCALARS["timehistory"], 0.0)
+    shears = results.pop("storey_shears", [3.0, 2.0, 1.0])
+    return Stored(outcome, None, {**whole, "scale": 1.0, **results, "storey_shears": shears})
+
+
+def fallen(falls: object, **results: object) -> Stored:
+    """A made-up result, of a structure that overturned or survived."""
+    return stored("overturned_rolling" if falls else "survived", **results)
+
+
+def reader(rows: Iterable[Stored | None]) -> Callable[[Iterable[str]], PointResults]:
+    """Reads columns of rows by their names, as a store does."""
+    points = [row or Stored(MISSING, None, {}) for row in rows]
+    names = dict.fromkeys(name for point in points for name in point.results)
+    columns = {name: stacked([point.results.get(name) for point in points]) for name in names}
+    outcomes = np.array([point.outcome for point in points], dtype="U20")
+    told = {n: point.message or "" for n, point in enumerate(points) if point.outcome == FAILED}
+
+    def read(wanted: Iterable[str]) -> PointResults:
+        known = {name: at_path(columns, name) for name in wanted}
+        found = {name: column for name, column in known.items() if column is not None}
+        return PointResults(outcomes, told, found)
+
+    return read
+
+
+def place(layout: StudyPoints, number: int) -> Place:
+    point = layout[number]
+    named = dict(zip(layout.plan.keys, point.values, strict=True))
+    source = point.record.source if point.record else "-"
+    record = int(source[-1]) if source[-1].isdigit() else source
+    return {**named, "record": record, "scale": point.scale, "number": number}
+
+
+def made(
+    make: Make, answer: Answer, *changes: tuple[str, str], text: str = STUDY, fixed: Any = None
+) -> StudyResults:
+    """Results, as reports take them, of 2 slendernesses x 3 curvatures x 3 records x 2 scales."""
+    layout = lay_out(make(text, *changes))
+    read = reader(answer(place(layout, number)) for number in range(len(layout)))
+    table = Table.of(layout, read)
+    results = SimpleNamespace(table=table, context=layout.context, stored=read, fixed_base=fixed)
+    return cast("StudyResults", results)
+
+
+def fixed_base(layout: StudyPoints, shears: list[float]) -> dict[Any, Any]:
+    """The same storey shears on a fixed base of all systems under all records."""
+    systems, known = range(len(layout.properties)), [each for each in layout.records if each]
+    return {(system, record): np.array(shears) for system in systems for record in known}
+
+
+def cells(found: Found, suffix: str = "") -> dict[str, list[Any]]:
+    """Values of the columns of a table of a report, by name."""
+    return {
+        column.name: np.asarray(column.values, dtype=object).tolist()
+        for column in found.tables[suffix]
+    }

@@ -109,24 +109,15 @@ def test_whole_histories_tell_more_and_nothing_else(study_of: Make) -> None:
     assert all_keys(brief)[3] != all_keys(whole)[3]
 
 
-def test_a_point_that_cannot_be_computed_does_not_disturb_the_others(study_of: Make) -> None:
-    layout = lay_out(study_of())
-    points = list(layout)[:4]
-    assert points[0].record is not None
-    bad = points[1]._replace(record=points[0].record._replace(source="gone.at2"))
-    found = rows(run_batch(layout.context, [points[0], bad, points[2]]))
-    assert found[1]["outcome"] == "failed"
-    assert "gone.at2" in str(found[1].pop("message"))
-    assert set(found[1]) == {"outcome", "storey_shears"}
-    whole = rows(run_batch(layout.context, points))
-    assert [found[0], found[2]] == [whole[0], whole[2]]
-
-
-def test_an_exception_of_the_kernel_is_told_for_its_point_only(
+def test_points_that_cannot_be_computed_do_not_disturb_the_others(
     study_of: Make, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    """A record that is gone, and an exception of the kernel."""
     layout = lay_out(study_of())
     points = list(layout)[:3]
+    whole = rows(run_batch(layout.context, points))
+    assert points[0].record is not None
+    gone = points[0]._replace(record=points[0].record._replace(source="gone.at2"))
 
     def fragile(requests: list[Request]) -> Iterator[tuple[list[int], Demands]]:
         if any(request.scale == 1.0 for request in requests):
@@ -134,9 +125,13 @@ def test_an_exception_of_the_kernel_is_told_for_its_point_only(
         return histories(requests)
 
     monkeypatch.setattr("rpscli.sweep.evaluation.histories", fragile)
-    found = run_batch(layout.context, points)
-    assert (found.outcomes == "failed").tolist() == [False, True, False]
-    assert found.messages == {1: "FloatingPointError: boom"}
+    first, boom, last, missing = rows(run_batch(layout.context, [*points, gone]))
+    assert [first, last] == [whole[0], whole[2]]
+    assert boom["message"] == "FloatingPointError: boom"
+    assert "gone.at2" in str(missing["message"])
+    for failed in (boom, missing):
+        assert failed["outcome"] == "failed"
+        assert set(failed) == {"outcome", "message", "storey_shears"}
 
 
 def test_modal_points_have_the_modes(study_of: Make) -> None:
@@ -310,26 +305,18 @@ def notes(points: Points) -> list[str]:
 
 
 @needs_compiled_kernels
-def test_points_that_change_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_points_that_change_with_half_the_steps_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
     (found,) = notes(Points(4))
     assert found.startswith("steps: of 4 points (of 4) computed again")
     assert "1 changed: point 3 (max_rotation " in found
-    monkeypatch.setattr(summary, "COMPUTED_AGAIN", 2)
-    (found,) = notes(Points(4))  # the first and the third
-    assert found.startswith("steps: of 2 points (of 4) computed again")
-    assert "point 3 (" in found
-
-
-@needs_compiled_kernels
-def test_what_is_computed_the_same_or_failed_is_not_told() -> None:
     assert notes(Points(2)) == []
     failed = Points(4)
     failed.failed[2] = True
     assert notes(failed) == []
-
-
-@needs_compiled_kernels
-def test_what_was_not_tried_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(summary, "COMPUTED_AGAIN", 2)
+    (found,) = notes(Points(4))  # the first and the third
+    assert found.startswith("steps: of 2 points (of 4) computed again")
+    assert "point 3 (" in found
     monkeypatch.setattr(summary, "is_ready", lambda *_: False)
     (found,) = notes(Points(4))
     assert "steps of half the length was not tried" in found

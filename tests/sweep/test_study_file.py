@@ -121,10 +121,14 @@ def test_a_history_of_endless_steps_is_refused() -> None:
 
 
 SCALE = "scale: [0.5, 1.0]"
-SAMPLED = "sample: {size: 4, ranges: {podium.cap_beam_mass_ratio: [5, 10]}}"
+RHOS, RHO = "[critical, 0.5, 0]", "podium.bearing.curvature_ratio"
+BEAM = "podium.cap_beam_mass_ratio"
+SAMPLED = f"sample: {{size: 4, ranges: {{{BEAM}: [5, 10]}}}}"
 SEEDS = "seed: [1, 2, 3]"
 RECORD = "  - {source:"
 BASE = "base: base.yaml"
+REMOVE = "remove one of them"
+WHOLE = "whole_histories: true\n"
 
 
 def added(line: str) -> tuple[str, str]:
@@ -146,11 +150,11 @@ def sampled(distribution: str) -> tuple[str, str]:
     [
         ("[0.20, 0.30]", "[0.20]", ("study.yaml:6:5", "has 1 values", "line 5", "2")),
         ("critical, 0.5, 0]", "critical, null]", ("study.yaml:7:48", "no value")),
-        ("[critical, 0.5, 0]", "0.5", ("study.yaml:7:37", "list of values")),
-        ("[critical, 0.5, 0]", "{low: 0, hgh: 1, count: 2}", ("curvature_ratio.high?",)),
+        (RHOS, "0.5", ("study.yaml:7:37", "list of values")),
+        (RHOS, "{low: 0, hgh: 1, count: 2}", ("curvature_ratio.high?",)),
         ("curvature_ratio:", "curvature_ration:", ("study.yaml:7:5", "curvature_ratio?")),
         ("podium.bearing.curvature_ratio:", "analysis.recontact_rule:", ("study.yaml:7:5", "gone")),
-        ("[critical, 0.5, 0]", "[0.5, -0.2]", ("study.yaml:7:43", "-0.2", ">= 0", "flat ends")),
+        (RHOS, "[0.5, -0.2]", ("study.yaml:7:43", "-0.2", ">= 0", "flat ends")),
         ("0.20, 0.30]", "0.20, 0.12]", ("study.yaml:6:", "0.12")),
         ("- podium.bearing.curv", "- podium.bearing.slen", ("not a key", "curvature_ratio")),
         ("base: base.yaml", "base: bsae.yaml", ("study.yaml:3:7", "base.yaml?")),
@@ -173,72 +177,41 @@ def sampled(distribution: str) -> tuple[str, str]:
         (*added("reports: [lines: {x: scale, y: zzz}]"), ("`rps timehistory CASE",)),
         (*added("limits: {zzz: 1}"), ("more (rps explain limits)",)),
         (SCALE, "reports: [ida]", ("several intensities",)),
-        (
-            "curvature_ratio: [critical, 0.5, 0]",
-            "curvature_ratio: [0.5]\nreports: [rotation]",
-            ("report rotation", "curvature_ratio has one value"),
-        ),
+        (RHOS, "[0.5]\nreports: [rotation]", ("report rotation", "curvature_ratio has one value")),
         (*added(SAMPLED.replace("[5, 10]", "[10, 5]")), ("must be <",)),
         (*added(SAMPLED.replace("[5, 10]", "{mean: 5}")), ("mean and cov",)),
         (*added(SAMPLED.replace("size: 4, ", "")), ("sample.size is missing",)),
         (*added(SAMPLED.replace("cap_beam", "cab_beam")), ("cap_beam_mass_ratio?",)),
-        (
-            *added(SAMPLED.replace("podium.cap_beam_mass_ratio", "podium.bearing.slenderness")),
-            ("varies already", "line 5"),
-        ),
+        (*added(SAMPLED.replace(BEAM, SLENDERNESS)), ("varies already", "line 5")),
         (*added("vary: []"), ("vary is written twice",)),
         (STUDY[STUDY.index("records:") : STUDY.index("scale:")], "", ("no record",)),
-        (
-            *added("sample: {size: 4, ranges: text}"),
-            ("sample.ranges = 'text'", "keys with their ranges"),
-        ),
+        (*added("sample: {ranges: text}"), ("sample.ranges = 'text'", "keys with their ranges")),
         (BASE, "base: study.yaml", ("study.yaml:3:7", "is a study, and a base is a case")),
         (BASE, "base: other.yaml", ("study.yaml:3:7", "has neither `rps` nor `superstructure`")),
         # vary
         ("vary:\n", "vary: 3\nscal_:\n", ("study.yaml:4:7", "vary = 3 must be a list of axes")),
         (*axis("- 3"), ("vary.1 = 3", "mapping")),
-        ("[critical, 0.5, 0]", "[]", ("study.yaml:7:37", "must not be an empty list")),
-        (
-            *axis("- podium.bearing: [{}]"),
-            ("podium.bearing varies as a whole", "must not vary too"),
-        ),
-        (
-            *axis("- podium.bearing.slenderness: [0.1]"),
-            ("varies already in another axis", "line 5", "remove one of them"),
-        ),
-        (
-            *axis("- record.scale: [1, 2]"),
-            ("record.scale must not vary beside", "remove one of them"),
-        ),
-        (
-            SCALE,
-            f"{SCALE}\nlinked: {{podium.friction: {{scale: 2}}}}",
-            ("scale, which no axis of",),
-        ),
-        (
-            SCALE,
-            f"{SCALE}\nlinked: {{podium.friction: {{podium.bearing.curvature_ratio: 2}}}}",
-            ("linked.podium.friction is a sum of numbers",),
-        ),
+        (RHOS, "[]", ("study.yaml:7:37", "must not be an empty list")),
+        (*axis("- podium.bearing: [{}]"), ("varies as a whole", "must not vary too")),
+        (*axis(f"- {SLENDERNESS}: [0.1]"), ("varies already in another axis", "line 5", REMOVE)),
+        (*axis("- record.scale: [1, 2]"), ("record.scale must not vary beside", REMOVE)),
+        (*added("linked: {podium.friction: {scale: 2}}"), ("scale, which no axis of",)),
+        (*added(f"linked: {{podium.friction: {{{RHO}: 2}}}}"), ("friction is a sum of numbers",)),
         # results
         (
             *added("limits: {max_floor_velocity: 1}"),
             ("max_floor_velocity needs `whole_histories: true`", "study.yaml:10"),
         ),
         (
-            *added("whole_histories: true\nlimits: {max_column_force: 1}"),
+            *added(f"{WHOLE}limits: {{max_column_force: 1}}"),
             ("in all systems podium.plan and superstructure.vertical_period", "leaves out"),
         ),
         (
-            *added("whole_histories: true\nlimits: {contact_pressure_ratio: 1}"),
+            *added(f"{WHOLE}limits: {{contact_pressure_ratio: 1}}"),
             ("in all systems curved ends, podium.column, podium.plan and",),
         ),
         # scale
-        (
-            SCALE,
-            "scale: {measure: PGV, values: [one]}",
-            ("study.yaml:10:32", "number in m/s", "one"),
-        ),
+        (SCALE, "scale: {measure: PGV, values: [one]}", (":10:32", "number in m/s", "one")),
         (SCALE, "scale: {low: 0, high: 2, count: 3, spacing: log}", ("equal ratios",)),
         # reports
         (*added("reports: demand"), ("study.yaml:10:10", "must be a list")),
