@@ -7,33 +7,22 @@ from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
-import pytest
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
-from matplotlib.figure import Figure
-from matplotlib.patches import Rectangle, StepPatch
 from numpy.typing import NDArray
 
 from report.small_results import curve, drawn, legend
-from report.test_figures_of_studies import ALPHA, RHO, labelled, panels, same
+from report.test_figures_of_studies import ALPHA, same
 from rpscli.analyses.floor_spectra import PERIODS
 from rpscli.case.conditions import Condition
 from rpscli.case.design import Term
-from rpscli.case.study.observed import OVERTURNED
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.selection import Candidate, Selection
 from rpscli.records.target import RULES, TargetSpectrum
 from rpscli.report.design import region_figure, requirements_figure
 from rpscli.report.figures.motions import selection_figure
-from rpscli.report.study.comparison import Compared, Endings, comparison_figure, maxima
-from rpscli.report.study.fragility import Binned, Fragilities, Fragility, LimitState
 from rpscli.report.study.heights import Floors, floor_spectra_figure
-from rpscli.report.study.risk import Risk, risk_figure
 from rpscli.sweep.design import Answer, Requirement
-from rpscli.sweep.statistics.fractiles import share
-from rpscli.sweep.statistics.grouping import Grouping
-from rpscli.sweep.statistics.lognormal import NOTHING, Lognormal
-from rpscli.sweep.table import Indices, Intensity
 
 Array = NDArray[np.float64]
 
@@ -50,124 +39,6 @@ def has_edges(axes: Axes, place: int, x: object, *edges: object) -> None:
     for edge in edges:
         points = np.column_stack([np.asarray(x, float), np.asarray(edge, float)])
         assert np.abs(corners[:, None] - points).sum(axis=2).min(axis=0).max() < 1e-9
-
-
-def fit_of(probabilities: Array) -> Lognormal:
-    """A fit with a curve, and a band 0.1 to either side of it."""
-    band = probabilities - 0.1, probabilities + 0.1
-    return Lognormal(
-        "maximum likelihood", None, 1.0, 0.4, NOTHING, NOTHING, probabilities, band, NO_SAMPLES
-    )
-
-
-def test_what_a_rate_comes_from() -> None:
-    drift, fall = LimitState("max_lift", 0.02), LimitState("overturning", None)
-    edges, nothing = np.array([1.0, 2.0, 4.0, 8.0, INF]), np.empty(0)
-
-    def risk(place: int, limit: LimitState, rates: list[float]) -> Risk:
-        observed = Binned(nothing, ())
-        counts = (9, 3, 0, 0)
-        fit, values = fit_of(nothing), [(0.5,), (0,)][place]
-        fragility = Fragility(values, limit, fit, nothing, observed, *counts, place, 0.4, 6.0)
-        band = (0.5 * sum(rates), 2.0 * sum(rates)) if place else NOTHING
-        others = NAN, NAN, (), 0.1
-        return Risk(fragility, sum(rates), band, edges, np.array(rates), *others, ())
-
-    risks = (
-        risk(0, drift, [0.001, 0.003, 0.004, 0.002]),
-        risk(1, drift, [0.0, 0.004, 0.012, 0.004]),
-        risk(1, fall, [0.0, 0.0, 0.008, 0.002]),
-    )
-    found = Fragilities(
-        intensity=Intensity("PGA", "m/s2", None, nothing),
-        confidence=0.9,
-        systems=Grouping((RHO,), (), ("3 records",), ()),
-        limits=(drift, fall),
-        curves=tuple(each.fragility for each in risks),
-    )
-    figure = drawn(risk_figure(found, risks, 50.0)("title"))
-    labelled(figure, "PGA [m/s²]", "share of the annual rate [%]")
-    first = panels(figure)["lift of the building > 0.02 m"]
-    second = panels(figure)["overturning"]
-    for axes, shares in (
-        (first, {"ρ = 0.5": (10, 30, 40), "flat ends": (0, 20, 60)}),
-        (second, {"flat ends": (0, 0, 80)}),
-    ):
-        steps = {str(patch.get_label()): patch for patch in axes.patches if patch.get_label()}
-        assert list(steps) == list(shares)
-        beyond = [p for p in axes.patches if isinstance(p, StepPatch) and not p.get_label()]
-        for dotted, system in zip(beyond, shares, strict=True):
-            assert dotted.get_data()[0] == pytest.approx([100.0 - sum(shares[system])])
-            assert dotted.get_data()[1][0] == 8.0
-        (grey,) = [patch for patch in axes.patches if isinstance(patch, Rectangle)]
-        assert grey.get_x() == 6.0
-        for label, patch in steps.items():
-            assert isinstance(patch, StepPatch)
-            values, at, _ = patch.get_data()
-            same(values, shares[label])
-            same(at, edges[:-1])
-        same(axes.get_xlim(), (0.9, 1.1 * 1.4 * 8.0))
-    assert legend(figure) == ["ρ = 0.5", "flat ends"]
-    # 1 - exp(-50 x 0.01), with 0.02, and with half and twice of it
-    numbers = [text.get_text() for text in first.texts]
-    assert numbers == ["P = 0.393 (no band)", "P = 0.632 (0.39 to 0.86)"]
-    for words in ("P in 50 years, 90 % bands", "over 3 records"):
-        assert words in figure.get_suptitle()
-
-
-@pytest.fixture
-def compared() -> dict[str, Axes]:
-    """A fragility and maxima beside what was observed, by the first line of their titles."""
-    binned = [
-        Binned(np.array(levels), [share(number, 4) for number in numbers])
-        for levels, numbers in (((2.0, 5.0), (0, 4)), ((3.0, 8.0), (1, 3)))
-    ]
-    outcomes = Endings(1, 2, 1, 0, share(1, 4), *binned)
-    observed = np.array([[1.0, 1.0, 0.0, 0.0, NAN], [0.01, 0.02, 0.04, NAN, 0.03]])
-    computed = np.array([[1.0, 0.0, 1.0, 1.0, NAN], [0.02, 0.01, INF, NAN, 0.03]])
-    pairs = np.array([0, 1, 2, 3]), np.array([0, 1, 2, 4])
-    rotations = maxima(computed[1, pairs[1]], observed[1, pairs[1]])
-
-    def of(quantity: int) -> tuple[Indices, Array, Array, int]:
-        """Points, the last one first, and what was observed and computed there."""
-        places = pairs[quantity]
-        return 4 - places, observed[quantity, places], computed[quantity, places], 0
-
-    intensity = Intensity("PGA", "m/s2", None, np.array([1.0, 2.0, 3.0, 5.0, 8.0]))
-    shown = [
-        Compared((0.1, 0.5), OVERTURNED, outcomes, *of(0)),
-        Compared((0.2, 0), "max_rotation", rotations, *of(1)),
-    ]
-    return panels(drawn(comparison_figure, (ALPHA, RHO), shown, intensity, "title"))
-
-
-def test_overturning_beside_what_was_observed(compared: dict[str, Axes]) -> None:
-    title = "tan α = 0.1, ρ = 0.5 25.0 % of 4 agree; overturned 3, observed 2"
-    axes = compared[title]
-    assert (axes.get_xlabel(), axes.get_ylabel()) == ("PGA [m/s²]", "share that overturned")
-    same(curve(axes, "observed"), ((2.0, 5.0), (0.0, 1.0)))
-    same(curve(axes, "computed"), ((3.0, 8.0), (0.25, 0.75)))
-    # The pairs are those of the last points first.
-    same(curve(axes, "above: computed only"), ((3.0, 2.0), (1.05, 1.05)))
-    same(curve(axes, "below: observed only"), ([5.0], [-0.05]))
-    figure = axes.get_figure()
-    assert isinstance(figure, Figure)
-    assert {*legend(figure)} == {
-        "observed", "computed", "above: computed only", "below: observed only"
-    }  # fmt: skip
-
-
-def test_maxima_beside_observed_ones(compared: dict[str, Axes]) -> None:
-    spread = np.std(np.log([2.0, 0.5, 1.0]), ddof=1)
-    title = f"ratio 1.00 in the median, dispersion {spread:.2f}, n = 3 1 overturned (triangles)"
-    axes = compared[f"tan α = 0.2, flat ends {title}"]
-    rotation = r"$|\theta_{max}|$ [rad]"
-    assert axes.get_xlabel() == f"observed {rotation}"
-    assert axes.get_ylabel() == f"computed {rotation}"
-    points, equal, fallen = axes.lines
-    same(points.get_data(), ((0.01, 0.02, 0.03), (0.02, 0.01, 0.03)))
-    same(equal.get_data(), ((0.01, 0.03), (0.01, 0.03)))
-    same(fallen.get_data(), ([0.04], [1.3 * 0.03]))
 
 
 def a_selection() -> Selection:

@@ -321,7 +321,7 @@ def test_a_dry_run_computes_nothing(design_json: SweepJson, workplace: Path) -> 
         ("0.35]", "0.02]", "12:31", "must rise from the least value to the largest"),
         ("[0.05, 0.35]", "[0.05]", "12:31", "must be two numbers, [least, largest]"),
         ("[0.05, 0.35]", "[low, high]", "12:31", "must be two numbers"),
-        (f"{SLENDERNESS}: [0.05", "podium.devices[0].force: [0.1", "12:3", "podium.devices.0.force?"),
+        (f"{SLENDERNESS}: [0.05", "podium.devices[0].gap: [0.1", "12:3", "podium.devices.0.gap?"),
         (f"{SLENDERNESS}: [0.05", "podium.bearing.slendernes: [0.05", "12:3", "did you mean"),
         (f"{WEDGE}: {{{SLENDERNESS}: 2, plus: 0.1}}", f"{WEDGE}: 2", "14:", "must be a linear sum"),
         ("[0.05, 0.35]", "", "12:3", "has no value; write one"),

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
+from report.small_results import curve, legend
+from report.test_figures_of_studies import panels, same
 
 from rpscli.errors import CaseError
 from rpscli.report.study.comparison import (
@@ -313,6 +316,28 @@ def test_outcomes_are_counted_for_each_system(study_of: Make) -> None:
     assert isinstance(shown, Table)
     assert shown.rows[1][:5] == ("left", "0.15", "8", "1.00 (0.69 to 1.0)", "4")
     assert "95 %" in str(remark)
+    drawn: Any = found.drawn("a title")
+    titles = {
+        ("left", 0.10): "left, tan α = 0.1 75.0 % of 8 agree; overturned 6, observed 4",
+        ("left", 0.2): "left, tan α = 0.2 75.0 % of 8 agree; overturned 2, observed 4",
+    }
+    for system, title in titles.items():
+        axes, pairs = panels(drawn)[title], records(found.tables["_pairs"])
+        pairs = [row for row in pairs if (row["title"], row[ALPHA]) == system]
+        pairs.sort(key=lambda row: float(row["PGV"]))
+        names = "PGV", "observed", "computed"
+        at, saw, fell = (np.array([row[name] for row in pairs], float) for name in names)
+        same(curve(axes, "observed"), (at, saw))
+        same(curve(axes, "computed"), (at, fell))
+        for label, height, alone in (
+            ("above: computed only", 1.05, fell > saw),
+            ("below: observed only", -0.05, fell < saw),
+        ):
+            places, heights = curve(axes, label)
+            same(np.sort(places), at[alone])
+            same(heights, [height] * alone.sum())
+            assert label in legend(drawn)
+        assert (axes.get_xlabel(), axes.get_ylabel()) == ("PGV [m/s]", "share that overturned")
 
 
 def test_maxima_have_ratios(study_of: Make) -> None:
@@ -326,10 +351,23 @@ def test_maxima_have_ratios(study_of: Make) -> None:
         n = at["record"]
         return fallen(n == RECORDS, max_rotation=0.01 * n * [*ratios, 1.0][n - 1])
 
-    found, *_ = records(report(study_of, answer).tables["_maxima"])
+    made_of = report(study_of, answer)
+    found, *_ = records(made_of.tables["_maxima"])
     assert (found["counted"], found["overturned_computed"]) == (7, 1)
     assert found["median_ratio"] == pytest.approx(1.0, rel=1e-12)
-    assert found["dispersion"] == pytest.approx(np.std(np.log(ratios), ddof=1), rel=1e-12)
+    spread = np.std(np.log(ratios), ddof=1)
+    assert found["dispersion"] == pytest.approx(spread, rel=1e-12)
+    drawn: Any = made_of.drawn("a title")
+    title = f"ratio 1.00 in the median, dispersion {spread:.2f}, n = 7 1 overturned (triangles)"
+    axes = panels(drawn)[f"left, tan α = 0.1 {title}"]
+    points, equal, triangles = axes.lines
+    observed = 0.01 * np.arange(1, RECORDS)
+    same(points.get_data(), (observed, observed * ratios))
+    same(equal.get_data(), ((0.005, 0.16), (0.005, 0.16)))
+    same(triangles.get_data(), ([0.08], [1.3 * 0.16]))
+    rotation = r"$|\theta_{max}|$ [rad]"
+    assert axes.get_xlabel() == f"observed {rotation}"
+    assert axes.get_ylabel() == f"computed {rotation}"
 
 
 @pytest.mark.parametrize(
