@@ -22,7 +22,7 @@ from paper_structures import needs_compiled_kernels
 
 import rpscli
 from report.small_results import CURVED, history, structure, turned, yielding
-from report.test_figures_by_hand import a_selection, of_one_unknown, of_two_unknowns
+from report.test_figures_of_studies import a_selection, of_one_unknown, of_two_unknowns
 from report.test_public_figures import PANELS, panel
 from rpscli.analyses.floor_spectra import PERIODS
 from rpscli.analyses.modal import modal

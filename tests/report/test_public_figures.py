@@ -79,8 +79,9 @@ PANELS: dict[str, tuple[Callable[[], tuple[Any, ...]], str, str]] = {
 }
 
 
-def test_every_panel_is_tried() -> None:
+def test_every_panel_is_tried_and_named() -> None:
     assert {*PANELS, "style"} == set(figures.__all__)
+    assert set(figures.__all__) <= set(re.findall(r"`(\w+)`", figures.__doc__ or ""))
 
 
 def panel(name: str, axes: Axes) -> None:
@@ -133,11 +134,6 @@ def test_legends_may_be_left_out_and_names_are_hinted_at() -> None:
     for name in ("moment_rotatoin", "storeycurve"):
         with pytest.raises(AttributeError, match=r"has no panel .*; did you mean \w+\?"):
             getattr(figures, name)
-
-
-def test_its_description_names_every_panel() -> None:
-    named = set(re.findall(r"`(\w+)`", figures.__doc__ or ""))
-    assert set(figures.__all__) <= named
 
 
 def test_other_axes_and_other_results_are_refused() -> None:

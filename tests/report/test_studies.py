@@ -14,7 +14,6 @@ from click.testing import CliRunner
 from matplotlib.figure import Figure
 
 import rpscli
-from report.small_results import curve
 from rpscli.cli import program
 from rpscli.sweep.store import Store
 
@@ -245,20 +244,6 @@ def test_reports_are_drawn_into_figures_parts_and_axes(
     assert plain.get_size_inches().tolist() == [6.0, 5.0]
 
 
-def test_what_is_drawn_are_the_results(result: rpscli.StudyResult) -> None:
-    drawn: Any = result.draw("lines")
-    first = result["record"][0]
-    chosen = result["record"] == first
-    (axes,) = drawn.axes
-    labels = [str(line.get_label()) for line in axes.lines]
-    label = next(label for label in labels if label.endswith(first) or first in label)
-    x, y = curve(axes, label)
-    assert x.tolist() == [0.5, 1.0]
-    ratio, scale = result["rotation_ratio"][chosen], result["scale"][chosen]
-    largest = [ratio[scale == each].max() for each in (0.5, 1.0)]
-    np.testing.assert_array_equal(y, largest)
-
-
 def test_what_cannot_be_drawn_is_told(result: rpscli.StudyResult) -> None:
     with pytest.raises(
         rpscli.RpsError, match="demand is not a report of the study; it has overturn"
@@ -278,18 +263,6 @@ def test_what_must_be_read_is_told(result: rpscli.StudyResult) -> None:
     }
     assert result.study.warnings == []
     assert any("beyond the usual" in note for note in rpscli.load_study(pooled).run().notes)
-
-
-def test_statistics_are_a_row_a_system_and_intensity(result: rpscli.StudyResult) -> None:
-    statistics = result.statistics
-    assert {len(column) for column in statistics.values()} == {8}
-    assert statistics["counted"].tolist() == [3] * 8
-    inside = (
-        (result["podium.bearing.curvature_ratio"] == 0.5)
-        & (result["superstructure.storey_mass"] == 250e3)
-        & (result["scale"] == 1.0)
-    )
-    assert statistics["rotation_ratio_largest"][-1] == result["rotation_ratio"][inside].max()
 
 
 def test_tables_of_many_values_draw_the_first_and_hold_all(tmp_path: Path) -> None:

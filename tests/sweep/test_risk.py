@@ -75,11 +75,8 @@ def test_any_curve_gives_what_quadrature_gives(median: float, beta: float) -> No
 
 @pytest.mark.evidence("risk", "exact")
 def test_a_fragility_without_spread_has_the_rate_of_its_median() -> None:
+    """Nor is a spread too wide, as bootstrap samples have: no rate exceeds the first of all."""
     assert annual_rate(KINKED, 0.4, 1e-9) == pytest.approx(2e-3, rel=1e-6)
-
-
-def test_no_spread_is_too_wide() -> None:
-    """Bootstrap samples have any beta; no rate exceeds that of the first intensity."""
     for beta in (20.0, 1e3, 1e8):
         assert 0.0 < annual_rate(KINKED, 0.5, beta) <= KINKED.rate[0]
 

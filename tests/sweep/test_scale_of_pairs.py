@@ -104,20 +104,6 @@ def test_both_components_have_one_factor_and_one_alone_its_own(study_of: Make) -
 
 
 @needs_recorded_motions
-@pytest.mark.parametrize(
-    ("records", "of", "reason"),
-    [
-        (TURNED, "component", "a pair has one factor"),
-        ('"pulse:sine?amplitude=0.2g&period=1"', "rotd50", "has no second component"),
-        (TURNED, "rotd30", "must be"),
-    ],
-)
-def test_what_cannot_be_of_a_pair(study_of: Make, records: str, of: str, reason: str) -> None:
-    with pytest.raises(CaseError, match=reason):
-        laid_out(study_of, records, f"{{measure: PGV, values: [0.4], of: {of}}}")
-
-
-@needs_recorded_motions
 def test_rotations_over_the_direction_by_an_own_loop(tmp_path: Path) -> None:
     """Pair 4 turned by own sums: worst at 120 deg, while factors of their own make it 165."""
     case = parse_case(BASE, name="base")
@@ -147,6 +133,8 @@ def test_records_without_a_pair_beside_pairs_are_told(study_of: Make) -> None:
 Lay = Callable[..., StudyPoints]
 HEAD = STUDY[: STUDY.index("vary:")]
 BOTH = "one.at2?second=other.at2&both"
+RECORDS = f"records: ['{BOTH}']\n"
+COMPONENT = "scale: {measure: PGV, values: [0.3], of: component}\n"
 
 
 @pytest.fixture
@@ -222,20 +210,20 @@ def test_the_pair_of_the_case(lay: Lay) -> None:
     np.testing.assert_array_equal(again.samples, context.history(layout[1]).motion.samples)
 
 
-def test_what_is_followed_in_one_plane_only(lay: Lay) -> None:
-    law = "vary:\n- podium.impact.law: [flexible, rigid]\n"
-    with pytest.raises(CaseError, match="both components together: the impact law rigid"):
-        lay(f"{law}records: ['{BOTH}']\n")
-    lay(f"{law}records: [one.at2]\n")
-
-
-def test_one_component_is_no_measure_of_both(lay: Lay) -> None:
-    scale = "scale: {measure: PGV, values: [0.3], of: component}\n"
-    with pytest.raises(CaseError, match=r"scale.of: .*a pair has one factor"):
-        lay(f"records: ['{BOTH}']\n{scale}")
-    record = "record: {x: one.at2, y: other.at2}\n"
-    with pytest.raises(CaseError, match="a pair has one factor"):
-        lay(scale, BASE + record)
+@pytest.mark.parametrize(
+    ("lines", "base", "reason"),
+    [
+        ("vary:\n- podium.impact.law: [flexible, rigid]\n" + RECORDS, BASE,
+         "both components together: the impact law rigid"),
+        (RECORDS + COMPONENT, BASE, r"scale.of: .*a pair has one factor"),
+        (COMPONENT, BASE + "record: {x: one.at2, y: other.at2}\n", "a pair has one factor"),
+        (RECORDS + COMPONENT.replace("component", "rotd30"), BASE, "must be"),
+    ],
+)  # fmt: skip
+def test_what_pairs_refuse(lay: Lay, lines: str, base: str, reason: str) -> None:
+    with pytest.raises(CaseError, match=reason):
+        lay(lines, base)
+    lay("vary:\n- podium.impact.law: [flexible, rigid]\nrecords: [one.at2]\n")
 
 
 def test_storey_shears_of_a_pair_on_a_fixed_base_are_resultants() -> None:
@@ -259,7 +247,7 @@ def test_storey_shears_of_a_pair_on_a_fixed_base_are_resultants() -> None:
 
 
 def test_the_command_line_scales_a_pair_as_a_study_does(lay: Lay) -> None:
-    lay(f"records: ['{BOTH}']\n")
+    lay(RECORDS)
     asked = MotionRequest(vertical="one.at2", scale_to="PGV(rotd100)=0.3")
     (request,) = single_motions((BOTH,), asked)
     case = load_case("base.yaml")

@@ -381,22 +381,17 @@ def test_maxima_have_ratios(study_of: Make) -> None:
         ("record,max_rotation [m]", "a,1", "must be an angle"),
         ("record,max_rotation", "a,-1", "must be a number >= 0"),
         ("record,overturned,overturned", "a,1,1", "appears twice"),
+        ("record,title,overturned", "a,left,1\na,left,0", "3:1: 'a' of this system is already in"),
     ],
 )
 def test_faults_of_the_file_have_their_line(study_of: Make, head: str, row: str, told: str) -> None:
+    with pytest.raises(CaseError, match=r"observed: .*there is no such file"):
+        study_of(OBSERVED)
     seen(row, head=head)
     with pytest.raises(CaseError) as error:
         study_of(OBSERVED)
     assert told in str(error.value)
     assert "title" not in str(error.value) or "record" in head  # another file: nothing of it
-
-
-def test_a_line_twice_and_a_missing_file_are_told(study_of: Make) -> None:
-    with pytest.raises(CaseError, match=r"observed: .*there is no such file"):
-        study_of(OBSERVED)
-    seen("a,left,1", "a,left,0")
-    with pytest.raises(CaseError, match=r"seen\.csv:3:1: 'a' of this system is already in line 2"):
-        study_of(OBSERVED)
 
 
 @pytest.mark.parametrize(
