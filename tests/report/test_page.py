@@ -29,7 +29,6 @@ from rpscli.report.page import (
     Notice,
     Picture,
     Section,
-    element,
     is_about,
     page,
     page_look,
@@ -184,11 +183,6 @@ def test_every_derived_number_has_a_row() -> None:
     values = {row[0]: row[4] for row in table.rows}
     assert values["critical rotation"] == f"{made.critical_rotation:.6g}"
     assert values["first period on a fixed base"] == "0.2"
-
-
-def test_elements_nest() -> None:
-    made = element("p", "a", element("b", "c"), None, ["d", element("i")], "e")
-    assert made == "<p>a<b>c</b>d<i></i>e</p>"
 
 
 @pytest.mark.long

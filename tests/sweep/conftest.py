@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +11,7 @@ from click.testing import CliRunner, Result
 from rpscli.case.study.study import Study, parse_study
 from rpscli.cli import program
 from rpscli.report.study.registry import REPORTS
-from sweep.small_studies import BASE, STUDY, Make, Sweep, SweepJson
+from sweep.small_studies import BASE, STUDY, Make, Sweep, SweepJson, document_of
 
 
 @pytest.fixture
@@ -64,9 +63,6 @@ def sweep_json(sweep: Sweep) -> SweepJson:
     """Run `rps sweep ... --json`; the standard output holds one document."""
 
     def invoke(*arguments: str, exit_code: int = 0, **texts: str) -> dict[str, Any]:
-        result = sweep(*arguments, "--json", **texts)
-        assert result.exit_code == exit_code, result.stderr
-        document: dict[str, Any] = json.loads(result.stdout)
-        return document
+        return document_of(sweep(*arguments, "--json", **texts), exit_code)
 
     return invoke

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import json
 from collections.abc import Callable, Iterable
 from pathlib import Path
 from types import SimpleNamespace
@@ -64,6 +65,13 @@ SweepJson = Callable[..., dict[str, Any]]
 def study_file(path: Path | str, *overrides: str) -> LaidOut:
     """A study as `rps sweep` reads it."""
     return load_study(path, overrides)
+
+
+def document_of(result: Result, exit_code: int) -> dict[str, Any]:
+    """The JSON document that a command printed, which ended with an exit code."""
+    assert result.exit_code == exit_code, result.stderr
+    document: dict[str, Any] = json.loads(result.stdout)
+    return document
 
 
 def csv_rows(name: str, folder: Path | str = FOLDER) -> list[dict[str, str]]:

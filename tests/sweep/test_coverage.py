@@ -104,34 +104,6 @@ def test_bands_and_shares_hold_what_they_say(
     assert shares.mean(axis=0).min() > 0.95 - 3.0 * 0.0056
 
 
-@pytest.mark.long
-@needs_recorded_motions
-@pytest.mark.parametrize("drawn", [7, 22])
-@pytest.mark.parametrize("what", ["overturned", "turned"])
-def test_intervals_of_shares_hold_what_they_promise(
-    outcomes: dict[str, Beyond], what: str, drawn: int
-) -> None:
-    """Clopper's and Pearson's interval holds at least 95 %; of 44 components as if they were
-    independent it does not everywhere."""
-    draws, generator = 2000, np.random.default_rng(1)
-    cluster = np.repeat(np.arange(drawn), 2)
-    held, naive = [], []
-    for level in range(len(LEVELS)):
-        every = outcomes[what][:, :, level]
-        truth, counts = every.mean(), np.zeros(2)
-        if not 0.02 < truth < 0.98:
-            continue
-        for rows in generator.integers(0, 22, (draws, drawn)):
-            happened = every[rows].ravel()
-            for place, of in enumerate((cluster, np.arange(2 * drawn))):
-                found = clustered(happened, of)
-                counts[place] += found.low <= truth <= found.high
-        held.append(counts[0] / draws)
-        naive.append(counts[1] / draws)
-    assert min(held) > 0.95 - 3.0 * 0.005  # three standard errors
-    assert min(naive) < min(held)
-
-
 def test_intervals_of_clusters_of_any_likeness_hold_their_share() -> None:
     """4, 8 and 22 recordings of 2 and 12 histories: normal variables that correlate by 0.3 to 0.95,
     of which 10 to 50 % are below a threshold. 200 draws each: 95 % within three standard errors."""

@@ -22,7 +22,7 @@ from rpscli.sweep.design import Search, weights_of
 from rpscli.sweep.evaluation import run_batch
 from rpscli.sweep.points import lay_out
 from rpscli.sweep.run import LARGEST_BATCH
-from sweep.small_studies import BASE, ROOT, Sweep, SweepJson, csv_rows
+from sweep.small_studies import BASE, ROOT, Sweep, SweepJson, csv_rows, document_of
 from sweep.test_interruption import ended
 
 SLENDERNESS = "podium.bearing.slenderness"
@@ -95,10 +95,7 @@ def design_json(design: Sweep) -> SweepJson:
     """The JSON document of `rps design`."""
 
     def invoke(text: str, *arguments: str, exit_code: int = 0) -> dict[str, Any]:
-        result = design(text, *arguments, "--json")
-        assert result.exit_code == exit_code, result.stderr
-        document: dict[str, Any] = json.loads(result.stdout)
-        return document
+        return document_of(design(text, *arguments, "--json"), exit_code)
 
     return invoke
 

@@ -282,16 +282,6 @@ def test_a_median_beyond_all_intensities_is_called_extrapolated(
     assert ("extrapolated" in fragility(results, options).remark) == beyond
 
 
-def test_intensities_follow_records_and_scales(study_of: Make) -> None:
-    table = made(study_of, lambda at: stored(scale=at["scale"])).table
-    pga = table.intensity("PGA")
-    assert pga.values[1] == pytest.approx(0.5 * 9.80665, rel=1e-9)
-    assert pga.values[0] == pytest.approx(0.25 * 9.80665, rel=1e-9)
-    arias = table.intensity("Arias")
-    assert arias.values[0] == pytest.approx(0.25 * arias.values[1], rel=1e-12)
-    assert table.intensity().measure == "PGV"
-
-
 PULSES = """\
 records: [{source: "pulse:sine?amplitude=1g", period: [0.5, 1.0]}, mine.txt]
 scale: [0.2, 0.4]
