@@ -21,7 +21,6 @@ from rpscli.report.figures.bearing import (
     BearingView,
     draw_bearing,
     draw_end,
-    outline,
 )
 from rpscli.report.figures.look import Look
 from rpscli.report.figures.structure import bearing_figure
@@ -172,8 +171,3 @@ def test_devices_are_in_the_drawing() -> None:
     axes = Figure().subplots()
     draw_bearing(axes, made, 0.1)
     assert axes.get_xlim()[1] > view.half + 0.2  # the stops are in view
-
-
-def test_an_upright_block_is_a_rectangle() -> None:
-    corners = outline(Bearing(1.0, 0.75, 0.75, 0.0)).round(12).tolist()
-    assert sorted(corners) == [[-0.6, 0.0], [-0.6, 1.6], [0.6, 0.0], [0.6, 1.6]]
