@@ -10,12 +10,14 @@ from typing import Any
 
 import numpy as np
 import pytest
+import yaml
 from paper_structures import needs_recorded_motions
 from scipy.integrate import cumulative_trapezoid
 from scipy.signal import StateSpace, lsim
 
+import rpscli
 from rpscli.analyses.fixed_base import reference_shears
-from rpscli.case.case import load_case
+from rpscli.case.case import load_case, parse_case
 from rpscli.commands.inputs import MotionRequest, load_motion, motion_inputs, single_motions
 from rpscli.errors import CaseError
 from rpscli.model.bearing import Bearing
@@ -99,6 +101,25 @@ def test_both_components_have_one_factor_and_one_alone_its_own(study_of: Make) -
         if point.record
     ]
     assert peaks == pytest.approx((0.4 * over[[0, 90]] / np.median(over)).tolist(), rel=1e-9)
+
+
+@needs_recorded_motions
+def test_rotations_over_the_direction_by_an_own_loop(tmp_path: Path) -> None:
+    """Pair 4 turned by own sums: worst at 120 deg, while factors of their own make it 165."""
+    case = parse_case(BASE, name="base")
+    a, b = (rpscli.load_record(f"{PAIR}/{side}") for side in "ab")
+    factor = 0.4 / np.median(velocities())
+    wanted = []
+    for angle in range(0, 180, 30):
+        c, s = math.cos(math.radians(angle)), math.sin(math.radians(angle))
+        turned = rpscli.GroundMotion(factor * (c * a.acceleration + s * b.acceleration), a.dt)
+        wanted.append(rpscli.demand(case.structure, turned, case.analysis).rotation_ratio)
+    points = rpscli.load_study({
+        "rps": 1, "base": yaml.safe_load(BASE), "scale": {"measure": "PGV", "values": [0.4]},
+        "records": [{"source": PAIR, "angle": {"low": 0, "high": 150, "count": 6}}],
+    }).run(tmp_path)  # fmt: skip
+    assert points["rotation_ratio"].tolist() == pytest.approx(wanted, rel=1e-6)
+    assert np.argmax(wanted) == 4
 
 
 @needs_recorded_motions
