@@ -188,10 +188,7 @@ def test_a_changed_study_keeps_what_applies_and_says_what_changed(sweep_json: Sw
     assert "24 stored points are no longer in the study" in notes
     # Nothing was thrown away: the first study is whole again at once.
     assert sweep_json("study.yaml", study=STUDY)["points"]["computed"] == 0
-
-
-def test_a_changed_case_applies_to_nothing(sweep_json: SweepJson) -> None:
-    sweep_json("study.yaml")
+    # What is stored of one case applies to no other.
     changed = sweep_json("study.yaml", base=BASE.replace("ratio: 0.05", "ratio: 0.04"))
     assert changed["points"]["computed"] == 36
     assert "base.superstructure.damping.ratio: 0.05 -> 0.04" in " ".join(changed["notes"])
