@@ -125,9 +125,9 @@ def runs() -> Iterator[Run]:
     select = ["record", "select", f"{FEMA}/*", "--target", "en1998:?ag=0.2g&soil=C", "-n", "7"]
     yield Run("record-select", select)
     yield Run("record-select-json", [*select, "--json"], 80)
-    for words in (["--help"], ["init", "--help"], ["schema"], ["schema", "--study"]):
+    for words in (["--help"], ["init", "--help"], ["schema"], ["schema", "study"]):
         yield Run("-".join(["text", *words]), words)
-    yield Run("text-schema-design", ["schema", "--design"])
+    yield Run("text-schema-design", ["schema", "design"])
     for command in ("check", "modal", "pushover", "timehistory", "sweep", "design", "report", "verify"):  # fmt: skip # noqa: E501
         yield Run(f"help-{command}", [command, "--help"])
     for word in ("slenderness", "rotation_ratio", "impact", "period", "overturning", "friction"):
