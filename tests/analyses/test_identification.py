@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from paper_structures import Array, block, needs_compiled_kernels, podium
+from paper_structures import Array, block, known, needs_compiled_kernels, podium, stillness
 from scipy.integrate import solve_ivp
 from scipy.signal import lsim
 
@@ -21,15 +21,13 @@ from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import PodiumStructure
 from rpscli.records.ground_motion import GroundMotion
 
-needs = needs_compiled_kernels
-
 
 def held(truth: float, found: Estimate) -> bool:
     return found.low <= truth <= found.high
 
 
 @pytest.mark.evidence("identification", "program")
-@needs
+@needs_compiled_kernels
 def test_a_block_of_another_integrator_has_its_restitution() -> None:
     """Housner's block, I_o theta'' = -m g R sin(alpha - theta), theta' -> e theta' at theta = 0."""
     found, e, dt = block(0.2, 0.6), 0.9, 0.002
@@ -112,7 +110,6 @@ def test_what_determines_no_period_is_refused() -> None:
             vibration(0.4, 0.01, floor, free=free)
 
 
-STILL = np.zeros(2)
 DT = 0.01
 
 
@@ -129,8 +126,7 @@ def released(structure: PodiumStructure, part: float, seconds: float) -> tuple[A
     settings = TimeHistorySettings(
         free_vibration=seconds, initial_rotation=part * structure.critical_rotation
     )
-    record = GroundMotion(STILL, DT, "still", "still", "")
-    trace = time_history(structure, record, settings, with_fixed_base=False).trace
+    trace = time_history(structure, stillness(DT), settings, with_fixed_base=False).trace
     return trace.time, trace.rotation
 
 
@@ -144,7 +140,7 @@ def identified(number: int, noise: Any) -> tuple[float, Identified]:
 
 
 @pytest.mark.evidence("identification", "exact")
-@needs
+@needs_compiled_kernels
 @pytest.mark.long
 def test_intervals_of_the_loss_hold_the_truth() -> None:
     """93 +- 4 % of 240, twenty of each of twelve structures.
@@ -161,7 +157,7 @@ def test_intervals_of_the_loss_hold_the_truth() -> None:
     assert 0.89 <= held_ones / 240 <= 0.97
 
 
-@needs
+@needs_compiled_kernels
 @pytest.mark.long
 def test_restitution_and_rolling_resistance_are_told_apart() -> None:
     design = podium(3, 0.15, 0.3)
@@ -182,7 +178,7 @@ def test_restitution_and_rolling_resistance_are_told_apart() -> None:
 
 
 @pytest.mark.evidence("identification", "exact")
-@needs
+@needs_compiled_kernels
 @pytest.mark.long
 @pytest.mark.parametrize("test", ["ambient", "release", "earthquake"])
 def test_intervals_of_the_period_hold_the_truth(test: str) -> None:
@@ -190,8 +186,7 @@ def test_intervals_of_the_period_hold_the_truth(test: str) -> None:
     rng, held_ones = np.random.default_rng(5), 0
     for storeys in (1, 2, 3, 4, 5, 6):
         structure = podium(storeys, 0.15, 0.5)
-        assert structure.superstructure is not None
-        T = float(structure.superstructure.periods[0])
+        T = float(known(structure.superstructure).periods[0])
         for _ in range(40):
             held_ones += held(T, shaken(structure, T, test, rng).period)
     assert 0.86 <= held_ones / 240 <= 0.94

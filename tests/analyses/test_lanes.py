@@ -80,15 +80,9 @@ def ensemble(
     for storeys, modal in groups:
         choices = structures(storeys, modal)
         for i in range(each):
-            structure, motion = choices[int(rng.integers(len(choices)))], int(rng.integers(4))
-            requests.append(
-                Request(
-                    structure,
-                    MOTIONS[motion],
-                    SETTINGS[i % len(SETTINGS)],
-                    float(rng.choice(scales)),
-                )
-            )
+            structure = choices[int(rng.integers(len(choices)))]
+            motion, settings = MOTIONS[int(rng.integers(4))], SETTINGS[i % len(SETTINGS)]
+            requests.append(Request(structure, motion, settings, float(rng.choice(scales))))
     # and one whose motion is soon no longer finite, which must not spread
     requests.append(replace(requests[0], scale=2.0**800))
     return [requests[i] for i in rng.permutation(len(requests))]
@@ -138,13 +132,9 @@ EVERY_HEIGHT = [(0, False), *((n, modal) for n in (1, 2, 3) for modal in (False,
 
 
 @pytest.mark.long
-def test_lanes_give_the_bits_of_single_histories_of_any_height() -> None:
-    check(ensemble(EVERY_HEIGHT, 40))
-
-
-@pytest.mark.long
-def test_lanes_give_the_bits_of_single_histories_of_tall_buildings() -> None:
-    check(ensemble([(33, False)], 20))
+@pytest.mark.parametrize(("groups", "each"), [(EVERY_HEIGHT, 40), ([(33, False)], 20)])
+def test_lanes_give_them_of_any_height(groups: list[tuple[int, bool]], each: int) -> None:
+    check(ensemble(groups, each))
 
 
 MIXED = ensemble([(0, False), (1, False), (2, True), (3, False), (3, True)], 12, POWERS_OF_TWO)
@@ -180,9 +170,7 @@ def test_the_histories_compared_are_of_all_kinds() -> None:
 
 def test_histories_without_end_are_refused_before_they_begin() -> None:
     record = ground([0.0, 1.0, 0.0], 1e18)
-    with pytest.raises(
-        CaseError, match="which must not be more than 1e\\+10: the record is too long"
-    ):
+    with pytest.raises(CaseError, match=r"must not be more than 1e\+10: the record is too long"):
         demands([Request(podium(0), MotionComponents(record), TimeHistorySettings())])
 
 

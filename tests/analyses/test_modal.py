@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from paper_structures import FLAT, building, podium, yielding
+from paper_structures import FLAT, building, known, podium, yielding
 from scipy.linalg import eigh
 
 from rpscli.analyses.modal import UpliftedModes, linearised_matrices, modal
@@ -49,11 +49,9 @@ def test_overdamped_modes_are_paired_as_without_damping(storeys: int, ratio: flo
     """
     damping = RayleighDamping(ratio, (1, 1))  # stiffness-proportional
     damped, undamped = (
-        modal(podium(storeys, superstructure=building(storeys, damping=d), rho=0.5)).rolling
+        known(modal(podium(storeys, superstructure=building(storeys, damping=d))).rolling)
         for d in (damping, RayleighDamping(0.0))
     )
-    assert damped is not None
-    assert undamped is not None
     assert damped.damping[-1] > 1.0
     assert damped.frequencies == pytest.approx(undamped.frequencies, rel=1e-6)
 
@@ -78,11 +76,9 @@ def test_one_storey_in_closed_form(tan_alpha: float, period: float) -> None:
     B and C are a and 1 to first order. At rho = 1/2 gravity drops out, so the form is exact.
     """
     structure = podium(1, tan_alpha, 0.5, superstructure=building(1, period))
-    modes = modal(structure).rolling
-    assert modes is not None
+    modes = known(modal(structure).rolling)
     total, a = structure.superstructure_mass, structure.bearing.alpha
-    for found, B, C in ((modes, math.sin(a), math.cos(a)), (modes.first_order, a, 1.0)):
-        assert found is not None
+    for found, B, C in ((modes, math.sin(a), math.cos(a)), (known(modes.first_order), a, 1.0)):
         base = structure.columns_mass / 3.0 + structure.cap_beam_mass + total * B**2
         factor = math.sqrt(1.0 + C**2 * total / base)
         assert found.frequency_ratio[0] == pytest.approx(factor, rel=1e-7)
@@ -91,8 +87,7 @@ def test_one_storey_in_closed_form(tan_alpha: float, period: float) -> None:
 
 @pytest.mark.parametrize("storeys", [0, 1, 6, 100])
 def test_zero_stiffness_has_a_double_zero(storeys: int) -> None:
-    modes = modal(podium(storeys, 0.15, 0.5)).rolling
-    assert modes is not None
+    modes = known(modal(podium(storeys, 0.15, 0.5)).rolling)
     assert modes.eigenvalues[:2].tolist() == [0.0, 0.0]
     assert modes.frequency_parameter == modes.frequency_parameter_rigid == 0.0
     assert modes.shapes[:, 0].tolist() == [1.0] * (storeys + 1)  # all move along
@@ -104,10 +99,8 @@ def test_a_rigid_frame_has_only_its_own_mode() -> None:
     for rho, kappa in ((FLAT, -1.0), (0.25, -0.5), (1.5, 2.0)):
         structure = podium(0, 0.15, rho)
         result = modal(structure)
-        state = result.rocking if rho == FLAT else result.rolling
-        assert state is not None
-        modes = state.first_order
-        assert modes is not None
+        state = known(result.rocking if rho == FLAT else result.rolling)
+        modes = known(state.first_order)
         assert len(modes.frequencies) == 0
         p = structure.rigid_frequency_parameter * math.sqrt(abs(kappa))
         assert modes.frequency_parameter == pytest.approx(p, rel=1e-12)
@@ -120,23 +113,20 @@ def test_a_rigid_frame_has_only_its_own_mode() -> None:
 
 def test_shapes_solve_the_eigenproblem_and_fixed_base_modes_are_the_buildings() -> None:
     structure = podium(6, 0.15, 1.5)
-    above = structure.superstructure
-    assert above is not None
+    above = known(structure.superstructure)
     result = modal(structure)
-    assert result.fixed_base is not None
-    assert result.fixed_base.frequencies == pytest.approx(above.frequencies)
-    assert result.fixed_base.damping == pytest.approx(above.damping_ratios)
-    assert result.fixed_base.periods[0] == pytest.approx(0.6, rel=1e-12)
-    assert np.max(np.abs(result.fixed_base.shapes), axis=0) == pytest.approx(np.ones(6))
-    assert result.rolling is not None
-    assert result.rolling.shapes.shape == (7, 7)
-    assert np.max(np.abs(result.rolling.shapes), axis=0) == pytest.approx(np.ones(7))
+    fixed, rolling = known(result.fixed_base), known(result.rolling)
+    assert fixed.frequencies == pytest.approx(above.frequencies)
+    assert fixed.damping == pytest.approx(above.damping_ratios)
+    assert fixed.periods[0] == pytest.approx(0.6, rel=1e-12)
+    assert np.max(np.abs(fixed.shapes), axis=0) == pytest.approx(np.ones(6))
+    assert rolling.shapes.shape == (7, 7)
+    assert np.max(np.abs(rolling.shapes), axis=0) == pytest.approx(np.ones(7))
     # in the storey's own mode the building is carried along (paper, Figure 6)
-    assert np.abs(result.rolling.elastic_shapes[:, 0]).max() < 0.1
+    assert np.abs(rolling.elastic_shapes[:, 0]).max() < 0.1
     # undamped shapes are real and diagonalise both matrices
     undamped = podium(6, 0.15, 1.5, superstructure=building(6, damping=ModalDamping(0.0)))
-    modes = modal(undamped).rolling
-    assert modes is not None
+    modes = known(modal(undamped).rolling)
     masses = np.full(7, 2e5)
     a = structure.bearing.alpha
     # of u_b = C 2 R theta
@@ -153,15 +143,12 @@ def test_the_storeys_own_mode_in_words() -> None:
     p = sqrt(6.53777 * 21/41.3333) = 1.82253 rad/s.
     """
     rolling, falling = modal(podium(0, 0.15, 1.0)).uplifted.values()
-    swings, falls = rolling.first_order, falling.first_order
-    assert swings is not None
-    assert falls is not None
+    swings, falls = known(rolling.first_order), known(falling.first_order)
     assert swings.own_period == pytest.approx(2.0 * math.pi / 1.82253, rel=1e-5)
     assert (swings.own_growth_time, swings.own_motion) == (None, "swings with T = 3.448 s")
     assert falls.own_growth_time == pytest.approx(1.0 / 1.82253, rel=1e-5)
     assert (falls.own_period, falls.own_motion) == (None, "diverges, e-fold in 0.5487 s")
-    neutral = modal(podium(0, 0.15, 0.5)).rolling
-    assert neutral is not None
+    neutral = known(modal(podium(0, 0.15, 0.5)).rolling)
     assert neutral.own_motion == "is in neutral equilibrium"
 
 
@@ -176,8 +163,7 @@ def test_the_storey_that_yields_first_in_a_mode() -> None:
     _, vectors = eigh(K, M)
     height = math.cos(structure.bearing.alpha)
     shears = above.stiffnesses * np.diff(vectors[1:, 1], prepend=height * vectors[0, 1])
-    assert above.strengths is not None
-    base_shears = np.abs(shears[0] / shears) * above.strengths
+    base_shears = np.abs(shears[0] / shears) * known(above.strengths)
     rolling = found["rolling"]
     assert rolling["base_shear"] == pytest.approx(base_shears.min(), rel=1e-9)
     assert rolling["storey"] == base_shears.argmin() + 1 == 3
