@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
+from itertools import product
 from pathlib import Path
 
 import numpy as np
 import pytest
-from small_records import knet
+from small_records import csmip, knet
 
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import RecordError
@@ -25,31 +26,37 @@ def load(folder: Path, text: str, options: str = "", name: str = "rec.txt") -> G
     return load_record(name + options, folder=folder)
 
 
-def table(step: float = 0.02, form: str = "{:.2f} {}") -> str:
-    return "\n".join(form.format(i * step, value) for i, value in enumerate(FOUR))
+def table(form: str = "{:.2f} {}") -> str:
+    return "\n".join(form.format(i * 0.02, value) for i, value in enumerate(FOUR))
+
+
+HEADERS = [
+    "# units: g\n",
+    "units: g\n",
+    "% a record, units = g, made by hand\n\n",
+    "Time (s), Acceleration (g)\n",
+    "t[s]\tacc[g]\n",
+    "Time [s]   a_g [g]\nUnits of g\n",
+    "The units are (g)\n",
+    "unit is g\n",
+    "units in g\n",
+]
+TIMED_HEADERS = [
+    "dt: 0.02\nunits: g\n",
+    "# dt = 0.02\n# units = g\n",
+    "# time step: 2.E-2 s; units: g\n",
+]
+FORMS = ["{:.2f} {}", "{:.4e}\t{}", "{:.3f}, {}", "  {:.2f} {}"]
 
 
 @pytest.mark.parametrize(
-    "header",
-    [
-        "# units: g\n",
-        "units: g\n",
-        "% a record, units = g, made by hand\n\n",
-        "Time (s), Acceleration (g)\n",
-        "t[s]\tacc[g]\n",
-        "Time [s]   a_g [g]\nUnits of g\n",
-        "The units are (g)\n",
-        "unit is g\n",
-        "units in g\n",
-    ],
+    ("header", "form"), [*product(HEADERS, FORMS), *product(TIMED_HEADERS, ["{1}"])]
 )
-@pytest.mark.parametrize("form", ["{:.2f} {}", "{:.4e}\t{}", "{:.3f}, {}", "  {:.2f};{}"])
-def test_two_columns(tmp_path: Path, header: str, form: str) -> None:
-    text = header + table(form=form.replace(";", " "))
-    made = load(tmp_path, text)
+def test_one_or_two_columns_with_a_header(tmp_path: Path, header: str, form: str) -> None:
+    made = load(tmp_path, f"{header}{table(form)}\n# the end\n")
     np.testing.assert_allclose(made.acceleration, np.array(FOUR) * STANDARD_GRAVITY, rtol=1e-15)
     assert made.dt == 0.02
-    assert made.format == "two-column text"
+    assert made.format == ("one-column text" if form == "{1}" else "two-column text")
     assert "values in g" in made.description
 
 
@@ -67,19 +74,8 @@ def test_glued_columns_and_times_that_do_not_begin_at_zero(tmp_path: Path) -> No
     assert "begin at 0.02 s" in made.warnings[0]
 
 
-@pytest.mark.parametrize(
-    "header",
-    ["dt: 0.005\nunits: g\n", "# dt = 0.005\n# units = g\n", "# time step: 5.0E-3 s; units: g\n"],
-)
-def test_one_column_with_a_header(tmp_path: Path, header: str) -> None:
-    made = load(tmp_path, header + "\n".join(map(str, FOUR)) + "\n# the end\n")
-    np.testing.assert_allclose(made.acceleration, np.array(FOUR) * STANDARD_GRAVITY, rtol=1e-15)
-    assert made.dt == 0.005
-    assert made.format == "one-column text"
-
-
 def test_one_column_with_options(tmp_path: Path) -> None:
-    text = "\n".join(map(str, FOUR))
+    text = table("{1}")
     assert load(tmp_path, text, "?dt=0.005&units=m/s2").dt == 0.005
     assert load(tmp_path, text, "?units=m/s2&dt=5 ms").dt == 0.005
     assert load_record("rec.txt", folder=tmp_path, dt=0.01, units="g").dt == 0.01
@@ -192,19 +188,11 @@ def test_units_steps_counts_and_columns(tmp_path: Path, text: str, options: str)
         (TABLE, "?units=furlong", "units = 'furlong' is not known"),
         (TABLE, "?units=g&dt=0.01", "dt = 0.01 s contradicts the file, which says 0.02 s"),
         ("0 .1\n.02 .1\n.04 .2\n.07 .1\n.08 .2\n", "?units=g&dt=0.02", "after sample 3 is 0.03 s"),
-        (
-            "0 .1\n.02 .1\n.02 .2\n.04 .3\n",
-            "?units=g&dt=0.02",
-            "after sample 2; sort them",
-        ),
+        ("0 .1\n.02 .1\n.02 .2\n.04 .3\n", "?units=g&dt=0.02", "after sample 2; sort them"),
         (".3 0.0\n.1 .02\n.2 .04\n.1 .06\n", "?units=g&dt=0.02", "do not increase"),
         ("0 .1 1\n.02 .1 2\n.04 .2 3\n", "?units=g&dt=0.02", "time and several quantities"),
         ("0 .1\n.02\n.04 .2\n", "?units=g&dt=0.02", "a row of 1 numbers among rows of 2"),
-        (
-            "0 .1\n.02 .1\nend\n.04 .2\n",
-            "?units=g&dt=0.02",
-            r"rec.txt:3: 'end' stands among",
-        ),
+        ("0 .1\n.02 .1\nend\n.04 .2\n", "?units=g&dt=0.02", "rec.txt:3: 'end' stands among"),
         ("0 .1\n.02 nan\n", "?units=g&dt=0.02", "nan"),
         ("a\nb\n", "?units=g&dt=0.02", "no known format"),
         (f"Time (s),Acceleration (g x 10)\n{TIMED}", "", "'g x 10', which is not a unit"),
@@ -250,38 +238,21 @@ def test_a_peak_that_the_header_contradicts_is_a_warning(tmp_path: Path) -> None
 AT2 = "ACCELERATION TIME SERIES IN UNITS OF G\nNPTS=   200, DT=   .0050 SEC\n"
 
 
-def csmip(line: str) -> str:
-    body = rows(*VALUES.reshape(-1, 8).T * 100.0 * STANDARD_GRAVITY, form="{:9.3f}", between=" ")
-    return (
-        "Corrected accelerogram   00000-A0000-00000.00       Chan  1: 360 Deg     from\n"
-        "Uncorrected Accelerogram Data\nRcrd of an invented earthquake\n"
-        f"Peak acceleration =  {100.0 * STANDARD_GRAVITY * PEAK:.3f} cm/sec/sec at .5 sec.\n"
-        f"   200 {line}\n{body}"
-    )
-
-
-@pytest.mark.parametrize(
-    "line",
-    [
-        "POINTS OF ACCEL DATA EQUALLY SPACED AT  .005 SEC.  (UNITS: CM/SEC/SEC)",
-        "points of accel data equally spaced at  .005 sec, in cm/sec2. (8f10.4)",
-    ],
-)
-def test_volume_2_as_written_before_and_since_2000(tmp_path: Path, line: str) -> None:
-    made = load(tmp_path, csmip(line), name="x.v2")
-    assert (made.npts, made.dt, made.warnings) == (COUNT, DT, ())
-    assert made.pga == pytest.approx(PEAK * STANDARD_GRAVITY, abs=1e-5)
-
-
 WRITTEN = {
     "columns": (f"units: gal, dt: 5 ms, npts: 200\n{GAL}", "x.txt"),
     "titles": (f"Time [ms],Acceleration [g]\n{rows(1e3 * TIMES, VALUES)}", "x.csv"),
     "at2": (f"{AT2}{rows(VALUES, form='{:.7E}')}", "x.at2"),
     "knet": (knet(), "x.EW"),
-    "csmip": (csmip("points of accel data equally spaced at  .005 sec, in cm/sec2."), "x.v2"),
+    "csmip": (csmip(), "x.v2"),
     "pulse": ("", "pulse:sine?amplitude=0.2 g&period=1&dt=0.005"),
     "synthetic": ("", "synthetic:?pga=0.2g&seed=1&duration=1&dt=0.005"),
 }
+
+
+def written(folder: Path, motion: GroundMotion, form: str) -> GroundMotion:
+    """The motion as it is read back from an AT2 file or a text of two columns."""
+    text = at2_text(motion) if form == "at2" else two_column_text(motion)
+    return load(folder, text, name="y.at2" if form == "at2" else "y.txt")
 
 
 @pytest.mark.parametrize("kind", WRITTEN)
@@ -289,14 +260,11 @@ WRITTEN = {
 def test_what_is_written_reads_back(tmp_path: Path, kind: str, form: str) -> None:
     text, name = WRITTEN[kind]
     made = load(tmp_path, text, name=name) if text else load_record(name)
-    out = tmp_path / ("y.at2" if form == "at2" else "y.txt")
-    out.write_text(at2_text(made) if form == "at2" else two_column_text(made), encoding="utf-8")
-    again = load_record(str(out))
+    again = written(tmp_path, made, form)
     assert (again.npts, again.dt) == (made.npts, made.dt)
     digits = 1e-7 if form == "at2" else 1e-8
     np.testing.assert_allclose(again.acceleration, made.acceleration, atol=digits * made.pga)
-    out.write_text(two_column_text(again), encoding="utf-8")
-    assert load_record(f"{out}").npts == made.npts
+    assert written(tmp_path, again, "text").npts == made.npts
 
 
 @pytest.mark.parametrize(
@@ -307,8 +275,6 @@ def test_what_is_written_reads_back(tmp_path: Path, kind: str, form: str) -> Non
 @pytest.mark.parametrize("form", ["at2", "text"])
 def test_a_title_states_nothing(tmp_path: Path, title: str, form: str) -> None:
     motion = GroundMotion(VALUES * STANDARD_GRAVITY, DT, "x", "s", "SMC", title)
-    out = tmp_path / ("y.at2" if form == "at2" else "y.txt")
-    out.write_text(at2_text(motion) if form == "at2" else two_column_text(motion), encoding="utf-8")
-    again = load_record(str(out))
+    again = written(tmp_path, motion, form)
     assert (again.npts, again.dt) == (COUNT, DT)
     assert again.pga == pytest.approx(motion.pga, rel=1e-7)

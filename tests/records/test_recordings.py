@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from case.conftest import BUILDING
+from paper_structures import known
 from small_records import cosmos, csmip, esm, geonet, knet, smc, write
 
 from rpscli.case.case import load_case
@@ -14,7 +15,7 @@ from rpscli.commands.inputs import MotionRequest, single_motions
 from rpscli.errors import RecordError, UsageError
 from rpscli.records.ground_motion import Recording
 from rpscli.records.loading import expand_sources, expanded, load_components, load_record
-from rpscli.records.recordings import clusters, event_of, pairs
+from rpscli.records.recordings import clusters, pairs
 from rpscli.records.source import Source
 
 STATED = {
@@ -63,9 +64,7 @@ def test_titles_of_at2_files_tell_a_pair(tmp_path: Path) -> None:
     assert clusters(["one.at2", "two.at2"], tmp_path, "events") == (0, 0)
     (pair,) = expand_sources([".?both"], folder=tmp_path)
     assert pair == "one.at2?second=two.at2&both"
-    up = load_components(pair, "own", folder=tmp_path).vertical
-    assert up is not None
-    assert up.source == "up.at2"
+    assert known(load_components(pair, "own", folder=tmp_path).vertical).source == "up.at2"
 
 
 @pytest.mark.parametrize("name", STATED)
@@ -97,11 +96,8 @@ def stations(tmp_path: Path) -> Path:
         text = knet().replace("N-S", way).replace("8500", f"850{more}")
         write(tmp_path, text, f"CHB002.{end}")
     for name, way, more in (("one", "360", 5), ("two", "270", 6), ("three", "up", 7)):
-        write(
-            tmp_path,
-            smc().replace("   360", way).replace("1.5000E", f"1.500{more}E"),
-            f"{name}.smc",
-        )
+        text = smc().replace("   360", way).replace("1.5000E", f"1.500{more}E")
+        write(tmp_path, text, f"{name}.smc")
     write(tmp_path, smc("1 UNCORRECTED ACCELEROGRAM"), "raw.smc")
     write(tmp_path, cosmos("Uncorrected acceleration"), "raw.v1")
     (tmp_path / "README").write_text("words\n", encoding="utf-8")
@@ -153,8 +149,7 @@ def test_the_one_pair_of_a_file_or_a_folder_is_a_record(stations: Path) -> None:
      ("three.v2?channel=3", "three.v2?channel=2")],
 )  # fmt: skip
 def test_the_vertical_of_a_recording_is_its_own(stations: Path, source: str, vertical: str) -> None:
-    own = load_components(source, "own", folder=stations).vertical
-    assert own is not None
+    own = known(load_components(source, "own", folder=stations).vertical)
     assert own.digest == load_record(vertical, folder=stations).digest
 
 
@@ -165,8 +160,7 @@ def test_each_of_several_records_has_a_vertical_of_its_own(
     motions = [*single_motions(("*.smc", "*.v2"), MotionRequest(vertical="own"))]
     assert [each.record for each in motions][2:] == ["three.v2?channel=1", "three.v2?channel=3"]
     for each in motions:
-        assert each.record is not None
-        assert load_components(each.record, each.vertical).vertical is not None
+        assert load_components(known(each.record), each.vertical).vertical is not None
     with pytest.raises(UsageError, match="belongs to one record, not 4"):
         [*single_motions(("*.smc", "*.v2"), MotionRequest(vertical="three.smc"))]
 
@@ -203,7 +197,3 @@ def test_a_source_is_a_text_that_was_taken_apart() -> None:
     copy = pickle.loads(pickle.dumps(of))  # noqa: S301 -- our own
     assert (copy, copy.values, copy.place) == (of, of.values, of.place)
     assert of.components == ("x.at2?dt=0.01&factor=2", "y.at2?dt=0.01&factor=2")
-
-
-def test_events_of_recordings() -> None:
-    assert event_of(Recording("Northridge", origin="1994 01 17")) == "at 1994 01 17"
