@@ -53,8 +53,6 @@ def test_base_shear_over_that_at_uplift_with_devices(result: TimeHistoryResult) 
     assert result.uplift_shear_ratio == pytest.approx(result.max_base_shear / shear, rel=1e-12)
     static = s.superstructure_mass * s.gravity * 0.15
     assert result.base_shear_ratio == pytest.approx(result.max_base_shear / static, rel=1e-12)
-    bare = time_history(replace(s, devices=()), RECORD, SETTINGS)
-    assert bare.uplift_shear_ratio is None
 
 
 def test_the_audit_closes_at_every_sample(result: TimeHistoryResult) -> None:
@@ -91,12 +89,10 @@ def test_contact_forces_are_those_of_the_kernel(result: TimeHistoryResult) -> No
     """The kernel looks at the same samples, at both ends of what is stuck, and between."""
     t = result.trace
     top = np.max(np.abs(t.shear_top / t.normal_top))
-    assert result.history.friction_top >= top * (1.0 - 1e-6)
-    assert result.history.friction_top == pytest.approx(top, rel=0.05)
+    assert 1.0 - 1e-6 <= result.history.friction_top / top <= 1.05
     weight = (STRUCTURE.cap_beam_mass + STRUCTURE.superstructure_mass) * STRUCTURE.gravity
     least = np.min(t.normal_top) / weight
-    assert result.history.normal_top <= least * (1.0 + 1e-6)
-    assert result.history.normal_top == pytest.approx(least, rel=0.05)
+    assert 0.95 <= result.history.normal_top / least <= 1.0 + 1e-6
     assert t.normal_top[0] == pytest.approx(weight + 4.0 * P)
 
 
@@ -125,8 +121,9 @@ def test_tables_and_documents(result: TimeHistoryResult) -> None:
 
 
 def test_without_devices_there_is_nothing_to_tell() -> None:
-    bare = time_history(podium(1), RECORD, SETTINGS)
+    bare = time_history(replace(STRUCTURE, devices=()), RECORD, SETTINGS)
     assert bare.devices == ()
+    assert bare.uplift_shear_ratio is None
     assert bare.max_damper_force is bare.max_stop_force is bare.lost_prestress is None
     assert bare.energy.devices == 0.0
     assert timehistory_document(bare)["devices"] == []

@@ -16,6 +16,7 @@ from rpscli.analyses.floor_spectra import (
     floor_spectra,
     isolated_floor_spectra,
 )
+from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.timehistory import time_history
 from rpscli.case.case import load_case
 from rpscli.cli import program
@@ -23,6 +24,11 @@ from rpscli.records.loading import load_record
 
 CASE = Path(__file__).parents[2] / "cases" / "six_storey.yaml"
 PERIODS = np.array([0.3, 0.8, 2.0])
+
+
+def shaken(source: str) -> TimeHistoryResult:
+    case = load_case(str(CASE))
+    return time_history(case.structure, load_record(source), case.analysis)
 
 
 @pytest.mark.evidence("floor spectra", "exact")
@@ -40,9 +46,7 @@ def test_a_sudden_acceleration_counts_twice_without_damping() -> None:
 @pytest.mark.evidence("floor spectra", "exact")
 @needs_compiled_kernels
 def test_a_building_that_stands_has_the_spectra_of_a_fixed_base() -> None:
-    case = load_case(str(CASE))
-    record = load_record("synthetic:?pga=0.02g&seed=3&duration=8&dt=0.01")
-    result = time_history(case.structure, record, case.analysis)
+    result = shaken("synthetic:?pga=0.02g&seed=3&duration=8&dt=0.01")
     assert result.outcome == "at_rest"
     isolated, fixed = isolated_floor_spectra(result), known(fixed_base_floor_spectra(result))
     # The free vibration after the record is cut at different times.
@@ -53,10 +57,8 @@ def test_a_building_that_stands_has_the_spectra_of_a_fixed_base() -> None:
 @needs_compiled_kernels
 def test_fixed_base_against_a_building_with_its_equipment() -> None:
     """Floors and an oscillator without mass on the roof, by one solver for all of them."""
-    case = load_case(str(CASE))
-    record = load_record("synthetic:?pga=0.3g&seed=4&duration=5&dt=0.005")
-    result = time_history(case.structure, record, case.analysis)
-    building = known(case.structure.superstructure)
+    result = shaken("synthetic:?pga=0.3g&seed=4&duration=5&dt=0.005")
+    record, building = result.record, known(result.structure.superstructure)
     n, period, ratio = building.storeys, 0.8, 0.05
     omega = 2.0 * np.pi / period
 
@@ -87,9 +89,7 @@ def test_floor_spectra_of_the_command(tmp_path: Path) -> None:
     CliRunner().invoke(program, [*words, "--floor-spectra", "--figures", "png"])
     assert (tmp_path / "made/floor_spectra.png").read_bytes().startswith(b"\x89PNG")
     rows = csv_rows("floor_spectra.csv", tmp_path / "made")
-    case = load_case(str(CASE))
-    result = time_history(case.structure, load_record(source), case.analysis)
-    found = isolated_floor_spectra(result).pseudo_acceleration
+    found = isolated_floor_spectra(shaken(source)).pseudo_acceleration
     assert [int(row["floor [-]"]) for row in rows] == np.repeat(range(1, 7), 50).tolist()
     np.testing.assert_allclose(
         [float(row["pseudo_acceleration [m/s2]"]) for row in rows], found.ravel(), rtol=1e-9

@@ -51,23 +51,17 @@ STRUCTURES = [
 ]
 
 
-def name(structure: PodiumStructure) -> str:
-    return f"{structure.storeys}-{structure.bearing.curvature_ratio}"
-
-
-@pytest.fixture(scope="module", params=STRUCTURES, ids=name)
+@pytest.fixture(scope="module", params=STRUCTURES)
 def result(request: pytest.FixtureRequest) -> TimeHistoryResult:
     return time_history(request.param, RECORD, SETTINGS, vertical=VERTICAL)
 
 
 def test_maxima_are_not_below_the_samples(result: TimeHistoryResult) -> None:
     trace = result.trace
-    sampled = float(np.max(np.abs(trace.rotation)))
+    rotation = np.abs(trace.rotation)
     # turning points lie between samples: x'' dt^2/8 above the nearest at most
-    assert sampled <= result.max_rotation <= sampled + 50.0 * 0.02**2 / 8.0
-    assert result.max_rotation_time == pytest.approx(
-        trace.time[np.argmax(np.abs(trace.rotation))], abs=0.02
-    )
+    assert 0.0 <= result.max_rotation - rotation.max() <= 50.0 * 0.02**2 / 8.0
+    assert result.max_rotation_time == pytest.approx(trace.time[rotation.argmax()], abs=0.02)
     if result.structure.storeys == 0:
         assert result.max_base_shear == 0.0
         assert result.base_shear_ratio is None
@@ -123,8 +117,7 @@ def test_the_energy_audit_closes_at_every_sample(result: TimeHistoryResult) -> N
 
 
 def test_events_are_in_order_and_make_sense(result: TimeHistoryResult) -> None:
-    events = result.events
-    times = [event.time for event in events]
+    events, times = result.events, [event.time for event in result.events]
     assert times == sorted(times)
     assert 0.0 <= times[0] <= times[-1] <= result.duration
     assert events[0].kind == "uplift"
@@ -202,9 +195,8 @@ def test_slow_rocking_is_driven_by_what_restores_it() -> None:
     result = time_history(structure, slow, TimeHistorySettings(free_vibration=0.0))
     moment = 2.0 * structure.bearing.half_height * structure.uplift_force
     assert result.trace.driving_moment[4000] == pytest.approx(moment, rel=1e-5)
-    assert result.trace.storey_shears[4000, 0] == pytest.approx(
-        structure.static_base_shear, rel=1e-4
-    )
+    shear = result.trace.storey_shears[4000, 0]
+    assert shear == pytest.approx(structure.static_base_shear, rel=1e-4)
 
 
 def test_drift_ratios_need_storey_heights() -> None:

@@ -199,29 +199,27 @@ def test_two_time_steps() -> None:
         rotated(motion([1.0, 2.0], 0.01), motion([1.0, 2.0], 0.02), 30.0)
 
 
-def test_two_files_with_an_angle(tmp_path: Path) -> None:
+@pytest.fixture
+def station(tmp_path: Path) -> Path:
     folder = tmp_path / "station"
     folder.mkdir()
-    for name, values in (("x.txt", "1\n0\n2\n"), ("y.txt", "0\n2\n2\n")):
+    for name, values in (("x.txt", "1\n0\n2\n"), ("y.txt", "0.3\n-1.5\n0.2\n2.5\n")):
         (folder / name).write_text(values, encoding="utf-8")
+    return folder
+
+
+def test_two_files_with_an_angle(station: Path) -> None:
     source = "station/x.txt?dt=0.01&units=m/s2&second=y.txt&angle=30"
-    assert expand_sources([source], folder=tmp_path) == [source]
-    found = load_record(source, folder=tmp_path)
-    wanted = np.array([1.0, 0.0, 2.0]) * np.sqrt(0.75) + np.array([0.0, 2.0, 2.0]) * 0.5
+    assert expand_sources([source], folder=station.parent) == [source]
+    found = load_record(source, folder=station.parent)
+    wanted = np.sqrt(0.75) * np.array([1.0, 0.0, 2.0, 0.0]) + [0.15, -0.75, 0.1, 1.25]
     np.testing.assert_allclose(found.acceleration, wanted, rtol=1e-12)
     assert (found.name, found.source) == ("x_30deg", source)
     for half in ("second=y.txt", "angle=30"):
         with pytest.raises(RecordError, match="two components"):
-            load_record(f"station/x.txt?dt=0.01&units=g&{half}", folder=tmp_path)
+            load_record(f"x.txt?dt=0.01&units=g&{half}", folder=station)
     with pytest.raises(RecordError, match=r"there is no file .*z.txt"):
-        load_record(source.replace("y.txt", "z.txt"), folder=tmp_path)
-
-
-@pytest.fixture
-def station(tmp_path: Path) -> Path:
-    for name, values in (("x.txt", "1\n0\n2\n"), ("y.txt", "0.3\n-1.5\n0.2\n2.5\n")):
-        (tmp_path / name).write_text(values, encoding="utf-8")
-    return tmp_path
+        load_record(source.replace("y.txt", "z.txt"), folder=station.parent)
 
 
 TOGETHER = "x.txt?dt=0.01&units=m/s2&second=y.txt&both"

