@@ -12,12 +12,7 @@ from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import RecordError
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.loading import load_record
-from rpscli.records.measures import (
-    displacement,
-    intensity_measures,
-    measured,
-    velocity,
-)
+from rpscli.records.measures import displacement, intensity_measures, measured, velocity
 
 T = 1.2
 W = 2.0 * math.pi / T

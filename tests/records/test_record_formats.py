@@ -259,10 +259,7 @@ def test_a_row_too_few_or_too_many_is_refused(tmp_path: Path, name: str, times: 
         (smc("3 VELOCITY"), "only '2 CORRECTED ACCELEROGRAM'"),
         (smc("1 UNCORRECTED ACCELEROGRAM"), "only '2 CORRECTED ACCELEROGRAM'"),
         (smc().replace("        12", "     -9999"), "the headers give -9999 values"),
-        (
-            knet().replace("50Hz", "fast"),
-            "rec:11: .*Sampling Freq.* = 'fast'|lacks Sampling Freq",
-        ),
+        (knet().replace("50Hz", "fast"), "rec:11: .*Sampling Freq.* = 'fast'|lacks Sampling Freq"),
         (geonet().replace("at 0.020 sec", "as sampled"), "lacks the number of points"),
     ],
 )
@@ -286,10 +283,7 @@ def test_what_is_said_twice_alike_is_said_once(tmp_path: Path) -> None:
     [
         ("units=m/s2", "units = m/s2 contradicts the file"),
         ("dt=0.01", r"dt = 0\.01 s contradicts the file"),
-        (
-            f"channel={'7' * 5000}",
-            r"channel (= )?7{60}(7|;| |:).*(holds one channel|file has)",
-        ),
+        (f"channel={'7' * 5000}", r"channel (= )?7{60}(7|;| |:).*(holds one channel|file has)"),
     ],
 )
 def test_options_that_contradict_the_file(
@@ -430,11 +424,7 @@ VALUE = st.floats(-3.0, 3.0, allow_nan=False, allow_subnormal=False)
 
 
 @settings(deadline=None)
-@given(
-    st.lists(VALUE, min_size=2, max_size=23),
-    st.floats(1e-6, 1.0),
-    st.text(max_size=300),
-)
+@given(st.lists(VALUE, min_size=2, max_size=23), st.floats(1e-6, 1.0), st.text(max_size=300))
 def test_what_is_written_is_read_back(values: list[float], dt: float, title: str) -> None:
     motion = GroundMotion(np.array(values) * STANDARD_GRAVITY, dt, title, "s", "SMC", title)
     with tempfile.TemporaryDirectory() as folder:

@@ -299,10 +299,7 @@ def test_dt_and_units_are_for_files(source: str) -> None:
         (["**/*.txt"], ["a.txt", "b.txt", "c.txt", "inner/d.txt"]),
         (["{folder}/inner/*"], ["{folder}/inner/d.txt"]),
         # The order is kept, and nothing comes twice.
-        (
-            ["b.txt", SINE, "*.txt", "inner", SINE],
-            ["b.txt", SINE, "a.txt", "c.txt", "inner/d.txt"],
-        ),
+        (["b.txt", SINE, "*.txt", "inner", SINE], ["b.txt", SINE, "a.txt", "c.txt", "inner/d.txt"]),
     ],
 )
 def test_folders_and_globs(records: Path, given: list[str], found: list[str]) -> None:
