@@ -139,7 +139,8 @@ def off_to_first_order(modes: UpliftedModes) -> Array:
         np.array([each.frequencies[0], each.damping[0], each.frequency_parameter])
         for each in (paper, modes)
     )
-    return printed / exact - 1.0
+    errors: Array = printed / exact - 1.0
+    return errors
 
 
 @pytest.mark.parametrize("devices", ["none", "prestress"])

@@ -268,7 +268,8 @@ def test_what_is_written_reads_back(tmp_path: Path, kind: str, form: str) -> Non
 @pytest.mark.parametrize(
     "title",
     ["units: furlongs", "Units of gal", "dt: 3", "DT= 3 SEC", "NPTS= 7", "number of data: 9",
-     "sampling interval (ms) = 2", "equally spaced intervals of 3 sec", "velocity time series"],
+     "sampling interval (ms) = 2", "equally spaced intervals of 3 sec", "velocity time series",
+     "velocity  time, units of mm/s2", "NPTS= 3, DT= 1"],
 )  # fmt: skip
 @pytest.mark.parametrize("form", ["at2", "text"])
 def test_a_title_states_nothing(tmp_path: Path, title: str, form: str) -> None:
