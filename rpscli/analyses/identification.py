@@ -151,6 +151,7 @@ def vibration(
     return _of_logarithms(best.x, covariance, freedoms, math.sqrt(share), expected, LEFT)
 
 
+@np.errstate(over="ignore", invalid="ignore")  # where a search may go astray
 def _ambient(f: NDArray[Any], power: NDArray[Any], peak: float, expected: float) -> Vibration:
     """From the periodogram, whose values are exponential about the spectrum."""
 
@@ -161,7 +162,8 @@ def _ambient(f: NDArray[Any], power: NDArray[Any], peak: float, expected: float)
 
     def unlikely(p: Array) -> float:
         S = spectrum(p)
-        return float(np.sum(np.log(S) + power / S))
+        found = float(np.sum(np.log(S) + power / S))
+        return found if math.isfinite(found) else math.inf
 
     from scipy.optimize import minimize
 

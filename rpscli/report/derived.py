@@ -122,10 +122,13 @@ CONTACT = (
 def _steps_for_springs(structure: PodiumStructure) -> float:
     """Steps of floors on springs over those of floors that ride on the beam."""
     from rpscli.analyses.kernels.systems import steps_a_second  # numpy is slow
+    from rpscli.model.impact import ImpactLaw
 
     above = structure.superstructure
     assert above is not None, "floors on springs are floors"
-    riding = replace(structure, superstructure=replace(above, vertical_period=None))
+    # Riding on the beam a heavy building may leave no restitution, which steps do not ask for.
+    above, law = replace(above, vertical_period=None), ImpactLaw(loss=0.0)
+    riding = replace(structure, superstructure=above, impact_law=law)
     return steps_a_second(structure) / steps_a_second(riding)
 
 

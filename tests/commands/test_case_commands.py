@@ -67,6 +67,18 @@ def test_check_begins_with_what_is_asked_of_every_case(rps: Invoke) -> None:
     assert shown.count("critical rotation") == first.count("critical rotation") == 1
 
 
+@pytest.mark.parametrize(
+    "setting",
+    ["podium.superstructure_mass_ratio=3000", "podium.contact={kind: plane, period_ratio: 1.2}"],
+)
+def test_steps_of_springs_are_compared_whatever_an_impact_would_be(
+    rps_json: InvokeJson, setting: str
+) -> None:
+    """Without springs so heavy a building leaves columns no restitution."""
+    file = str(Path(__file__).parents[2] / "cases/floors_on_springs.yaml")
+    assert rps_json("check", file, "--set", setting)["steps_ratio"] > 1.0
+
+
 def test_check_compares_strengths_with_the_shears_at_uplift(
     rps: Invoke, rps_json: InvokeJson
 ) -> None:
