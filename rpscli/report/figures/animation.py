@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import io
+import shutil
 import subprocess
-from collections.abc import Callable
-from functools import partial
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from itertools import chain
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +23,9 @@ from rpscli.report.figures.bearing import BearingView, SceneDevices, displaced, 
 from rpscli.report.figures.history import in_plane, lean_azimuth
 from rpscli.report.figures.look import ENCODER, MOST_FRAMES, USUAL, FilmRequest, Look
 from rpscli.report.figures.structure import COLUMNS, level_heights, modes_figure
+
+if TYPE_CHECKING:
+    from PIL.Image import Image
 
 Array = NDArray[np.float64]
 
@@ -263,10 +268,11 @@ def film(
     progress: Progress = lambda *_: None,
 ) -> bytes:
     """The file of a film: `draw` fills a figure and says how it moves."""
-    with style.in_style(look), TemporaryDirectory() as folder:
-        from matplotlib.animation import FFMpegWriter, PillowWriter
+    with style.in_style(look):
+        from matplotlib.backends.backend_agg import FigureCanvasAgg
 
         figure = style.sheet()
+        canvas: Any = FigureCanvasAgg(figure)
         count, show = draw(figure)
         # The encoder takes even numbers of pixels alone.
         width, height = figure.get_size_inches()
@@ -274,37 +280,66 @@ def film(
         figure.set_dpi(wanted.size / width)
         figure.set_size_inches(*(pixels / figure.dpi))
         show(0)
-        _as_image(figure, partial(show, count - 1))
-        file = Path(folder, f"film{wanted.ending}")
-        writer = (FFMpegWriter if wanted.ending == ".mp4" else PillowWriter)(wanted.rate)
-        try:
-            with writer.saving(figure, str(file), figure.dpi):
-                for frame in range(count):
-                    show(frame)
-                    writer.grab_frame()
-                    progress(frame + 1, count)
-        except (BrokenPipeError, subprocess.CalledProcessError) as error:
-            reason = getattr(error, "stderr", b"") or str(error)
-            raise OutputError(f"{ENCODER} could not make the film: {reason!r:.200}") from error
-        return file.read_bytes()
+        frames = _frames(canvas, count, show, progress)
+        return (_mp4 if wanted.ending == ".mp4" else _gif)(frames, wanted.rate)
 
 
-def _as_image(figure: style.Figure, move: Callable[[], None]) -> None:
-    """Put an image in the place of all that does not move: frames are drawn five times faster."""
+def _frames(
+    canvas: Any, count: int, show: Callable[[int], None], progress: Progress
+) -> Iterator[Image]:
+    """Frames of which only what moves is drawn: a tenth of the time of all of it."""
+    from PIL import Image as Pillow
+
+    figure = canvas.figure
     figure.draw_without_rendering()  # which gives all their places
     figure.set_layout_engine("none")
-    move()
+    show(count - 1)
     drawn = (each for axes in figure.axes for each in (*axes.lines, *axes.patches, *axes.texts))
-    moving = [each for each in drawn if each.stale]
+    moving = sorted((each for each in drawn if each.stale), key=lambda each: each.zorder)
     for each in moving:
-        each.set_visible(False)
-    still = io.BytesIO()
-    figure.savefig(still, format="rgba", dpi=figure.dpi)
-    for part in figure.findobj(lambda artist: not artist.get_children()):
-        part.set_visible(part in moving)
-    for axes in figure.axes:
-        axes.xaxis.set_visible(False)
-        axes.yaxis.set_visible(False)
-    width, height = (round(size) for size in figure.bbox.size)
-    image = np.frombuffer(still.getvalue(), np.uint8).reshape(height, width, 4)
-    figure.figimage(image, zorder=-1.0)
+        each.set_animated(True)  # left out of what is drawn once
+    canvas.draw()
+    still = canvas.copy_from_bbox(figure.bbox)
+    for frame in range(count):
+        canvas.restore_region(still)
+        show(frame)
+        for each in moving:
+            figure.draw_artist(each)
+        size = canvas.get_width_height()
+        yield Pillow.frombuffer("RGBA", size, canvas.buffer_rgba()).convert("RGB")
+        progress(frame + 1, count)
+
+
+def _gif(frames: Iterator[Image], rate: int) -> bytes:
+    """Repeated for ever."""
+    from PIL.Image import Quantize
+
+    first, *others = (frame.quantize(method=Quantize.FASTOCTREE) for frame in frames)
+    file = io.BytesIO()
+    milliseconds = round(1000 / rate)
+    first.save(file, "GIF", save_all=True, append_images=others, duration=milliseconds, loop=0)
+    return file.getvalue()
+
+
+def _mp4(frames: Iterator[Image], rate: int) -> bytes:
+    """Written beside and read again: the encoder goes back in its file."""
+    first = next(frames)
+    with TemporaryDirectory() as folder:
+        file = Path(folder, "film.mp4")
+        command = [
+            shutil.which(ENCODER) or ENCODER, "-loglevel", "error",
+            "-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{first.width}x{first.height}",
+            "-r", str(rate), "-i", "-", "-pix_fmt", "yuv420p", str(file),
+        ]  # fmt: skip
+        pipe = subprocess.PIPE
+        with subprocess.Popen(command, stdin=pipe, stderr=pipe) as encoder:  # noqa: S603 -- ours
+            assert encoder.stdin is not None, "it is a pipe"
+            with suppress(BrokenPipeError):  # it says why it ended
+                for frame in chain([first], frames):
+                    encoder.stdin.write(frame.tobytes())
+            _, complaint = encoder.communicate()
+        if encoder.returncode:
+            reason = complaint.decode(errors="replace").strip()
+            reason = reason or f"it ends with {encoder.returncode}"
+            raise OutputError(f"{ENCODER} could not make the film: {reason}")
+        return file.read_bytes()
