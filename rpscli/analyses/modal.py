@@ -284,13 +284,12 @@ def linearised_matrices(
     # Paper, Table 2, where the sign of the (2 rho - 1) term must be +: as printed, a larger radius
     # would soften the storey (Theory (6.3)). Dampers, elastic tendons: Theory, section 11.
     vibrating, riding = _vibrating(structure, state), structure.superstructure_mass * state.arm**2
-    n, size = structure.storeys, 1 + structure.storeys * len(vibrating)
+    size = 1 + structure.storeys * len(vibrating)
     M, C, K = (np.zeros((size, size)) for _ in range(3))
     M[0, 0] = _base_mass(structure, state) + (riding if len(vibrating) < 2 else 0.0)
     stiffness, C[0, 0] = _of_devices(structure, state)
     K[0, 0] = structure.weight * state.kappa / (2.0 * structure.bearing.semi_diagonal) + stiffness
-    for first, (building, lever) in zip(range(1, size, n or 1), vibrating, strict=True):
-        rows = slice(first, first + n)
+    for rows, building, lever in vibrating:
         M[rows, rows] = building.mass_matrix
         for whole, part in ((C, building.damping_matrix), (K, building.stiffness_matrix)):
             whole[0, 0] += lever**2 * part.sum()
@@ -301,12 +300,14 @@ def linearised_matrices(
 
 def _vibrating(
     structure: PodiumStructure, state: UpliftedState
-) -> list[tuple[Superstructure, float]]:
-    """Floors on their columns and on vertical springs, and what moves their base by 2 R theta."""
+) -> list[tuple[slice, Superstructure, float]]:
+    """Floors on their columns and on vertical springs: rows, and how 2 R theta moves their base."""
     if (building := structure.superstructure) is None:
         return []
     upwards = building.upwards if state.arm else None  # none is moved in full contact
-    return [(building, state.height)] + ([(upwards, state.arm)] if upwards else [])
+    n, across = structure.storeys, (building, state.height)
+    both = [across, (upwards, state.arm)] if upwards else [across]
+    return [(slice(1 + i * n, 1 + i * n + n), *each) for i, each in enumerate(both)]
 
 
 def _base_mass(structure: PodiumStructure, state: UpliftedState) -> float:
@@ -371,10 +372,8 @@ def _across_and_up(
 ) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     """Vibration modes that strain columns most, and those that strain vertical springs."""
     n, strains = structure.storeys, []
-    for first, (part, lever) in zip(
-        range(1, len(vectors), n or 1), _vibrating(structure, state), strict=True
-    ):
-        drift = vectors[first : first + n] - lever / state.height * vectors[0]
+    for rows, part, lever in _vibrating(structure, state):
+        drift = vectors[rows] - lever / state.height * vectors[0]
         strains.append(np.sum(drift.conj() * (part.stiffness_matrix @ drift), axis=0).real)
     if len(strains) < 2:
         return np.arange(n), np.arange(0)
