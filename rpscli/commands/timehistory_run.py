@@ -23,7 +23,7 @@ from rpscli.commands.shell.terminal import concluded, leave, patience
 from rpscli.errors import AnalysisError, LimitExceeded, RecordError, RpsError, UsageError
 from rpscli.records.ground_motion import MotionComponents
 from rpscli.report.bundles import floor_spectra_files, timehistory_files
-from rpscli.report.figures.animation import history_film
+from rpscli.report.figures.animation import frame_plan, history_film
 from rpscli.report.figures.look import FilmRequest
 from rpscli.report.files import OutputFolder, heading, json_text
 from rpscli.report.limits import VERDICT, excess_text, verdict_texts, worst_text
@@ -199,7 +199,8 @@ def run_one(
     result = compute(history, conditions, out)
     beside, document = look_beside(history, result), history.document
     if film is not None:
-        draw = partial(history_film, result, title, film, out.look)
+        plan = frame_plan(result, film)  # refused before anything is written
+        draw = partial(history_film, result, title, film, plan, out.look)
         inputs.add_film(history.folder, film, draw, out)
     inputs.write(_add_summary(history), terminal)
     document["warnings"] += history.folder.undrawn

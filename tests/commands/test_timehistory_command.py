@@ -256,12 +256,16 @@ def test_a_frame_without_storeys(rps_json: InvokeJson) -> None:
     assert "storey_shears.png" not in {Path(file).name for file in document["files"]}
 
 
-def test_an_animation(rps_json: InvokeJson) -> None:
+def test_an_animation(rps: Invoke, rps_json: InvokeJson) -> None:
     record = "pulse:half_sine?amplitude=0.3g&period=0.3"
+    asked = ("timehistory", "small.yaml", "--record", record, "--animate", "film.gif")
+    before = {*Path().iterdir()}
+    rps(*asked, "--animate-speed", "1e-6", exit_code=2, says="3000 are the most")
+    assert {*Path().iterdir()} == before
     document = rps_json(
-        "timehistory", "small.yaml", "--record", record, "--animate", "film.gif",
-        "--set", "analysis.free_vibration=0.1", "--animate-size", "240", "--animate-to", "0.3",
-    )  # fmt: skip
+        *asked,
+        *("--set", "analysis.free_vibration=0.1", "--animate-size", "240", "--animate-to", "0.3"),
+    )
     assert "film.gif" in document["files"]
     with Image.open("film.gif") as film:
         assert film.format == "GIF"

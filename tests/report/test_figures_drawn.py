@@ -481,7 +481,7 @@ def test_an_animation_runs_along_the_record(filmed: list[Figure]) -> None:
         contacts.append(float(np.asarray(end.lines[1].get_xdata(), float)[0]))
         assert done == len(cursors)
 
-    history_film(result, "a title", GIF, progress=progress)
+    history_film(result, "a title", GIF, frame_plan(result, GIF), progress=progress)
     assert cursors == trace.time[samples].tolist()
     # the contact of the enlarged end wanders with the rotation
     bearing, rotation = result.structure.bearing, trace.rotation[samples]

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, ConfigDict, Field, model_validator
+from pydantic import AfterValidator, BeforeValidator, ConfigDict, Field, model_validator
 
 from rpscli.case.schema.fields import (
     DampingRatio,
@@ -19,12 +19,14 @@ from rpscli.case.schema.fields import (
     Text,
     Whole,
     must_be,
+    refuse,
 )
 from rpscli.case.schema.limits import LimitsSection
 from rpscli.case.schema.scale_to import ScaleToSection
 from rpscli.constants import MOST_STOREYS, STANDARD_GRAVITY
 from rpscli.model.devices import DAMPERS
 from rpscli.model.impact import CONTACT_TIME, IMPACT_LAWS, LONGEST_CONTACT
+from rpscli.records.quantities import KNOWN_UNITS, canonical_unit
 
 
 class DeviceSection(Section):
@@ -314,6 +316,12 @@ class PodiumSection(Section):
         return self.cap_beam_mass_ratio == 0.0 or self.cap_beam_mass == 0.0
 
 
+def _acceleration(unit: str) -> str:
+    if canonical_unit(unit) is None:
+        refuse(f"is no unit of acceleration; use one of {KNOWN_UNITS}")
+    return unit
+
+
 def _record_schema(schema: dict[str, Any]) -> None:
     """The first component has two names."""
     del schema["required"]
@@ -342,7 +350,7 @@ class RecordSection(Section):
     """source of the vertical component; own: that which lies beside the file, or in it"""
     dt: Time | None = None
     """time step of a file that does not state it"""
-    units: Text | None = None
+    units: Annotated[Text, AfterValidator(_acceleration)] | None = None
     """unit of the values of a file that does not state it, such as g"""
 
     @model_validator(mode="before")

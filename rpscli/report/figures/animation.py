@@ -10,7 +10,7 @@ from contextlib import suppress
 from itertools import chain
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -164,8 +164,12 @@ USUAL_LENGTH = 9.0  # of a film whose speed nobody asked for, at most [s]
 SWING = 2.0  # time in which mode shapes swing there and back [s]
 
 
-def frame_plan(result: TimeHistoryResult, wanted: FilmRequest) -> tuple[NDArray[np.int64], float]:
-    """Samples that become frames, by default of all motion, and how much faster they follow."""
+FramePlan: TypeAlias = tuple[NDArray[np.int64], float]
+"""Samples that become frames, and how much faster than real time they follow."""
+
+
+def frame_plan(result: TimeHistoryResult, wanted: FilmRequest) -> FramePlan:
+    """Frames of a history, by default of all its motion; a UsageError if they are too many."""
     time, rotation = result.trace.time, np.abs(result.trace.rotation)
     moving = np.flatnonzero(rotation > 0.01 * rotation.max()) if rotation.any() else np.empty(0)
     first = max(time[int(moving[0])] - 0.5, 0.0) if moving.size else 0.0
@@ -195,11 +199,12 @@ def history_film(
     result: TimeHistoryResult,
     title: str,
     wanted: FilmRequest,
+    plan: FramePlan,
     look: Look = USUAL,
     progress: Progress = lambda *_: None,
 ) -> bytes:
     """The structure where its columns lean, an end enlarged or one from above, and the record."""
-    samples, speed = frame_plan(result, wanted)
+    samples, speed = plan
 
     def draw(figure: style.Figure) -> Motion:
         figure.set_size_inches(6.2, 4.4)
