@@ -334,9 +334,10 @@ def _uplifted(structure: PodiumStructure, state: UpliftedState) -> UpliftedModes
     own = _own_pair(values, kappa, coefficient / rigid)
     order = np.concatenate([own, np.setdiff1d(np.arange(len(values)), own)])
     values, vectors = values[order], vectors[:, order]
-    if kappa == coefficient == 0.0:
-        # A defective double zero: rounding splits it into +-sqrt(eps), which is not a frequency.
-        values[:2], vectors[:, :2] = 0.0, 1.0
+    if kappa == 0.0:
+        # Zero, twice without dampers: rounding makes it a rate, and splits two into +-sqrt(eps).
+        values[:2] = 0.0, (values[0] + values[1]).real if coefficient else 0.0
+        vectors[:, : 1 if coefficient else 2] = 1.0
     pairs, frequencies, damping = _vibrations(values[2:])
     indices = np.array([2 + index for *_, index in pairs], dtype=int)
     across, up = _across_and_up(structure, state, vectors[:, indices])

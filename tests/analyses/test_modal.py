@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
+from itertools import product
 
 import numpy as np
 import pytest
@@ -11,6 +13,7 @@ from scipy.linalg import eigh
 
 from rpscli.analyses.modal import linearised_matrices, modal
 from rpscli.model.bearing import uplifted_state
+from rpscli.model.devices import ViscousDamper
 from rpscli.model.superstructure import ModalDamping, RayleighDamping
 
 pytestmark = pytest.mark.evidence("modes", "exact")
@@ -140,8 +143,13 @@ def test_the_storeys_own_mode_in_words() -> None:
     assert (swings.own_growth_time, swings.own_motion) == (None, "swings with T = 3.448 s")
     assert falls.own_growth_time == pytest.approx(1.0 / 1.82253, rel=1e-5)
     assert (falls.own_period, falls.own_motion) == (None, "diverges, e-fold in 0.5487 s")
-    neutral = known(modal(podium(0, 0.15, 0.5)).rolling)
-    assert neutral.own_motion == "is in neutral equilibrium"
+    for storeys, damper in product((0, 1, 5, 12), (0.0, 5.0, 5e5, 5e7)):
+        devices = (ViscousDamper(damper),) if damper else ()
+        neutral = known(modal(replace(podium(storeys, 0.15, 0.5), devices=devices)).rolling)
+        assert neutral.own_motion == "is in neutral equilibrium"
+        assert neutral.frequency_parameter == 0.0
+        assert np.count_nonzero(neutral.eigenvalues[:2]) == len(devices)
+        assert np.ptp(neutral.shapes[:, 0]) == 0.0
 
 
 def test_the_storey_that_yields_first_in_a_mode() -> None:
