@@ -55,7 +55,7 @@ class ColumnDemand:
 def no_line(structure: PodiumStructure, *, both: bool) -> str:
     """The reason why neither pressure nor edge is known; empty if they are."""
     if both and structure.column is not None and structure.column.section == "square":
-        return "a square column that tilts to any side stands on a corner, which bears on no line"
+        return "a square column that tilts to any side stands on a corner, not along a line"
     return ""
 
 

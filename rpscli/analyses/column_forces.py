@@ -51,14 +51,15 @@ def no_bound(name: str, structure: PodiumStructure) -> str:
         return ""
     on_end = name in ("contact_pressure_ratio", "crushed_width_ratio")
     if on_end and (corner := no_line(structure, both=True)):
-        return f"{name} under both components is not known: {corner}"
+        return f"{name} cannot be a limit under both components: {corner}"
     axial = name != "max_column_shear"
     left_out = structure.left_out_of_columns(both=True, axial=axial)
     if not left_out:
         return ""
     return (
-        f"{name} under both components is known without {listed(left_out, 'and')} only, and may be"
-        " several times as large with it: no limit can be set on it"
+        f"{name} cannot be a limit under both components: it lacks {listed(left_out, 'and')}, which"
+        f" may multiply it; remove it (--set limits.{name}=null) and judge columns under single"
+        " components"
     )
 
 

@@ -525,6 +525,6 @@ def _vibration(structure: PodiumStructure, test: str, columns: Mapping[str, Arra
         estimates["settlement", "m"] = Estimate(*sunk)
     keys["podium.contact.period_ratio"] = f"{ratio.value:.4g}"
     keys["podium.contact.kind"] = "plane"
-    remarks += "; stiffness of the storey in full contact; a period does not show whether ends are"
+    remarks += "; stiffness of the podium in full contact; a period does not show whether ends are"
     remarks += " `plane`, which the settlement is for, or `edges`: try both"
     return Identified(estimates, keys, found.misfit, remarks)

@@ -292,7 +292,7 @@ class Demand(Shown):
 
     @property
     def stays_tilted(self) -> bool:
-        """True if friction holds the storey tilted at the end."""
+        """True if friction holds the podium tilted at the end."""
         return self.outcome == "stays_tilted"
 
     max_rotation = _Result[float]()

@@ -53,18 +53,18 @@ class UpliftedModes(Shown):
     linearised_at: float  # |theta| where that is [rad]: 0, or beta rocking on curved ends
 
     eigenvalues: Complex
-    """(2 n + 2,) the storey's own pair first, then the pairs of the vibration modes [1/s];
+    """(2 n + 2,) the podium's own pair first, then the pairs of the vibration modes [1/s];
     (4 n + 2,) with vertical springs, whose modes are the last."""
     frequencies: Array  # (n,) omega_u = |lambda| of the vibration modes [rad/s]
     damping: Array  # (n,) xi_u = -Re(lambda)/|lambda|
     frequency_ratio: Array  # (n,) omega_u/omega_0, mode by mode
     damping_ratio: Array  # (n,) xi_u/xi_0; not a number where the building is undamped
     frequency_parameter: float
-    """p_ext of the storey's own mode [rad/s]; growth rate if the stiffness is negative."""
+    """p_ext of the podium's own mode [rad/s]; growth rate if the stiffness is negative."""
     frequency_parameter_rigid: float
     """That of the rigid frame [rad/s]; to first order p_hat sqrt|kappa|."""
     shapes: Array
-    """(n + 1, n + 1): storey's own mode first, then the vibration modes, one a column;
+    """(n + 1, n + 1): podium's own mode first, then the vibration modes, one a column;
     u_b first, then the floors, relative to the ground, scaled to 1 at the largest component."""
     vertical_frequencies: Array
     """(n,) |lambda| of the modes that strain the vertical springs most [rad/s]; (0,) without."""
@@ -74,7 +74,7 @@ class UpliftedModes(Shown):
 
     @property
     def own_period(self) -> float | None:
-        """T with which the storey itself swings [s]; None if it does not."""
+        """T with which the podium itself swings [s]; None if it does not."""
         rate = abs(float(self.eigenvalues[0].imag))
         return 2.0 * math.pi / rate if rate > 0.0 else None
 
@@ -86,7 +86,7 @@ class UpliftedModes(Shown):
 
     @property
     def own_motion(self) -> str:
-        """Motion in the storey's own mode, in words."""
+        """Motion in the podium's own mode, in words."""
         if self.own_period is not None:
             return f"swings with T = {self.own_period:.4g} s"
         if self.own_growth_time is not None:
@@ -188,11 +188,11 @@ class ModalResult(Shown):
                 yield f"{name}_vertical", np.transpose((w, xi, *ratios, *paper))
 
     def facts(self) -> dict[str, Any]:
-        """Periods on a fixed base, and what the storey itself does in each state."""
+        """Periods on a fixed base, and what the podium itself does in each state."""
         fixed = self.fixed_base
         return {
             "fixed-base periods [s]": None if fixed is None else fixed.periods[:3],
-            **{f"storey, {name}": modes.own_motion for name, modes in self.uplifted.items()},
+            **{f"podium, {name}": modes.own_motion for name, modes in self.uplifted.items()},
         }
 
     def results(self) -> dict[str, Any]:
@@ -282,7 +282,7 @@ def linearised_matrices(
     (Theory (14.8)).
     """
     # Paper, Table 2, where the sign of the (2 rho - 1) term must be +: as printed, a larger radius
-    # would soften the storey (Theory (6.3)). Dampers, elastic tendons: Theory, section 11.
+    # would soften the podium (Theory (6.3)). Dampers, elastic tendons: Theory, section 11.
     vibrating, riding = _vibrating(structure, state), structure.superstructure_mass * state.arm**2
     size = 1 + structure.storeys * len(vibrating)
     M, C, K = (np.zeros((size, size)) for _ in range(3))
@@ -383,7 +383,7 @@ def _across_and_up(
 
 
 def _own_pair(values: Complex, kappa: float, decay: float) -> tuple[int, int]:
-    """Indices of the storey's own eigenvalues, the growing or the slowest one first."""
+    """Indices of the podium's own eigenvalues, the growing or the slowest one first."""
     # With negative stiffness one root grows; its partner is the real one nearest to its mirror
     # image shifted by damping, as tall buildings have slower modes. Else it is the slow pair, but
     # dampers may make one of its roots fast.

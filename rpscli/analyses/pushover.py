@@ -1,4 +1,4 @@
-"""Static behaviour: the storey alone, and the whole structure under lateral floor forces."""
+"""Static behaviour: the podium alone, and the whole structure under lateral floor forces."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ PATTERNS: tuple[PatternName, ...] = ("uniform", "triangular", "first_mode")
 
 @dataclass(frozen=True, eq=False, repr=False)
 class StoreyCurve(Shown):
-    """Restoring force of the storey against its motion, from 0+ to the end of the curve."""
+    """Restoring force of the podium against its motion, from 0+ to the end of the curve."""
 
     rotation: Array  # (points,) |theta| [rad]
     displacement: Array  # (points,) u_b [m]
@@ -62,7 +62,7 @@ class CapacityCurve(Shown):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class PushoverResult(Shown):
-    """Static characteristics of the storey and capacity curves of the structure.
+    """Static characteristics of the podium and capacity curves of the structure.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ class PushoverResult(Shown):
     initial_stiffness
         dF/du_b at 0+ [N/m]; of compliant ends K_s.
     curve
-        Restoring force of the storey.
+        Restoring force of the podium.
     capacity
         One for each load pattern; none without a building.
     """
@@ -93,7 +93,7 @@ class PushoverResult(Shown):
         return {q.name: with_unit(getattr(self, q.name), q.unit) for q in PUSHOVER}
 
     def results(self) -> dict[str, Any]:
-        """Scalars, the storey's curve and one entry a load pattern; forces in N, lengths in m."""
+        """Scalars, the podium's curve and one entry a load pattern; forces in N, lengths in m."""
         curves = [asdict(curve) for curve in self.capacity]
         for curve in curves:
             if curve["yield_forces"] is None:  # elastic buildings have none
@@ -111,15 +111,15 @@ class PushoverResult(Shown):
                 if force < self.uplift_force:
                     weak.setdefault(storey, []).append(curve.pattern)
         return tuple(
-            f"the podium does not protect storey {storey}: pushed by floor forces"
-            f" ({listed(patterns, 'and')}) it yields before columns lift{slowly}"
+            f"the podium does not protect storey {storey}: under floor forces"
+            f" ({listed(patterns, 'and')}) it yields before the columns lift{slowly}"
             for storey, patterns in sorted(weak.items())
             for first in [strengths[storey - 1].uplift_first]
-            for slowly in ["; under slow ground motion columns lift first" if first else ""]
+            for slowly in ["; under slow ground motion the columns lift first" if first else ""]
         )
 
     def curve_ratios(self) -> dict[str, Array]:
-        """The storey's curve without units."""
+        """The podium's curve without units."""
         return {
             "rotation_ratio": self.curve.rotation / self.critical_rotation,
             "force_over_weight": self.curve.force / self.structure.weight,
@@ -142,7 +142,7 @@ def pushover(
         ``uniform`` (forces as the masses), ``triangular`` (mass times height), ``first_mode``
         (mass times fixed-base first mode), or floor forces from the bottom.
     points
-        Points of each curve, beta being one of them where the storey rolls.
+        Points of each curve, beta being one of them where the podium rolls.
 
     Raises
     ------

@@ -265,17 +265,17 @@ FREQUENCY_PARAMETERS = (
     _Q("frequency_parameter", "rad/s", "frequency parameter", "$p_{ext}$", meaning=ORDER),
     _Q("frequency_parameter_rigid", "rad/s", "rigid estimate", r"$\hat{p}_{ext}$", meaning=ORDER),
 )
-"""Of the storey's own mode."""
+"""Of the podium's own mode."""
 
 LINEAR = (*UPLIFTED_MODES, *UPLIFTED_RATIOS, *FREQUENCY_PARAMETERS)
 """Results of both orders, the exact one and the paper's."""
 
 OWN_MOTION = (
-    _Q("own_motion", "", "the storey's own mode"),
+    _Q("own_motion", "", "the podium's own mode"),
     _Q("own_period", "s", "its period, if it oscillates", "$T$"),
     _Q("own_growth_time", "s", "time of e-fold growth, if it diverges"),
 )
-"""The storey's own mode in words and times."""
+"""The podium's own mode in words and times."""
 
 EIGENVALUES = _Q("eigenvalues", "1/s", "eigenvalue", r"$\lambda$")
 
@@ -313,13 +313,13 @@ STOREY_CURVE = (
     _Q("lift", "m", "lift", "$v_b$"),
     _Q("unloading_force", "N", "force on the way back"),
 )
-"""Lists along the storey's curve."""
+"""Lists along the podium's curve."""
 
 STOREY_CURVE_RATIOS = (
     _Q("rotation_ratio", "-", "rotation ratio", r"$\theta/\theta_{cr}$"),
     _Q("force_over_weight", "-", "force over weight", "$F/W$"),
 )
-"""The storey's curve without units."""
+"""The podium's curve without units."""
 
 _ALL = [
     quantity

@@ -44,7 +44,7 @@ STEEL_ROTATION = 0.05
 """Of rollers and rockers of EN 1337-4 [rad]."""
 
 RESTING = (state.FULL_CONTACT, state.STUCK, state.BEDDED)
-"""Phases in which the storey is down, or held."""
+"""Phases in which the podium is down, or held."""
 
 
 @dataclass(frozen=True)
@@ -334,9 +334,9 @@ class TimeHistoryResult(Demand):
             and self.outcome == "survived"
             and (self.history["phase"] not in RESTING and self.settings.free_vibration is None)
         ):
-            brake = "but its joints" if self.structure.bed is not None else "of its ends"
+            brake = "but its joints" if self.structure.bed is not None else "at its ends"
             notes.append(
-                f"at the end the storey still goes round, and nothing {brake} takes energy from it;"
+                f"at the end the podium still moves in a circle, and nothing {brake} dissipates;"
                 " no larger rotation can occur (friction dampers or rolling resistance would bring"
                 " it to rest)"
             )
@@ -348,7 +348,7 @@ class TimeHistoryResult(Demand):
                 )
             elif self.settings.free_vibration is not None:
                 notes.append(
-                    "the storey still moves at the end; a longer `analysis.free_vibration`"
+                    "the podium still moves at the end; a longer `analysis.free_vibration`"
                     " may bring larger maxima"
                 )
             elif self.duration >= self.record.duration + LONGEST_FREE_VIBRATION:

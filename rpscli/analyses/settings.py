@@ -20,7 +20,7 @@ class TimeHistorySettings:
         Time after the record [s]; None goes on until no new maximum is possible (Theory,
         section 3), for at most `LONGEST_FREE_VIBRATION`.
     recontact_tolerance
-        After an impact the storey locks when the next excursion stays below this times alpha.
+        After an impact the podium locks when the next excursion stays below this times alpha.
     overturning_limit
         The structure counts as overturned at this times theta_cr, at most where the columns lie
         down and the model ends (`Bearing.largest_rotation`).

@@ -183,7 +183,7 @@ def _capacity(structure: PodiumStructure) -> Iterable[float]:
 
 
 def _modes(structure: PodiumStructure) -> Iterable[float]:
-    """The storey's own mode, then frequency and damping of each vibration, rolling."""
+    """The podium's own mode, then frequency and damping of each vibration, rolling."""
     rolling = modal(structure).uplifted["rolling"]
     pairs = zip(rolling.frequencies, rolling.damping, strict=True)
     return rolling.frequency_parameter, *(value for pair in pairs for value in pair)

@@ -289,7 +289,8 @@ def parse_design(
 def _notes(file: DesignFile, base: dict[str, Any]) -> Iterator[str]:
     """What the design takes from its base, or not, in another way than may be meant."""
     if file.limits and base.get("limits"):
-        yield f"the limits of the design replace all of the base: {', '.join(base['limits'])}"
+        names = ", ".join(base["limits"])
+        yield f"the limits of the design replace those of the base case: {names}"
     own = {"slenderness", "semi_diagonal", "dimensions"}
     sizes = [key for key in file.variables if {*key.split(".")[2:3]} & own]
     if sizes and Document("", base).has(("superstructure", "yield", "ratio")):

@@ -176,9 +176,9 @@ def doubts_of_directions(structure: PodiumStructure, *, both: bool) -> Iterator[
         )
     if structure.column is not None and structure.column.section == "square":
         yield Doubt(
-            "podium.column.section: square columns are followed as round ones, which hides that"
-            " they resist up to 1.4 times as much towards their corners, wobble over them with an"
-            " impact at each edge, and stand on a corner, whose pressure is not known"
+            "podium.column.section: square columns are modelled as round under both components;"
+            " real ones resist up to 1.4 times as much towards their corners and wobble over them"
+            " with impacts, and the pressure at a corner is not computed"
         )
     lossless = structure.impact_law.contact_time == 0.0 and not structure.passes_smoothly
     if lossless and structure.restitution < 1.0:

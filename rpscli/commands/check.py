@@ -174,7 +174,7 @@ def check_tables(
 
 
 def device_tables(structure: PodiumStructure) -> Iterator[Part]:
-    """Each device's numbers, uplift with all of them, and from where the storey re-centres."""
+    """Each device's numbers, uplift with all of them, and from where the podium re-centres."""
     if not structure.devices:
         return
     from rpscli.model.statics import returns, uplift_acceleration, uplift_force

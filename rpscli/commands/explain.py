@@ -58,21 +58,22 @@ def _known() -> list[str]:
 
 
 @click.command("explain")
-@click.argument("word", metavar="KEY", **completing(_known))
+@click.argument("words", metavar="KEY", nargs=-1, required=True, **completing(_known))
 @terminal_options
-def command(word: str, terminal: Terminal) -> None:
+def command(words: tuple[str, ...], terminal: Terminal) -> None:
     """What KEY means: a key of cases or studies, a report, a result, a symbol, a word of tables.
 
     Keys are named in full (podium.bearing.slenderness), by their end (slenderness) or by their
     symbol (rho). `plugins` lists what other packages add.
     """
-    words = [
+    word = " ".join(words)
+    meant = [
         Entry("words", {"word": name, "meaning": meaning}, (Heading(name), meaning))
         for name, meaning in glossary()
         if word.lower() in _names(name)
     ]
-    named = [q for q in EVERY.values() if word == q.name or (word == q.label and not words)]
-    entries = [*_keys(word), *map(_result, named), *words]
+    named = [q for q in EVERY.values() if word == q.name or (word == q.label and not meant)]
+    entries = [*_keys(word), *map(_result, named), *meant]
     offers = [] if entries else list(_offers(word))
     entries += _reports(word, everything=bool(offers), options=not (entries or offers))
     if not (entries or offers or word == PLUGINS):

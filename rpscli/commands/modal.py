@@ -70,7 +70,7 @@ def _tables(result: ModalResult, title: str, left_out: Collection[str]) -> Itera
             cells = shown(w), shown(first[0]), shown(ratio), *percent, shown(over)
             vibrations.append((name.replace("_", ", "), str(i), *cells))
     yield Heading(title)
-    heads: tuple[str, ...] = "storey's own mode", "", "p_ext rad/s", FIRST_ORDER, "rigid estimate"
+    heads: tuple[str, ...] = "podium's own mode", "", "p_ext rad/s", FIRST_ORDER, "rigid estimate"
     yield Table.of_texts(heads, storey, words=2).without(left_out)
     yield ORDER
     if result.left_out:

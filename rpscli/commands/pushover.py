@@ -33,7 +33,7 @@ def command(
     out: options.Output,
     patterns: tuple[str, ...],
 ) -> None:
-    """Restoring force of the storey of CASE, and capacity curves of the whole structure.
+    """Restoring force of the podium of CASE, and capacity curves of the whole structure.
 
     Writes storey_curve.csv and, for a case with storeys, capacity.csv, a figure of each, and the
     figure bearing: columns at rest, where rolling ends and at the critical rotation.

@@ -252,7 +252,7 @@ def show_dry_run(study: Study, choices: RunChoices, terminal: Terminal) -> None:
     ways = 2 if any(record and record.is_pair for record in layout.records) else 1
     if histories and not compilation.is_ready(ways, LANES):
         seconds = GUESSED_POINT_SECONDS * count / jobs
-        source = "a guess, since the kernel is not compiled yet"
+        source = "a guess; first the kernel is compiled, for half a minute or more"
     else:
         with passing_time("trying some of the points", terminal):
             seconds = estimated_seconds(layout, jobs)

@@ -66,9 +66,9 @@ def design(
     """Find the values of DESIGN that meet its limits and minimise its objective.
 
     The file has a base case, `variables`, records and `limits` as a study, and `minimise`. The
-    search starts from an even sample and continues where the verdict changes. The answer is the
-    best design that passes in 90 % of the resamples of the records, if any does, and is validated
-    on records that the search did not see.
+    search starts from evenly spread designs and refines where the verdict changes. The answer is
+    the best design that passes in 90 % of the resamples of the records, if any does, and is
+    validated on records that the search did not see.
 
     Every point is stored at once: after an interruption the same command continues. The exit
     code is 10 if no design passes, or if the best one fails the limits in its validation.

@@ -58,5 +58,7 @@ def command(
         raise UsageError(f"--animate {film.file}: shows one history, not {len(histories)}")
     if out.look.formats is None:
         out = replace(out, look=replace(out.look, formats=()))
-        out.terminal.note("no figures of several histories: --figures png draws those of each")
+        out.terminal.note(
+            "figures of several histories are not drawn; add --figures png for those of each"
+        )
     run_all(histories, conditions, out)

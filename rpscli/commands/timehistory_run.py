@@ -20,7 +20,14 @@ from rpscli.case.plausibility import doubts_of_directions
 from rpscli.commands import inputs
 from rpscli.commands.shell.options import Output
 from rpscli.commands.shell.terminal import concluded, leave, patience
-from rpscli.errors import AnalysisError, LimitExceeded, RecordError, RpsError, UsageError
+from rpscli.errors import (
+    AnalysisError,
+    LimitExceeded,
+    RecordError,
+    RpsError,
+    UsageError,
+    listed,
+)
 from rpscli.records.ground_motion import MotionComponents
 from rpscli.report.bundles import floor_spectra_files, timehistory_files
 from rpscli.report.figures.animation import frame_plan, history_film
@@ -50,7 +57,7 @@ A_TABLE = 4
 """Quantities side by side in a table that fits a page."""
 CODES = (
     "codes take the mean of the maxima of 7 records (EN 1998-1) or 11 pairs (ASCE/SEI 7-16, chapter"
-    " 16) and more; the largest of 3 to 6 is for EN 1998-1 alone"
+    " 16) and more; with 3 to 6 records EN 1998-1 takes the largest"
 )
 
 
@@ -124,9 +131,10 @@ def compute(history: History, conditions: Sequence[Condition], out: Output) -> T
     """Run a history, judge it, and collect its files; the caller writes them."""
     case, ground, folder = history.given.case, history.ground, history.folder
     limits = [*case_conditions(case.limits, case.structure), *conditions]
-    for limit in limits if ground.y is not None else ():
-        if why := no_bound(limit.name, case.structure):  # known before minutes are spent
-            raise UsageError(f"{limit.source}: {why}")
+    both = limits if ground.y is not None else []
+    reasons = [(limit.source, no_bound(limit.name, case.structure)) for limit in both]
+    if lines := [f"{source}: {why}" for source, why in reasons if why]:
+        raise UsageError("\n".join(lines))  # known before minutes are spent
     with patience(case, ground.horizontal.duration, out.terminal):
         result = time_history(case.structure, ground, case.analysis)
     folder.add_all(timehistory_files(result, case.title, out.look))
@@ -371,6 +379,10 @@ def set_tables(computed: Sequence[Computed]) -> Iterator[Part]:
         if len(case.histories) > 1:
             undefined = ", so the mean of maxima is not defined" * bool(row.overturned.number)
             yield f"overturned: {row.overturned}{undefined}; {CODES}"
+        documents = (each.document["column_forces_leave_out"] for each in case.histories)
+        left_out = [*dict.fromkeys(part for of in documents for part in of)]
+        if left_out and own.structure.columns > 1:
+            yield f"forces and moments of columns are without {listed(left_out, 'and')}"
         yield overturned_text(own.structure, own.analysis)
         yield restitution_text(own.structure)
     rows = [

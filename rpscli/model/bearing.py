@@ -274,7 +274,7 @@ class UpliftedState(NamedTuple):
     rotation: float  # x [rad]
     arm: float  # B
     height: float  # C, so that u_b' = 2 R C x'
-    kappa: float  # B', the storey's dimensionless stiffness
+    kappa: float  # B', the podium's dimensionless stiffness
     squared_distance: float  # S = B^2 + C^2; 1 to first order
     elongation: tuple[float, float, float]  # e, e' and e'' of a tendon in the axis [m]
 

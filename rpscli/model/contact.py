@@ -27,9 +27,9 @@ class Contact:
 
     kind: ContactKind = "rigid"  # plane: an even joint, lifts gradually; edges: lift at once
     period_ratio: float | None = None  # r, in full contact over a fixed base, above 1
-    stiffness: float | None = None  # K_s = dF/du_b of the storey at u_b = 0 [N/m]
+    stiffness: float | None = None  # K_s = dF/du_b of the podium at u_b = 0 [N/m]
     settlement: float | None = None  # D_0 of one joint of flat ends under the weight [m]
-    damping: float = 0.03  # zeta of the storey in full contact: c = 2 zeta sqrt(k A)
+    damping: float = 0.03  # zeta of the podium in full contact: c = 2 zeta sqrt(k A)
 
     def __post_init__(self) -> None:
         """Refuse what does not say how soft it is."""

@@ -1,4 +1,4 @@
-"""Statics with devices: what holds a tilt, and from where the storey comes back (Theory, 11)."""
+"""Statics with devices: what holds a tilt, and from where the podium comes back (Theory, 11)."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ POINTS = 400
 
 
 class Return(NamedTuple):
-    """Return of the storey from rest at a rotation, and the friction against it."""
+    """Return of the podium from rest at a rotation, and the friction against it."""
 
     rotation: float  # From which it starts at rest [rad]
     displacement: float  # u_b there [m]
@@ -108,7 +108,7 @@ def recentres(structure: PodiumStructure, rotation: float) -> bool:
 
 
 def returns(structure: PodiumStructure) -> list[Return]:
-    """Returns of the storey from some rotations; empty without friction."""
+    """Returns of the podium from some rotations; empty without friction."""
     rotations = [part * structure.critical_rotation for part in PARTS]
     return [
         Return(

@@ -174,7 +174,7 @@ def _en1998(rest: str, source: str) -> TargetSpectrum:
         0.025 * start * T_C * T_D,
         damping,
         (0.0, longest),
-        edition=f"EN 1998-1:2004, 3.2.2.2, whatever A1:2013 changes, {by}",
+        edition=f"EN 1998-1:2004, 3.2.2.2, without amendment A1:2013, {by}",
         checked="tables and expressions compared with public implementations and with manuals of"
         " programs, not with the text",
         rules="en1998",

@@ -53,7 +53,7 @@ def modal_files(result: ModalResult, title: str, look: Look = USUAL) -> Files:
     yield "modes.csv", csv_text(mode_columns(result))
     yield "shapes.csv", csv_text(shape_columns(result))
     rows = [
-        (name, index // 2, value.real, value.imag)  # two a mode, mode 0 is the storey's own
+        (name, index // 2, value.real, value.imag)  # two a mode, mode 0 is the podium's own
         for name, modes in result.uplifted.items()
         for index, value in enumerate(modes.eigenvalues.tolist())
     ]
@@ -152,7 +152,7 @@ def mode_columns(result: ModalResult) -> list[Column]:
 
 
 def shape_columns(result: ModalResult) -> list[Column]:
-    """`shapes.csv`: one row a level of each mode; mode 0 is the storey's own, level 0 the beam."""
+    """`shapes.csv`: one row a level of each mode; mode 0 is the podium's own, level 0 the beam."""
     profiles = {(name, 0): [*modes.profiles().values()] for name, modes in result.uplifted.items()}
     full = result.full_contact
     if result.fixed_base is not None:

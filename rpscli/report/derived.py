@@ -71,7 +71,7 @@ DYNAMICS = (
     Derived("uplift_acceleration", "uplift acceleration, quasi-static", "g tan(alpha)", "m/s2"),
     Derived("uplift_force", "uplift force at the cap beam", "W tan(alpha)", "N"),
     Derived("static_base_shear", "base shear at uplift", "V_st", "N"),
-    Derived("initial_stiffness", "stiffness after uplift", "", "N/m"),
+    Derived("initial_stiffness", "stiffness after uplift, of this force", "", "N/m"),
     Derived("rolling_period", "period of rolling, rigid building", "T", "s"),
     Derived("p_hat", "frequency parameter, rigid estimate", "p_hat", "rad/s",
             "rigid_frequency_parameter"),
@@ -499,7 +499,7 @@ def strength_tables(structure: PodiumStructure) -> Iterator[Part]:
         ]
         if rows:
             storey = f"storey{way.replace('_', ', in ')}"
-            yield Table.of_texts((storey, *heads, "at a drift of mm"), rows[::-1])
+            yield Table.of_texts((storey, *heads, "drift at yield mm"), rows[::-1])
     building = structure.superstructure
     if building is not None and building.yields_by_first_mode:
         yield f"{UPPER} (one history of six storeys: ductility 1.8 of the first, 6.7 of the last)"

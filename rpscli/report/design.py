@@ -14,7 +14,13 @@ import numpy as np
 from rpscli.case.conditions import LIMITS, RATE
 from rpscli.case.design import Objective
 from rpscli.report.figures import style
-from rpscli.report.limits import VERDICT, limit_unit, requirement_text, verdict_texts
+from rpscli.report.limits import (
+    VERDICT,
+    limit_unit,
+    reached_text,
+    requirement_text,
+    verdict_texts,
+)
 from rpscli.report.study.panels import MOST_TICKS
 from rpscli.report.study.report import axis_label, key_columns, label, reached, symbol
 from rpscli.report.study.statistics import verdict_document
@@ -133,7 +139,8 @@ def answer_tables(answer: Answer, verdicts: Sequence[Verdict]) -> Iterator[Part]
     for row, requirement, verdict in requirement_rows(answer, verdicts):
         _, word, asked, result = verdict_texts(verdict)
         if verdict.condition.name in LIMITS and verdict.fractile is None:
-            result = f"{shown(float(answer.results[row, 0, place]), DIGITS)}; {result}"
+            demand = float(answer.results[row, 0, place])
+            result = f"{reached_text(verdict.condition, demand)}; {result}"
         met_by = f"{answer.met[row, 0].sum()}{'; governs' * bool(answer.governs[row])}"
         judged.append((requirement_label(requirement), word, asked, result, met_by))
     yield Table.of_texts((*VERDICT, "designs that meet it"), judged, words=5)
@@ -157,7 +164,7 @@ def answer_notes(answer: Answer, faults: Iterable[str]) -> Iterator[str]:
         yield "one record only: how far the choice of records moves the answer is not known"
     if ends := list(answer.at_bounds):
         words = " and ".join(f"the {end} {key}" for key, end in ends)
-        yield f"the best design has {words} of the range; a wider one may have a better design"
+        yield f"the best design has {words} of its range; better designs may lie beyond"
     if answer.best is not None:
         yield from neighbours_note(answer, answer.best)
     if answer.best is not None and answer.passing_share[answer.best] < ROBUST:
@@ -192,7 +199,8 @@ def nothing_passes(answer: Answer) -> str:
         requirement = answer.requirements[row]
         lines.append(
             f"{requirement_label(requirement)}: {requirement_text(requirement.condition)};"
-            f" {shown(float(answer.results[row, 0, place]), DIGITS)} in the least violated design,"
+            f" {reached_text(requirement.condition, float(answer.results[row, 0, place]))} in the"
+            " least violated design,"
             f" {100.0 * answer.excess[row, place]:.3g} % of the records too many;"
             f" {answer.met[row, 0].sum()} designs meet it"
         )

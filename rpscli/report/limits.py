@@ -28,10 +28,10 @@ def _bound(condition: Condition) -> str:
     return f"{number:g} {unit}".strip()
 
 
-def _reached(condition: Condition, value: float) -> str:
-    """A demand in the unit of its limit."""
+def reached_text(condition: Condition, value: float, overturned: int = 0) -> str:
+    """A demand in the unit of its limit; of so many overturned records."""
     if math.isinf(value):  # friction is asked for without bound where contact is lost as well
-        return "unbounded" if condition.name == "friction_ratio" else "overturned"
+        return "overturned" if overturned or condition.name != "friction_ratio" else "unbounded"
     return measured(value, limit_unit(condition.name), condition.limit)
 
 
@@ -59,7 +59,7 @@ def verdict_text(verdict: Verdict) -> str:
         low, high = verdict.interval
         return f"{verdict.value:.3g} a year ({low:.2g} to {high:.2g})"
     if verdict.fractile is not None:
-        demand = _reached(verdict.condition, verdict.fractile)
+        demand = reached_text(verdict.condition, verdict.fractile, verdict.overturned)
         return f"{demand} there, n = {verdict.beyond.of}{_shown_by(verdict)}"
     fallen = f", {verdict.overturned} overturned" if verdict.overturned else ""
     return f"{verdict.beyond}{fallen}{_shown_by(verdict)}"
@@ -73,7 +73,8 @@ def _shown_by(verdict: Verdict) -> str:
 def worst_text(verdict: Verdict) -> str:
     """How many of several records are beyond a limit, and the worst of them."""
     which = "least" if verdict.condition.from_below else "largest"
-    worst = f", {which} {_reached(verdict.condition, verdict.value)} ({verdict.record})"
+    value = reached_text(verdict.condition, verdict.value, verdict.overturned)
+    worst = f", {which} {value} ({verdict.record})"
     worst = "" if verdict.condition.name in EVENTS else worst
     return f"{verdict.beyond.number} of {verdict.beyond.of} beyond{worst}{_shown_by(verdict)}"
 
@@ -83,7 +84,7 @@ def excess_text(verdict: Verdict) -> str:
     condition = verdict.condition
     if condition.name in EVENTS:
         return f"{condition.name} ({condition.source})"
-    value = _reached(condition, verdict.value)
+    value = reached_text(condition, verdict.value, verdict.overturned)
     if verdict.overturned:
         return f"{condition.name}: {value} ({condition.source})"
     beyond = "is below" if condition.from_below else "exceeds"
@@ -126,6 +127,6 @@ def limits_table(verdicts: Sequence[Verdict]) -> Table:
         numbers = "", "not allowed"
         if condition.name not in EVENTS:
             value = math.inf if verdict.overturned else verdict.value
-            numbers = _reached(condition, value), bound_text(condition)
+            numbers = reached_text(condition, value, verdict.overturned), bound_text(condition)
         rows.append((condition.name, verdict.word, condition.source, *numbers))
     return Table.of_texts(["limit", "", "from", "value", "requirement"], rows, words=3)

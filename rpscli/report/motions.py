@@ -184,7 +184,8 @@ def selection_tables(
         "target": ": ".join(filter(None, (target.name, target.parameters))),
         "edition": target.edition,
         "checked": target.checked,
-        "spectra of": COMPONENTS[selection.of] + ("" if target.of else "; the target does not say"),
+        "spectra of": COMPONENTS[selection.of]
+        + ("" if target.of else "; the target names no measure of pairs"),
         "periods": f"{low:.3g} to {high:.3g} s: {why}",
         "common factor, after their own": f"{selection.common:.4f}",
         "misfit of the mean, rms of ln(mean/target)": f"{selection.misfit:.4f}",
@@ -193,7 +194,7 @@ def selection_tables(
         "mean PGD, target's": f"{selection.mean_pgd:.3f}, {shown(target.pgd, 3)} m",
         "factors at a bound": f"{selection.clamped} of {len(selection.chosen)}",
         "chosen among": f"{selection.candidates}{refused}; "
-        + ("the best of all sets" if selection.whole else how),
+        + ("all sets were examined" if selection.whole else how),
     }
     if errors is not None:
         text = "largest errors of mean and deviation of ln Sa"

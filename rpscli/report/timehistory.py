@@ -159,7 +159,7 @@ def neighbours_texts(result: TimeHistoryResult, found: Sequence[Neighbour]) -> I
         turned = [each for each in found if each.turned]
         beside = f"; turned by 1 deg {_reached(turned)}" if turned else ""
         yield (
-            f"one history: with 1 % less or more motion {_reached(near)}; with up to 3 %"
+            f"one history: repeated with 1 % less or more motion {_reached(near)}; with up to 3 %"
             f" {_reached(motions)}{beside}. Motions with {'passes' if passes else 'impacts'} are"
             " chaotic: judge by several records"
         )
@@ -169,9 +169,9 @@ def neighbours_texts(result: TimeHistoryResult, found: Sequence[Neighbour]) -> I
             " weaker and stronger; judge by several records"
         )
     for other in (each for each in found if each.factor == 1.0 and not each.turned):
-        instead = f"{shown(other.restitution)} in place of {shown(result.structure.restitution)}"
+        instead = f"{shown(other.restitution)} instead of {shown(result.structure.restitution)}"
         yield (
-            f"one impact law: with podium.impact.loss {OTHER_LOSS:g}, which is e = {instead},"
+            f"one impact law: with podium.impact.loss {OTHER_LOSS:g} (e = {instead})"
             f" {_reached([other])}"
         )
 

@@ -237,9 +237,9 @@ def _limits(study: Study, case: Case, *, both: bool) -> tuple[Condition, ...]:
     own = study.file.limits
     given = (case.limits, "limits of the case") if own is None else (own, "limits of the study")
     limits = conditions_of(*given)
-    for limit in limits:
-        if both and (why := no_bound(limit.name, case.structure)):
-            raise CaseError(f"{limit.source}: {why}")
+    reasons = [(limit.source, no_bound(limit.name, case.structure)) for limit in limits if both]
+    if lines := [f"{source}: {why}" for source, why in reasons if why]:
+        raise CaseError("\n".join(lines))
     return with_friction(limits, case.structure)
 
 

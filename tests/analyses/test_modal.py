@@ -53,7 +53,7 @@ def test_overdamped_modes_are_paired_as_without_damping(storeys: int, ratio: flo
 
 @pytest.mark.parametrize("storeys", [1, 10, 30, 50, 100])
 def test_one_root_grows_where_the_stiffness_is_negative(storeys: int) -> None:
-    """In tall buildings vibration modes are slower than the storey's own motion."""
+    """In tall buildings vibration modes are slower than the podium's own motion."""
     for modes in modal(podium(storeys, 0.15, FLAT)).uplifted.values():
         own, rest = modes.eigenvalues[:2], modes.eigenvalues[2:]
         assert own.imag.tolist() == [0.0, 0.0]
@@ -117,7 +117,7 @@ def test_shapes_solve_the_eigenproblem_and_fixed_base_modes_are_the_buildings() 
     assert np.max(np.abs(fixed.shapes), axis=0) == pytest.approx(np.ones(6))
     assert rolling.shapes.shape == (7, 7)
     assert np.max(np.abs(rolling.shapes), axis=0) == pytest.approx(np.ones(7))
-    # in the storey's own mode the building is carried along (paper, Figure 6)
+    # in the podium's own mode the building is carried along (paper, Figure 6)
     assert np.abs(rolling.elastic_shapes[:, 0]).max() < 0.1
     # undamped shapes are real and diagonalise both matrices
     undamped = podium(6, 0.15, 1.5, superstructure=building(6, damping=ModalDamping(0.0)))
@@ -131,7 +131,7 @@ def test_shapes_solve_the_eigenproblem_and_fixed_base_modes_are_the_buildings() 
     assert np.abs(off).max() < 1e-9 * masses[0]
 
 
-def test_the_storeys_own_mode_in_words() -> None:
+def test_the_podiums_own_mode_in_words() -> None:
     """Rigid frame to first order: lambda^2 = -kappa p^2, kappa = 2 rho - 1, rocking -1.
 
     With p^2 = (g/R)(1 + 2 gamma)/(Io + 4 gamma) and gamma = 10, Io = 4/3, R = 1.5 m:

@@ -114,7 +114,7 @@ def test_figure_5() -> None:
 
 
 def test_figure_6() -> None:
-    """The elastic part is negligible in the storey's own mode, and only there."""
+    """The elastic part is negligible in the podium's own mode, and only there."""
     for rho in (0.25, 0.5, 1.5, ROCKING):
         modes = uplifted(3, rho)
         elastic = np.abs(modes.elastic_shapes)

@@ -43,7 +43,7 @@ def test_the_text_says_how_far_a_percent_moves_it(result: TimeHistoryResult) -> 
     one, other = neighbours_texts(result, found)
     near = sorted(each.rotation_ratio for each in found if each.factor in {0.99, 1.01})
     assert f"1 % less or more motion {near[0]:.4f} to {near[1]:.4f} theta_cr" in one
-    assert "in place of" in other
+    assert "instead of" in other
 
 
 def test_motions_that_overturn_are_counted() -> None:

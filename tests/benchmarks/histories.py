@@ -41,7 +41,7 @@ from rpscli.records.loading import load_record
 Floats = NDArray[np.float64]
 
 NEGLIGIBLE = 1e-6
-"""An excursion below this times alpha is not followed: the storey locks."""
+"""An excursion below this times alpha is not followed: the podium locks."""
 
 ACROSS, SLOPE, P, Q, CURVE, SHIFT, SQUARE, LEVEL = range(8)  # parameters
 IMPACT_EVENT, ARC_END = -1, -2
@@ -96,7 +96,7 @@ class Landing:
         self.building = 2.0 * cosine / (podium.columns_mass * R) / A * shear
 
     def land(self, y: Floats, across: float) -> bool:
-        """Impact: change the mirrored state to that of the other side; whether the storey locks.
+        """Impact: change the mirrored state to that of the other side; whether the podium locks.
 
         `across` is the ground acceleration as mirrored on the side that is left.
         """

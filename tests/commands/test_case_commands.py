@@ -112,7 +112,7 @@ def test_modal_and_pushover_say_where_storeys_yield(rps: Invoke, rps_json: Invok
     shown = rps("modal", "small.yaml", *weak).stdout
     assert "first mode at a base shear of full contact" in " ".join(shown.split())
     pushed = rps("pushover", "small.yaml", *weak)
-    assert "the podium does not protect storey 1: pushed by floor forces (uniform" in pushed.stderr
+    assert "the podium does not protect storey 1: under floor forces (uniform" in pushed.stderr
     assert "it is a mechanism then" in pushed.stdout
     document = rps_json("pushover", "small.yaml", *weak, "--force")
     assert "does not protect storey 1" in " ".join(document["warnings"])
@@ -129,12 +129,13 @@ def test_limits_that_pairs_refuse_are_told_before_anything_is_computed(
     pair = [f"pulse:sine?amplitude={a}g&period=0.8" for a in (0.3, 0.2)]
     both = f'record={{x: "{pair[0]}", y: "{pair[1]}"}}'
     document = rps_json("check", case, "--set", both)
-    told = [text.split(" under both")[0] for text in document["warnings"]]
+    told = [text.split(" cannot be a limit")[0] for text in document["warnings"]]
     assert {"max_column_force", "column_moment", "contact_pressure_ratio"} <= set(told)
     assert "p_0" in rps("check", case).stdout
     assert "p_0" not in rps("check", case, "--set", both).stdout  # square columns on a corner
     refused = rps("timehistory", case, "--set", both, exit_code=2)
-    assert "max_column_force under both components" in refused.stderr
+    for name in ("max_column_force", "contact_pressure_ratio"):  # all at once
+        assert f"{name} cannot be a limit under both components" in refused.stderr
     assert not list(workplace.rglob("timehistory.csv"))
 
 
@@ -201,7 +202,7 @@ def test_tables_of_the_modes(rps: Invoke) -> None:
     assert list(shapes) == [
         "state [-]", "mode [-]", "level [-]", "horizontal [-]", "elastic [-]"
     ]  # fmt: skip
-    # Full contact: 3 modes; rolling and rocking: the storey's own besides. 4 levels each.
+    # Full contact: 3 modes; rolling and rocking: the podium's own besides. 4 levels each.
     assert len(shapes["mode [-]"]) == (3 + 4 + 4) * 4
     horizontal = np.array([float(value) for value in shapes["horizontal [-]"]]).reshape(-1, 4)
     assert horizontal[3:7] == pytest.approx(of_rolling.shapes.T, abs=1e-9)

@@ -333,7 +333,7 @@ def test_modes(bearing: Bearing, storeys: int) -> None:
             if mode == 0:
                 rate = modes.frequency_parameter
                 words = f"{rate:#.3g} rad/s" if rate else "0 (neutral)"
-                title = f"storey: $p_{{ext}}$ = {words}"
+                title = f"podium: $p_{{ext}}$ = {words}"
             else:
                 title = f"mode {mode}: $\\omega$ = {modes.frequencies[mode - 1]:#.3g} rad/s"
                 assert result.fixed_base is not None

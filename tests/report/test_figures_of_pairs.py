@@ -16,7 +16,7 @@ from report.small_results import ANGLE, KINDS, curve, drawn, is_drawn, legend, p
 from rpscli import figures
 from rpscli.analyses.trace import Direction
 from rpscli.errors import UsageError
-from rpscli.report.figures.animation import PlanView, Scene, history_film
+from rpscli.report.figures.animation import PlanView, Scene, frame_plan, history_film
 from rpscli.report.figures.floors import draw_accelerations
 from rpscli.report.figures.history import (
     component,
@@ -163,4 +163,4 @@ def test_film_from_the_side_and_from_above(tmp_path: Path) -> None:
     x, y = (np.asarray(of, float) for of in view.plane.get_data())
     assert np.abs(x * np.sin(ANGLE) - y * np.cos(ANGLE)).max() < 1e-9
     wanted = FilmRequest(tmp_path / "film.gif", size=300, first=0.2, last=0.4)
-    assert history_film(pair, "a title", wanted).startswith(b"GIF")
+    assert history_film(pair, "a title", wanted, frame_plan(pair, wanted)).startswith(b"GIF")

@@ -337,7 +337,7 @@ def test_a_study_of_many_systems_prints_few_lines(
     assert whole.stdout.count("EXCEEDED") == 72 > short.stdout.count("EXCEEDED") > 3
     counted = next(line for line in short.stdout.splitlines() if "at most 0.001" in line)
     assert counted.split()[-3:] == ["72", "0", "0"]
-    assert "rows; all are in the CSV files; --all prints them" in short.stdout
+    assert "rows are shown; all are in the CSV files; --all prints them" in short.stdout
     assert "base shear" in whole.stdout
     assert "base shear" not in short.stdout  # nothing asks for it
     assert short.stderr.splitlines()[-1] == "error: 72 of 72 limits exceeded."

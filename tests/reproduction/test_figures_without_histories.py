@@ -147,7 +147,7 @@ def test_figure_6_elastic_parts() -> None:
     found = [modes for rho in ("critical", "0.5", "1.5") for modes in states(rho)]
     for modes in found:
         elastic = np.abs(modes.elastic_shapes)
-        assert elastic[:, 0].max() < 0.03  # negligible in the storey's own mode
+        assert elastic[:, 0].max() < 0.03  # negligible in the podium's own mode
         assert np.all(elastic[:, 1:].max(axis=0) > 0.5)  # and in no other one
     # the radius leaves the shapes as they are: 3 % of the largest component
     rolling = found[::2]

@@ -212,7 +212,7 @@ def test_bands_leave_out_bootstrap_samples_without_a_fit() -> None:
     # A quarter of all samples has the second record twice, and thus one intensity alone.
     im, y = np.array([0.5, 1.0, 1.5, 2.0]), np.array([False, True, False, True])
     cluster = np.array([0, 0, 0, 1])
-    words = "bootstrap samples of the records determine no fragility"
+    words = "bootstrap samples of the records give no fragility"
     found, none = (
         lognormal_fit(im, y, cluster, 1.0, np.array([0.8]), Bootstrap(60, confidence, 1))
         for confidence in (0.1, 0.9)

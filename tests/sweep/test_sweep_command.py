@@ -164,7 +164,7 @@ def test_a_dry_run_compiles_no_kernel(
     sweep_json: SweepJson, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Where the kernel for many histories is not there, a study is guessed at."""
-    for there, told in ((True, "trying some of the points"), (False, "not compiled")):
+    for there, told in ((True, "trying some of the points"), (False, "the kernel is compiled")):
         monkeypatch.setattr(compilation, "is_ready", lambda *_, there=there: there)
         assert told in sweep_json("study.yaml", "--dry-run")["estimate"]["source"]
 
@@ -342,8 +342,8 @@ def test_limits_of_the_base_that_do_not_count_are_named() -> None:
     of_base, own = {"limits": {"drift_ratio": 0.01}}, {"limits": {"overturning": 0.1}}
     for first, second in ((of_base, own), (of_base, {}), ({}, own)):
         layout = load_study(study | {"base": base | first} | second).layout
-        said.append(of_first_system(layout).partition("; own limits")[2])
-    assert said == [" replace all of the base: drift_ratio", "", ""]
+        said.append(of_first_system(layout).partition("; its own limits")[2])
+    assert said == [" replace those of the base case: drift_ratio", "", ""]
 
 
 MEASURED = (

@@ -34,8 +34,8 @@ class DeviceSection(Section):
 
     kind: Annotated[str, NameOf(DAMPERS)]
     """viscous or friction damper, elastic stop, unbonded tendon in the axis of each column, or the
-    resistance of the columns to rolling; friction and rolling_resistance not under both
-    components"""
+    resistance of the columns to rolling, which goes with rigid ends alone; other keys name one by
+    its number, from 0: podium.devices.0.force"""
     coefficient: Annotated[float | None, Quantity("N s/m", symbol="c", above=0)] = None
     """viscous: c, the force at a velocity of 1 m/s, P = c |u_b'|^a"""
     exponent: Annotated[
@@ -227,11 +227,11 @@ class ContactSection(Section):
     period_ratio: Annotated[float | None, Quantity(symbol="r = T/T_1", above=1)] = None
     """first period in full contact over that on a fixed base, as measured"""
     stiffness: Annotated[float | None, Quantity("N/m", symbol="K_s", above=0)] = None
-    """K_s of the storey in full contact, force at the cap beam over u_b"""
+    """K_s of the podium in full contact, force at the cap beam over u_b"""
     settlement: Annotated[float | None, Quantity("m", symbol="D_0", above=0)] = None
     """D_0 of one joint under the permanent load, of flat ends"""
     damping: Annotated[float, Quantity(symbol="zeta", at_least=0, at_most=2)] = 0.03
-    """damping ratio of the storey's own vibration in full contact"""
+    """damping ratio of the podium's own vibration in full contact"""
 
 
 class PlanSection(Section):

@@ -5,7 +5,7 @@ that radius around (+-B, +-(H - r)), and flat ends are four tiny spheres at the 
 touch the ground, a plane, or the underside of the cap beam, a box that slides along x and z; it
 does not tilt, as floors stay level in the model. Floors slide on the beam, coupled by springs and
 dampers. Contacts push and never pull, rub without sliding (friction 3), and give back no energy
-when they close: nothing says when the storey lifts, or what happens at an impact.
+when they close: nothing says when the podium lifts, or what happens at an impact.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The storey as a spring of OpenSees that stiffens until it uplifts, and a damper for impacts."""
+"""The podium as a spring of OpenSees that stiffens until it uplifts, and a damper for impacts."""
 
 from __future__ import annotations
 

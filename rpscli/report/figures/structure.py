@@ -94,7 +94,7 @@ NORMALISED = "shapes scaled to 1 at their largest component"
 
 
 def modes_figure(result: ModalResult, title: str, figure: style.Figure) -> None:
-    """The storey's own mode and the first vibration modes: one column a mode, one row a state."""
+    """The podium's own mode and the first vibration modes: one column a mode, one row a state."""
     states = list(result.uplifted)
     vibrations = min(MOST_MODES, result.structure.storeys)
     width = max(1.0 + 1.5 * (1 + vibrations), 4.0)
@@ -110,7 +110,7 @@ def modes_figure(result: ModalResult, title: str, figure: style.Figure) -> None:
 
 
 def draw_mode(axes: style.Axes, result: ModalResult, state: str, mode: int) -> None:
-    """A mode, counted from 1, or 0 for the storey's own, `rolling` or `rocking`."""
+    """A mode, counted from 1, or 0 for the podium's own, `rolling` or `rocking`."""
     style.require("phases", state, result.uplifted)
     style.require("modes", mode, range(result.structure.storeys + 1))
     modes = result.uplifted[state]
@@ -133,7 +133,7 @@ def draw_mode(axes: style.Axes, result: ModalResult, state: str, mode: int) -> N
         rate = f"{modes.frequency_parameter:#.3g} rad/s"
         # Where the force is the same at every displacement, nothing grows or swings.
         rate = rate if modes.frequency_parameter else "0 (neutral)"
-        axes.set_title(f"storey: $p_{{ext}}$ = {rate}")
+        axes.set_title(f"podium: $p_{{ext}}$ = {rate}")
     else:
         axes.set_title(f"mode {mode}: $\\omega$ = {modes.frequencies[mode - 1]:#.3g} rad/s")
 
@@ -282,7 +282,9 @@ def draw_capacity(axes: style.Axes, result: PushoverResult) -> None:
         begins = "uplift" if result.uplift_force else "rolling begins"
         axes.plot([], [], "o", color=style.GREY, ms=4.5, label=begins)
     if any(curve.yielding for curve in result.capacity):
-        axes.plot([], [], "D", color=style.GREY, ms=4.5, label="first storey yields")
+        axes.plot(
+            [], [], "D", color=style.GREY, ms=4.5, label="a storey yields, the first to do so"
+        )
     lowest = min(0.0, *(factor * np.min(c.sum_of_floor_forces) for c in result.capacity))
     axes.set(xlim=(0.0, None), ylim=(lowest, None), xlabel="roof displacement [m]")
     axes.set_ylabel(f"sum of floor forces [{prefix}N]")

@@ -431,7 +431,7 @@ def fragility_figure(report: Fragilities) -> Callable[[str], style.Draw]:
     banded = [curve for group in groups.values() if len(group) <= MOST_BANDS for curve in group]
     bands = f"bands: {style.percent(report.confidence)}, the choice of records"
     if not banded:
-        bands = f"no bands of more than {MOST_BANDS} curves, see CSV"
+        bands = f"bands of more than {MOST_BANDS} curves: see CSV"
     elif not any(np.isfinite(curve.fit.band[0]).any() for curve in banded):
         bands = "no bands are determined"
     missing = sum(not curve.fit.fitted for curve in report.curves)
@@ -450,7 +450,7 @@ def fragility_figure(report: Fragilities) -> Callable[[str], style.Draw]:
     return report.figure(groups, draw, y_label="probability of exceedance", note=note)
 
 
-BEYOND_COMPUTED = "grey: stronger than computed"
+BEYOND_COMPUTED = "grey: beyond the largest computed"
 
 
 def beyond_computed(axes: style.Axes, largest: float, end: float) -> None:

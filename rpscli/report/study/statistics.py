@@ -243,7 +243,11 @@ def of_first_system(layout: StudyPoints) -> str:
     text = f"{text}; {restitution_text(first.structure)}"
     text += " (the first system)" * (len(layout.properties) > 1)
     of_base = layout.plan.base.get("limits") if layout.study.file.limits else None
-    replaced = "" if not of_base else f"; own limits replace all of the base: {', '.join(of_base)}"
+    replaced = (
+        ""
+        if not of_base
+        else f"; its own limits replace those of the base case: {', '.join(of_base)}"
+    )
     return text + replaced
 
 
@@ -262,4 +266,4 @@ def cut(parts: Iterable[Part], rows: int = MOST_ROWS, others: str = "") -> Itera
         else:
             yield part
     if longest:
-        yield f"the first {rows} of up to {longest} rows; all are in the CSV files{others}"
+        yield f"{rows} of up to {longest} rows are shown; all are in the CSV files{others}"

@@ -125,7 +125,7 @@ def grouping(
     of = f"intervals count {layout.independent}"
     if layout.alone:
         of = "intervals are of these histories, and say nothing of other records"
-    notes = (f"pools {' and '.join(differing)}, which differ: {of}",) if differing else ()
+    notes = (f"pools {' and '.join(differing)}: {of}",) if differing else ()
     return Grouping(shown_keys(layout, keys), tuple(found), differing, notes)
 
 

@@ -181,7 +181,7 @@ def _resampled(
     note = None
     if lost := int((~kept).sum()):
         none = "" if lost <= 0.5 * (1.0 - bootstrap.confidence) * count else ": too many for bands"
-        note = f"{lost} of {count} bootstrap samples of the records determine no fragility{none}"
+        note = f"{lost} of {count} bootstrap samples of the records give no fragility{none}"
     return Probit(intercept, slope, kept), note
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -69,7 +70,7 @@ def summary(table: Table, fixed: FixedBaseReferences) -> Summary:
     rows = (_row(known, each) for each in found.groups)
     notes = [*found.notes]
     if any("ductility" not in system.lacking for system in table.layout.properties):
-        notes.append("on the fixed base buildings stay elastic, also those whose storeys yield")
+        notes.append("on the fixed base every building is elastic, also where its storeys yield")
     return Summary(found.keys, found.pooled, tuple(notes), tuple(known), tuple(rows))
 
 
@@ -161,27 +162,25 @@ def step_notes(table: Table) -> Iterator[str]:
         replace(of, settings=replace(of.settings, accuracy=2.0 * of.settings.accuracy))
         for of in requests
     ]
-    names = [
-        f"{number + 1} ({changed})"
-        for number, after in zip(some, demands(finer), strict=True)
-        if (changed := _changes(table, number, after))
-    ]
-    if names:
+    after = zip(some, demands(finer), strict=True)
+    changes = sorted((_change(table, *each) for each in after), key=lambda change: -change[0])
+    if names := [text for change, text in changes if change > 0.0]:
         more = f" and {len(names) - NAMED} more" * (len(names) > NAMED)
         yield (
             f"steps: of {len(some)} points (of {len(known)}) computed again with steps of half the"
-            f" length {len(names)} changed: point {', '.join(names[:NAMED])}{more}. There the"
-            " motion decides by less than a step keeps: judge by many records"
+            f" length {len(names)} changed: point {', '.join(names[:NAMED])}{more}. There a"
+            " change smaller than the error of a step decides: judge by many records"
         )
 
 
-def _changes(table: Table, number: int, after: Demand) -> str:
-    """Changes of a point with shorter steps, in words; empty if there are none."""
+def _change(table: Table, number: int, after: Demand) -> tuple[float, str]:
+    """Largest relative change of a point with shorter steps, 0 if none, and all in words."""
     if (outcome := table.outcomes[number]) != after.outcome:
-        return f"{outcome} or {after.outcome}".replace("_", " ")
-    parts = []
+        return math.inf, f"{number + 1} ({outcome} or {after.outcome})".replace("_", " ")
+    changes = {}
     for name in ("max_rotation", "max_base_shear"):
         old, new = float(table.columns[name][number]), getattr(after, name)
         if abs(new - old) > PROMISED * max(old, new):
-            parts.append(f"{name} {abs(new - old) / max(old, new):.2g} of it")
-    return ", ".join(parts)
+            changes[name] = abs(new - old) / max(old, new)
+    words = ", ".join(f"{name} {change:.2g} of it" for name, change in changes.items())
+    return max(changes.values(), default=0.0), f"{number + 1} ({words})"
