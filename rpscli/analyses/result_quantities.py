@@ -143,9 +143,9 @@ YIELDING = (
     _Q("ductility", "-", "ductility", limit="3", demand=True, needs="superstructure.yield",
         meaning="largest drift of a storey over its drift at yield"),
     _Q("plastic_drift", "m", "plastic drift", limit="0.01", needs="superstructure.yield",
-        meaning="largest range of the plastic drift of a storey"),
+        meaning="largest range of the plastic drift of a storey, in x or in y"),
     _Q("residual_drift", "m", "residual drift", limit="0.005", needs="superstructure.yield",
-        meaning="largest plastic drift at the end"),
+        meaning="largest plastic drift at the end, of both components together"),
     _Q("residual_drift_ratio", "-", "residual drift ratio", limit="0.005", demand=True,
         needs="superstructure.yield, storey_height", meaning="residual drift over storey height"),
     _Q("energy_yielded", "J", "energy yielded", needs="superstructure.yield"),
@@ -214,7 +214,8 @@ resultants, largest sqrt(x^2 + y^2)."""
 
 KERNEL_FIELDS = {q.name: q.kernel for q in (*HISTORY, *IMPACTS, *PAIR) if q.kernel}
 
-INTENSITIES = (_Q("pga", "m/s2", "PGA"), _Q("pgv", "m/s", "PGV"))
+_WHICH = "of the scaled motion; in a study of pairs as `scale: of` says"
+INTENSITIES = (_Q("pga", "m/s2", "PGA", meaning=_WHICH), _Q("pgv", "m/s", "PGV", meaning=_WHICH))
 """Peaks of the scaled motion of a history, in the table of a study."""
 
 STOREY_SHEARS = _Q("storey_shears", "N", "storey shear", "$V_i$", column="max_shear")

@@ -184,7 +184,8 @@ class DesignFile(StudyParts):
     """A design: the values of some keys of a case that meet the limits and minimise something."""
 
     variables: Variables
-    """dotted case keys with [least, largest]: what may change"""
+    """dotted case keys with [least, largest]: what may change; devices count from 0, as in
+    podium.devices.0.force"""
     linked: Linked = Field(
         {}, description="further keys as linear sums of these, {key: factor, plus: constant}"
     )

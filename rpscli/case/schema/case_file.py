@@ -119,7 +119,7 @@ class SuperstructureSection(Section):
     """first period on a fixed base; scales the profile"""
     profile: Profile | None = None
     """distribution of the stiffness: a sine, linear or flexural first mode, or uniform stiffness;
-    sine if a period is given without it"""
+    sine if a period is given without it, up to twice as stiff at the roof as at the bottom"""
     stiffness: Stiffnesses | None = None
     """storey stiffness in place of period and profile: one value, or a list"""
     damping: DampingSection | None = None
@@ -168,7 +168,7 @@ class BearingSection(Section):
     ] = None
     """rho = r/2H; 0 = flat ends; critical = (1 - tan(alpha)/tan(alpha'))/2"""
     dimensions: DimensionsSection | None = None
-    """sizes in place of the four keys above"""
+    """sizes in place of semi_diagonal, slenderness, wedge_slenderness and curvature_ratio"""
     inertia_ratio: Annotated[
         float,
         Quantity(
