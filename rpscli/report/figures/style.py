@@ -428,11 +428,16 @@ def _arranged(found: dict[str, Any], room: float, most: int | None) -> dict[str,
     from matplotlib.lines import Line2D
 
     size = small()
-    beside = 4.0 * size / 72.0  # handle and gaps
+    beside = 4.0 * size / 72.0  # handle and gaps, of which the last is no more than the border
     found = {folded(typeset(name), room - beside, size): of for name, of in found.items()}
     widths = [beside + width_of(name, size) for name in found]
     columns = next(
-        (n for n in range(len(found), 1, -1) if sum(max(widths[c::n]) for c in range(n)) <= room), 1
+        (
+            n
+            for n in range(len(found), 1, -1)
+            if sum(max(widths[c::n]) for c in range(n)) <= room + 0.15 * beside
+        ),
+        1,
     )
     rows = -(-len(found) // columns)
     columns = -(-len(found) // rows)  # so that rows are even

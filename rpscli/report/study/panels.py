@@ -105,7 +105,7 @@ def panel_figure(
         style.begin(figure, (title, remarks(note, cut)), height, own)
         grid = figure.subplots(rows, columns, squeeze=False, sharex=True, sharey=share == "both")
         for axes, panel, name in zip(grid.flat, shown, titles, strict=False):
-            axes.locator_params(nbins=2 if style.tight(figure) else MOST_TICKS)
+            axes.locator_params(nbins=max(2, 5 - rows) if style.tight(figure) else MOST_TICKS)
             draw(axes, panel)
             # Without a height matplotlib would look for ticks under the title, at great length.
             axes.set_title(name, y=1.0, fontsize=style.small())
