@@ -417,7 +417,7 @@ def legend_below(figure: Figure, panels: Iterable[Axes]) -> None:
     if found := entries(panels):
         width, height = inches(figure)
         most = max(1, int(0.15 * height / LINE)) if given(figure) else None
-        arranged = _arranged(found, width - 0.2, most)
+        arranged = _arranged(found, width - 0.1, most)
         rows = -(-len(arranged["labels"]) // arranged["ncols"])
         grow(figure, rows * max(1 + name.count("\n") for name in arranged["labels"]) - 1)
         figure.legend(**arranged, loc="outside lower center")
@@ -428,15 +428,11 @@ def _arranged(found: dict[str, Any], room: float, most: int | None) -> dict[str,
     from matplotlib.lines import Line2D
 
     size = small()
-    beside = 4.0 * size / 72.0  # handle and gaps, of which the last is no more than the border
+    beside = 4.0 * size / 72.0  # handle and gaps
     found = {folded(typeset(name), room - beside, size): of for name, of in found.items()}
     widths = [beside + width_of(name, size) for name in found]
     columns = next(
-        (
-            n
-            for n in range(len(found), 1, -1)
-            if sum(max(widths[c::n]) for c in range(n)) <= room + 0.15 * beside
-        ),
+        (n for n in range(len(found), 1, -1) if sum(max(widths[c::n]) for c in range(n)) <= room),
         1,
     )
     rows = -(-len(found) // columns)
