@@ -8,7 +8,7 @@ Each entry point has a name, which users write, and belongs to one of these grou
 - `rpscli.targets`: a function of the options behind ``NAME:`` and of the whole source that returns
   a `TargetSpectrum`, or raises `RecordError`;
 - `rpscli.reports`: a `Report` of studies, a class of `ReportOptions` with a function of
-  `StudyResults` and such options that returns what was `Found`;
+  `StoredPoints` and such options that returns what was `Found`;
 - `rpscli.dampers`: a `DamperLaw`, a kind of `podium.devices` whose force numba compiles;
 - `rpscli.impact_laws`: a `RestitutionLaw`, a law of `podium.impact`, likewise;
 - `rpscli.figures`: a function that draws a result into axes, as those of `rpscli.figures` do;
@@ -37,7 +37,7 @@ from rpscli.records.target import TargetSpectrum
 from rpscli.report.figures.style import single
 from rpscli.report.study.report import Found, Report
 from rpscli.report.table import Column
-from rpscli.sweep.table import StudyResults, point_columns
+from rpscli.sweep.table import StoredPoints, point_columns
 
 __all__ = [
     "Column",
@@ -54,7 +54,7 @@ __all__ = [
     "Report",
     "ReportOptions",
     "RestitutionLaw",
-    "StudyResults",
+    "StoredPoints",
     "TargetSpectrum",
     "Whole",
     "parse_query",

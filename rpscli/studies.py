@@ -66,7 +66,7 @@ from rpscli.sweep.store import Store
 from rpscli.sweep.systems import Watched, needs_of
 from rpscli.sweep.table import (
     Columns,
-    StudyResults,
+    StoredPoints,
     Table,
     array,
     point_columns,
@@ -289,7 +289,7 @@ def run_in(
                 stored = sum(key in known for key in begin.keys)
                 raise StudyInterrupted(stored, len(study), store.path) from None
         table = Table.of(layout, partial(store.results, begin.keys))
-        return StudyResult(study, StudyResults(table, begin.keys, store, jobs), begin, done)
+        return StudyResult(study, StoredPoints(table, begin.keys, store, jobs), begin, done)
 
 
 class Failure(NamedTuple):
@@ -331,7 +331,7 @@ class StudyResult(Shown):
     """
 
     study: Study
-    results: StudyResults
+    results: StoredPoints
     begin: Start
     done: Progress
     _keeper: object = None

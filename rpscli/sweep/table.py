@@ -330,8 +330,8 @@ def fixed_base_references(layout: StudyPoints, store: Store, jobs: int) -> Fixed
 
 
 @dataclass(frozen=True, eq=False)
-class StudyResults:
-    """Results of all points as a table, and the ways to what is not in it."""
+class StoredPoints:
+    """Points of a study as a table, and the ways to what the store has besides."""
 
     table: Table
     keys: list[bytes]

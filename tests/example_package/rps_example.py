@@ -24,7 +24,7 @@ from rpscli.plugins import (
     Report,
     ReportOptions,
     RestitutionLaw,
-    StudyResults,
+    StoredPoints,
     TargetSpectrum,
     Whole,
     parse_query,
@@ -101,7 +101,7 @@ class WorstOptions(ReportOptions):
     """how many are shown"""
 
 
-def worst(study: StudyResults, options: WorstOptions) -> Found:
+def worst(study: StoredPoints, options: WorstOptions) -> Found:
     """A table and a figure of them, the worst first."""
     columns = point_columns(study.table)
     values = np.nan_to_num(columns[RESULT], nan=-np.inf)  # failed points come last

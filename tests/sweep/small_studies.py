@@ -18,7 +18,7 @@ from rpscli.studies import Study as LaidOut
 from rpscli.studies import load_study
 from rpscli.sweep.evaluation import FAILED, MISSING, SCALARS, PointResults, at_path, stacked
 from rpscli.sweep.points import StudyPoints, lay_out
-from rpscli.sweep.table import StudyResults, Table
+from rpscli.sweep.table import StoredPoints, Table
 
 ROOT = Path(__file__).parents[2]
 FOLDER = Path("results/study/sweep")
@@ -134,13 +134,13 @@ def place(layout: StudyPoints, number: int) -> Place:
 
 def made(
     make: Make, answer: Answer, *changes: tuple[str, str], text: str = STUDY, fixed: Any = None
-) -> StudyResults:
+) -> StoredPoints:
     """Results, as reports take them, of 2 slendernesses x 3 curvatures x 3 records x 2 scales."""
     layout = lay_out(make(text, *changes))
     read = reader(answer(place(layout, number)) for number in range(len(layout)))
     table = Table.of(layout, read)
     results = SimpleNamespace(table=table, context=layout.context, stored=read, fixed_base=fixed)
-    return cast("StudyResults", results)
+    return cast("StoredPoints", results)
 
 
 def fixed_base(layout: StudyPoints, shears: list[float]) -> dict[Any, Any]:

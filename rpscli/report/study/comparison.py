@@ -26,7 +26,7 @@ from rpscli.report.table import Column
 from rpscli.sweep.points import StudyPoints
 from rpscli.sweep.statistics.fractiles import Share, clustered, demand, fractiles
 from rpscli.sweep.statistics.grouping import INTENSITY, Histories, grouping, own_keys
-from rpscli.sweep.table import Array, Indices, Intensity, StudyResults, groups, leading_keys
+from rpscli.sweep.table import Array, Indices, Intensity, StoredPoints, groups, leading_keys
 
 MOST_ROWS = 8  # of panels in the figure; the CSV files have all
 SHOWN = {
@@ -74,7 +74,7 @@ class Compared(NamedTuple):
     failed: int
 
 
-def comparison(study: StudyResults, options: ComparisonOptions) -> Found:
+def comparison(study: StoredPoints, options: ComparisonOptions) -> Found:
     """Compare every system with its observations."""
     layout = study.table.layout
     intensity = study.table.intensity(options.measure, options.period, options.damping)
@@ -341,7 +341,7 @@ class Paired(NamedTuple):
     failed: int
 
 
-def rotation(study: StudyResults, options: RotationOptions) -> Found:
+def rotation(study: StoredPoints, options: RotationOptions) -> Found:
     """Largest rotations over alpha of each system and of the reference (paper, Figure 7)."""
     table, layout = study.table, study.table.layout
     leading = leading_keys(layout)

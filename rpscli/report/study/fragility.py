@@ -31,7 +31,7 @@ from rpscli.sweep.statistics.fractiles import CONFIDENCE, Share, share_of
 from rpscli.sweep.statistics.grouping import INTENSITY, Grouping, Histories, grouping
 from rpscli.sweep.statistics.lognormal import Bootstrap, Lognormal, band, lognormal_fit
 from rpscli.sweep.statistics.verdicts import exceeds
-from rpscli.sweep.table import Array, Indices, Intensity, Outcomes, StudyResults, Table
+from rpscli.sweep.table import Array, Indices, Intensity, Outcomes, StoredPoints, Table
 
 Item = TypeVar("Item")
 
@@ -250,7 +250,7 @@ class Fragilities:
         return f"{curve.limit.label}, {values}" if values else curve.limit.label
 
 
-def fragilities(study: StudyResults, options: FragilityOptions) -> Fragilities:
+def fragilities(study: StoredPoints, options: FragilityOptions) -> Fragilities:
     """Fit every limit state of every group of systems; samples and records are pooled."""
     measured = study.table.intensity(options.measure, options.period, options.damping)
     limits = tuple(options.limits.states)
@@ -320,7 +320,7 @@ def fragility_faults(layout: StudyPoints, options: FragilityOptions) -> Iterator
         yield f"at: {error.message()}"
 
 
-def margins(study: StudyResults, options: FragilityOptions, found: Fragilities) -> list[Column]:
+def margins(study: StoredPoints, options: FragilityOptions, found: Fragilities) -> list[Column]:
     """Collapse margin ratios and probabilities at the intensities that the report names."""
     # CMR is the median over the intensity, ACMR = SSF CMR, and P = Phi(-ln(ACMR)/beta_TOT): FEMA
     # P695 (2009), chapter 7; its table 7-3 has the ACMR of probabilities of 10 and 20 %.
@@ -344,7 +344,7 @@ def margins(study: StudyResults, options: FragilityOptions, found: Fragilities) 
     return keyed(found.systems.keys, f"{heads}, probability_high", rows)
 
 
-def fragility(study: StudyResults, options: FragilityOptions) -> Found:
+def fragility(study: StoredPoints, options: FragilityOptions) -> Found:
     """Curves, and the data that they go through."""
     found = fragilities(study, options)
     keys, measure, unit = found.systems.keys, found.intensity.name, found.intensity.unit

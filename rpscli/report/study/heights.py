@@ -18,7 +18,7 @@ from rpscli.report.study.report import Found, Report, keyed, reached, without_up
 from rpscli.sweep.points import StudyPoints
 from rpscli.sweep.statistics.fractiles import THREE
 from rpscli.sweep.statistics.grouping import Histories, grouping, own_keys
-from rpscli.sweep.table import Array, StudyResults, groups
+from rpscli.sweep.table import Array, StoredPoints, groups
 
 
 class StoreyShearOptions(ReportOptions):
@@ -52,7 +52,7 @@ class Profile(NamedTuple):
     static: float  # V_st [N]; NaN if the systems of the group differ in it
 
 
-def storey_shear(study: StudyResults, options: StoreyShearOptions) -> Found:
+def storey_shear(study: StoredPoints, options: StoreyShearOptions) -> Found:
     """Profiles of each system at each intensity, or of the groups that the study names."""
     found = grouping(study.table, options.panels)
     profiles = [profile for group in found.groups if (profile := profile_of(study, group))]
@@ -105,7 +105,7 @@ def storey_shear(study: StudyResults, options: StoreyShearOptions) -> Found:
     return Found({"": keyed(found.keys, titles, rows)}, figure, notes)
 
 
-def profile_of(study: StudyResults, group: Histories) -> Profile | None:
+def profile_of(study: StoredPoints, group: Histories) -> Profile | None:
     """The profile of a group; None without storeys."""
     table, layout = study.table, study.table.layout
     systems = np.unique(group.every // layout.points_of_system)
@@ -158,7 +158,7 @@ STATES = {"isolated": ("on bearings", style.BLUE), "fixed_base": ("fixed base", 
 SPECTRA = {"pseudo_acceleration": "m/s2", "displacement": "m"}
 
 
-def floor_spectra(study: StudyResults, options: FloorSpectraOptions) -> Found:
+def floor_spectra(study: StoredPoints, options: FloorSpectraOptions) -> Found:
     """Run the histories once more for their samples, which are not stored."""
     found = grouping(study.table)
     floors = []

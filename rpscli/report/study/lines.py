@@ -41,7 +41,7 @@ from rpscli.sweep.statistics.grouping import (
     shown_keys,
     statistic_words,
 )
-from rpscli.sweep.table import Array, StudyResults, unit_of
+from rpscli.sweep.table import Array, StoredPoints, unit_of
 from rpscli.units import in_si
 
 LEGEND = {"frequency_parameter": "model", "frequency_parameter_rigid": "rigid estimate"}
@@ -87,7 +87,7 @@ class Panel(NamedTuple):
     lines: list[Line]
 
 
-def lines(study: StudyResults, options: LinesOptions) -> Found:
+def lines(study: StoredPoints, options: LinesOptions) -> Found:
     """The lines of every series of every panel; a statistic where points share an abscissa."""
     layout, together = study.table.layout, axis_keys(study.table.layout, options.x)
     panel_keys, series = options.panels or (), options.series
@@ -300,7 +300,7 @@ class Ida(NamedTuple):
     fractiles: Array  # (3, levels) of the points that did not fail
 
 
-def ida(study: StudyResults, options: IdaOptions) -> Found:
+def ida(study: StoredPoints, options: IdaOptions) -> Found:
     """Curves and fractiles of each system."""
     table = study.table
     found = grouping(table, options.panels, (INTENSITY,))

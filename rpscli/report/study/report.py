@@ -27,7 +27,7 @@ from rpscli.report.table import (
     shown,
 )
 from rpscli.sweep.points import StudyPoints
-from rpscli.sweep.table import StudyResults, unit_of
+from rpscli.sweep.table import StoredPoints, unit_of
 from rpscli.units import Written, as_written, in_si
 
 if TYPE_CHECKING:
@@ -151,7 +151,7 @@ class Report(ReportKind[Options]):
     points of a study that it cannot show; both are seen before anything is computed.
     """
 
-    make: Callable[[StudyResults, Options], Found]
+    make: Callable[[StoredPoints, Options], Found]
     results: Callable[[Options], Iterable[str]] = lambda _: ()
     requires: Callable[[StudyPoints, Options], Iterable[str]] = lambda *_: ()
 

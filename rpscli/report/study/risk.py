@@ -24,7 +24,7 @@ from rpscli.sweep.statistics import hazard as rates
 from rpscli.sweep.statistics.hazard import Hazard, annual_rate
 from rpscli.sweep.statistics.lognormal import NOTHING, Band, band
 from rpscli.sweep.statistics.verdicts import component_notes
-from rpscli.sweep.table import Array, StudyResults
+from rpscli.sweep.table import Array, StoredPoints
 
 BINS = 24  # of intensities, for what contributes
 CLEARLY = 0.05  # share of the rate beyond which the ends of the hazard curve are worth a note
@@ -89,7 +89,7 @@ def risk_faults(layout: StudyPoints, options: RiskOptions) -> Iterator[str]:
         yield str(error)
 
 
-def risk(study: StudyResults, options: RiskOptions) -> Found:
+def risk(study: StoredPoints, options: RiskOptions) -> Found:
     """Fit the fragilities and integrate them over the hazard."""
     layout = study.table.layout
     section = options.hazard or layout.study.file.hazard

@@ -41,7 +41,7 @@ from rpscli.sweep.statistics.grouping import (
     grouping,
     shown_keys,
 )
-from rpscli.sweep.table import Array, StudyResults, Table, groups, leading_keys, unit_of
+from rpscli.sweep.table import Array, StoredPoints, Table, groups, leading_keys, unit_of
 from rpscli.units import in_si
 
 
@@ -108,7 +108,7 @@ class Cloud(NamedTuple):
     note: str | None = None  # why there is no curve
 
 
-def scatter(study: StudyResults, options: ScatterOptions) -> Found:
+def scatter(study: StoredPoints, options: ScatterOptions) -> Found:
     """Every history that stood."""
     table, series = study.table, options.series or ()
     both = ordinate(table, options.x), ordinate(table, options.y)
@@ -127,7 +127,7 @@ def scatter(study: StudyResults, options: ScatterOptions) -> Found:
     )
 
 
-def demand(study: StudyResults, options: DemandOptions) -> Found:
+def demand(study: StoredPoints, options: DemandOptions) -> Found:
     """Histories that lifted off and stood, with a curve in each panel."""
     table, leading = study.table, leading_keys(study.table.layout)
     series = options.series if options.series is not None else leading[1:-1]
@@ -288,7 +288,7 @@ LOOKS = (
 )
 
 
-def overturning_spectrum(study: StudyResults, options: SpectrumOptions) -> Found:
+def overturning_spectrum(study: StoredPoints, options: SpectrumOptions) -> Found:
     """Amplitude and frequency of every point, made dimensionless by its own system."""
     table, layout, series = study.table, study.table.layout, options.series or ()
     frequency, amplitude = both = _pulses_of(study, options)
@@ -338,7 +338,7 @@ def overturning_spectrum(study: StudyResults, options: SpectrumOptions) -> Found
     return Found({"": keyed((*found.keys, *series_keys), heads, rows)}, figure)
 
 
-def _pulses_of(study: StudyResults, options: SpectrumOptions) -> tuple[Array, Array]:
+def _pulses_of(study: StoredPoints, options: SpectrumOptions) -> tuple[Array, Array]:
     """(points,) frequency of the pulse over p, and its amplitude over g tan(alpha)."""
     table, layout = study.table, study.table.layout
     pulses: dict[RecordRequest, PulseSection] = {}

@@ -27,7 +27,7 @@ from rpscli.report.study.report import (
 from rpscli.report.table import Column
 from rpscli.sweep.evaluation import SCALARS
 from rpscli.sweep.statistics.grouping import Histories, grouping, shown_keys, statistic_words
-from rpscli.sweep.table import Array, StudyResults, groups, leading_keys
+from rpscli.sweep.table import Array, StoredPoints, groups, leading_keys
 
 MOST_ROWS = 60
 MOST_COLUMNS = 12
@@ -84,7 +84,7 @@ def _statistic(histories: Histories, values: Array, wanted: float | str, largest
     return Cell(numbers, (text, f"{fallen} of {len(histories)} overturned"), shade)
 
 
-def table_report(study: StudyResults, options: TableOptions) -> Found:
+def table_report(study: StoredPoints, options: TableOptions) -> Found:
     """Each system, at each intensity unless the study says otherwise."""
     table, layout = study.table, study.table.layout
     make: Callable[[Histories], Cell] = _share
@@ -136,7 +136,7 @@ def table_report(study: StudyResults, options: TableOptions) -> Found:
     return Found({"": written}, lambda title: partial(draw, title), rows.notes)
 
 
-def overturning(study: StudyResults, options: OverturningOptions) -> Found:
+def overturning(study: StoredPoints, options: OverturningOptions) -> Found:
     """Shares that overturned."""
     return table_report(
         study, TableOptions.model_construct(**dict(options), statistic="overturned")
