@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from paper_structures import FLAT, building, ground, needs_compiled_kernels, podium, yielding
 
 from hunt.trials import hunt, hunted, shares
-from rpscli.analyses.kernels.systems import most_seconds, steps_a_second
+from rpscli.analyses.kernels.systems import START_SPEED, most_seconds, steps_a_second
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
 from rpscli.analyses.timehistory import denser_trace, time_history
@@ -279,9 +279,11 @@ def judged_history(
         error = residual(time_history(system, motion, finer, with_fixed_base=False))
     assert error <= limit, f"residual {error:.2g}, {here.outcome}"
     assert system.impact_law.kind != "flexible" or here.energy.created == 0.0
-    # each device dissipates, or gives back what it took
-    taken = here.trace.devices.energy
-    assert np.all(np.diff(taken, axis=0) >= -1e-9 * np.max(taken, initial=1.0))
+    # Each device dissipates, or gives back what it took. Friction that lets go to any side is
+    # booked with the speed at which sliding begins (Theory (13.26)), some times within a sample.
+    taken, radius = here.trace.devices.energy, system.bearing.semi_diagonal
+    begun = 4.0 * 0.5 * system.weight * radius * START_SPEED**2 if pairs else 0.0
+    assert np.all(np.diff(taken, axis=0) >= -1e-9 * np.max(taken, initial=1.0) - begun)
     up = motion.vertical
     falls = up is not None and float(up.acceleration.min()) < -system.gravity
     if falls and (pairs or system.storeys == 0 or nothing_pushed(motion.horizontal, here)):
@@ -366,7 +368,7 @@ def with_floors_of_its_own(
 LOST_TOO_MUCH = [
     "20270-histories 0-60", "20271-histories 2-608", "20281-histories 0-735",
     "20411-histories 0-489", "20412-histories 0-908", "41261-histories 0-405",
-    "41271-histories 0-231", "271127-histories 3-51",
+    "41271-histories 0-231", "271127-histories 3-51", "271201-devices-565",
 ]  # fmt: skip
 
 
@@ -375,7 +377,8 @@ LOST_TOO_MUCH = [
 def test_histories_that_lost_too_much(seed: str) -> None:
     # at coarser steps, also of one storey and of one damped by 90 %; where the last term happened
     # to be small; and the last mode of sixty storeys has no mass that could lose any
-    assert judged_history(Random(seed)) in OUTCOMES  # noqa: S311 -- no secret
+    draw = structure_with_devices if "devices" in seed else structure
+    assert judged_history(Random(seed), draw) in OUTCOMES  # noqa: S311 -- no secret
 
 
 @needs_compiled_kernels
