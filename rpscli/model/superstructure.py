@@ -80,8 +80,8 @@ class ModalDamping:
 
 def _require_ratio(damping: RayleighDamping | ModalDamping) -> None:
     require_fields(damping)
-    if not 0.0 <= damping.ratio < 1.0:
-        raise ValueError(f"ratio = {damping.ratio:g} must be >= 0 and < 1")
+    if damping.ratio < 0.0:
+        raise ValueError(f"ratio = {damping.ratio:g} must be >= 0")
 
 
 Profile = Literal["sine", "uniform", "linear", "flexural"]
