@@ -111,7 +111,6 @@ class GroundMotion(Shown):
     recording: Recording = UNKNOWN
 
     def __post_init__(self) -> None:
-        require_fields(self, RecordError)
         values, fault = np.zeros(0), ""  # of what is no list
         with suppress(TypeError, ValueError, OverflowError):
             values = np.array(self.acceleration, dtype=np.float64, order="C")
@@ -124,10 +123,11 @@ class GroundMotion(Shown):
         elif not np.isfinite(values).all():
             first = int(np.argmin(np.isfinite(values)))
             fault = f"sample {first + 1} is {values[first]}, not finite"
-        elif not (np.isfinite(self.dt) and self.dt > 0.0):
+        elif not (is_number(self.dt) and self.dt > 0.0):
             fault = f"dt = {self.dt} s must be positive and finite"
         if fault:
             raise RecordError(f"{self.source}: {fault}")
+        require_fields(self, RecordError)
         object.__setattr__(self, "acceleration", frozen(values))
         object.__setattr__(self, "dt", float(self.dt))
 
