@@ -10,9 +10,13 @@ import math
 import re
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
+from dataclasses import fields
+from functools import cache
+from itertools import repeat
 from numbers import Real
 from pathlib import PurePath
-from typing import TypeGuard, TypeVar
+from types import UnionType
+from typing import Any, Literal, TypeGuard, TypeVar, get_args, get_origin, get_type_hints
 
 Item = TypeVar("Item")
 Made = TypeVar("Made")
@@ -175,6 +179,39 @@ SMALLEST, LARGEST = 1e-15, 1e15
 def is_size(value: object) -> bool:
     """Whether a value is a number above zero that follows from what a building may have."""
     return is_number(value) and SMALLEST**2 <= value <= LARGEST**2
+
+
+def require_fields(made: Any, fault: type[Exception] = ValueError) -> None:
+    """Refuse fields of a dataclass that are not what it annotates, in one sentence.
+
+    Numbers are finite, and none that no building has; what a field is left at is right.
+    """
+    kinds = _kinds(made.__class__)
+    for of in (each for each in fields(made) if each.init):
+        value = getattr(made, of.name)
+        infinite = isinstance(value, float) and value == math.inf == of.default
+        if value is not of.default and not infinite and not _fits(value, kinds[of.name]):
+            kind = str(of.type).replace("float", f"a finite number up to {LARGEST**2:g}")
+            raise fault(f"{of.name} = {told(value)[:60]} must be {kind}")
+
+
+_kinds = cache(get_type_hints)
+
+
+def _fits(value: object, kind: Any) -> bool:
+    origin, parts = get_origin(kind) or kind, get_args(kind)
+    if origin is UnionType:
+        return any(_fits(value, part) for part in parts)
+    if origin is tuple:
+        if not isinstance(value, tuple | list):
+            return False
+        each = repeat(parts[0]) if parts[-1] is ... else parts
+        return (parts[-1] is ... or len(parts) == len(value)) and all(map(_fits, value, each))
+    if origin in {float, int}:
+        return is_number(value) and abs(value) <= LARGEST**2
+    if origin is Literal:
+        return isinstance(value, str)
+    return origin.__name__ == "ndarray" or isinstance(value, origin)  # any sequence makes an array
 
 
 def told(value: object) -> str:

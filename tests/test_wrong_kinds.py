@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import fields, replace
 from typing import Any
 
 import numpy as np
@@ -14,7 +14,9 @@ from paper_structures import podium
 import rpscli
 from rpscli.case.schema.scale_to import scale_to_of
 from rpscli.errors import RecordError, RpsError, UsageError
+from rpscli.model.column import ColumnDesign
 from rpscli.model.contact import Contact
+from rpscli.model.devices import Stop, Tendon, ViscousDamper
 
 PULSE = "pulse:half_sine?amplitude=0.3g&period=0.6&dt=0.05"
 api: Any = rpscli
@@ -65,6 +67,9 @@ CALLS: list[tuple[type[Exception], str, Callable[..., Any]]] = [
     (ValueError, "must be",
      lambda *_: api.Superstructure([1e5] * 3, [1e-300] * 3, api.ModalDamping(0.05))),
     (ValueError, "must be", lambda *_: Contact("plane", 1e300)),
+    (ValueError, "ratio = -0.1 must be >= 0", lambda *_: api.ModalDamping(-0.1)),
+    (ValueError, "modes = .* whole numbers", lambda *_: api.RayleighDamping(0.05, (0, 1))),
+    (ValueError, "modes = .* must be tuple", lambda *_: api.RayleighDamping(0.05, (1, 2, 3))),
     (ValueError, "must be", lambda *_: api.TimeHistorySettings(max_events=2.5)),
     (ValueError, "finite and > 0", lambda *_: api.profile_stiffnesses([1.0, 2.0], -1.0)),
     (ValueError, "finite and > 0", lambda *_: api.profile_stiffnesses([-1.0, 2.0], 1.0)),
@@ -79,6 +84,22 @@ def test_wrong_kinds_and_values(
     with pytest.raises(error, match=said) as refused:
         call(podium(0), rpscli.load_record(PULSE))
     assert "np." not in str(refused.value)
+
+
+def test_fields_of_other_kinds_and_sizes_are_named() -> None:
+    structure, motion = podium(3), rpscli.load_record(PULSE)
+    given = [structure, structure.superstructure, structure.bearing, structure.impact_law, motion,
+             api.ModalDamping(0.05), api.RayleighDamping(0.05), api.TimeHistorySettings(),
+             api.MotionComponents(motion), Contact("plane", 1.2), ViscousDamper(1.0),
+             Stop(0.1, 1.0), Tendon(1.0, 1.0), ColumnDesign("round", 3e10, 0.2, 3e7)]  # fmt: skip
+    wrong = [{}, math.nan, np.float64("nan"), math.inf, 1e300, 10**400, 1j, object()]
+    for of in given:
+        for field in (each.name for each in fields(of) if each.init):
+            for value in wrong if field != "yield_force" else wrong[:3]:
+                with pytest.raises((ValueError, RpsError)) as refused:
+                    replace(of, **{field: value})
+                assert {"acceleration": "samples"}.get(field, field) in str(refused.value)
+                assert "np." not in str(refused.value)
 
 
 def test_a_case_is_what_a_mapping_says() -> None:

@@ -81,6 +81,7 @@ class Vibration(NamedTuple):
     misfit: float  # scatter about the spectrum, 1 where it holds; or the part that is not fitted
 
 
+@np.errstate(divide="ignore", over="ignore", invalid="ignore")  # where a search may go astray
 def vibration(
     expected: float, dt: float, floor: Array, ground: Array | None = None, *, free: bool = False
 ) -> Vibration:
@@ -95,15 +96,8 @@ def vibration(
     b, P. Whittle, Ark. Mat. 2, 1953; intervals from Fisher's information. Else least squares of the
     transform in the band, linear in all but period and damping.
     """
-    for name, record in (("floor", floor), ("ground", ground)):
-        if record is not None and not np.ptp(record) > 0.0:
-            raise AnalysisError(f"the acceleration of the {name} is constant")
+    _require_samples(expected, dt, floor, ground)
     n = len(floor)
-    if n * dt < 10.0 * expected:
-        raise AnalysisError(
-            f"{n * dt:.3g} s are fewer than ten periods of {expected:.3g} s; a longer record is"
-            " needed"
-        )
     f = np.fft.rfftfreq(n, dt)
     Y = np.fft.rfft(floor - floor.mean())
     X = None if ground is None else np.fft.rfft(ground)
@@ -137,8 +131,7 @@ def vibration(
 
     def misses(q: Array) -> Array:
         C = columns(q)
-        stacked, y = np.concatenate([C.real, C.imag]), np.concatenate([Y.real, Y.imag])
-        return np.asarray(y - stacked @ np.linalg.lstsq(stacked, y, rcond=None)[0])
+        return _unexplained(np.concatenate([C.real, C.imag]), np.concatenate([Y.real, Y.imag]))
 
     from scipy.optimize import least_squares
 
@@ -146,12 +139,28 @@ def vibration(
     freedoms = 2 * len(f) - (6 if X is None else 9)
     variance = 2.0 * float(best.cost) / freedoms
     J = np.asarray(best.jac)
-    covariance = variance * np.linalg.pinv(J.T @ J)
-    share = 2.0 * float(best.cost) / float(np.sum(np.abs(Y) ** 2))
+    covariance = variance * _inverse(J.T @ J)
+    share = 2.0 * float(best.cost) / max(float(np.sum(np.abs(Y) ** 2)), np.finfo(float).tiny)
     return _of_logarithms(best.x, covariance, freedoms, math.sqrt(share), expected, LEFT)
 
 
-@np.errstate(over="ignore", invalid="ignore")  # where a search may go astray
+def _require_samples(expected: float, dt: float, floor: Array, ground: Array | None) -> None:
+    """Refuse accelerations that cannot show a period."""
+    for name, record in (("floor", floor), ("ground", ground)):
+        if record is not None and not np.ptp(record) > 0.0:
+            raise AnalysisError(f"the acceleration of the {name} is constant")
+    if (span := len(floor) * dt) < 10.0 * expected:
+        raise AnalysisError(
+            f"{span:.3g} s are fewer than ten periods of {expected:.3g} s; a longer record is"
+            " needed"
+        )
+    if dt >= 0.5 * LOOKED_FOR[1] * expected:  # where all that is looked for is too fast
+        raise AnalysisError(
+            f"samples every {dt:.3g} s do not show a period of {expected:.3g} s; a record with"
+            " more samples a second is needed"
+        )
+
+
 def _ambient(f: NDArray[Any], power: NDArray[Any], peak: float, expected: float) -> Vibration:
     """From the periodogram, whose values are exponential about the spectrum."""
 
@@ -173,12 +182,25 @@ def _ambient(f: NDArray[Any], power: NDArray[Any], peak: float, expected: float)
     p = np.asarray(minimize(unlikely, start, method="Nelder-Mead", options=options).x)
     S, h = spectrum(p), 1e-5
     J = np.array([(spectrum(p + h * d) - spectrum(p - h * d)) / (2.0 * h * S) for d in np.eye(5)])
-    covariance, misfit = np.linalg.pinv(J @ J.T), float((power / S).std())
+    covariance, misfit = _inverse(J @ J.T), float((power / S).std())
     q = np.array([p[0] + math.log(2.0 * math.pi), p[1]])
     return _of_logarithms(q, covariance, len(f) - 5, misfit, expected, SCATTER)
 
 
-@np.errstate(invalid="ignore")  # variances below 0, of what is not determined
+def _unexplained(columns: Array, y: Array) -> Array:
+    """The part of y that no sum of the columns is; infinite where the search went astray."""
+    if np.isfinite(columns).all():  # LAPACK prints a line on the terminal of what is not
+        return np.asarray(y - columns @ np.linalg.lstsq(columns, y, rcond=None)[0])
+    return np.full_like(y, math.inf)
+
+
+def _inverse(information: Array) -> Array:
+    """The covariance; infinite where the search went astray."""
+    if np.isfinite(information).all():
+        return np.asarray(np.linalg.pinv(information))
+    return np.full_like(information, math.inf)
+
+
 def _of_logarithms(
     q: Array,
     covariance: Array,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
-from rpscli.errors import require_kind, told
+from rpscli.errors import require_fields, require_kind, told
 from rpscli.model.podium import PodiumStructure
 from rpscli.records.ground_motion import GroundMotion, MotionComponents
 
@@ -46,6 +46,7 @@ class TimeHistorySettings:
 
     def __post_init__(self) -> None:
         """Refuse what would never end, or end in nonsense."""
+        require_fields(self)
         free = self.free_vibration
         rules = {
             "free_vibration": (free is None or 0.0 <= free < math.inf, "None or finite and >= 0"),

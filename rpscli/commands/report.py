@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from datetime import datetime
 from functools import partial
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -17,7 +18,7 @@ from rpscli.commands.shell.terminal import Terminal, leave
 from rpscli.errors import Refused, UsageError
 from rpscli.report.figures.look import Look
 from rpscli.report.figures.style import drawable_style
-from rpscli.report.files import require_writable, write_whole
+from rpscli.report.files import require_writable, undrawn, write_whole
 from rpscli.version import VERSION
 
 if TYPE_CHECKING:
@@ -153,7 +154,8 @@ def _write(
     content = page(done.title, subtitle, done.sections, name, signed)
     write_whole({file: content})
     blocks = (block for section in done.sections for block in section.blocks)
-    terminal.warn(fault for each in blocks if isinstance(each, Picture) for fault in each.faults)
+    shown = (each.files.values() for each in blocks if isinstance(each, Picture))
+    terminal.warn(undrawn(chain.from_iterable(shown)))
     if len(content) > MOST_BYTES:
         terminal.warn([f"{file} has {1e-6 * len(content):.1f} MB: too many figures for a page"])
     terminal.note(f"written to {file}, {1e-3 * len(content):.0f} kB")

@@ -67,8 +67,7 @@ def computed(
         pending, total = len(begin.pending), len(begin.keys)
         if choices.report_only and pending:
             raise Refused(
-                f"{store.path} lacks {pending} of {total} points; run the study without"
-                " --report-only first"
+                f"{store.path} lacks {pending} of {total} points, which `rps sweep` computes"
             )
         if pending and begin.kept:
             terminal.note(f"continuing: {begin.kept} of {total} points are stored already")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import math
-import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -35,7 +34,17 @@ from rpscli.report.figures.look import FilmRequest
 from rpscli.report.files import OutputFolder, heading, json_text
 from rpscli.report.limits import VERDICT, excess_text, verdict_texts, worst_text
 from rpscli.report.study import statistics
-from rpscli.report.table import Heading, Part, Table, csv_text, headed, large, shown, standing
+from rpscli.report.table import (
+    Heading,
+    Part,
+    Table,
+    csv_text,
+    headed,
+    large,
+    shown,
+    standing,
+    told_once,
+)
 from rpscli.report.timehistory import (
     direction_note,
     neighbours_texts,
@@ -340,16 +349,8 @@ def all_document(computed: Sequence[Computed], error: RpsError | None) -> dict[s
 
 
 def _warnings(histories: Sequence[History]) -> Iterator[str]:
-    """Each kind of warning once, with its number of histories and the numbers of the first."""
-    kinds: dict[str, list[tuple[str, str]]] = {}
-    for history in histories:
-        for text in history.document["warnings"]:
-            kind = re.sub(r"[-+\d.]+", "", text)
-            kinds.setdefault(kind, []).append((history.name, text))
-    for given in kinds.values():
-        name, text = given[0]
-        others = f"{len(given)} of {len(histories)} histories, such as " * (len(given) > 1)
-        yield f"{others}{name}: {text}"
+    named = ((each.name, text) for each in histories for text in each.document["warnings"])
+    return told_once(named, len(histories), "histories")
 
 
 def set_document(case: Computed) -> dict[str, Any]:

@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from rpscli.errors import is_size, require_fields
 from rpscli.physics import geometry
 
 
@@ -71,14 +72,15 @@ class Bearing:
 
     def __post_init__(self) -> None:
         """Refuse a shape that cannot be built."""
+        require_fields(self)
         for name in ("semi_diagonal", "inertia_ratio"):
-            if not 0.0 < (value := getattr(self, name)) < math.inf:
-                raise ValueError(f"{name} = {value} must be > 0 and finite")
-        if not 0.0 <= self.slenderness < math.inf:
-            raise ValueError(f"slenderness = {self.slenderness} must be >= 0 and finite")
-        if not 0.0 <= self.curvature_ratio < math.inf:
+            if not is_size(value := getattr(self, name)):
+                raise ValueError(f"{name} = {value} must be > 0")
+        if self.slenderness < 0.0:
+            raise ValueError(f"slenderness = {self.slenderness} must be >= 0")
+        if self.curvature_ratio < 0.0:
             raise ValueError(
-                f"curvature_ratio = {self.curvature_ratio} must be >= 0 and finite; 0 = flat ends"
+                f"curvature_ratio = {self.curvature_ratio} must be >= 0; 0 = flat ends"
             )
         if self.is_spherical and not (self.curvature_ratio > 0.5 and self.wedge_slenderness > 0.0):
             raise ValueError(
@@ -86,7 +88,7 @@ class Bearing:
                 f" wedge_slenderness = {self.wedge_slenderness:g} > 0: without a flat part an arc"
                 " whose radius is not above half the height does not hold the column upright"
             )
-        if not self.is_flat and not self.slenderness <= self.wedge_slenderness < math.inf:
+        if not self.is_flat and self.slenderness > self.wedge_slenderness:
             raise ValueError(
                 f"wedge_slenderness = {self.wedge_slenderness:g} must be >= slenderness ="
                 f" {self.slenderness:g}: the arcs lie outside the flat part; both are tangents"
@@ -102,8 +104,8 @@ class Bearing:
         if axial is None:
             solid = 0.5 * (math.cos(self.alpha) * self._wedge) ** 2
             object.__setattr__(self, "inertia_ratio_axial", solid)
-        elif not 0.0 < axial < math.inf:
-            raise ValueError(f"inertia_ratio_axial = {axial} must be > 0 and finite")
+        elif axial <= 0.0:
+            raise ValueError(f"inertia_ratio_axial = {axial} must be > 0")
 
     @property
     def is_flat(self) -> bool:

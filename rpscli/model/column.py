@@ -14,6 +14,7 @@ from typing import Literal, NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from rpscli.errors import require_fields
 from rpscli.model.bearing import Bearing
 
 Array: TypeAlias = NDArray[np.float64]
@@ -74,6 +75,7 @@ class ColumnDesign:
 
     def __post_init__(self) -> None:
         """Refuse a line without a length, and what cannot be a material."""
+        require_fields(self)
         if (self.section == "square") != (self.edge_length is not None):
             raise ValueError("edge_length belongs to square columns, all of them, as in 0.45 m")
         sizes = self.modulus, self.contact_strength, self.edge_length, self.plate_modulus

@@ -9,7 +9,7 @@ from typing import Any, Literal, NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.errors import is_size
+from rpscli.errors import is_size, require_fields
 from rpscli.physics import geometry, plane_bed
 
 Array: TypeAlias = NDArray[np.float64]
@@ -33,6 +33,7 @@ class Contact:
 
     def __post_init__(self) -> None:
         """Refuse what does not say how soft it is."""
+        require_fields(self)
         if self.kind not in USUAL_LOSS:
             raise ValueError(f"contact {self.kind!r} must be rigid, plane or edges")
         given = [x for x in (self.period_ratio, self.stiffness, self.settlement) if x is not None]

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rpscli.errors import PluginError
+from rpscli.errors import PluginError, require_fields
 from rpscli.model.bearing import Bearing, UpliftedState
 from rpscli.model.own import DamperLaw, OwnLaw
 from rpscli.model.podium import Array, AtRest, Consequence, Device, Linear, PodiumStructure
@@ -26,7 +26,7 @@ class ViscousDamper(Device):
     results = ("max_damper_force",)
 
     def __post_init__(self) -> None:
-        _require("> 0", coefficient=self.coefficient)
+        _require(self, "> 0", "coefficient")
         if not 0.2 <= self.exponent <= 2.0:
             raise ValueError("exponent must be >= 0.2 and <= 2")
 
@@ -56,7 +56,7 @@ class FrictionDamper(Device):
     results = ("max_damper_force",)
 
     def __post_init__(self) -> None:
-        _require("> 0", force=self.force)
+        _require(self, "> 0", "force")
 
     def at_rest(self, structure: PodiumStructure, rotation: Array, farthest: float) -> AtRest:
         return AtRest(held=self.force)
@@ -83,8 +83,8 @@ class Stop(Device):
     results = ("max_stop_force",)
 
     def __post_init__(self) -> None:
-        _require(">= 0", gap=self.gap, damping=self.damping)
-        _require("> 0", stiffness=self.stiffness)
+        _require(self, ">= 0", "gap", "damping")
+        _require(self, "> 0", "stiffness")
 
     def at_rest(self, structure: PodiumStructure, rotation: Array, farthest: float) -> AtRest:
         beyond = np.maximum(self.stroke(structure, rotation) - self.gap, 0.0)
@@ -122,8 +122,8 @@ class Tendon(Device):
     in_each_column = True
 
     def __post_init__(self) -> None:
-        _require(">= 0", prestress=self.prestress)
-        _require("> 0", stiffness=self.stiffness)
+        _require(self, ">= 0", "prestress")
+        _require(self, "> 0", "stiffness")
         if not self.yield_force > self.prestress:
             raise ValueError(
                 f"yield_force = {self.yield_force:g} N must be > prestress = {self.prestress:g} N;"
@@ -197,7 +197,7 @@ class RollingResistance(Device):
     results = ()
 
     def __post_init__(self) -> None:
-        _require("> 0", lever=self.lever)
+        _require(self, "> 0", "lever")
 
     def constants(self, structure: PodiumStructure) -> tuple[float, ...]:
         return (2.0 * structure.weight * self.lever,)
@@ -229,6 +229,7 @@ class OwnDamper(Device):
     results = ("max_damper_force",)
 
     def __post_init__(self) -> None:
+        require_fields(self)
         if force := self.law.force(0.1, 0.0, *self.values):
             raise PluginError(
                 f"damper {self.name}: its force at rest, at a displacement of 0.1 m, is"
@@ -261,8 +262,10 @@ def own_laws(structure: PodiumStructure) -> dict[str, OwnLaw]:
     return laws if own is None else {**laws, structure.impact_law.kind: own}
 
 
-def _require(rule: str, **values: float) -> None:
-    for name, value in values.items():
+def _require(device: Device, rule: str, *names: str) -> None:
+    require_fields(device)
+    for name in names:
+        value = getattr(device, name)
         if not 0.0 <= value < math.inf or (rule == "> 0" and value == 0.0):
             raise ValueError(f"{name} must be {rule} and finite")
 

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import Literal, get_args
 
-from rpscli.errors import PluginError
+from rpscli.errors import PluginError, require_fields
 from rpscli.model.bearing import Bearing
 from rpscli.model.own import RestitutionLaw
 from rpscli.registry import Registry
@@ -71,6 +71,7 @@ class ImpactLaw:
 
     def __post_init__(self) -> None:
         """Refuse other words, and an e that the law does not take or lacks."""
+        require_fields(self)
         if (self.kind in get_args(ImpactKind)) == (self.own is not None):
             raise ValueError(f"impact law {self.kind!r} must be flexible, rigid or value")
         if (self.kind == "value") != (self.restitution is not None):

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.constants import STANDARD_GRAVITY
-from rpscli.errors import is_number, is_size, told
+from rpscli.errors import is_size, require_fields, told
 from rpscli.model.bearing import Bearing, UpliftedState
 from rpscli.model.column import ColumnDesign
 from rpscli.model.contact import Bed, Contact, bed_of
@@ -97,14 +97,12 @@ class PodiumStructure(Shown):
 
     def __post_init__(self) -> None:
         """Refuse masses and restitutions outside the model."""
-        if not (
-            0.0 < self.columns_mass < math.inf
-            and 0.0 <= self.cap_beam_mass < math.inf
-            and 0.0 < self.gravity < math.inf
-        ):
+        require_fields(self)
+        sizes = self.columns_mass, self.gravity, self.cap_beam_mass or 1.0
+        if not all(map(is_size, sizes)):
             raise ValueError("columns_mass and gravity must be > 0, cap_beam_mass >= 0, all finite")
-        if self.friction is not None and not (is_number(self.friction) and self.friction >= 0.0):
-            raise ValueError(f"friction = {told(self.friction)} must be a number >= 0, or None")
+        if self.friction is not None and self.friction < 0.0:
+            raise ValueError(f"friction = {told(self.friction)} must be >= 0, or None")
         self._refuse_buildings()
         if self.rows and (len(self.rows) < 2 or not is_size(max(self.rows) - min(self.rows))):
             raise ValueError("rows must be at least two positions that differ, as in [0, 4, 8]")

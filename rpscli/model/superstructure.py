@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal
@@ -11,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rpscli.constants import MOST_STOREYS
-from rpscli.errors import is_size
+from rpscli.errors import is_size, require_fields
 from rpscli.shown import Shown, frozen
 
 Array = NDArray[np.float64]
@@ -42,6 +43,12 @@ class RayleighDamping:
     ratio: float
     modes: tuple[int, int] = (1, 2)
 
+    def __post_init__(self) -> None:
+        """Refuse what damps no mode."""
+        _require_ratio(self)
+        if any(mode < 1 or mode % 1 for mode in self.modes):
+            raise ValueError(f"modes = {self.modes} must be two whole numbers from 1 on")
+
     def coefficients(self, frequencies: Array) -> tuple[float, float]:
         """a0 [1/s] and a1 [s], from circular frequencies (n,) [rad/s]."""
         first, second = (float(frequencies[min(i, len(frequencies)) - 1]) for i in self.modes)
@@ -62,9 +69,19 @@ class ModalDamping:
 
     ratio: float
 
+    def __post_init__(self) -> None:
+        """Refuse what is no ratio."""
+        _require_ratio(self)
+
     def ratios(self, frequencies: Array) -> Array:
         """Damping ratio of every mode, (n,)."""
         return np.full_like(frequencies, self.ratio)
+
+
+def _require_ratio(damping: RayleighDamping | ModalDamping) -> None:
+    require_fields(damping)
+    if damping.ratio < 0.0:
+        raise ValueError(f"ratio = {damping.ratio:g} must be >= 0")
 
 
 Profile = Literal["sine", "uniform", "linear", "flexural"]
@@ -181,10 +198,13 @@ class Superstructure(Shown):
 
     def __post_init__(self) -> None:
         """Take any sequence; refuse what is not a building."""
+        require_fields(self)
         lengths = set()
         for name in ("masses", "stiffnesses", "storey_heights", "strengths"):
             if (value := getattr(self, name)) is not None:
-                array = np.array(value, dtype=float)
+                array: Array = np.zeros((0, 0))  # of what is no list
+                with suppress(TypeError, ValueError, OverflowError):
+                    array = np.array(value, dtype=float)
                 if array.ndim != 1 or not all(map(is_size, array.tolist())):
                     raise ValueError(f"{name} must be a list of finite sizes > 0, from the bottom")
                 object.__setattr__(self, name, frozen(array))

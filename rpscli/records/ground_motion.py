@@ -6,6 +6,7 @@ import hashlib
 import math
 import re
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -13,7 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.errors import RecordError, is_number, require_kind, told
+from rpscli.errors import RecordError, is_number, require_fields, require_kind, told
 from rpscli.shown import Frozen, Shown, frozen, with_unit
 
 if TYPE_CHECKING:
@@ -110,7 +111,9 @@ class GroundMotion(Shown):
     recording: Recording = UNKNOWN
 
     def __post_init__(self) -> None:
-        values, fault = np.array(self.acceleration, dtype=np.float64, order="C"), ""
+        values, fault = np.zeros(0), ""  # of what is no list
+        with suppress(TypeError, ValueError, OverflowError):
+            values = np.array(self.acceleration, dtype=np.float64, order="C")
         if np.ma.is_masked(self.acceleration):
             first = int(np.argmax(np.ma.getmaskarray(self.acceleration)))
             fault = f"sample {first + 1} is masked, a gap; fill it, or cut the record"
@@ -120,10 +123,11 @@ class GroundMotion(Shown):
         elif not np.isfinite(values).all():
             first = int(np.argmin(np.isfinite(values)))
             fault = f"sample {first + 1} is {values[first]}, not finite"
-        elif not (np.isfinite(self.dt) and self.dt > 0.0):
+        elif not (is_number(self.dt) and self.dt > 0.0):
             fault = f"dt = {self.dt} s must be positive and finite"
         if fault:
             raise RecordError(f"{self.source}: {fault}")
+        require_fields(self, RecordError)
         object.__setattr__(self, "acceleration", frozen(values))
         object.__setattr__(self, "dt", float(self.dt))
 
@@ -294,6 +298,7 @@ class MotionComponents(Frozen):
         for name, motion in {"horizontal": self.horizontal, **self.named}.items():
             require_kind(motion, GroundMotion, name, "load_record(...) gives a motion")
             require_one_step(self.horizontal, motion, name)
+        require_fields(self, RecordError)
 
     @property
     def named(self) -> dict[str, GroundMotion]:

@@ -21,6 +21,7 @@ from rpscli.errors import (
     RpsError,
     UsageError,
     is_number,
+    listed,
     refused_by_system,
     visible,
 )
@@ -145,7 +146,7 @@ class Drawing:
 
     name: str
     draw: Callable[[], bytes]
-    fault: str = ""  # why it failed
+    reason: str = ""  # why it failed
 
     @property
     def ending(self) -> str:
@@ -160,8 +161,21 @@ class Drawing:
             raise
         except Exception as error:  # noqa: BLE001 -- no picture is worth the results
             kind = "" if isinstance(error, RpsError) else f"{type(error).__name__}: "
-            self.fault = f"{self.name} is not drawn: {kind}{error}; the results are not concerned"
+            self.reason = f"{kind}{error}"
             return b""
+
+
+def undrawn(drawings: Iterable[object]) -> list[str]:
+    """What to say of drawings that failed, those with one reason together."""
+    names: dict[str, list[str]] = {}
+    for each in drawings:
+        if isinstance(each, Drawing) and each.reason:
+            names.setdefault(each.reason, []).append(each.name)
+    return [
+        f"{listed(failed, 'and')} {'are' if len(failed) > 1 else 'is'} not drawn: {reason}; the"
+        " results are not concerned"
+        for reason, failed in names.items()
+    ]
 
 
 Written: TypeAlias = bytes | Iterator[str]
@@ -265,13 +279,17 @@ class OutputFolder:
         self.folder, self.run, self.force = folder, run, force
         self.contents: dict[Path, Content] = {}
         self.removed: list[str] = []
-        self.undrawn: list[str] = []  # why figures could not be drawn
         self._earlier = self._claimed()
 
     @property
     def files(self) -> list[str]:
         """Paths of what will be, or was, written, as the user would type them."""
         return [str(path) for path in (*self.contents, self.folder / RUN_FILE)]
+
+    @property
+    def undrawn(self) -> list[str]:
+        """Why figures could not be drawn."""
+        return undrawn(self.contents.values())
 
     @property
     def replaces_other_inputs(self) -> bool:
@@ -325,7 +343,6 @@ class OutputFolder:
                     path.unlink(missing_ok=True)  # that of an earlier run shows other results
                     if drawn := drawing():
                         write_whole({path: drawn})
-                    self.undrawn += [drawing.fault] * bool(drawing.fault)
 
     @property
     def _subject(self) -> dict[str, Any]:

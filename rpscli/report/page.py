@@ -12,7 +12,7 @@ from importlib import resources
 from unicodedata import category
 
 from rpscli.report.figures.look import Look
-from rpscli.report.files import Drawing
+from rpscli.report.files import Drawing, undrawn
 from rpscli.report.table import Table
 
 
@@ -60,11 +60,6 @@ class Picture:
 
     files: dict[str, Drawing]
     caption: str
-
-    @property
-    def faults(self) -> list[str]:
-        """Why it could not be drawn."""
-        return [drawing.fault for drawing in self.files.values() if drawing.fault]
 
 
 def page_look(look: Look) -> Look:
@@ -117,7 +112,7 @@ def _drawing(of: Picture, prefix: str) -> Markup:
     """One of our own drawings, so that it can stand in HTML beside others."""
     text = printable(of.files["svg"]().decode())
     if not text:
-        return element("p", *of.faults, class_="notice")
+        return element("p", *undrawn(of.files.values()), class_="notice")
     text = _UNWANTED.sub("", text[text.index("<svg") :])
     root, rest = text.split(">", 1)
     root = re.sub(r' (width|height|xmlns(:\w+)?)="[^"]*"', "", root)

@@ -20,6 +20,15 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 
+def told_once(named: Iterable[tuple[str, str]], count: int, noun: str) -> Iterator[str]:
+    """Each kind of text once, with how many of all it is about and the numbers of the first."""
+    kinds: dict[str, list[str]] = {}
+    for name, text in named:
+        kinds.setdefault(re.sub(r"[-+\d.]+", "", text), []).append(f"{name}: {text}")
+    for first, *others in kinds.values():
+        yield f"{1 + len(others)} of {count} {noun}, such as {first}" if others else first
+
+
 def shown(value: float | str | None, digits: int = 4) -> str:
     """A number with so many significant digits; ``-`` if there is none."""
     if value is None:

@@ -12,7 +12,15 @@ from paper_structures import Array, block, ground, known, let_go, needs_compiled
 from scipy.integrate import solve_ivp
 from scipy.signal import lsim
 
-from rpscli.analyses.identification import Estimate, Identified, Vibration, rocking, vibration
+from rpscli.analyses.identification import (
+    Estimate,
+    Identified,
+    Vibration,
+    _inverse,
+    _unexplained,
+    rocking,
+    vibration,
+)
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.errors import AnalysisError
@@ -103,6 +111,21 @@ def test_what_determines_no_period_is_refused() -> None:
     ):
         with pytest.raises(AnalysisError, match=said):
             vibration(0.4, 0.01, floor, free=free)
+    with pytest.raises(AnalysisError, match=r"samples every 0\.01 s do not show a period of 0\.00"):
+        vibration(0.003, 0.01, noise)
+    empty = np.resize([1.0, -1.0], 3000)  # nothing but the fastest motion that samples show
+    with pytest.raises(AnalysisError, match="no vibration before uplift fits"):
+        vibration(0.4, 0.01, empty, free=True)
+    with pytest.raises(AnalysisError, match="no vibration before uplift fits"):
+        vibration(0.4, 0.01, empty)
+
+
+def test_searches_that_go_astray_print_nothing(capfd: pytest.CaptureFixture[str]) -> None:
+    """LAPACK would write about numbers that are not finite, which it does not take."""
+    for worst in (math.nan, math.inf):
+        assert np.isinf(_unexplained(np.full((4, 2), worst), np.ones(4))).all()
+        assert np.isinf(_inverse(np.full((2, 2), worst))).all()
+    assert capfd.readouterr() == ("", "")
 
 
 DT = 0.01

@@ -113,6 +113,7 @@ def test_a_fault_of_a_value_is_placed_at_its_override() -> None:
         ("podium.columns=", ["no value", "null"]),
         ("podium.columns=[1", ["bracket"]),
         ("podium.impact={law: rigid, law: rigid}", ["law is written twice"]),
+        ('title="\\ud800"', ["\": '\\ud800' holds half a letter"]),
     ],
 )
 def test_refusals(override: str, parts: list[str]) -> None:

@@ -218,7 +218,7 @@ def test_the_time_up_to_which_programs_compare_is_said(
     calm = rps_json("export", "slender.yaml", "mujoco", "-o", "calm")
     assert calm["comparable_until"] is None
     assert "1 % of the\nlargest to the end." in calm["limits"]
-    assert "the case has 1, and histories part at the first impact" in calm["limits"]
+    assert "the case has e = 1, and histories part at the first impact" in calm["limits"]
     shaken = "synthetic:?pga=0.25g&seed=2&duration=20&dt=0.01"
     wild = rps_json("export", "slender.yaml", "mujoco", "-o", "wild", "--record", shaken)
     until = wild["comparable_until"]

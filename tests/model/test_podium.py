@@ -83,7 +83,8 @@ def test_the_rigid_frequency_parameter_of_a_block_is_housners() -> None:
     [
         ({"columns_mass": 0.0}, "must be > 0, cap_beam_mass >= 0"),
         ({"columns_mass": -1.0}, "must be > 0, cap_beam_mass >= 0"),
-        ({"columns_mass": math.nan}, "must be > 0, cap_beam_mass >= 0"),
+        ({"columns_mass": math.nan}, "columns_mass = nan must be a finite number"),
+        ({"columns_mass": 1e-300}, "must be > 0, cap_beam_mass >= 0"),
         ({"cap_beam_mass": -1.0}, "must be > 0, cap_beam_mass >= 0"),
         ({"gravity": 0.0}, "must be > 0, cap_beam_mass >= 0"),
         ({"cap_beam_mass": 0.0}, "the superstructure stands on it"),

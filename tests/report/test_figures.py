@@ -182,6 +182,8 @@ CANNOT = r"paper.mplstyle: cannot be drawn with: .*correct"
         (None, "No such file"),
         (b"\xff\xfe\x00", "is not a text"),
         ("axes.prop_cycle: cycler(color=['101010'])\n", "prop_cycle is gone: .* rpscli.figures"),
+        ("axes.prop_cycle: cycler('color', ['#332288'])\n", "prop_cycle is gone"),
+        ("axes.edgecolor: #332288\n", "write colours without it"),
         ("figure.dpi: 1e9", CANNOT), ("figure.figsize: 1e5, 1e5", CANNOT),
         ("font.size: 1e6", CANNOT), ("savefig.format: exe", CANNOT),
         ("figure.subplot.left: 2", CANNOT), ("font.family: nosuchfont", CANNOT),

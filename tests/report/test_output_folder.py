@@ -67,9 +67,9 @@ def test_results_are_written_before_anything_is_drawn(tmp_path: Path) -> None:
     def fails() -> bytes:
         raise RuntimeError("no figure")
 
-    def written(first: Callable[[], bytes]) -> OutputFolder:
+    def written(first: Callable[[], bytes], then: Callable[[], bytes] = draws) -> OutputFolder:
         folder = folder_of(tmp_path)
-        for name, draw in {"first.png": first, "second.png": draws}.items():
+        for name, draw in {"first.png": first, "second.png": then}.items():
             folder.add(name, Drawing(name, draw))
         folder.add("a.csv", "1")
         folder.write()
@@ -79,6 +79,8 @@ def test_results_are_written_before_anything_is_drawn(tmp_path: Path) -> None:
     assert seen[:2] == ["a.csv", "run.json"]
     reason = "first.png is not drawn: RuntimeError: no figure; the results are not concerned"
     assert written(fails).undrawn == [reason]
+    both = reason.replace("first.png is", "first.png and second.png are")
+    assert written(fails, fails).undrawn == [both]
     assert not (tmp_path / "first.png").exists()  # nor that of the run before
     assert written(draws).undrawn == []
     assert (tmp_path / "first.png").read_bytes() == (tmp_path / "second.png").read_bytes() == b"PNG"

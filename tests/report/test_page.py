@@ -21,7 +21,7 @@ from rpscli.report.case_page import (
     structure_blocks,
 )
 from rpscli.report.figures.look import USUAL
-from rpscli.report.files import Drawing
+from rpscli.report.files import Drawing, undrawn
 from rpscli.report.page import (
     MOST_BYTES,
     Block,
@@ -79,7 +79,7 @@ def test_a_figure_that_fails_is_told_in_its_place() -> None:
     content = page("a", "b", [Section("c", [broken, "the results"])], "d").decode()
     assert "x.svg is not drawn: RuntimeError: no &lt;figure&gt;" in content
     assert "the results" in content
-    assert len(broken.faults) == 1
+    assert len(undrawn(broken.files.values())) == 1
 
 
 def test_text_is_never_taken_for_tags() -> None:

@@ -257,7 +257,10 @@ def test_overturned_points_exceed_every_limit_and_failed_ones_none(study_of: Mak
     counts = f"36 of {rotation.exceeded + 18} histories beyond a limit overturned"
     notes = list(report.notes)
     assert len(notes) == 3
-    assert notes[2].startswith("drift_ratio > 0.01; overturning: the data are separated")
+    said = "2 of 3 curves, such as drift_ratio > 0.01: the data are separated"
+    assert notes[2].startswith(said)
+    lost = ((curve, f"{n} of 400 fail") for n, curve in enumerate(report.curves))
+    assert [*report.told(lost)] == ["3 of 3 curves, such as rotation_ratio > 0.5: 0 of 400 fail"]
     assert notes[0].startswith("pools 2 values of podium.bearing.slenderness and 3 values")
     assert notes[1].endswith(counts)
 

@@ -207,7 +207,7 @@ def test_the_folder_of_another_study_is_refused(sweep: Sweep, workplace: Path) -
 def test_report_only_computes_nothing(sweep: Sweep, workplace: Path) -> None:
     lacking = sweep("study.yaml", "--report-only")
     assert lacking.exit_code == 7
-    assert "lacks 36 of 36 points" in lacking.stderr
+    assert "lacks 36 of 36 points, which `rps sweep` computes" in lacking.stderr
     assert sweep("study.yaml").exit_code == 0
     text = STUDY.replace("scale:", "reports: [overturning]\nscale:")
     assert sweep("study.yaml", "--report-only", study=text).exit_code == 0

@@ -175,7 +175,7 @@ def sampled(distribution: str) -> tuple[str, str]:
         (*added("reports: [rotation: {reference: 7}]"), ("7", "takes", "critical")),
         (*added("reports: [lines: {x: scale, y: max_rotatio}]"), ("max_rotation?",)),
         (*added("reports: [lines: {x: scale, y: zzz}]"), ("`rps timehistory CASE",)),
-        (*added("limits: {zzz: 1}"), ("more (rps explain limits)",)),
+        (*added("limits: {zzz: 1}"), ("near are", "`rps explain limits` lists all")),
         (SCALE, "reports: [ida]", ("several intensities",)),
         (RHOS, "[0.5]\nreports: [rotation]", ("report rotation", "curvature_ratio has one value")),
         (*added(SAMPLED.replace("[5, 10]", "[10, 5]")), ("must be <",)),

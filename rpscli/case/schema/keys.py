@@ -27,7 +27,7 @@ from rpscli.case.schema.fields import (
     Whole,
 )
 from rpscli.case.text.document import Fault, Path, dotted, path_of
-from rpscli.errors import listed, nearest
+from rpscli.errors import alike, listed, nearest
 
 
 def fields_of(section: type[BaseModel]) -> dict[str, FieldInfo]:
@@ -141,9 +141,10 @@ def unknown_key(
     elif (meant := _meant(model, parent, str(key))) is None:
         section = section_at(model, parent)
         fields = [*fields_of(section)] if section else []
-        if parent and len(fields) > 12:
-            fields[12:] = [f"{len(fields) - 12} more (rps explain {dotted(parent)})"]
         remedy = f"; known here: {listed(fields, 'and') if fields else ''}"
+        if parent and len(fields) > 12:
+            near = ", ".join(alike(str(key), fields, 3))
+            remedy = f"; near are {near}; `rps explain {dotted(parent)}` lists all"
     elif meant[-1] != key:
         remedy = f"; did you mean {dotted(meant)}?"
     else:

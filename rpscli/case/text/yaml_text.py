@@ -168,20 +168,20 @@ class _Reader:
             raise CaseError(f"{place}: the anchor holds an alias of itself; write the value out")
         self.open_nodes.append(node)
         value: Any = None
-        tag = node.tag.removeprefix(TAG)
+        tag, named = node.tag.removeprefix(TAG), f"{dotted(path)}: " if path else ""
         if isinstance(node, MappingNode) and tag == "map":
             value = {key: self.value(item, (*path, key)) for key, item in self.pairs(node, path)}
         elif isinstance(node, SequenceNode) and tag == "seq":
             written = self.text[node.start_mark.index : node.end_mark.index]
             if node.flow_style and (text := _comma_in_list(written)):
-                self.fault(path, node, f"{dotted(path)}: {text}" if path else text)
+                self.fault(path, node, named + text)
             else:
                 value = [self.value(item, (*path, i)) for i, item in enumerate(node.value)]
         elif isinstance(node, ScalarNode) and tag in SCALARS:
             try:
                 value = _scalar(tag, node.value)
             except ValueError as error:
-                self.fault(path, node, f"{dotted(path)}: {error}")
+                self.fault(path, node, f"{named}{error}")
         else:
             self.fault(path, node, f"the YAML tag {node.tag} is not used here; remove it")
         self.open_nodes.pop()

@@ -113,9 +113,10 @@ def _part(of: Element, tag: str, **said: object) -> Element:
 def model_text(structure: PodiumStructure, title: str, note: str) -> tuple[str, str]:
     """The model as a file, and its limits in words."""
     bearing, engine = structure.bearing, replace(structure, impact_law=ImpactLaw()).restitution
-    other = f"; the case has {structure.restitution:.4g}, and histories part at the first impact"
+    e = structure.restitution
+    other = f"; the case has e = {e:.4g}, and histories part at the first impact"
     limits = LIMITS.format(
-        engine=engine, other="" if abs(engine - structure.restitution) < SAME else other,
+        engine=engine, other="" if abs(engine - e) < SAME else other,
         tilt=bearing.beta or bearing.critical_rotation, note=note,
     )  # fmt: skip
     model = description(bodies_of(structure), 2 if structure.cap_beam_mass else 1)

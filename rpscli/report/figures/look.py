@@ -147,17 +147,18 @@ def read_style(path: Path) -> dict[str, Any]:
                 f"--style {str(path)[:200]}: cannot be read: {reason}; name a style file of"
                 " matplotlib"
             ) from None
+    if any("axes.prop_cycle" in each for each in (*found, *texts)):
+        raise UsageError(
+            f"--style {path}: axes.prop_cycle is gone: colours are the program's own, and stand for"
+            " things; remove the line, or draw into axes of yours with rpscli.figures"
+        )
     if texts:
         # Of a file that was not meant, a line is not shown.
         tail = "" if texts[0].startswith("Bad value") else r" \(['\"].*|"
         first = re.sub(rf"{tail}(?<=^Bad key .{{20}}).*(?= in file)", "", texts[0])
         more = f" (and {len(texts) - 1} more)" if len(texts) > 1 else ""
+        more += "; a # begins a remark there: write colours without it" * ("#" in first)
         raise UsageError(f"--style {path}: {first[:200]}{more}")
-    if "axes.prop_cycle" in found:
-        raise UsageError(
-            f"--style {path}: axes.prop_cycle is gone: colours are the program's own, and stand for"
-            " things; remove the line, or draw into axes of yours with rpscli.figures"
-        )
     # Which window figures are shown in is no matter of style: matplotlib would say so each time.
     return {key: value for key, value in found.items() if key not in NO_STYLE}
 

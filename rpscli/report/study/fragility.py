@@ -25,7 +25,7 @@ from rpscli.report.figures import style
 from rpscli.report.study import panels
 from rpscli.report.study.report import Found, Report, keyed, labels
 from rpscli.report.study.statistics import counted_columns, share_columns
-from rpscli.report.table import Column
+from rpscli.report.table import Column, told_once
 from rpscli.sweep.points import StudyPoints
 from rpscli.sweep.statistics.fractiles import CONFIDENCE, Share, share_of
 from rpscli.sweep.statistics.grouping import INTENSITY, Grouping, Histories, grouping
@@ -236,13 +236,9 @@ class Fragilities:
         return panels.panel_figure([*groups], shown, draw, in_row=row, x_label=x_label, **words)
 
     def told(self, notes: Iterable[tuple[Fragility, str | None]]) -> Iterator[str]:
-        """Notes on curves, each once with all that it is about."""
-        by_text: dict[str, list[str]] = {}
-        for curve, text in notes:
-            if text:
-                by_text.setdefault(text, []).append(self.named(curve))
-        for text, named in by_text.items():
-            yield f"{'; '.join(named)}: {text}"
+        """Notes on curves, a line for each kind."""
+        named = ((self.named(curve), text) for curve, text in notes if text)
+        yield from told_once(named, len(self.curves), "curves")
 
     def named(self, curve: Fragility) -> str:
         """A curve's limit state with the values of its systems."""
