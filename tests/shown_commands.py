@@ -13,13 +13,15 @@ import subprocess
 import sys
 from collections.abc import Iterable
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from click.testing import CliRunner, Result
 
 from rpscli.cli import program
 
 ROOT = Path(__file__).parents[1]
+PACKAGE = ROOT / "rpscli"
+GUIDE, THEORY, VERIFICATION = (PACKAGE / f"{x}.md" for x in ("GUIDE", "THEORY", "VERIFICATION"))
 
 QUICK = "tests/test_readme.py::test_commands_run_in_their_order"
 LONG = "tests/test_readme.py::test_commands_of_a_page_run"
@@ -213,3 +215,18 @@ def table(document: Path, below: str) -> list[list[str]]:
     rows = document.read_text("utf-8").partition(below)[2].partition("\n|")[2].split("\n\n")[0]
     cells = [[c.strip() for c in row.strip("|").split("|")] for row in rows.splitlines()]
     return [cells[0], *cells[2:]]
+
+
+NUMBER = re.compile(r"(?<![\w.])(?:(?<![\d-])[-+])?(?:\d+\.?\d*|\.\d+)(?:e-?\d+)?")
+
+
+def told(document: Path, after: str, *computed: Any) -> None:
+    """The numbers that follow some words, with "..." between them, are these, as far as shown."""
+    text = " ".join(document.read_text("utf-8").split())
+    for words in after.split(" ... "):
+        _, found, text = text.partition(words)
+        assert found, words
+    for number, value in zip(NUMBER.findall(text), map(float, computed), strict=False):
+        digits, _, power = number.rstrip(".").partition("e")
+        last = 10.0 ** (int(power or 0) - len(digits.partition(".")[2]))
+        assert abs(float(number) - value) < 0.502 * last, (after, number, value)

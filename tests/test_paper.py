@@ -27,11 +27,11 @@ from paper_structures import (
 )
 from physics.test_free_rocking import SINE, least_amplitude
 from reproduction.test_histories import PRINTED
+from shown_commands import ROOT
 
 import rpscli
 from rpscli.model.bearing import Bearing
 
-ROOT = Path(__file__).parents[1]
 PAPER = ROOT / "rpscli" / "paper.md"
 _, HEAD, BODY = re.split(r"^---\n", PAPER.read_text("utf-8"), maxsplit=2, flags=re.MULTILINE)
 TEXT = " ".join(BODY.split())

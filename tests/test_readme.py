@@ -21,11 +21,14 @@ import yaml
 from click.testing import CliRunner
 from paper_structures import needs_compiled_kernels
 from shown_commands import (
+    GUIDE,
     LONG,
     OTHERS,
     PAGES,
     QUICK,
     ROOT,
+    THEORY,
+    VERIFICATION,
     blocks,
     command,
     not_printed,
@@ -46,15 +49,13 @@ from rpscli.user_cache import VARIABLE
 from rpscli.version import VERSION
 
 README = ROOT / "README.md"
-GUIDE = ROOT / "rpscli" / "GUIDE.md"
 WORKFLOW = ROOT / ".github" / "workflows" / "acceptance.yml"
-THEORY = ROOT / "rpscli" / "THEORY.md"
 GALLERY = ROOT / "cases" / "README.md"
 DOCUMENTS = [
     README,
     GUIDE,
     THEORY,
-    ROOT / "rpscli" / "VERIFICATION.md",
+    VERIFICATION,
     ROOT / "CHANGELOG.md",
     *sorted((ROOT / "cases").rglob("README.md")),
 ]

@@ -12,14 +12,13 @@ import pytest
 from oracles.test_assumptions import SIZES
 from paper_structures import Array, known, podium
 from scipy.optimize import brentq
+from shown_commands import ROOT, THEORY
 
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.model.contact import Contact, ContactKind
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.superstructure import profile_stiffnesses
 
-ROOT = Path(__file__).parents[1]
-THEORY = ROOT / "rpscli" / "THEORY.md"
 TEXT = re.sub(r"^```.*?^```$", "", THEORY.read_text("utf-8"), flags=re.MULTILINE | re.DOTALL)
 LABEL = re.compile(r"^(?: {4,6}|\|).* \((\d+)\.(\d+)\)(?: \|)?$", re.MULTILINE)
 """At the right of a formula, or in the last column of a table of formulas."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from paper_structures import podium
+from shown_commands import VERIFICATION, table
 
 from rpscli.analyses.modal import UpliftedModes, modal
 
@@ -15,26 +16,9 @@ ROCKING = 0.0
 """Stands for the rocking phase, in which the radius plays no part."""
 
 AMPLIFICATION = {
-    (1, 0.25): (1.395, 1.396),
-    (1, 0.5): (1.395, 1.395),
-    (1, 1.5): (1.396, 1.395),
-    (1, ROCKING): (1.376, 1.377),
-    (2, 0.25): (1.634, 1.613),
-    (2, 0.5): (1.635, 1.612),
-    (2, 1.5): (1.638, 1.608),
-    (2, ROCKING): (1.583, 1.569),
-    (3, 0.25): (1.732, 1.663),
-    (3, 0.5): (1.734, 1.660),
-    (3, 1.5): (1.742, 1.650),
-    (3, ROCKING): (1.664, 1.618),
-    (6, 0.25): (1.836, 1.688),
-    (6, 0.5): (1.844, 1.676),
-    (6, 1.5): (1.875, 1.627),
-    (6, ROCKING): (1.741, 1.661),
-    (10, 0.25): (1.869, 1.703),
-    (10, 0.5): (1.890, 1.668),
-    (10, 1.5): (1.974, 1.528),
-    (10, ROCKING): (1.753, 1.703),
+    (int(n), rho): tuple(map(float, cell.split(" / ")))
+    for n, *cells in table(VERIFICATION, "reference values with three decimals")[1:]
+    for rho, cell in zip((0.25, 0.5, 1.5, ROCKING), cells, strict=True)
 }
 """By storeys and rho: frequency factor, damping factor."""
 
@@ -77,6 +61,7 @@ def test_frequency_parameter_of_six_storeys(rho: float, R: float) -> None:
     modes = uplifted(6, rho, R)
     assert modes.frequency_parameter == known(model)
     assert modes.frequency_parameter_rigid == known(rigid)
+    assert f"{model:.3f} / {rigid:.3f}" in " ".join(VERIFICATION.read_text("utf-8").split())
 
 
 def test_figure_3() -> None:

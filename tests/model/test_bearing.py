@@ -11,6 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from paper_structures import FLAT
 from scipy.optimize import brentq
+from shown_commands import VERIFICATION, table
 
 from rpscli.model.bearing import Bearing
 from rpscli.model.podium import PodiumStructure
@@ -31,6 +32,13 @@ GEOMETRIES = [
     (0.15, FLAT, "0.0000", "0.1489", "0.4450", "0.033"),
     (0.20, FLAT, "0.0000", "0.1974", "0.5883", "0.058"),
 ]
+
+
+def test_the_printed_digits_are_those_of_the_verification() -> None:
+    shown = table(VERIFICATION, "Geometry for `R = 1.5 m`")[1:]
+    digits = {str(number) for row in GEOMETRIES for number in row[2 if row[1] else 4 :]}
+    numbers = {number for row in shown for cell in row[2:] for number in cell.split(" / ")}
+    assert numbers == {number.removeprefix("0") for number in digits} | {"0", "alpha"}
 
 
 def printed(digits: str, units: float = 0.5) -> object:

@@ -12,6 +12,7 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 import pytest
 from paper_structures import RecordLoader, known, needs_compiled_kernels, oracle_system, podium
+from shown_commands import VERIFICATION, table
 from two_components import History, followed, frame, pair, part_of_pair
 
 from rpscli.analyses.settings import TimeHistorySettings
@@ -65,18 +66,10 @@ class Row(NamedTuple):
 
 
 ROWS = [
-    Row("farfield/1/b", 3, 0.15, 0.5, 0.1494765, 2.486381, 127),
-    Row("farfield/1/b", 6, 0.20, 0.25, 0.1107931, 1.779236, 89),
-    Row("farfield/1/b", 9, 0.15, 1.5, 0.1057440, 2.270530, 373),
-    Row("farfield/1/b", 6, 0.15, 0.0, 0.1206736, 1.865404, 205),
-    Row("farfield/17/a", 6, 0.20, 0.25, 0.0147332, 1.682869, 223),
-    Row("farfield/17/a", 9, 0.15, 1.5, 0.0109837, 1.385401, 301),
-    Row("farfield/17/a", 6, 0.15, 0.0, 0.0374753, 1.604492, 627),
-    Row("nearfield_pulse/9/a", 3, 0.15, 0.5, 0.1885908, 2.382181, 226),
-    Row("nearfield_pulse/9/a", 6, 0.20, 0.25, 0.1807587, 1.845996, 93),
-    Row("nearfield_pulse/9/a", 9, 0.15, 1.5, 0.2042489, 1.970985, 126),
-    Row("nearfield_pulse/9/a", 6, 0.15, 0.0, 0.1222458, 1.515862, 176),
-]
+    Row(record.replace(" ", "/"), int(n), float(tan), float(rho.replace("flat", "0")), float(theta),
+        float(shear), int(impacts))
+    for record, n, tan, rho, theta, shear, impacts in table(VERIFICATION, "`V_b` is the")[1:]
+]  # fmt: skip
 
 
 @pytest.mark.evidence("buildings on bearings under earthquakes", "program")

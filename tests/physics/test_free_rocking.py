@@ -23,6 +23,7 @@ from paper_structures import (
     waves,
 )
 from scipy.optimize import brentq
+from shown_commands import VERIFICATION, told
 
 from rpscli.analyses.demand import demand
 from rpscli.analyses.results import TimeHistoryResult
@@ -279,6 +280,7 @@ def test_makris_and_roussos_linear(
     unit = linear.gravity * SLENDER
     least = least_amplitude(linear, unit * shape, 1.0, 3.0) * real.bearing.alpha
     assert least == pytest.approx(falls, abs=0.5 * PUBLISHED_STEP)
+    told(VERIFICATION, f"| {2 * half_width:g} m x {2 * half_height:g} m, linear, ... g |", least)
 
 
 @needs_compiled_kernels
@@ -292,3 +294,4 @@ def test_makris_and_roussos_nonlinear(shape: Array, published: float, tolerance:
     structure = replace(block(0.5, 1.5), gravity=9.81)
     least = least_amplitude(structure, structure.gravity * shape, 0.4, 0.7)
     assert least == pytest.approx(published, abs=tolerance)
+    told(VERIFICATION, f"nonlinear, one {'sine' if shape is SINE else 'cosine'} | ... g |", least)

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 import numpy as np
 import pytest
 from paper_structures import Array
+from shown_commands import told
 
 from reproduction.conftest import CASES, Reproduce, Row
 from rpscli.analyses.modal import UpliftedModes, modal
@@ -94,7 +95,7 @@ def test_figure_4a_size(reproduce: Reproduce) -> None:
 
     assert np.all(np.abs(excess("critical")) < 0.015)
     assert np.all(np.diff(excess("1.5")) < 0.0)  # the smaller, the worse
-    assert excess("1.5")[0] > 0.07
+    told(CASES / "README.md", "off for R < 1.5 and rho > 1.5 |", 100 * excess("1.5")[0], 0.5, 1.5)
     # less than while rocking, for every size
     rocking = reproduce("figure_4a", "figure_4a_rocking")
     slow = np.array(values(rolling, rho="critical", result=f"rolling.{OWN}"))

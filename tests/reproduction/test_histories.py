@@ -19,7 +19,7 @@ import pytest
 from numpy.typing import NDArray
 from paper_structures import Array, RecordLoader, needs_compiled_kernels
 from scipy.stats import beta
-from shown_commands import ROOT, run_all, table
+from shown_commands import ROOT, THEORY, run_all, table, told
 from sweep.small_studies import study_file
 
 from reproduction.conftest import CASES, Reproduce, Row, rows_of
@@ -115,16 +115,16 @@ def test_figure_7(points: list[Row]) -> None:
     ).reshape(3, 3, 4, 100)
     flat = ratio[:, :, FLAT]
     small = (flat > 0.0) & (flat < 0.5)
-    for place, (median, left) in enumerate(((0.06, 8), (0.10, 6), (0.22, 3))):
-        curved = ratio[:, :, place]
-        assert np.all(np.isfinite(curved[small]))
-        # almost identical for rho_cr and 0.5; for 1.5 some 10 % smaller
-        assert np.median(np.abs(curved[small] / flat[small] - 1.0)) < median
-        assert 0.85 < np.median(curved[small] / flat[small]) < 1.0
-        assert np.corrcoef(curved[small], flat[small])[0, 1] > 0.8
-        # few structures overturn with curved ends alone, many with flat ends alone
-        assert np.sum(np.isinf(curved) & (flat < 1.0)) <= left
-        assert np.sum(np.isfinite(curved) & np.isinf(flat)) > 120
+    curved = np.moveaxis(ratio[:, :, :FLAT], 2, 0)
+    of_flat = curved[:, small] / flat[small]
+    assert all(np.corrcoef(each, flat[small])[0, 1] > 0.8 for each in curved[:, small])
+    off, less = np.median(np.abs(of_flat - 1.0), axis=1), 1.0 - np.median(of_flat, axis=1)
+    told(
+        README, "| median difference", *100 * off[:2], 0.5, 1.5, *100 * np.array([off[2], less[2]])
+    )
+    alone = np.sum(np.isinf(curved) & (flat < 1.0), axis=(1, 2, 3))
+    stand = np.sum(np.isfinite(curved) & np.isinf(flat), axis=(1, 2, 3))
+    told(README, "stay below alpha |", *alone, 900, 0.5, 1.5, *stand)
 
 
 @pytest.mark.evidence("buildings on bearings under earthquakes", "published")
@@ -133,21 +133,25 @@ def test_figure_8_small_rotations_and_slopes(points: list[Row]) -> None:
     rotation = arranged(column(points, "rotation_ratio"))
     demand = arranged(column(points, "base_shear_ratio"))
     survived = arranged(np.array([row["outcome"] == "survived" for row in points]))
-    slopes = np.empty((3, 3))
+    slopes, least = np.empty((2, 3, 3))
     # The paper says 1 for small rotations. That is the bound of buildings that hardly ring; the
     # stiff ones have V_b/V_st >= 1.3 already after the first small impact.
-    for storey, least in enumerate((1.37, 1.19, 1.07)):
+    for storey in range(3):
         for rho in range(3):
             kept = np.asarray(survived[:, storey, rho], dtype=bool)
             x = np.asarray(rotation[:, storey, rho], dtype=float)[kept]
             y = np.asarray(demand[:, storey, rho], dtype=float)[kept]
-            assert y[x < 0.01].min() == pytest.approx(least, abs=0.03)
+            least[storey, rho] = y[x < 0.01].min()
             assert 1.0 < np.median(y[x < 0.01]) < np.median(y[x > 0.1]) - 0.2
             slopes[storey, rho] = np.polyfit(x[x > 0.1], y[x > 0.1], 1)[0]
     # saturated: beyond a tenth of theta_cr it grows for positive stiffness alone
     assert np.all(np.abs(slopes[:, :2]) < 0.2)
     assert np.all(slopes[:, 2] > 0.35)
     assert np.all(np.diff(slopes[:, 2]) > 0.0)  # the more so the more flexible the building
+    told(README, "theta_cr/10 slopes of", slopes[:, :2].min(), slopes[:, :2].max(), *slopes[:, 2])
+    three, six, nine = least.min(axis=1)
+    told(README, "least values", nine, 9, six, 6, three, 3)
+    told(THEORY, "small rotations | not below", nine, six, three)
 
 
 @pytest.mark.evidence("buildings on bearings under earthquakes", "published")
@@ -174,8 +178,8 @@ def test_figure_9(reproduce: Reproduce, fema_record: RecordLoader) -> None:
         for name in ("mean", "largest", "fixed_mean", "fixed_largest")
     )
     # mean and maximum are close together when isolated
-    assert np.max(largest / mean) < 2.0
-    assert np.min(fixed_largest / fixed_mean) > 2.0
+    fixed = fixed_largest / fixed_mean
+    told(README, "a ratio of at most", np.max(largest / mean), fixed.min(), fixed.max())
     # least so for positive stiffness, in the tall building
     spread = (largest / mean)[-27:].reshape(3, 9).mean(axis=1)
     assert spread[2] > 1.1 * max(spread[:2])
@@ -184,14 +188,13 @@ def test_figure_9(reproduce: Reproduce, fema_record: RecordLoader) -> None:
 def test_the_printed_table_is_that_of_the_readme() -> None:
     readme = (CASES / "README.md").read_text(encoding="utf-8")
     section = readme.partition("## Table 3")[2].partition("\n## ")[0]
-    cells = re.findall(r"0\.(\d\d) / 0\.(\d\d)", section)
+    cells = re.findall(r"0\.(\d\d) / 0\.(\d\d) \(([\d.+-]+)\)", section)
     assert len(cells) == PRINTED.size
-    assert [int(printed) for _, printed in cells] == PRINTED.ravel().tolist()
+    assert [int(printed) for _, printed, _ in cells] == PRINTED.ravel().tolist()
     head, *rows = table(CASES / "README.md", "The counts themselves")
     counts = [row[head.index("as recorded")] for row in rows]
-    assert [int(computed) for computed, _ in cells] == list(map(int, counts))
-    differences = [int(computed) - int(printed) for computed, printed in cells]
-    assert np.mean(np.abs(differences)) <= 2.0
+    assert [int(computed) for computed, _, _ in cells] == list(map(int, counts))
+    assert all(int(one) - int(other) == round(100 * float(by)) for one, other, by in cells)
 
 
 README = CASES / "README.md"
@@ -223,14 +226,14 @@ def test_counts_of_table_3(
     fema_record: RecordLoader,
 ) -> None:
     head, *rows = COUNTS
-    told = np.array([int(row[head.index(name)]) for row in rows])
+    shown = np.array([int(row[head.index(name)]) for row in rows])
     assert [int(row[head.index("printed")]) for row in rows] == PRINTED.ravel().tolist()
     counts = overturned(reproduce("table_3", "points", *overrides)).sum(axis=3)
-    assert np.abs(counts.ravel() - told).sum() <= FEW
+    assert np.abs(counts.ravel() - shown).sum() <= FEW
     (option, *numbers) = next(row[1:] for row in CHOICES if row[0] == choice)
     assert option.strip("`") == (f"--set {quoted(overrides[0])}" if overrides else "")
-    off = (told - PRINTED.ravel()) / 100
-    means = [f"{mean:.3f}" for mean in told.reshape(9, 4).mean(axis=0) / 100]
+    off = (shown - PRINTED.ravel()) / 100
+    means = [f"{mean:.3f}" for mean in shown.reshape(9, 4).mean(axis=0) / 100]
     rest = [f"{np.abs(off).mean():.3f}", f"{off.mean():+.3f}", f"{np.abs(off).max():.2f}"]
     assert numbers == means + rest
 
@@ -276,12 +279,12 @@ def test_what_the_flexible_law_changes(reproduce: Reproduce, fema_record: Record
     both = [reproduce("figure_8", "figure_8", *law) for law in laws]
     names = ("base_shear_ratio_at_uplift", "saturation_rotation_ratio",
              "saturation_base_shear_ratio", "k_s")  # fmt: skip
-    for place, (n, rho, *told) in enumerate(table(README, "Figure 8, bilinear summary")[1:]):
+    for place, (n, rho, *shown) in enumerate(table(README, "Figure 8, bilinear summary")[1:]):
         found = [
             " / ".join(f"{float(rows[place][name]):.{digits}f}" for rows in both)
             for name, digits in zip(names, (2, 3, 2, 2), strict=True)
         ]
-        assert (n, rho, *told) == (n, rho, *found)
+        assert (n, rho, *shown) == (n, rho, *found)
     both = [reproduce("figure_9", "figure_9", *law) for law in laws]
     assert [*profile_rows(both)] == table(README, "Figure 9, tan(alpha) = 0.15")[1:]
     text = " ".join(README.read_text("utf-8").split())
@@ -341,29 +344,34 @@ def cells_of(rows: Sequence[Row], scales: dict[str, float], rank: int = 6) -> li
     return [*cells, f"{k} ({100 * low:.0f} to {100 * beta.ppf(0.975, k + 1, of - k):.0f} %)"]
 
 
+CONTACT = ROOT / "cases/studies/contact/README.md"
 FORCES = {"base_shear_ratio": 1.0, "max_floor_acceleration": STANDARD_GRAVITY}
 
 
 @pytest.mark.long
 def test_what_the_ends_bear_on(tmp_path: Path, fema_record: RecordLoader) -> None:
-    told = table(ROOT / "cases/studies/contact/README.md", "rps sweep")[1:]
+    shown, lifted = table(CONTACT, "rps sweep")[1:], {}
     for key, rows in groups_of("cases/studies/contact/contact.yaml", tmp_path).items():
         strongest = np.nanmax(np.append(column(rows, "max_impact_number"), 0.0))
         cells = cells_of(rows, {"max_rotation": math.atan(0.15), **FORCES})
-        assert [*key, *cells, f"{strongest:.2g}"] in told
+        assert [*key, *cells, f"{strongest:.2g}"] in shown
+        lifted[" ".join(key)] = np.sum(column(rows, "uplifts") > 0)
+    rigid, edges, plane = (lifted[f"0.15 {kind}"] for kind in ("rigid", "edges", "plane"))
+    told(CONTACT, "Rigid ends lift under", rigid, 20, edges, plane)
 
 
 @pytest.mark.long
 def test_both_components_on_joints(tmp_path: Path, fema_record: RecordLoader) -> None:
-    told = table(ROOT / "cases/studies/joints_both/README.md", "rps sweep")[1:]
+    shown = table(ROOT / "cases/studies/joints_both/README.md", "rps sweep")[1:]
     groups = groups_of("cases/studies/joints_both/joints_both.yaml", tmp_path)
-    assert len(groups) == len(told)
+    assert len(groups) == len(shown)
     for key, rows in groups.items():
         end = np.median(column(rows, "residual_rotation"))
         cells = cells_of(rows, {"rotation_ratio": 1.0, **FORCES})
-        assert [*key, *cells, f"{end:.1g}"] in told
+        assert [*key, *cells, f"{end:.1g}"] in shown
 
 
+LAW = ROOT / "cases/studies/impact_law/README.md"
 BUILDING = (
     "superstructure.storeys",
     "superstructure.period",
@@ -376,9 +384,7 @@ BUILDING = (
 @pytest.mark.long
 def test_numbers_of_the_study_of_impact_laws(tmp_path: Path) -> None:
     """Rotations and shears are of motions under which both stand and uplift."""
-    folder = ROOT / "cases/studies/impact_law"
-    text = " ".join((folder / "README.md").read_text("utf-8").split())
-    found = load_study(folder / "impact_law.yaml").run(tmp_path / "run").columns
+    found = load_study(LAW.with_name("impact_law.yaml")).run(tmp_path / "run").columns
     names = [found[name].astype(str) for name in ("record", *BUILDING, "podium.impact.law")]
     order = np.lexsort(names).reshape(2, 576, 44)  # flexible, then rigid
     fell = np.char.startswith(found["outcome"][order], "overturned")
@@ -390,24 +396,29 @@ def test_numbers_of_the_study_of_impact_laws(tmp_path: Path) -> None:
         return np.asarray(rigid / flexible)
 
     of_all, differ = 100 * fell.mean(axis=(1, 2)), np.abs(np.diff(fell.sum(axis=2), axis=0))
-    assert "{:.2f} % with `flexible` and {:.2f} % with `rigid`".format(*of_all) in text
-    assert f"in {(differ <= 1).sum()} of 576 buildings the counts differ" in text
-    assert differ.max() == 5
+    told(LAW, "tell the laws apart.** It is", of_all[0], 100 * (differ <= 1).mean(), 44)
+    assert (differ.max(), round(of_all[1], 1)) == (5, round(of_all[0], 1))
     rotation = ratios("max_rotation")
     off = np.abs(np.nanmedian(rotation, axis=1) - 1)
-    assert f"within 2 % in {100 * (off <= 0.02).mean():.0f} % of" in text
-    assert f"within {100 * off.max():.1f} % in all" in text
-    low, high = np.nanquantile(rotation, [0.05, 0.95])
-    assert f"is below {low:.2f} or above {high:.2f} times its other value" in text
+    told(LAW, "median rotation**: within", 2, 100 * (off <= 0.02).mean(), 100 * off.max())
+    changed = 100 * (fell[0] != fell[1]).mean()
+    told(LAW, "One motion in ten is below", *np.nanquantile(rotation, [0.05, 0.95]), changed)
+    whole = np.where(fell, np.inf, found["max_rotation"][order])
+    high = np.quantile(whole, 0.84, axis=2, method="inverted_cdf")
+    high = high[:, np.isfinite(high).all(axis=0) & (high > 0).all(axis=0)]
+    moves = 100 * (np.quantile(high[1] / high[0], [0.05, 0.95]) - 1)
+    told(LAW, "over 44 motions moves by", *moves)
     shear = ratios("max_base_shear")
     period, eta, slope = (found[name][order[0, :, 0]].astype(float) for name in BUILDING[1:4])
     stout = eta * slope**2 > 0.12 - 1e-9
     stiff = shear[stout & (period == 0.15)]
-    lowest = np.nanmedian(stiff, axis=1).min()
-    words = f"{100 * (1 - np.nanmedian(stiff)):.0f} % lower in the median, up to"
-    assert f"{words} {100 * (1 - lowest):.0f} % in a building" in text
+    less = 100 * (1 - np.array([np.nanmedian(stiff), np.nanmedian(stiff, axis=1).min()]))
+    told(LAW, "or more. There `rigid` is", *less)
+    told(THEORY, "on stout columns: `rigid` is", less[0])
     assert np.nanquantile(stiff, 0.05) < 0.5
     less = 100 * (1 - np.nanquantile(shear[stout & (period == 0.3)], [0.5, 0.05]))
-    assert "{:.0f} % lower in the median, {:.0f} % in one motion of twenty".format(*less) in text
+    told(LAW, "in the same range `rigid` is", *less)
     ends = 100 * (np.nanquantile(shear[period >= 0.6], [0.05, 0.95]) - 1)
-    assert "nine of ten motions are within {:.0f} and {:+.0f} %".format(*ends) in text
+    told(LAW, "nine of ten motions are within", *ends)
+    of_shear, of_drift = (np.nanmedian(of, axis=1) for of in (shear, ratios("drift_ratio")))
+    assert np.min(np.corrcoef(of_shear, of_drift)) > 0.9
