@@ -144,7 +144,7 @@ def compute(history: History, conditions: Sequence[Condition], out: Output) -> T
     reasons = [(limit.source, no_bound(limit.name, case.structure)) for limit in both]
     if lines := [f"{source}: {why}" for source, why in reasons if why]:
         raise UsageError("\n".join(lines))  # known before minutes are spent
-    with patience(case, ground.horizontal.duration, out.terminal):
+    with patience(case, ground, out.terminal):
         result = time_history(case.structure, ground, case.analysis)
     folder.add_all(timehistory_files(result, case.title, out.look))
     if history.floor_spectra:

@@ -422,7 +422,7 @@ def _most_seconds(layout: StudyPoints, point: Point) -> float:
     if layout.plan.analysis == "timehistory":
         with suppress(RpsError):  # which the point tells when it is tried
             request = layout.context.history(point)
-            return most_seconds(request.structure, request.settings, request.motion.duration)
+            return most_seconds(request.structure, request.settings, request.motion)
     return 0.0
 
 

@@ -263,7 +263,7 @@ def judged_history(
     except ValueError:  # an arc that does not reach its wedge, a restitution below zero
         return "refused"
     motion, chosen = shaking(random, system, pairs=pairs)
-    if most_seconds(system, chosen, motion.horizontal.duration) > MOST_SECONDS:
+    if most_seconds(system, chosen, motion) > MOST_SECONDS:
         return "not followed: stiff floors on light columns take millions of steps"
     here = time_history(system, motion, chosen, with_fixed_base=False)
     assert here.outcome in OUTCOMES

@@ -228,8 +228,8 @@ for seed in range(200):
         continue
     record, up = motions(random)
     chosen = settings(random, system, record)
-    if most_seconds(system, chosen, record.duration) < 0.3:
-        motion = MotionComponents(record, up)
+    motion = MotionComponents(record, up)
+    if most_seconds(system, chosen, motion) < 0.3:
         systems = stacked_systems([(system, replace(chosen, free_vibration=2.0))])
         run = run_of(systems, [motion], [Request(0, 0)], rows=20000, events=4000)
         follow(run, lanes=1)

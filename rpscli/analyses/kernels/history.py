@@ -196,7 +196,7 @@ def sampled_history(
     systems = stacked_systems([(structure, settings)], pairs=pairs)
     refuse_endless(structure, settings, motion, finer)
     rows = longest_history(structure, settings, motion) * finer
-    seconds = most_seconds(structure, settings, motion.duration)
+    seconds = most_seconds(structure, settings, motion)
     events = FIRST_LOG
     while True:
         run = run_of(

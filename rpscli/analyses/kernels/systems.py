@@ -13,6 +13,7 @@ from rpscli.model.devices import DEVICES, OwnDamper
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import Superstructure
 from rpscli.physics.state import SYSTEM, Record, record_type, records
+from rpscli.records.ground_motion import MotionComponents
 
 DEVICE_KINDS = {kind: code for code, kind in enumerate((*DEVICES.values(), OwnDamper))}
 """Codes of laws in the kernels."""
@@ -327,15 +328,15 @@ def longest_free_vibration(structure: PodiumStructure, settings: TimeHistorySett
 
 
 def most_seconds(
-    structure: PodiumStructure, settings: TimeHistorySettings, duration: float
+    structure: PodiumStructure, settings: TimeHistorySettings, motion: MotionComponents
 ) -> float:
-    """About the computing time of that [s], for the parameters of `most_steps`."""
-    modes = structure.storeys * len(directions(structure, pairs=False))
+    """About the computing time of these [s]."""
+    modes = structure.storeys * len(directions(structure, pairs=motion.y is not None))
     each = STEP_SECONDS + MODE_SECONDS * modes
     above = structure.superstructure
     if above is not None and above.strengths is not None:
         each += STRENGTH_SECONDS * structure.storeys**2
-    return each * most_steps(structure, settings, duration)
+    return each * most_steps(structure, settings, motion.duration)
 
 
 def bedded_rate(structure: PodiumStructure) -> float:

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from rich.text import Text
 
     from rpscli.case.case import Case
+    from rpscli.records.ground_motion import MotionComponents
     from rpscli.sweep.run import Progress
 
 WARNINGS_SHOWN = 5
@@ -351,14 +352,16 @@ def watched(what: str, terminal: Terminal, numbers: range, *, many: int = MANY) 
             yield number
 
 
-def patience(case: Case, duration: float, terminal: Terminal) -> AbstractContextManager[None]:
-    """Around a history under a record of a duration [s]: what a long one costs is said before."""
+def patience(
+    case: Case, motion: MotionComponents, terminal: Terminal
+) -> AbstractContextManager[None]:
+    """Around a history: what a long one costs is said before."""
     from rpscli.analyses.kernels.systems import most_seconds, most_steps
 
-    seconds = most_seconds(case.structure, case.analysis, duration)
+    seconds = most_seconds(case.structure, case.analysis, motion)
     if seconds < LONG:
         return nullcontext()
-    steps = most_steps(case.structure, case.analysis, duration)
+    steps = most_steps(case.structure, case.analysis, motion.duration)
     terminal.note(
         f"a long history: up to {steps:.2g} steps of {case.structure.storeys} modes, {seconds:.0f}"
         " s if it does not come to rest before; analysis.free_vibration shortens it"
