@@ -159,7 +159,7 @@ def neighbours_texts(result: TimeHistoryResult, found: Sequence[Neighbour]) -> I
         turned = [each for each in found if each.turned]
         beside = f"; turned by 1 deg {_reached(turned)}" if turned else ""
         yield (
-            f"one history: repeated with 1 % less or more motion {_reached(near)}; with up to 3 %"
+            f"one history: with 1 % less or more motion {_reached(near)}; with up to 3 %"
             f" {_reached(motions)}{beside}. Motions with {'passes' if passes else 'impacts'} are"
             " chaotic: judge by several records"
         )

@@ -84,7 +84,7 @@ def test_a_case_and_its_history_are_on_one_page(rps: Invoke, rps_json: InvokeJso
         "superstructure.storey_height 3", "atan(0.15)", "columns never slide",
         "rps timehistory small.yaml --set limits.drift_ratio=0.9", "restitution at impact: e = ",
         f"{shown(history['max_rotation'])} rad", "ne horizontal direction at a time",
-        "one history: repeated with 1 % less or more motion", "judge by several records",
+        "one history: with 1 % less or more motion", "judge by several records",
     ):  # fmt: skip
         assert part in text
     assert Path("out.html").stat().st_size < 1_000_000
