@@ -226,11 +226,11 @@ def test_an_offset_is_a_warning(tmp_path: Path) -> None:
 
 
 def test_a_peak_that_the_header_contradicts_is_a_warning(tmp_path: Path) -> None:
-    text = f"units: g\ndt: 0.005\nPeak acc (gal): {{}}\n{ALONE}"
-    assert load(tmp_path, text.format(f"{100.0 * STANDARD_GRAVITY * PEAK:.2f}")).warnings == ()
-    (warning,) = load(tmp_path, text.format("98.07")).warnings
-    assert "the values peak at 0.192696" in warning
-    assert "the header says 0.100004" in warning
+    for line in ("Peak acc (gal): {}", "Peak acceleration = {} gal at 2 s"):
+        text = f"units: g\ndt: 0.005\n{line}\n{ALONE}"
+        assert load(tmp_path, text.format(f"{100.0 * STANDARD_GRAVITY * PEAK:.2f}")).warnings == ()
+        (warning,) = load(tmp_path, text.format("98.07")).warnings
+        assert "the values peak at 0.192696 and the header says 0.100004" in warning
 
 
 AT2 = "ACCELERATION TIME SERIES IN UNITS OF G\nNPTS=   200, DT=   .0050 SEC\n"

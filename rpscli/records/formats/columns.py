@@ -48,8 +48,9 @@ _UNITS_KEY = (
     rf"(?:[\s(\[]*(?:({UNIT_PATTERN}))|\s*([^,;]+))"
 )
 _PEAK = (
-    rf"\b(?:peak|max\w*)\s*(?:ground\s*)?acc\w*\s*[\[(]\s*({UNIT_PATTERN})\s*[\])]"
-    rf"\s*[=:]\s*({NUMBER_PATTERN})(?=\s*$)"
+    r"\b(?:peak|max\w*)\s*(?:ground\s*)?acc\w*\s*"
+    rf"(?:[\[(]\s*({UNIT_PATTERN})\s*[\])]\s*[=:]\s*({NUMBER_PATTERN})(?=\s*$)"
+    rf"|[=:]\s*({NUMBER_PATTERN})\s*({UNIT_PATTERN}))"
 )
 _CELL = re.compile(r"([^\[(]*?)[\s_]*(?:[\[(]([^\])]*)[\])]|\bin\s+(\S.*))?", re.IGNORECASE)
 _TIME = re.compile(r"time|t|seconds?|sec", re.IGNORECASE)
