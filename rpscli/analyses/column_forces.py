@@ -93,7 +93,8 @@ def sliding_time(structure: PodiumStructure, trace: Trace) -> float:
     limit, slides = AMPLE * structure.bearing.slenderness, np.zeros(len(trace.time), dtype=bool)
     for end, normal in (("top", trace.normal_top), ("bottom", trace.normal_bottom)):
         slides |= trace.size(f"shear_{end}") > limit * np.maximum(normal, 0.0)
-    return float(np.count_nonzero(slides & ~in_shocks(structure, trace)) * trace.time[1])
+    share = np.count_nonzero(slides & ~in_shocks(structure, trace)) / max(len(slides) - 1, 1)
+    return float(share * trace.time[-1])
 
 
 def overturning_moment(structure: PodiumStructure, trace: Trace) -> Array:

@@ -84,6 +84,7 @@ from rpscli.physics.storeys import keep_slips, load_storeys, review_storeys, tur
 from rpscli.physics.upright import (
     change_rate,
     enter_phase,
+    keep_growing,
     pass_on_bed,
     pass_upright,
     set_polar,
@@ -466,6 +467,8 @@ def change(s: Record, l: int, system: Record, log: Record) -> None:
         return
     stands_still = change_law(s, l, log, s.which[l])
     renew(s, l)
+    if ways_of(s) == 1 and s.x[l] == 0.0 and s.v[l] == 0.0:
+        keep_growing(s, l, 1.0)  # a stop without a gap is met as columns are let go
     if stands_still:
         reverse(s, l, system, log)
 
@@ -534,6 +537,8 @@ def set_sliding(s: Record, l: int, system: Record, d_n: float, d_t: float, speed
 def slide(s: Record, l: int, system: Record, log: Record, side: int) -> None:
     """Leave a tilt that friction held, or the end of the bed, to the right or to the left."""
     phase = ROLLING if s.rolls[l] > 0.0 else ROCKING
+    if s.x[l] == 0.0 and system.compliant == 0 and ways_of(s) == 1:
+        s.side[l] = float(side)  # upright, a tilt grows to either side
     out = side * s.side[l]
     s.direction[l] = out if ways_of(s) == 1 and has_friction(s, l) else 1.0
     log_event(s, l, log, SLIDING, 0.0, 0.0, 0.0)
@@ -547,9 +552,7 @@ def slide(s: Record, l: int, system: Record, log: Record, side: int) -> None:
         s.bed_back[l] = 0.0
         enter_phase(s, l, system, first_phase(system) if out > 0.0 else BEDDED)
     renew(s, l)
-    # At the threshold it is zero but for rounding, and about to grow.
-    s.a[l] = out * max(out * s.a[l], 0.0)
-    s.bend[0, l] = s.side[l] * s.a[l]
+    keep_growing(s, l, out)
 
 
 # Histories begin and end.

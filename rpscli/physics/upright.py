@@ -348,6 +348,13 @@ def begin_tilt(s: Record, l: int, system: Record, z_x: float, z_y: float) -> Non
 
 
 @compiled
+def keep_growing(s: Record, l: int, out: float) -> None:
+    """At the threshold x'' is zero but for rounding, and about to grow, or (-1) to fall."""
+    s.a[l] = out * max(out * s.a[l], 0.0)
+    s.bend[0, l] = s.side[l] * s.a[l]
+
+
+@compiled
 def uplift(s: Record, l: int, system: Record, log: Record, side: int) -> None:
     """Leave full contact along z, in one plane to a side."""
     renew(s, l)
@@ -358,9 +365,8 @@ def uplift(s: Record, l: int, system: Record, log: Record, side: int) -> None:
         log[row].theta = 0.0
     begin_excursion(s, l, log)
     renew(s, l)
-    if ways_of(s) == 1:  # at the threshold theta'' is zero but for rounding, and about to grow
-        s.a[l] = max(s.a[l], 0.0)
-        s.bend[0, l] = s.side[l] * s.a[l]
+    if ways_of(s) == 1:
+        keep_growing(s, l, 1.0)
 
 
 @compiled

@@ -343,7 +343,7 @@ def folded(text: str, room: float, size: float) -> str:
     return "\n".join(lines)
 
 
-_WORDS = re.compile(r"(?:\$[^$]*\$|[^\s$])+\s*|\$|\s+")
+_WORDS = re.compile(r"(?:\$[^$]*\$|\[[^\]$]*\]|[^\s$])+\s*|\$|\s+")
 _PARTS = re.compile(r"(?:\$[^$]*\$|[^$,]|,(?!\s))+(?:,\s+|$)|\$|,\s+")
 
 
@@ -354,9 +354,9 @@ def fit(panels: Iterable[Axes]) -> None:
     for axes in panels:
         # Labels are centred on panels, and each of a row gives some width to what is beside it.
         across = _room(axes) * (1.0 - BESIDE / inches(axes.figure)[0])
-        upwards = (
-            (0.6 if tight(axes.figure) else 1.3) * axes.get_window_extent().height / axes.figure.dpi
-        )
+        # Layouts of others make room for legends above, by less height.
+        share = (0.6 if tight(axes.figure) else 0.75) if given(axes.figure) else 1.3
+        upwards = share * axes.get_window_extent().height / axes.figure.dpi
         # Beside its texts the children of axes are three titles.
         inside = (each for each in axes.get_children() if each not in axes.texts)
         for text in (*(each for each in inside if isinstance(each, Text)), axes.xaxis.label):
