@@ -120,6 +120,13 @@ def test_modal_and_pushover_say_where_storeys_yield(rps: Invoke, rps_json: Invok
     above = rps("pushover", "small.yaml", *strong, "--force")
     assert "columns lift first: pushed slowly no storey ever yields" in above.stdout
     assert "protect" not in above.stderr
+    (case,) = (str(each) for each in CASES if each.stem == "six_storey")
+    ends = (
+        "bearing={semi_diagonal: 1.5, slenderness: 0, wedge_slenderness: 0.3, curvature_ratio: 1}"
+    )
+    rolls = ("--set", f"podium.{ends}", "--set", "superstructure.yield={shears: 100 kN}")
+    rows = rps("pushover", case, *rolls).stdout.splitlines()
+    assert ["uniform", "1", "100.0", "-"] in [row.split() for row in rows]  # nothing lifts there
 
 
 def test_limits_that_pairs_refuse_are_told_before_anything_is_computed(
