@@ -12,6 +12,7 @@ from paper_structures import Array, block, ground, known, let_go, needs_compiled
 from scipy.integrate import solve_ivp
 from scipy.signal import lsim
 
+from rpscli.analyses import identification
 from rpscli.analyses.identification import Estimate, Identified, Vibration, rocking, vibration
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
@@ -194,3 +195,12 @@ def shaken(structure: PodiumStructure, T: float, test: str, rng: Any) -> Vibrati
     floor = floor + rng.normal(0.0, 0.1 * floor.std(), len(floor))
     shaking = push if test == "earthquake" else None
     return vibration(0.9 * T, DT, floor, shaking, free=free)
+
+
+def test_a_ratio_next_to_one_stays_above_it() -> None:
+    """Four digits of it would be those of rigid ends, which a compliant contact refuses."""
+    time = np.arange(0.0, 20.0, 0.01)
+    floor = np.exp(-0.02 * time) * np.cos(2.0 * math.pi / 0.3001 * time)
+    columns = {"time": time, "floor_acceleration": floor}
+    written = identification.identified(podium(3, law=ImpactLaw()), "release", columns).keys
+    assert float(written["podium.contact.period_ratio"]) == pytest.approx(0.3001 / 0.3, abs=1e-6)
