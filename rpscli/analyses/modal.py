@@ -261,8 +261,9 @@ def _eigen(M: Array, C: Array, K: Array, height: float) -> tuple[Complex, Comple
         np.block([[np.zeros((size, size)), np.eye(size)], [-K / mass, -C / mass]])
     )
     values, vectors = values.astype(complex), vectors[:size].astype(complex)
-    if not C.any():
-        values.real[values.imag != 0.0] = 0.0  # rounding made it a damping of either sign
+    # Rounding, as large as that of K/M, would be a damping of either sign.
+    rounding = 4.0 * np.finfo(float).eps * np.abs(values).max() ** 2
+    values.real[(values.imag != 0.0) & (np.abs(values.real) < rounding)] = 0.0
     vectors[0] *= height
     return values, vectors
 

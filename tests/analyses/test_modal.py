@@ -12,8 +12,9 @@ from paper_structures import FLAT, building, known, podium, yielding
 from scipy.linalg import eigh
 
 from rpscli.analyses.modal import linearised_matrices, modal
-from rpscli.model.bearing import uplifted_state
+from rpscli.model.bearing import Bearing, uplifted_state
 from rpscli.model.devices import ViscousDamper
+from rpscli.model.impact import ImpactLaw
 from rpscli.model.superstructure import ModalDamping, RayleighDamping
 
 pytestmark = pytest.mark.evidence("modes", "exact")
@@ -69,6 +70,13 @@ def test_without_damping_no_mode_is_damped() -> None:
             assert modes.damping.tolist() == [0.0] * 3
             assert not np.signbit(modes.damping).any()
             assert np.all((modes.eigenvalues.real == 0.0) | (modes.eigenvalues.imag == 0.0))
+    # Vertical vibrations alone are damped, which nothing couples where columns stand on a point.
+    above = replace(building(10, damping=ModalDamping(0.0)), vertical_period=0.1)
+    usual = podium(10, law=ImpactLaw(), superstructure=above)
+    ends = replace(usual, bearing=Bearing(1.5, 0.0, 0.3, 0.8))
+    rolling = known(modal(ends).rolling)
+    assert rolling.damping.tolist() == [0.0] * 10
+    assert rolling.vertical_damping == pytest.approx(np.full(10, above.vertical_damping))
 
 
 @pytest.mark.parametrize("storeys", [1, 10, 30, 50, 100])
