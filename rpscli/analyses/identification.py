@@ -545,7 +545,8 @@ def _vibration(structure: PodiumStructure, test: str, columns: Mapping[str, Arra
     sunk = [bed.settlement for bed in (best, stiffest, softest) if bed.settlement is not None]
     if len(sunk) == 3:
         estimates["settlement", "m"] = Estimate(*sunk)
-    keys["podium.contact.period_ratio"] = f"{ratio.value:.4g}"
+    digits = 4 if ratio.value > 1.001 else 9  # 1 itself is no ratio of a compliant contact
+    keys["podium.contact.period_ratio"] = f"{ratio.value:.{digits}g}"
     keys["podium.contact.kind"] = "plane"
     remarks += "; stiffness of the podium in full contact; a period does not show whether ends are"
     remarks += " `plane`, which the settlement is for, or `edges`: try both"

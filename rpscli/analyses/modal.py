@@ -261,6 +261,9 @@ def _eigen(M: Array, C: Array, K: Array, height: float) -> tuple[Complex, Comple
         np.block([[np.zeros((size, size)), np.eye(size)], [-K / mass, -C / mass]])
     )
     values, vectors = values.astype(complex), vectors[:size].astype(complex)
+    # Rounding, as large as that of K/M, would be a damping of either sign.
+    rounding = 4.0 * np.finfo(float).eps * np.abs(values).max() ** 2
+    values.real[(values.imag != 0.0) & (np.abs(values.real) < rounding)] = 0.0
     vectors[0] *= height
     return values, vectors
 
@@ -304,7 +307,7 @@ def _vibrating(
     """Floors on their columns and on vertical springs: rows, and how 2 R theta moves their base."""
     if (building := structure.superstructure) is None:
         return []
-    upwards = building.upwards if state.arm else None  # none is moved in full contact
+    upwards = building.upwards if structure.bed is None or state.arm else None  # not on a bed
     n, across = structure.storeys, (building, state.height)
     both = [across, (upwards, state.arm)] if upwards else [across]
     return [(slice(1 + i * n, 1 + i * n + n), *each) for i, each in enumerate(both)]
@@ -331,7 +334,8 @@ def _uplifted(structure: PodiumStructure, state: UpliftedState) -> UpliftedModes
     kappa = state.kappa + stiffness * diameter / structure.weight
     carried = structure.superstructure_mass * state.squared_distance
     rigid = _base_mass(structure, state) + carried
-    own = _own_pair(values, kappa, coefficient / rigid)
+    parameter = math.sqrt(abs(kappa) * structure.weight / (diameter * rigid))
+    own = _own_pair(values, kappa, coefficient / rigid, parameter)
     order = np.concatenate([own, np.setdiff1d(np.arange(len(values)), own)])
     values, vectors = values[order], vectors[:, order]
     if kappa == 0.0:
@@ -354,7 +358,7 @@ def _uplifted(structure: PodiumStructure, state: UpliftedState) -> UpliftedModes
         frequency_ratio=frequencies[across] / omega,
         damping_ratio=_over(damping[across], xi),
         frequency_parameter=math.sqrt(abs(values[0] * values[1])),
-        frequency_parameter_rigid=math.sqrt(abs(kappa) * structure.weight / (diameter * rigid)),
+        frequency_parameter_rigid=parameter,
         shapes=_scaled(
             np.column_stack(
                 [_real_shape(vectors[: 1 + structure.storeys, i]) for i in (0, *indices[across])]
@@ -382,12 +386,15 @@ def _across_and_up(
     return np.sort(order[:n]), np.sort(order[n:])
 
 
-def _own_pair(values: Complex, kappa: float, decay: float) -> tuple[int, int]:
+def _own_pair(values: Complex, kappa: float, decay: float, rate: float) -> tuple[int, int]:
     """Indices of the podium's own eigenvalues, the growing or the slowest one first."""
     # With negative stiffness one root grows; its partner is the real one nearest to its mirror
     # image shifted by damping, as tall buildings have slower modes. Else it is the slow pair, but
-    # dampers may make one of its roots fast.
-    slow = np.argsort(np.abs(values), kind="stable")[:2]
+    # dampers may make one of its roots fast. Where it swings, slower real roots are of overdamped
+    # vibrations.
+    slow = np.argsort(np.abs(values), kind="stable")
+    if kappa > 0.0 and decay < 2.0 * rate and values.imag.any():
+        slow = slow[values[slow].imag != 0.0]
     if kappa >= 0.0 and (decay == 0.0 or values[slow[0]].imag != 0.0):
         return int(slow[0]), int(slow[1])
     first = int(np.argmax(values.real)) if kappa < 0.0 else int(slow[0])
@@ -406,7 +413,7 @@ def _vibrations(values: Complex) -> tuple[list[tuple[complex, complex, int]], Ar
     pairs += [(values[real[j]], values[real[-1 - j]], real[j]) for j in range(half)]
     pairs.sort(key=lambda pair: abs(pair[0] * pair[1]))
     frequencies = np.array([math.sqrt(abs(a * b)) for a, b, _ in pairs])
-    damping = np.array([-(a + b).real for a, b, _ in pairs]) / (2.0 * frequencies)
+    damping = np.array([0.0 - (a + b).real for a, b, _ in pairs]) / (2.0 * frequencies)
     return pairs, frequencies, damping
 
 

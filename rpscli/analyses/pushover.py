@@ -19,6 +19,8 @@ from rpscli.shown import Shown, with_unit
 PatternName = Literal["uniform", "triangular", "first_mode"]
 
 PATTERNS: tuple[PatternName, ...] = ("uniform", "triangular", "first_mode")
+NEARLY = 1.0 + 1e-9
+"""Forces that differ by less are equal but for rounding: what yields together, or at uplift."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -56,7 +58,7 @@ class CapacityCurve(Shown):
         """Storeys that yield on the way, counted from 1, and lambda where each begins [N]."""
         if self.yield_forces is None:
             return {}
-        reached = (1.0 + 1e-9) * self.sum_of_floor_forces.max()  # storeys may yield together
+        reached = NEARLY * self.sum_of_floor_forces.max()
         return {i: F for i, F in enumerate(self.yield_forces.tolist(), 1) if reached >= F}
 
 
@@ -108,7 +110,7 @@ class PushoverResult(Shown):
         weak: dict[int, list[str]] = {}
         for curve in self.capacity:
             for storey, force in curve.yielding.items():
-                if force < self.uplift_force:
+                if NEARLY * force < self.uplift_force:
                     weak.setdefault(storey, []).append(curve.pattern)
         return tuple(
             f"the podium does not protect storey {storey}: under floor forces"
@@ -207,7 +209,7 @@ def _capacity(
     if yield_forces is not None and building.hardening > 0.0:
         roof += _plastic_drifts(building, np.outer(pushed, shears)).sum(1)
     lifts = np.interp(uplift, rotation, roof)
-    if pushed.max() < np.interp(uplift, curve.rotation, curve.force):
+    if NEARLY * pushed.max() < np.interp(uplift, curve.rotation, curve.force):
         lifts = np.nan
     return CapacityCurve(
         pattern=pattern if isinstance(pattern, str) else "given",

@@ -299,11 +299,14 @@ UPLIFTED_SHAPES = (_SHAPES, _Q("elastic_shapes", "-", "elastic mode shape"))
 LEVEL = _Q("floor", "", "level (0 = cap beam)")
 """Levels over which shapes are drawn."""
 
+OF_CHECK = "with devices; `rps check` gives that of the weight on rigid ends by this name"
+FORCE = f"of compliant ends where they begin to lift, {OF_CHECK}"
+STIFFNESS = f"of compliant ends in full contact, {OF_CHECK}"
 PUSHOVER = (
-    _Q("uplift_force", "N", "uplift force"),
+    _Q("uplift_force", "N", "uplift force", meaning=FORCE),
     _Q("critical_rotation", "rad", "critical rotation", r"$\theta_{cr}$"),
     _Q("critical_displacement", "m", "critical displacement"),
-    _Q("initial_stiffness", "N/m", "stiffness after uplift"),
+    _Q("initial_stiffness", "N/m", "stiffness after uplift", meaning=STIFFNESS),
 )
 """Scalars of the static curves."""
 

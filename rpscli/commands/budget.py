@@ -110,8 +110,10 @@ def _wishes(case: Case, motions: Sequence[inputs.Motion]) -> Iterator[Wish]:
              if getattr(case.file.superstructure, name) is not None]  # fmt: skip
     if given:
         yield "vertical period", tuple(given), motion
-    if case.file.superstructure.damping is None:
+    if (damping := case.file.superstructure.damping) is None:
         yield "damping", (), "the case has no storeys, and no damping of theirs"
+    elif not damping.ratio:
+        yield "damping", (), "the case has none, of which there is no half or double"
     yield _direction(case, *motions[0])
     for factor in (0.99, 1.01):
         yield "1 % of the motion", (), _scaled(motion, factor * ground.scale)
@@ -149,7 +151,7 @@ def _values(case: Case) -> Iterator[tuple[str, str]]:
     for kind in ("rigid", f"edges, {sizes}", f"plane, {sizes}"):
         yield "contact", f"podium.contact={{kind: {kind}}}"
     if (damping := file.superstructure.damping) is not None:
-        for factor in (0.5, 2.0):
+        for factor in (0.5, 2.0) if damping.ratio else ():
             yield "damping ratio", f"superstructure.damping.ratio={factor * damping.ratio:g}"
         rayleigh = f"[1, {min(2, file.superstructure.storeys)}]"
         modes = rayleigh if damping.modes is None else "null"

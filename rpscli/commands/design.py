@@ -132,7 +132,7 @@ def designed(request: CaseRequest, choices: RunChoices, out: Output) -> Design |
     terminal.warn(task.study.notes)  # doubts about systems come with those of all rounds
     if choices.dry_run:
         terminal.note(f"the first of at most {search.most} designs:")
-        show_dry_run(first, choices, terminal)
+        show_dry_run("design", first, choices, terminal)
         return None
     place = out.place or RESULTS / task.study.name / "design"
     folder = first.output(place, "design", force=out.force)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
@@ -94,8 +95,9 @@ def _yielding_tables(result: PushoverResult) -> Iterator[Part]:
     building = result.structure.superstructure
     if building is None or building.strengths is None:
         return
+    uplift = result.uplift_force or math.nan  # spherical ends have none
     rows = [
-        (curve.pattern, str(storey), shown(1e-3 * force), shown(force / result.uplift_force))
+        (curve.pattern, str(storey), shown(1e-3 * force), shown(force / uplift))
         for curve in result.capacity
         for storey, force in sorted(curve.yielding.items(), key=lambda item: item[1])
     ]

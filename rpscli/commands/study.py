@@ -220,7 +220,7 @@ def sweep(
     terminal = out.terminal
     study = read(request, conditions, terminal)
     if choices.dry_run:
-        show_dry_run(study, choices, terminal)
+        show_dry_run("sweep", study, choices, terminal)
         return
     place = out.place or RESULTS / study.layout.study.name / "sweep"
     folder = study.output(place, force=out.force)
@@ -236,7 +236,7 @@ def sweep(
     shell.leave(error)
 
 
-def show_dry_run(study: Study, choices: RunChoices, terminal: Terminal) -> None:
+def show_dry_run(command: str, study: Study, choices: RunChoices, terminal: Terminal) -> None:
     """Count, first and last points, and an estimate of the time."""
     terminal.warn(study.warnings)  # first: trying points may take long where the case is at fault
     layout, count = study.layout, len(study)
@@ -264,7 +264,7 @@ def show_dry_run(study: Study, choices: RunChoices, terminal: Terminal) -> None:
         "members": len(layout.members),
     }
     document: dict[str, Any] = {
-        **heading("sweep"),
+        **heading(command),
         "study": study_heading(layout),
         "dry_run": True,
         "analysis": layout.plan.analysis,

@@ -47,8 +47,9 @@ def storey_strengths(structure: PodiumStructure) -> list[StoreyStrength]:
         structure.uplift_acceleration, uplift_acceleration(structure)
     )
     columns = building.strengths, at_uplift, building.stiffnesses
+    nearly = 1.0 + 1e-9  # rounding of what is equal is no weakness
     return [
-        StoreyStrength(F, F / static if static else None, shear, shear <= F, F / k)
+        StoreyStrength(F, F / static if static else None, shear, shear <= nearly * F, F / k)
         for F, shear, k in zip(*(column.tolist() for column in columns), strict=True)
     ]
 

@@ -334,7 +334,7 @@ def _formulas(structure: PodiumStructure, podium: Mapping[str, Any]) -> dict[str
         "beta": "0" if flat else of_beta,
         "curvature_ratio": first_order if given.get("curvature_ratio") == "critical" else own_ratio,
         "rho_cr_paper": first_order,
-        "rho_cr_exact": "0" if flat else f"tan_alpha / (1 - 2 * rho_cr) = tan({of_exact})",
+        "rho_cr_exact": "0" if flat else f"(1 - 2 * rho_cr) * tan({of_exact}) = tan_alpha",
         "critical_rotation": _critical(flat=flat, rolls=bearing.overturns_rolling),
         "critical_rotation_paper": _critical(flat=flat, rolls=rolls),
         "columns_mass": "m_b / gamma" if beam and "column_mass" not in podium else "N * m_column",

@@ -13,15 +13,8 @@ from scipy.integrate import solve_ivp
 from scipy.signal import lsim
 from shown_commands import VERIFICATION, told
 
-from rpscli.analyses.identification import (
-    Estimate,
-    Identified,
-    Vibration,
-    _inverse,
-    _unexplained,
-    rocking,
-    vibration,
-)
+from rpscli.analyses import identification
+from rpscli.analyses.identification import Estimate, Identified, Vibration, rocking, vibration
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.errors import AnalysisError
@@ -124,8 +117,8 @@ def test_what_determines_no_period_is_refused() -> None:
 def test_searches_that_go_astray_print_nothing(capfd: pytest.CaptureFixture[str]) -> None:
     """LAPACK would write about numbers that are not finite, which it does not take."""
     for worst in (math.nan, math.inf):
-        assert np.isinf(_unexplained(np.full((4, 2), worst), np.ones(4))).all()
-        assert np.isinf(_inverse(np.full((2, 2), worst))).all()
+        assert np.isinf(identification._unexplained(np.full((4, 2), worst), np.ones(4))).all()
+        assert np.isinf(identification._inverse(np.full((2, 2), worst))).all()
     assert capfd.readouterr() == ("", "")
 
 
@@ -218,3 +211,12 @@ def shaken(structure: PodiumStructure, T: float, test: str, rng: Any) -> Vibrati
     floor = floor + rng.normal(0.0, 0.1 * floor.std(), len(floor))
     shaking = push if test == "earthquake" else None
     return vibration(0.9 * T, DT, floor, shaking, free=free)
+
+
+def test_a_ratio_next_to_one_stays_above_it() -> None:
+    """Four digits of it would be those of rigid ends, which a compliant contact refuses."""
+    time = np.arange(0.0, 20.0, 0.01)
+    floor = np.exp(-0.02 * time) * np.cos(2.0 * math.pi / 0.3001 * time)
+    columns = {"time": time, "floor_acceleration": floor}
+    written = identification.identified(podium(3, law=ImpactLaw()), "release", columns).keys
+    assert float(written["podium.contact.period_ratio"]) == pytest.approx(0.3001 / 0.3, abs=1e-6)

@@ -12,8 +12,9 @@ from paper_structures import FLAT, building, known, podium, yielding
 from scipy.linalg import eigh
 
 from rpscli.analyses.modal import linearised_matrices, modal
-from rpscli.model.bearing import uplifted_state
+from rpscli.model.bearing import Bearing, uplifted_state
 from rpscli.model.devices import ViscousDamper
+from rpscli.model.impact import ImpactLaw
 from rpscli.model.superstructure import ModalDamping, RayleighDamping
 
 pytestmark = pytest.mark.evidence("modes", "exact")
@@ -49,6 +50,33 @@ def test_overdamped_modes_are_paired_as_without_damping(storeys: int, ratio: flo
     )
     assert damped.damping[-1] > 1.0
     assert damped.frequencies == pytest.approx(undamped.frequencies, rel=1e-6)
+
+
+def test_overdamped_vibrations_leave_a_podium_that_swings_its_mode() -> None:
+    """Their slow real roots come before its pair."""
+    above = building(10, damping=ModalDamping(0.99))
+    modes = known(modal(podium(10, 0.15, 5.0, superstructure=above)).rolling)
+    assert np.abs(modes.eigenvalues).argmin() > 1
+    swing = modes.frequency_parameter_rigid  # the building takes a little part
+    assert modes.own_period == pytest.approx(2.0 * math.pi / swing, rel=0.1)
+    assert len(modes.frequencies) == 10
+
+
+def test_without_damping_no_mode_is_damped() -> None:
+    """Not by rounding either, of any sign; the podium's own mode has roots of one size."""
+    for rho in (FLAT, 0.5, 1.5):
+        undamped = building(3, damping=ModalDamping(0.0))
+        for modes in modal(podium(3, 0.15, rho, superstructure=undamped)).uplifted.values():
+            assert modes.damping.tolist() == [0.0] * 3
+            assert not np.signbit(modes.damping).any()
+            assert np.all((modes.eigenvalues.real == 0.0) | (modes.eigenvalues.imag == 0.0))
+    # Vertical vibrations alone are damped, which nothing couples where columns stand on a point.
+    above = replace(building(10, damping=ModalDamping(0.0)), vertical_period=0.1)
+    usual = podium(10, law=ImpactLaw(), superstructure=above)
+    ends = replace(usual, bearing=Bearing(1.5, 0.0, 0.3, 0.8))
+    rolling = known(modal(ends).rolling)
+    assert rolling.damping.tolist() == [0.0] * 10
+    assert rolling.vertical_damping == pytest.approx(np.full(10, above.vertical_damping))
 
 
 @pytest.mark.parametrize("storeys", [1, 10, 30, 50, 100])

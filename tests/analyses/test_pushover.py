@@ -124,6 +124,10 @@ def test_without_hardening_the_curve_ends_as_a_mechanism() -> None:
     assert curve.cap_beam_displacement.max() == 0.0
     assert list(curve.yielding) == [1]
     assert "does not protect storey 1" in result.warnings[0]
+    equal = yielding(building(3), (1.0 - 1e-12) * structure.uplift_force, 0.0)
+    at_uplift = pushover(podium(3, superstructure=equal), patterns=["uniform"])
+    assert np.isfinite(at_uplift.capacity[0].roof_displacement_at_uplift)
+    assert at_uplift.warnings == ()
     strong = yielding(building(3), 2.0 * structure.static_base_shear, 0.0)
     (whole,) = pushover(podium(3, superstructure=strong), patterns=["uniform"]).capacity
     (elastic,) = pushover(structure, patterns=["uniform"]).capacity

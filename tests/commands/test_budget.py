@@ -77,6 +77,13 @@ def test_the_other_component_and_what_is_not_known(workplace: Path, rps_json: Js
     assert vertical["refused"].startswith("not known")
     edges = [row["options"] for row in rows if "kind: edges" in row["options"]]
     assert "period_ratio: 1.2" in edges[0]
+    assert len([row for row in rows if row["cause"] == "damping ratio"]) == 2
+    undamped = "--set", "superstructure.damping.ratio=0", "--force"
+    rows = rps_json("budget", "small.yaml", *undamped, *given[2:], *NONE)["rows"]
+    told = {row["cause"]: row["refused"] for row in rows if row["cause"].startswith("damping")}
+    assert told == {
+        "damping": "the case has none, of which there is no half or double", "damping model": ""
+    }  # fmt: skip
 
 
 def test_the_other_component_that_a_case_names(

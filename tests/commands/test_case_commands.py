@@ -98,6 +98,10 @@ def test_check_compares_strengths_with_the_shears_at_uplift(
     weak = rps("check", "small.yaml", "--set", "superstructure.yield={ratio: 0.9}")
     assert "before columns lift, at 0.9 of their shear at uplift (storey 1)" in weak.stderr
     assert "yields BEFORE uplift" in weak.stdout
+    for tan in (0.05, 0.12, 0.15, 0.2, 0.3):  # what is equal is not weaker by its rounding
+        of = "superstructure.yield={ratio: 1}", f"podium.bearing.slenderness={tan}"
+        document = rps_json("check", "small.yaml", "--set", of[0], "--set", of[1])
+        assert all(each["uplift_first"] for each in document["storey_strengths"])
     for F in ("0.9", "1.1"):  # pushed slowly storeys may yield that ground motion spares
         of = "--set", f"superstructure.yield={{ratio: {F}}}"
         pushed = rps_json("pushover", "small.yaml", *of, "--force")["warnings"]
@@ -120,6 +124,13 @@ def test_modal_and_pushover_say_where_storeys_yield(rps: Invoke, rps_json: Invok
     above = rps("pushover", "small.yaml", *strong, "--force")
     assert "columns lift first: pushed slowly no storey ever yields" in above.stdout
     assert "protect" not in above.stderr
+    (case,) = (str(each) for each in CASES if each.stem == "six_storey")
+    ends = (
+        "bearing={semi_diagonal: 1.5, slenderness: 0, wedge_slenderness: 0.3, curvature_ratio: 1}"
+    )
+    rolls = ("--set", f"podium.{ends}", "--set", "superstructure.yield={shears: 100 kN}")
+    rows = rps("pushover", case, *rolls).stdout.splitlines()
+    assert ["uniform", "1", "100.0", "-"] in [row.split() for row in rows]  # nothing lifts there
 
 
 def test_limits_that_pairs_refuse_are_told_before_anything_is_computed(

@@ -33,6 +33,7 @@ VARIANTS = {
     "critical": ["podium.bearing.curvature_ratio=critical"],
     "flat": ["podium.bearing.curvature_ratio=0"],
     "stiffens": ["podium.bearing.curvature_ratio=1.5"],
+    "spherical": ["podium.bearing={dimensions: {height: 3, width: 0, wedge_width: 1, radius: 2}}"],
     "rigid law": ["podium.impact={law: rigid, factor: 0.9}"],
     "loss": ["podium.impact={law: flexible, loss: 0.7, factor: 0.98}"],
     "measured": ["podium.impact={law: value, restitution: 0.9, factor: 0.95}"],

@@ -302,7 +302,7 @@ def test_invalid_designs_count_as_failing(design_json: SweepJson) -> None:
 def test_a_dry_run_computes_nothing(design_json: SweepJson, workplace: Path) -> None:
     for most, designs in ((64, 8), (4, 4)):
         found = design_json(FRAME, "--set", f"search.most={most}", "--dry-run")
-        assert found["systems"] == designs
+        assert (found["command"], found["systems"]) == ("design", designs)
     assert not (workplace / "results").exists()
 
 
