@@ -50,6 +50,7 @@ class ColumnDemand:
     pressure_ratio: float | None  # Largest p_0/f on arcs; None where it is not known
     crushed_ratio: float | None
     """Largest b_c over the width of an end; 0 where no column came onto an edge."""
+    shear: float  # largest |F| [N]
 
 
 def no_line(structure: PodiumStructure, *, both: bool) -> str:
@@ -135,7 +136,8 @@ def column_demand(
     i = int(np.argmax(np.abs(of.M).max(axis=0)))
     forces = of.F[0, i], N[0, i], of.F[1, i], N[1, i]
     at = of.side[i], x[i], t.rotation_rate[i], of.lever[i], of.rise[i], *forces
-    return ColumnDemand(tuple(found), ColumnState(*map(float, at)), ratio, crushed)
+    state = ColumnState(*map(float, at))
+    return ColumnDemand(tuple(found), state, ratio, crushed, float(np.abs(of.F).max()))
 
 
 def _along_tilt(trace: Trace, down: NDArray[np.bool_]) -> Array:

@@ -391,6 +391,11 @@ def _told(
     remarks = f"residuals are {misfit:.3g} times what noise alone would leave"
     if misfit > 2.0:
         remarks += ": the model lacks something, such as rolling resistance; intervals include that"
+    if of.place is not None:
+        remarks += (
+            "; loss and lever make up for each other along a valley with many bottoms, of which the"
+            " intervals know one: they may be too narrow, and a second release shows by how much"
+        )
     if ensembles:
         remarks += "; neighbouring releases diverge, so means of ensembles were fitted"
     return Identified(estimates, keys, misfit, remarks, ensembles, residuals)

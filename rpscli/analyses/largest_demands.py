@@ -323,7 +323,9 @@ class Demand(Shown):
     )
     uplift_shear_ratio = _Optional(lambda h: h.column("max_base_shear") / h.each(_uplift_shear))
     max_drifts = _Result[Array](
-        _drifts, "largest storey drifts [m]; of both directions, resultants"
+        _drifts,
+        "largest storey drifts [m]; of both directions resultants, of the largest of each where the"
+        " directions differ or storeys yield: a bound",
     )
     drift_ratio = _Optional(
         lambda h: _largest(h.column("max_drifts") / h.of_building(lambda b: b.storey_heights))

@@ -114,7 +114,9 @@ HISTORY = (
         needs="superstructure, devices",
         meaning="largest base shear over that at uplift, V_st with what devices add"),
     _Q("drift_ratio", "-", "drift ratio", limit="0.005", demand=True,
-        needs="superstructure.storey_height", meaning="largest storey drift over storey height"),
+        needs="superstructure.storey_height",
+        meaning="largest storey drift over storey height; of pairs a bound, where storeys yield or"
+        " differ in x and y"),
     _Q("max_floor_acceleration", "m/s2", "floor acceleration", limit="5", demand=True,
         needs="superstructure"),
     _Q("residual_rotation", "rad", "residual rotation", limit="0.001"),
@@ -133,7 +135,9 @@ HISTORY = (
     _Q("edge_pressure_ratio", "-", "edge pressure ratio", limit="10", needs="plane contact",
         meaning="largest pressure at an edge over the mean under permanent load"),
     _Q("duration", "s", "duration", kernel="time"),
-    _Q("friction_demand", "-", "friction demand |F|/N", limit="0.3", demand=True),
+    _Q("friction_demand", "-", "friction demand |F|/N", limit="0.3", demand=True,
+        meaning="largest shear over axial force of columns; of pairs without the shortest passes"
+        " near upright, as the output says"),
     _Q("friction_ratio", "-", "friction ratio", limit="1", needs="podium.friction",
         meaning="friction demand over podium.friction; columns slide above 1"),
 )  # fmt: skip

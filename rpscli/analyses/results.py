@@ -247,8 +247,9 @@ class TimeHistoryResult(Demand):
 
     @property
     def max_column_shear(self) -> float:
-        """Largest horizontal force of a column at either end [N]."""
-        return max(forces.shear for forces in self.column_forces.values())
+        """Largest horizontal force of a column [N]: of the most loaded, with `podium.column`."""
+        shears = [forces.shear for forces in self.column_forces.values()]
+        return max(*shears, 0.0 if self.column_demand is None else self.column_demand.shear)
 
     @property
     def max_column_force(self) -> float:

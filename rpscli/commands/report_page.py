@@ -86,7 +86,9 @@ class Earlier:
     def subject(self) -> CaseRequest:
         """The study or the design as it is on the disk, which has to be there, and overrides."""
         if self.file is None or not self.file.exists():
-            raise UsageError(f"{self.folder}: its file {self.file or ''} is not there; give it")
+            state = "comes from Python, without a file" if self.file is None else "is not there"
+            name = self.run["name"] if self.file is None else self.file
+            raise UsageError(f"{self.folder}: {name} {state}; give the file of it")
         return CaseRequest(str(self.file), tuple(self.run["inputs"]["overrides"]))
 
     @property

@@ -53,6 +53,7 @@ from rpscli.report.timehistory import (
     restitution_text,
     timehistory_document,
     timehistory_tables,
+    without_passes,
 )
 from rpscli.sweep.statistics.fractiles import Spread
 from rpscli.sweep.statistics.summary import Records, Summary, summary_of_records
@@ -384,6 +385,9 @@ def set_tables(computed: Sequence[Computed]) -> Iterator[Part]:
         left_out = [*dict.fromkeys(part for of in documents for part in of)]
         if left_out and own.structure.columns > 1:
             yield f"forces and moments of columns are without {listed(left_out, 'and')}"
+        both = any(each.ground.y is not None for each in case.histories)
+        for text in without_passes(own.structure, both):
+            yield f"friction demands are {text}"
         yield overturned_text(own.structure, own.analysis)
         yield restitution_text(own.structure)
     rows = [

@@ -71,7 +71,7 @@ DYNAMICS = (
     Derived("uplift_acceleration", "uplift acceleration, quasi-static", "g tan(alpha)", "m/s2"),
     Derived("uplift_force", "uplift force at the cap beam", "W tan(alpha)", "N"),
     Derived("static_base_shear", "base shear at uplift", "V_st", "N"),
-    Derived("initial_stiffness", "stiffness after uplift, of this force", "", "N/m"),
+    Derived("initial_stiffness", "stiffness after uplift, at the cap beam", "", "N/m"),
     Derived("rolling_period", "period of rolling, rigid building", "T", "s"),
     Derived("p_hat", "frequency parameter, rigid estimate", "p_hat", "rad/s",
             "rigid_frequency_parameter"),

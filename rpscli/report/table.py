@@ -225,5 +225,5 @@ def _cell(value: object) -> str:
         return format(value + 0.0, ".10g") if math.isfinite(value) else ""
     if value is None:
         return ""
-    text = json.dumps(value) if isinstance(value, list | tuple | dict) else str(value)
+    text = json.dumps(value) if isinstance(value, bool | list | tuple | dict) else str(value)
     return '"' + text.replace('"', '""') + '"' if _QUOTED.search(text) else text

@@ -253,6 +253,9 @@ def _of_contacts(result: TimeHistoryResult) -> Iterator[Row]:
         yield from _rows(result, "full_contact_share", "max_impact_number", "edge_pressure_ratio")
     of_mu = "" if result.friction_ratio is None else f"{shown(result.friction_ratio)} of mu"
     yield from _rows(result, "friction_demand", normalised=of_mu)
+    yield from (
+        (f"  {text}", "", "", "") for text in without_passes(structure, result.both_components)
+    )
     if structure.upwards and result.axial is not None and result.axial.sliding_time > 0.0:
         time = f"{shown(1e3 * result.axial.sliding_time)} ms"
         yield f"  above {AMPLE:g} tan(alpha) for", time, "", ""
@@ -270,6 +273,12 @@ def _of_contacts(result: TimeHistoryResult) -> Iterator[Row]:
     for what in (*result.left_out_of_columns, *impulse):
         yield f"  without {what}", "", "", ""
     yield from _rows(result, "duration")
+
+
+def without_passes(structure: PodiumStructure, both: bool) -> Iterator[str]:  # noqa: FBT001
+    """Instants that the friction demand of pairs leaves out (Theory (13.19))."""
+    if both and not structure.passes_smoothly:
+        yield f"without passes near upright shorter than {1e3 * structure.shock_time:g} ms"
 
 
 def _elastic(result: TimeHistoryResult) -> str:

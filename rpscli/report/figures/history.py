@@ -48,6 +48,7 @@ def lean_azimuth(trace: Trace) -> NDArray[np.float64]:
 
 def component(result: TimeHistoryResult, way: Way) -> TimeHistoryResult:
     """The part of a history in x or in y; rotation and energies stay those of both."""
+    style.require("directions", way, ("x", "y"))
     trace = result.trace
     in_y = {} if trace.y is None or way == "x" else vars(trace.y)
     return replace(result, trace=replace(trace, **in_y, azimuth=None, y=None))

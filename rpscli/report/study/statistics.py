@@ -102,7 +102,7 @@ def verdict_columns(keys: Sequence[str], verdicts: Sequence[Verdict]) -> list[Co
         at = None if found is None else reached(found)
         unit = limit_unit(of.name)
         limits.append((verdict.values, of.name, unit, *bounds, share, of.fractile, at))
-        flags = str(verdict.exceeded).lower(), str(verdict.shown).lower()
+        flags = verdict.exceeded, verdict.shown
         results.append((verdict.overturned, *flags, verdict.shown_by, of.source))
     heads = "limit, unit, at_most [SI], at_least [SI], admissible_share, fractile"
     beyond = [verdict.beyond for verdict in verdicts]
