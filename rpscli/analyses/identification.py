@@ -389,7 +389,7 @@ def _told(
     rows = zip(of.swings, model.tolist(), strict=True)
     residuals = tuple(dict(zip(names, (*swing, *at), strict=True)) for swing, at in rows)
     remarks = f"residuals are {misfit:.3g} times what noise alone would leave"
-    if misfit > 2.0:
+    if misfit > 1.4:  # which noise leaves in one of a hundred, with twenty freedoms
         remarks += ": the model lacks something, such as rolling resistance; intervals include that"
     if of.place is not None:
         remarks += (
