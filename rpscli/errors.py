@@ -191,7 +191,8 @@ def require_fields(made: Any, fault: type[Exception] = ValueError) -> None:
         value = getattr(made, of.name)
         infinite = isinstance(value, float) and value == math.inf == of.default
         if value is not of.default and not infinite and not _fits(value, kinds[of.name]):
-            kind = str(of.type).replace("float", f"a finite number up to {LARGEST**2:g}")
+            number = f"a finite number up to {LARGEST**2:g}"
+            kind = str(of.type).replace("float", number).replace(" | ", " or ")
             raise fault(f"{of.name} = {told(value)[:60]} must be {kind}")
 
 
