@@ -269,7 +269,7 @@ def column_derivations(result: TimeHistoryResult) -> Iterator[Derivation]:
     """Largest moment, pressure and edge of the most loaded column of a history."""
     structure, demand = result.structure, result.column_demand
     assert demand is not None, "there is a column"
-    formulas, state = _of_column(structure), demand.at_largest_moment
+    state = demand.at_largest_moment
     for each in demand.instants:
         x, N = abs(each.rotation), each.axial_force
         letters = _letters(structure) | _ends(structure, x, N) | {"x": x, "N_1": N}
@@ -285,10 +285,10 @@ def column_derivations(result: TimeHistoryResult) -> Iterator[Derivation]:
                 ("largest moment", "M", each.moment, "N m", "e * P - d * Q"),
             ]
         elif each.largest == "contact_pressure_ratio" and each.contact_pressure is not None:
-            formula = formulas["contact_rest_pressure"]
+            formula = _of_column(structure, 0.0)["contact_rest_pressure"]
             rows = [("largest pressure on arcs", "p_0", each.contact_pressure, "Pa", formula)]
         elif each.largest == "crushed_width_ratio":
-            formula = formulas["crushed_rest_ratio"]
+            formula = _of_column(structure, letters["crushed"])["crushed_rest_ratio"]
             rows = [("largest crushed width", "b_c/2B'", letters["crushed"], "-", formula)]
         for label, symbol, value, unit, formula in rows:
             own = formula.replace("N_0", "N_1")
@@ -364,15 +364,19 @@ def _formulas(structure: PodiumStructure, podium: Mapping[str, Any]) -> dict[str
         "lifts_from_ratio": "phi_u / alpha",
         "contact_mass": "m_c * ((I - 1) / C_u^2 + 1 + 4 * gamma) / 4",
         "contact_share": "sqrt(phi_u / (alpha / 10))",
-        **_of_column(structure),
+        **_of_column(structure, _column_at_rest(structure)["crushed"] if structure.column else 0.0),
     }
 
 
-def _of_column(structure: PodiumStructure) -> dict[str, str]:
-    """Of a column (Theory (16.2), (16.4) to (16.6)); a and b of an ellipse are those of (16.5)."""
+def _of_column(structure: PodiumStructure, crushed: float) -> dict[str, str]:
+    """Of a column (Theory (16.2), (16.4) to (16.6)); a and b of an ellipse are those of (16.5).
+
+    A round end whose edge is `crushed` over its whole width bears everywhere.
+    """
     square = structure.column is not None and structure.column.section == "square"
     line, ellipse = "sqrt(N_0 * E_c / (pi * L * radius))", "3 * N_0 / (2 * pi * a_c * b_c)"
     segment = "N_0 / (strength * (wide / 2)^2) = p_c - sin(p_c) * cos(p_c)"
+    segment = segment if crushed < 1.0 else "N_0 / (strength * pi * (wide / 2)^2)"
     turned = "(sin(x) + sin(y) * cos(x) - cos(y) * sin(x))"
     return {
         "column_rest_force": "g * (m_c + m_b + M) / N",

@@ -129,6 +129,10 @@ COLUMNS = {
     "flat and round": (
         ROUND, "podium.bearing.dimensions.radius=0", "limits.contact_pressure_ratio=null"
     ),
+    "flat, crushed whole": (
+        ROUND.replace("25", "0.5"), "podium.bearing.dimensions.radius=0",
+        "limits.contact_pressure_ratio=null",
+    ),
 }  # fmt: skip
 
 
