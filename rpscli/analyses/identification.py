@@ -242,8 +242,11 @@ SETTLED = 0.02
 """Move at which a fit ends, over the steps of differences: the next one would be its square."""
 WIDE = 4.0
 """Steps of differences of ensembles, over the standard errors."""
-SHARED = ((0.9, 0.003), (0.6, 0.01), (0.3, 0.03))
+SHARED = tuple((part, lever) for part in (0.9, 0.6, 0.3) for lever in (0.003, 0.01))
 """Parts of what is lost at impacts, and levers over B that take the rest: where fits begin."""
+AS_GOOD = 1.26
+"""Squared misfits over the least one of fits that are as good: 90 % fractile of F, for two values
+that are fitted together and some twenty freedoms."""
 PARTING = 0.3
 """Scatter of an ensemble over the error of measurement from which it counts."""
 WORST_MISFIT = 10.0
@@ -334,8 +337,11 @@ def rocking(structure: PodiumStructure, time: Array, rotation: Array) -> Identif
     errors = np.array([value for swing in swings for value in swing[2:]])
     starts, steps, bounds = _starts(of, first)
     try:
-        fits = (_fitted(of.tops, q, steps, bounds, of.measured, errors) for q in starts)
+        fits = [_fitted(of.tops, q, steps, bounds, of.measured, errors) for q in starts]
         q, gain, misfit = min(fits, key=lambda fit: fit[2])
+        # Loss and lever make up for each other along a valley with many bottoms.
+        others = [fit[0] - q for fit in fits if fit[2] ** 2 <= AS_GOOD * misfit**2]
+        valley = np.sum(np.square(others), axis=0) / max(len(others) - 1, 1)
         covariance = (gain * errors**2) @ gain.T
         reach = 3.0 * max(1.0, misfit) * math.sqrt(covariance[0, 0]) / q[0]
         # A model that does not rock does not depend on its release either.
@@ -362,7 +368,7 @@ def rocking(structure: PodiumStructure, time: Array, rotation: Array) -> Identif
         raise AnalysisError(f"no structure of this kind rocks in this way: {error}") from None
     model = of.tops(q).reshape(-1, 2)
     _refuse_bad_fit(q, bounds, model, misfit)
-    spread = max(1.0, misfit) * np.sqrt(np.diag(covariance))
+    spread = np.sqrt(max(1.0, misfit) ** 2 * np.diag(covariance) + valley)
     # The scatter of an ensemble is known from so few motions.
     freedoms = ENSEMBLE - 2 if ensembles else 2 * len(swings) - len(q)
     found = [estimate(*each, freedoms) for each in zip(q, spread, strict=True)]
@@ -393,8 +399,8 @@ def _told(
         remarks += ": the model lacks something, such as rolling resistance; intervals include that"
     if of.place is not None:
         remarks += (
-            "; loss and lever make up for each other along a valley with many bottoms, of which the"
-            " intervals know one: they may be too narrow, and a second release shows by how much"
+            "; loss and lever make up for each other: intervals include fits as good as this one"
+            " that were found from other starts, and not those that were not"
         )
     if ensembles:
         remarks += "; neighbouring releases diverge, so means of ensembles were fitted"
