@@ -87,6 +87,7 @@ def a_range(key: str, count: int) -> str:
             f"1000000000 systems .* more than {MOST_SYSTEMS}; use fewer",
         ),
         ("perturb: {members: 1000000000}", f"1000000000 points .* {MOST_POINTS};"),
+        (f"perturb: {{members: {9**300}}}", r"over 10{18} points \(over 10{18}\)"),
         (
             f"vary:\n{a_range(SLENDERNESS, 1000)}\n{a_range(HEIGHT, 1001)}",
             r"1001000 systems \(1000 x 1001\)",

@@ -57,6 +57,7 @@ MOST_SYSTEMS = 200_000
 """Each is checked as a case before anything runs, which takes a millisecond."""
 
 MOST_POINTS = 5_000_000
+MOST_COUNTED = 10**18
 """Their results, some thirty numbers each, are in memory when reports are drawn."""
 
 DIGITS = 6
@@ -406,9 +407,12 @@ def _size_faults(file: StudyFile, axes: Sequence[Axis], sources: Sequence[str]) 
         if file.perturb is not None:
             parts["perturb", "members"] = file.perturb.members
     if (count := math.prod(parts.values())) > most:
-        product = " x ".join(str(part) for part in parts.values() if part > 1)
+        found, *each = (  # numbers without end are cut
+            str(part) if part < MOST_COUNTED else f"over {MOST_COUNTED}"
+            for part in (count, *parts.values()) if part > 1
+        )  # fmt: skip
         yield Fault(
             max(parts, key=lambda path: parts[path]),
-            f"the study has {count} {name} ({product}), which must not be more than {most}; use"
-            " fewer values, or several studies",
+            f"the study has {found} {name} ({' x '.join(each)}), which must not be more than {most};"
+            " use fewer values, or several studies",
         )
