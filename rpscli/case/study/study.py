@@ -413,6 +413,6 @@ def _size_faults(file: StudyFile, axes: Sequence[Axis], sources: Sequence[str]) 
         )  # fmt: skip
         yield Fault(
             max(parts, key=lambda path: parts[path]),
-            f"the study has {found} {name} ({' x '.join(each)}), which must not be more than {most};"
-            " use fewer values, or several studies",
+            f"the study has {found} {name} ({' x '.join(each)}), which must not be more than"
+            f" {most}; use fewer values, or several studies",
         )
