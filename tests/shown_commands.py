@@ -109,9 +109,7 @@ def blocks(document: Path) -> list[Block]:
 
 def of_blocks(document: Path, language: str = "sh") -> list[str]:
     """Lines of its blocks in a language."""
-    return [
-        line for b in blocks(document) if b.language == language for line in b.text.splitlines()
-    ]
+    return [of for b in blocks(document) if b.language == language for of in b.text.splitlines()]
 
 
 def rps_lines(page: Path) -> list[str]:

@@ -84,9 +84,7 @@ def test_what_differs_between_systems_is_named_in_one_place() -> None:
 
 
 @pytest.mark.usefixtures("windows")
-def test_commands_run_without_what_windows_lacks(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_commands_run_as_on_windows(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     (tmp_path / "study.yaml").write_text(STUDY, encoding="utf-8")
     none = ("--figures", "none")
@@ -102,9 +100,7 @@ def test_commands_run_without_what_windows_lacks(
     assert available_cores() == os.cpu_count()
 
 
-def test_windows_asks_nobody_whose_a_folder_is(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_windows_asks_for_no_owner(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     tmp_path.chmod(0o777)
     with monkeypatch.context() as patch:
         patch.setattr(os, "name", "nt")

@@ -17,30 +17,10 @@ import click
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
+import shown_commands as docs
 import yaml
 from click.testing import CliRunner
 from paper_structures import needs_compiled_kernels
-from shown_commands import (
-    GUIDE,
-    LONG,
-    OTHERS,
-    PAGES,
-    QUICK,
-    ROOT,
-    THEORY,
-    VERIFICATION,
-    blocks,
-    command,
-    not_printed,
-    of_blocks,
-    of_texts,
-    pages,
-    rps_lines,
-    run,
-    run_all,
-    run_in_shell,
-    shown_outputs,
-)  # fmt: skip
 
 from rpscli.analyses.verification import ANSWERS, FOLDER
 from rpscli.cli import COMMANDS as COMMANDS_OF_PROGRAM
@@ -48,28 +28,28 @@ from rpscli.cli import program
 from rpscli.user_cache import VARIABLE
 from rpscli.version import VERSION
 
-README = ROOT / "README.md"
-WORKFLOW = ROOT / ".github" / "workflows" / "acceptance.yml"
-GALLERY = ROOT / "cases" / "README.md"
+README = docs.ROOT / "README.md"
+WORKFLOW = docs.ROOT / ".github" / "workflows" / "acceptance.yml"
+GALLERY = docs.ROOT / "cases" / "README.md"
 DOCUMENTS = [
     README,
-    GUIDE,
-    THEORY,
-    VERIFICATION,
-    ROOT / "CHANGELOG.md",
-    *sorted((ROOT / "cases").rglob("README.md")),
+    docs.GUIDE,
+    docs.THEORY,
+    docs.VERIFICATION,
+    docs.ROOT / "CHANGELOG.md",
+    *sorted((docs.ROOT / "cases").rglob("README.md")),
 ]
-BLOCKS = [*blocks(README), *blocks(GUIDE)]
+BLOCKS = [*docs.blocks(README), *docs.blocks(docs.GUIDE)]
 """In the order in which a reader meets them: the guide goes on where the tour ends."""
 
-COMMANDS = [line for page in (README, GUIDE) for line in rps_lines(page)]
-SET_UP = [line for line in of_blocks(README) if not line.startswith("rps ")]
-LONG_PAGES = [page for page, tests in PAGES.items() if LONG in tests]
+COMMANDS = [line for page in (README, docs.GUIDE) for line in docs.rps_lines(page)]
+SET_UP = [line for line in docs.of_blocks(README) if not line.startswith("rps ")]
+LONG_PAGES = [page for page, tests in docs.PAGES.items() if docs.LONG in tests]
 
 
 def fill(folder: Path) -> None:
     """A folder as a reader has it: the cases, and the files that README and guide show."""
-    shutil.copytree(ROOT / "cases", folder / "cases")
+    shutil.copytree(docs.ROOT / "cases", folder / "cases")
     for block in BLOCKS:
         name = re.match(r"# (\S+\.yaml)\n", block.text)
         if block.language == "yaml" and name:
@@ -123,7 +103,7 @@ def test_commands_run_in_their_order(
             for line in COMMANDS
             if OF_THEM not in line
         ]
-    assert len(run_all(lines)) > 10
+    assert len(docs.run_all(lines)) > 10
     written = {file.suffix for file in (here / "results/stronger").iterdir()}
     assert written == {".png", ".csv", ".json"}
 
@@ -133,21 +113,21 @@ def test_commands_run_in_their_order(
     ("line", "shown"),
     [
         pytest.param(*told, marks=[pytest.mark.long] * any(of in told[0] for of in THOUSANDS))
-        for told in shown_outputs(BLOCKS)
+        for told in docs.shown_outputs(BLOCKS)
     ],
 )
 def test_the_output_that_is_shown_is_the_output(here: Path, line: str, shown: str) -> None:
-    output = run(f"{line} --figures none").output
-    assert not not_printed(shown, output), output
+    output = docs.run(f"{line} --figures none").output
+    assert not docs.not_printed(shown, output), output
 
 
 @pytest.mark.long
 @needs_compiled_kernels
 def test_the_gallery_shows_what_its_commands_give(here: Path) -> None:
     """Outputs of all commands, the pictures of the site, and medians that no output shows."""
-    outputs = run_all(of_blocks(GALLERY))
-    shown = shown_outputs(blocks(GALLERY))
-    assert {line: rows for line, told in shown if (rows := not_printed(told, outputs[line]))} == {}
+    outputs = docs.run_all(docs.of_blocks(GALLERY))
+    shown = docs.shown_outputs(docs.blocks(GALLERY))
+    assert {line: of for line, told in shown if (of := docs.not_printed(told, outputs[line]))} == {}
     pictures = re.findall(r"^<!-- picture: (\S+) -->$", GALLERY.read_text("utf-8"), re.MULTILINE)
     assert len(pictures) >= 10
     assert [picture for picture in pictures if not (here / picture).is_file()] == []
@@ -170,12 +150,12 @@ def prepare(page: str, folder: Path) -> Path:
     """What a reader of the page has before; the folder in which its commands are run."""
     if page != "README.md":  # which begins with `rps init`
         fill(folder)
-    text = (ROOT / page).read_text("utf-8")
+    text = (docs.ROOT / page).read_text("utf-8")
     if "this.yaml" in text:
         (folder / "this.yaml").write_text(text, encoding="utf-8")
-        shutil.copyfile(ROOT / "rpscli/case/starter.yaml", folder / "case.yaml")
+        shutil.copyfile(docs.ROOT / "rpscli/case/starter.yaml", folder / "case.yaml")
     if "rps verify --score" in text:
-        run_all([f"rps verify --problems {folder / 'problems'}"])
+        docs.run_all([f"rps verify --problems {folder / 'problems'}"])
         shutil.copyfile(FOLDER / ANSWERS, folder / "problems" / ANSWERS)  # filled in
     return folder / "problems" if "block_release.yaml" in text else folder
 
@@ -189,11 +169,11 @@ def test_commands_of_a_page_run(page: str, tmp_path: Path, monkeypatch: pytest.M
     """
     at(tmp_path, monkeypatch)
     monkeypatch.chdir(prepare(page, tmp_path))
-    shown = of_texts(ROOT / page)
-    if QUICK not in PAGES[page]:
-        shown = rps_lines(ROOT / page) + shown
-    others = [command(line).words for line in [*COMMANDS, *of_blocks(GALLERY)]]
-    run_all(line for line in shown if command(line).words not in others)
+    shown = docs.of_texts(docs.ROOT / page)
+    if docs.QUICK not in docs.PAGES[page]:
+        shown = docs.rps_lines(docs.ROOT / page) + shown
+    others = [docs.command(line).words for line in [*COMMANDS, *docs.of_blocks(GALLERY)]]
+    docs.run_all(line for line in shown if docs.command(line).words not in others)
 
 
 @pytest.mark.long
@@ -203,36 +183,36 @@ def test_set_up_commands_run(tmp_path: Path) -> None:
     installed is looked for and not kept. Needs a package index.
     """
     left_out = shutil.ignore_patterns(".git", ".venv", "__pycache__", ".*cache", "results", "dist")
-    shutil.copytree(ROOT, tmp_path / "clone", ignore=left_out)
+    shutil.copytree(docs.ROOT, tmp_path / "clone", ignore=left_out)
     variables = {"PYTHONPATH": "", "COLUMNS": "", "RPS_CACHE_DIR": str(tmp_path / "kernels")}
     first, _, then = SET_UP
     enter = f"cd {tmp_path / 'clone'}; "
-    printed = run_in_shell(enter + first, **variables)
-    (shown,) = (text for line, text in shown_outputs(BLOCKS[:2]) if "six_storey" in line)
-    assert not not_printed(shown, printed), printed
-    assert "rps" in run_in_shell(f"{enter}{then}; complete -p rps", **variables)
+    printed = docs.run_in_shell(enter + first, **variables)
+    (shown,) = (text for line, text in docs.shown_outputs(BLOCKS[:2]) if "six_storey" in line)
+    assert not docs.not_printed(shown, printed), printed
+    assert "rps" in docs.run_in_shell(f"{enter}{then}; complete -p rps", **variables)
     seen = set()
-    for name, page in pages().items():
-        for line in of_blocks(page) if page.suffix == ".md" else ():
+    for name, page in docs.pages().items():
+        for line in docs.of_blocks(page) if page.suffix == ".md" else ():
             wanted = re.search(r"\bpip install (?:-q )?(.*?)(?= &&| *#|$)", line)
             if wanted and name != "tests/example_package/README.md":
                 seen.add(wanted[1])
     for packages in sorted(seen):
-        run_in_shell(f"{enter}.venv/bin/pip install -q --dry-run {packages}", **variables)
+        docs.run_in_shell(f"{enter}.venv/bin/pip install -q --dry-run {packages}", **variables)
     assert len(seen) > 4
 
 
 def test_every_command_that_is_shown_has_a_test() -> None:
     """And can be parsed, which shows at once what a long test would: options and files."""
     missing, count = [], 0
-    for name, page in pages().items():
-        others = [line for line in of_blocks(page) if not line.startswith("rps ")]
-        missing += [line for line in others if not any(re.search(o, line) for o in OTHERS)]
-        lines = rps_lines(page) + of_texts(page)
-        missing += [f"{name}: {line}" for line in lines if name not in PAGES]
+    for name, page in docs.pages().items():
+        others = [line for line in docs.of_blocks(page) if not line.startswith("rps ")]
+        missing += [line for line in others if not any(re.search(o, line) for o in docs.OTHERS)]
+        lines = docs.rps_lines(page) + docs.of_texts(page)
+        missing += [f"{name}: {line}" for line in lines if name not in docs.PAGES]
         count += len(lines)
         for line in lines:
-            first, *words = command(line).words
+            first, *words = docs.command(line).words
             found = program.get_command(click.Context(program), first)
             if found is None:
                 assert first in {"--version", "--help"}, line
@@ -240,23 +220,23 @@ def test_every_command_that_is_shown_has_a_test() -> None:
             context = click.Context(found, resilient_parsing=True)
             found.make_parser(context).parse_args(words)
             files = [word for word in words if word.startswith("cases/")]
-            assert [file for file in files if not (ROOT / file).exists()] == [], line
+            assert [file for file in files if not (docs.ROOT / file).exists()] == [], line
     assert missing == []
     assert count > 110
-    tests = {test for named in PAGES.values() for test in named}
-    tests |= {told for told in OTHERS.values() if "::" in told}
+    tests = {test for named in docs.PAGES.values() for test in named}
+    tests |= {told for told in docs.OTHERS.values() if "::" in told}
     for test in tests:
         file, _, function = test.partition("::")
-        assert f"\ndef {function}(" in (ROOT / file).read_text("utf-8"), test
+        assert f"\ndef {function}(" in (docs.ROOT / file).read_text("utf-8"), test
 
 
 @needs_compiled_kernels
 def test_the_python_examples_run(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
     law, example = (block.text for block in BLOCKS if block.language == "python")
     made: dict[str, Any] = {}
-    exec(compile(law, str(GUIDE), "exec"), made)  # noqa: S102 -- it is ours
+    exec(compile(law, str(docs.GUIDE), "exec"), made)  # noqa: S102 -- it is ours
     assert made["OIL"].force(0.0, 0.2, 2e6, 3e5, 0.1) == 3e5 + 0.1 * 2e6 * 0.05
-    exec(compile(example, str(GUIDE), "exec"), {})  # noqa: S102 -- it is ours
+    exec(compile(example, str(docs.GUIDE), "exec"), {})  # noqa: S102 -- it is ours
     first = capsys.readouterr().out.split()
     assert first[0] == "survived"
     assert float(first[2]) == pytest.approx(0.3613, abs=5e-5)  # as in the table above it
@@ -271,7 +251,7 @@ def test_the_job_for_a_pipeline_runs(here: Path) -> None:
         for line in step.get("run", "").splitlines()
         if line.startswith("rps ")
     ]
-    assert run_all(lines)
+    assert docs.run_all(lines)
     assert (here / "results/acceptance/six_storey/summary.json").is_file()
     (cached,) = (step["with"] for step in job["steps"] if "actions/cache" in step.get("uses", ""))
     for variable in (VARIABLE, "MPLCONFIGDIR"):
@@ -280,14 +260,12 @@ def test_the_job_for_a_pipeline_runs(here: Path) -> None:
 
 @pytest.mark.parametrize("line", SET_UP)
 def test_set_up_commands_can_be_parsed(line: str) -> None:
-    checked = subprocess.run(
-        ["bash", "-n", "-c", line], capture_output=True, text=True, check=False
-    )
-    assert checked.returncode == 0, checked.stderr
+    made = subprocess.run(["bash", "-n", "-c", line], capture_output=True, text=True, check=False)
+    assert made.returncode == 0, made.stderr
     extras = re.search(r"'\.\[(\w+)\]'", line)
     if extras:
         assert re.search(
-            rf"^{extras[1]} = \[", (ROOT / "pyproject.toml").read_text("utf-8"), re.MULTILINE
+            rf"^{extras[1]} = \[", (docs.ROOT / "pyproject.toml").read_text("utf-8"), re.MULTILINE
         )
 
 
@@ -300,33 +278,33 @@ def test_powershell_lines_say_what_the_others_say() -> None:
         for old, new in swaps.items():
             said = said.replace(old, new)
         expected.append(said.replace(". .venv\\Scripts\\activate", ".venv\\Scripts\\Activate.ps1"))
-    assert of_blocks(README, "powershell") == expected
+    assert docs.of_blocks(README, "powershell") == expected
     assert not [line for line in COMMANDS if re.search(r"[\"`$\\|&]", re.sub(r"'[^']*'", "", line))]
 
 
 def test_every_command_of_the_program_is_shown() -> None:
-    texts = (README.read_text("utf-8"), GUIDE.read_text("utf-8"))
+    texts = (README.read_text("utf-8"), docs.GUIDE.read_text("utf-8"))
     named = {name for text in texts for name in re.findall(r"\brps ([a-z]+)\b", text)}
     assert set(COMMANDS_OF_PROGRAM) <= named
 
 
 def test_the_citation_is_of_this_version() -> None:
-    citation = yaml.safe_load((ROOT / "CITATION.cff").read_text("utf-8"))
-    project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
+    citation = yaml.safe_load((docs.ROOT / "CITATION.cff").read_text("utf-8"))
+    project = tomllib.loads((docs.ROOT / "pyproject.toml").read_text("utf-8"))["project"]
     assert {"cff-version", "message", "title", "authors"} <= set(citation)  # what the format needs
     same = ("license", "keywords")
     assert [citation[name] for name in same] == [project[name] for name in same]
     assert citation["repository-code"] == project["urls"]["Source"]
     assert citation["version"] == VERSION
     assert f"version {VERSION}," in README.read_text("utf-8")
-    assert f"\n## [{VERSION}]" in (ROOT / "CHANGELOG.md").read_text("utf-8")
+    assert f"\n## [{VERSION}]" in (docs.ROOT / "CHANGELOG.md").read_text("utf-8")
 
 
 def test_the_tests_run_on_the_systems_of_users() -> None:
     job = yaml.safe_load((WORKFLOW.parent / "tests.yml").read_text("utf-8"))["jobs"]["test"]
     matrix = job["strategy"]["matrix"]
     assert {name.partition("-")[0] for name in matrix["os"]} == {"ubuntu", "windows", "macos"}
-    project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
+    project = tomllib.loads((docs.ROOT / "pyproject.toml").read_text("utf-8"))["project"]
     assert f">={matrix['python'][0]}" == project["requires-python"]
     lines = [line for step in job["steps"] for line in step.get("run", "").splitlines()]
     for line in lines:
@@ -339,7 +317,7 @@ def test_the_readme_is_short() -> None:
     assert len(README.read_text("utf-8").splitlines()) < 220
 
 
-@pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: str(path.relative_to(ROOT)))
+@pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: str(path.relative_to(docs.ROOT)))
 def test_relative_links_exist(document: Path) -> None:
     links = re.findall(r"\]\(([^)#\s]+)[^)]*\)", document.read_text("utf-8"))
     relative = [link for link in links if not re.match(r"https?:", link)]
@@ -353,7 +331,7 @@ def test_the_notebook_runs(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    shutil.copytree(ROOT / "cases", "cases")
+    shutil.copytree(docs.ROOT / "cases", "cases")
     plt.switch_backend("Agg")
     try:
         left: dict[str, Any] = runpy.run_path("cases/notebook.py")

@@ -40,9 +40,7 @@ def test_links_of_pages_lead_to_pages(modules: Any, tmp_path: Path) -> None:
     assert [link for link in linked if not (tmp_path / link).is_file()] == []
 
 
-def test_numbers_of_formulas_are_anchors_and_citations_lead_to_them(
-    modules: Any, tmp_path: Path
-) -> None:
+def test_formulas_have_anchors_and_citations_lead_to_them(modules: Any, tmp_path: Path) -> None:
     stage = modules["pages"].Stage(tmp_path)
     theory = stage.page("rpscli/THEORY.md")
     anchors = re.findall(r'id="(eq-[\d.]+)"', theory)

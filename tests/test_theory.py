@@ -93,9 +93,7 @@ def test_what_is_cited_exists(number: str) -> None:
     assert set(re.findall(r"\(\d+\.\d+\)", TEXT)) <= KNOWN[r"\(\d+\.\d+\)"]
     cited = {path: cited_by(path.read_text("utf-8"), number) for path in SOURCES}
     assert sum(path.suffix == ".py" for path, numbers in cited.items() if numbers) > 10
-    missing = {
-        path.name: found for path, numbers in cited.items() if (found := numbers - KNOWN[number])
-    }
+    missing = {path.name: of for path, numbers in cited.items() if (of := numbers - KNOWN[number])}
     assert missing == {}
 
 
@@ -139,9 +137,7 @@ def test_edges_that_crush_take_their_share_of_the_moment(share: float) -> None:
 
 @pytest.mark.parametrize("rho", [0.0, 0.25, 1.5])
 @pytest.mark.parametrize(("kind", "share"), [("plane", 3.0), ("edges", 1.0)])
-def test_where_ends_that_give_way_lift_to_first_order(
-    kind: ContactKind, share: float, rho: float
-) -> None:
+def test_where_soft_ends_lift_to_first_order(kind: ContactKind, share: float, rho: float) -> None:
     """The bearing itself has the stiffness (2 rho - 1) W/2H, which joints add to."""
     soft = Contact(kind, period_ratio=1.5)
     structure = replace(podium(6, 0.15, rho, law=ImpactLaw()), contact=soft)

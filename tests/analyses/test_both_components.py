@@ -79,9 +79,7 @@ def test_samples_do_not_exceed_the_largest_values(result: TimeHistoryResult) -> 
 
 
 @pytest.mark.evidence("both components", "exact")
-def test_a_turned_pair_turns_all_results(
-    result: TimeHistoryResult, motion: MotionComponents
-) -> None:
+def test_a_turned_pair_turns_results(result: TimeHistoryResult, motion: MotionComponents) -> None:
     other = time_history(BUILDING, motion.turned(30.0), result.settings)
     assert other.max_rotation == pytest.approx(result.max_rotation, rel=1e-9)
     assert other.max_base_shear == pytest.approx(result.max_base_shear, rel=1e-9)

@@ -38,9 +38,7 @@ def test_a_sudden_acceleration_counts_twice_without_damping() -> None:
     # Peaks between samples: fifty a period leave 0.2 %.
     wanted = np.array([[2.0], [6.0]]) * np.ones(3)
     np.testing.assert_allclose(found.pseudo_acceleration, wanted, rtol=2e-3)
-    np.testing.assert_allclose(
-        found.displacement, wanted * (PERIODS / (2.0 * np.pi)) ** 2, rtol=2e-3
-    )
+    np.testing.assert_allclose(found.displacement, wanted * (PERIODS / (2 * np.pi)) ** 2, rtol=2e-3)
 
 
 @pytest.mark.evidence("floor spectra", "exact")

@@ -90,9 +90,7 @@ def test_eigenvalues_are_those_of_the_jacobian(
 @pytest.mark.evidence("floors on vertical springs", "exact")
 @pytest.mark.parametrize("shape", [*SHAPES, (0.0, 0.3, 0.8)], ids=str)
 @pytest.mark.parametrize("storeys", [1, 3])
-def test_vertical_springs_in_tilt_drifts_and_lifts(
-    storeys: int, shape: tuple[float, float, float]
-) -> None:
+def test_springs_in_tilt_drifts_and_lifts(storeys: int, shape: tuple[float, float, float]) -> None:
     """Second derivatives of the energies in [theta, drifts, lifts over the beam].
 
     Weight and springs cancel where floors have sagged, so lifts add nothing but their springs.

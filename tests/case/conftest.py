@@ -61,9 +61,7 @@ FLAT = (
 )  # fmt: skip
 """Ends that may bear on joints, put over the building; and joints."""
 
-PLANE, EDGES = (
-    f"podium.contact={{kind: {kind}, period_ratio: 1.2}}" for kind in ("plane", "edges")
-)
+PLANE, EDGES = (f"podium.contact={{kind: {of}, period_ratio: 1.2}}" for of in ("plane", "edges"))
 
 
 def case_of(*overrides: str, text: str = BUILDING) -> Case:

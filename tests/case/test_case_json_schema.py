@@ -78,9 +78,7 @@ def test_bounds_words_lists_and_defaults() -> None:
 
 
 def test_closed_and_without_null() -> None:
-    sections = [
-        item for item in walk(SCHEMA) if isinstance(item, dict) and item.get("type") == "object"
-    ]
+    sections = [at for at in walk(SCHEMA) if isinstance(at, dict) and at.get("type") == "object"]
     # A limit may be a mapping, which is described once for all of a unit and a bound.
     rules = {(q.unit in KINDS and q.unit, q.whole or q.from_below, q.from_below) for q in LIMITED}
     assert len(sections) == 19 + len(rules)

@@ -78,11 +78,9 @@ def test_python_values_of_a_study() -> None:
 
 
 def test_a_fault_of_a_value_is_placed_at_its_override() -> None:
-    document = read_yaml(BUILDING, "c.yaml")
+    case = read_yaml(BUILDING, "c.yaml")
     with pytest.raises(CaseError) as error:
-        case_from_mapping(
-            document, "c.yaml", None, {"podium.bearing.slenderness": -0.5}, label="vary"
-        )
+        case_from_mapping(case, "c.yaml", None, {"podium.bearing.slenderness": -0.5}, label="vary")
     start = "vary podium.bearing.slenderness=-0.5: podium.bearing.slenderness = -0.5 must be >= 0"
     assert str(error.value) == start
     message = refusal(BUILDING, overrides=["podium.cap_beam_mass=1"])
@@ -130,11 +128,8 @@ def test_a_key_below_a_list() -> None:
 
 
 def test_keys_of_a_study_are_checked_together() -> None:
-    message = override_refusal({"podium.foo": 1, "record.bar": 2}, label="vary")
-    assert [line.split(":")[0] for line in message.splitlines()] == [
-        "vary podium.foo=1",
-        "vary record.bar=2",
-    ]
+    lines = override_refusal({"podium.foo": 1, "record.bar": 2}, label="vary").splitlines()
+    assert [line.split(":")[0] for line in lines] == ["vary podium.foo=1", "vary record.bar=2"]
 
 
 def test_a_document_without_positions() -> None:

@@ -29,10 +29,8 @@ FACTORS: dict[str, dict[str, float]] = {
         "lbf/ft": POUND_FORCE / FOOT, "kip/in": KIP / INCH, "kip/ft": KIP / FOOT,
     },
     "N s/m": {"N s/m": 1.0, "kN s/m": 1e3, "MN s/m": 1e6, "kN s/mm": 1e6},
-    "m/s2": {
-        "g": STANDARD_GRAVITY, "m/s2": 1.0, "cm/s2": 0.01, "mm/s2": 1e-3, "ft/s2": FOOT,
-        "in/s2": INCH,
-    },
+    "m/s2": {"g": STANDARD_GRAVITY, "m/s2": 1.0, "cm/s2": 0.01, "mm/s2": 1e-3, "ft/s2": FOOT,
+             "in/s2": INCH},
     "m/s": {"m/s": 1.0, "cm/s": 0.01, "mm/s": 1e-3, "ft/s": FOOT, "in/s": INCH},
     "N": {"N": 1.0, "kN": 1e3, "MN": 1e6, "lbf": POUND_FORCE, "kip": KIP},
     "N m": {"N m": 1.0, "kN m": 1e3, "MN m": 1e6, "N mm": 1e-3, "kip ft": KIP * FOOT},
@@ -42,40 +40,23 @@ FACTORS: dict[str, dict[str, float]] = {
 }  # fmt: skip
 
 UNUSUAL: dict[str, dict[str, float]] = {
-    "m": {
-        "µm": 1e-06, "kilometres": 1000.0, "inches": 0.0254, "feet": 0.30479999999999996,
-        "yards": 0.9144, "millimeter": 0.001,
-    },
-    "kg": {
-        "mg": 1e-06, "g": 0.001, "kilograms": 1.0, "pounds": 0.4535923700000001,
+    "m": {"µm": 1e-06, "kilometres": 1000.0, "inches": 0.0254, "feet": 0.30479999999999996,
+        "yards": 0.9144, "millimeter": 0.001},
+    "kg": {"mg": 1e-06, "g": 0.001, "kilograms": 1.0, "pounds": 0.4535923700000001,
         "lbs": 0.4535923700000001, "slugs": 14.59390293720637, "oz": 0.028349523125000005,
-        "kN s2/m": 1000.0,
-    },
-    "s": {
-        "us": 1e-06, "milliseconds": 0.001, "hours": 3600.0,
-    },
-    "N/m": {
-        "kgf/mm": 9806.65, "tf/cm": 980665.0, "kips/inch": 175126.83524647643,
+        "kN s2/m": 1000.0},
+    "s": {"us": 1e-06, "milliseconds": 0.001, "hours": 3600.0},
+    "N/m": {"kgf/mm": 9806.65, "tf/cm": 980665.0, "kips/inch": 175126.83524647643,
         "psi ft": 2101.522022957717, "MPa*mm": 1000.0, "kJ/m^2": 1000.0, "t/s**2": 1000.0,
-        "kN*m^-1": 1000.0, "kN · m-1": 1000.0,
-    },
-    "N s/m": {
-        "kip s/in": 175126.83524647643, "lbf s/ft": 14.59390293720637, "MN*ms/mm": 1000000.0,
-        "kN/m s": 1000.0, "kg/s": 1.0,
-    },
-    "m/s2": {
-        "m/s/s": 1.0, "cm/sec^2": 0.01, "Gal": 0.01, "mGal": 1e-05, "N/kg": 1.0,
-    },
-    "m/s": {
-        "mph": 0.44704, "knots": 0.5144444444444445, "km / h": 0.2777777777777778,
-    },
-    "N": {
-        "kilonewtons": 1000.0, "lbf": 4.4482216152605, "kgf": 9.80665, "dyn": 1e-05, "kg m/s2": 1.0,
-    },
-    "rad": {
-        "degrees": 0.017453292519943295, "arcmin": 0.00029088820866572163,
-        "gon": 0.015707963267948967, "mm/m": 0.001,
-    },
+        "kN*m^-1": 1000.0, "kN · m-1": 1000.0},
+    "N s/m": {"kip s/in": 175126.83524647643, "lbf s/ft": 14.59390293720637, "MN*ms/mm": 1000000.0,
+        "kN/m s": 1000.0, "kg/s": 1.0},
+    "m/s2": {"m/s/s": 1.0, "cm/sec^2": 0.01, "Gal": 0.01, "mGal": 1e-05, "N/kg": 1.0},
+    "m/s": {"mph": 0.44704, "knots": 0.5144444444444445, "km / h": 0.2777777777777778},
+    "N": {"kilonewtons": 1000.0, "lbf": 4.4482216152605, "kgf": 9.80665, "dyn": 1e-05,
+        "kg m/s2": 1.0},
+    "rad": {"degrees": 0.017453292519943295, "arcmin": 0.00029088820866572163,
+        "gon": 0.015707963267948967, "mm/m": 0.001},
 }  # fmt: skip
 """What pint 0.25 makes of them."""
 

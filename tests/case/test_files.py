@@ -132,9 +132,7 @@ def test_sizes_are_refused_before_they_are_read(tmp_path: Path) -> None:
 
 
 def test_of_many_faults_the_first_hundred_are_told() -> None:
-    lines = refusal(
-        "title: t\n" + "".join(f"key_{number}: 1\n" for number in range(3000))
-    ).splitlines()
+    lines = refusal("title: t\n" + "".join(f"key_{n}: 1\n" for n in range(3000))).splitlines()
     assert len(lines) == 101
     assert lines[-1].startswith("c.yaml: 29")
     assert lines[-1].endswith("more faults; correct these first")
@@ -164,9 +162,7 @@ TABLES: dict[str, Callable[[Path], object]] = {
     "PGV [cm/s],rate [1/year]": lambda file: read_hazard(file, "PGV"),
     "time [s],rotation [rad]": lambda file: measured(str(file), "rocking", None, None),
     "problem,quantity,value": lambda file: answers_of_file(file.read_text(), str(file)),
-    "record,overturned": lambda file: read_observed(
-        str(file), file.parent, (), Document("s.yaml", {})
-    ),
+    "record,overturned": lambda at: read_observed(str(at), at.parent, (), Document("s.yaml", {})),
 }
 
 

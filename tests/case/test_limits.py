@@ -27,10 +27,8 @@ def limited(text: str) -> tuple[Condition, ...]:
     return conditions_of(case_of(text=changed).limits, "the case")
 
 
-def condition(
-    name: str, limit: float, share: float = 0.0, fractile: float | None = None
-) -> Condition:
-    return Condition(name, limit, "the case", share, fractile)
+def condition(of: str, at: float, share: float = 0.0, fractile: float | None = None) -> Condition:
+    return Condition(of, at, "the case", share, fractile)
 
 
 @pytest.mark.parametrize(
@@ -56,9 +54,7 @@ def condition(
          condition("full_contact_share", 0.5, 0.1), "at least 0.5 except in 10 % of the records"),
     ],
 )  # fmt: skip
-def test_a_limit_is_a_number_or_has_a_share_or_a_fractile(
-    text: str, expected: Condition, words: str
-) -> None:
+def test_a_limit_may_have_a_share_or_a_fractile(text: str, expected: Condition, words: str) -> None:
     (found,) = limited(text)
     assert found == expected
     assert requirement_text(found) == words

@@ -93,9 +93,7 @@ def test_syntax_is_refused_with_place_and_remedy(text: str, parts: list[str]) ->
         ("a: [200,5 t, 3 t]\n", "1:4", ["write 200.5 t, or for two numbers a blank"]),
     ],
 )
-def test_what_reading_survives_is_reported_with_the_rest(
-    text: str, place: str, parts: list[str]
-) -> None:
+def test_what_reading_survives_is_told_as_well(text: str, place: str, parts: list[str]) -> None:
     lines = refusal(text).splitlines()
     assert any(line.startswith(f"c.yaml:{place}: ") and parts[0] in line for line in lines)
     assert all(part in "\n".join(lines) for part in parts)

@@ -30,9 +30,7 @@ def _by_hand(rps: Invoke, options: str) -> dict[str, Any]:
 
 
 @pytest.mark.evidence("error budget", "exact")
-def test_each_row_is_that_of_the_command_by_hand(
-    workplace: Path, rps: Invoke, rps_json: Json
-) -> None:
+def test_each_row_is_the_command_by_hand(workplace: Path, rps: Invoke, rps_json: Json) -> None:
     write_case("limited.yaml", more="limits: {rotation_ratio: 0.2, base_shear_ratio: 9}\n")
     records = [word for pulse in PULSES for word in ("--record", pulse)]
     found = rps_json("budget", "limited.yaml", *records, *NONE)

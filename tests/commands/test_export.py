@@ -86,9 +86,7 @@ def test_opensees_finds_the_same_where_impacts_take_nothing(workplace: Path, rps
     assert gap("cap_beam_displacement [m]", ours, theirs) < 1.5e-2
 
 
-def test_the_damper_takes_as_much_as_an_impact(
-    workplace: Path, rps_json: Callable[..., Any]
-) -> None:
+def test_a_damper_takes_as_much_as_an_impact(workplace: Path, rps_json: Callable[..., Any]) -> None:
     """Of a rigid building: a swing is integrated here, and its energy is lost as (1 - e^2)."""
     law = "podium:\n  impact: {law: value, restitution: 0.99}"
     write_case("stiff.yaml", ("podium:", law))
@@ -210,9 +208,7 @@ def test_what_the_other_program_lacks_is_one_sentence(workplace: Path, rps: Invo
     assert line.startswith("openseespy cannot be loaded: libblas.so.3: cannot open; install it")
 
 
-def test_the_time_up_to_which_programs_compare_is_said(
-    workplace: Path, rps_json: Callable[..., Any]
-) -> None:
+def test_how_long_programs_compare_is_said(workplace: Path, rps_json: Callable[..., Any]) -> None:
     """A frame that rocks for long under a record that is none of a pulse."""
     (workplace / "slender.yaml").write_text(SLENDER, encoding="utf-8")
     calm = rps_json("export", "slender.yaml", "mujoco", "-o", "calm")

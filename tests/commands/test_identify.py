@@ -52,9 +52,7 @@ def measured(workplace: Path, rps: Invoke) -> Path:
     return file
 
 
-def test_a_release_gives_the_loss(
-    measured: Path, rps_json: Callable[..., Any], rps: Invoke
-) -> None:
+def test_a_release_gives_a_loss(measured: Path, rps_json: Callable[..., Any], rps: Invoke) -> None:
     found = rps_json("identify", "frame.yaml", "release.csv", "rocking")
     by_name = {each["name"]: each for each in found["estimates"]}
     # hundredths of a millimetre are rounded, of 180
@@ -82,9 +80,7 @@ def test_the_period_of_a_pull(workplace: Path, rps: Invoke, rps_json: Callable[.
     assert by_name["damping"]["value"] == pytest.approx(0.05, rel=0.02)
 
 
-def test_a_longer_period_tells_how_the_columns_bear(
-    workplace: Path, rps_json: Callable[..., Any]
-) -> None:
+def test_a_longer_period_tells_how_ends_bear(workplace: Path, rps_json: Callable[..., Any]) -> None:
     """Three storeys of the paper at r = 1.2: 63.4 MN/m and 47 um, from another derivation."""
     masses = ("[200000, 200000, 150000]", "20 t")
     write_case("paper.yaml", masses, ("curvature_ratio: 0.5", "curvature_ratio: 0"))

@@ -119,11 +119,8 @@ def test_what_a_word_means(rps: Invoke, word: str, said: list[str]) -> None:
 
 
 def test_meanings_are_one_line(rps_json: InvokeJson) -> None:
-    found = [
-        *rps_json("explain", "of")["keys"],
-        *rps_json("explain", "inertia_ratio_axial")["keys"],
-    ]
-    assert not any("\n" in item["meaning"] for item in found)
+    said = [*rps_json("explain", "of")["keys"], *rps_json("explain", "inertia_ratio_axial")["keys"]]
+    assert not any("\n" in item["meaning"] for item in said)
 
 
 def test_every_key_is_explained(rps_json: InvokeJson) -> None:

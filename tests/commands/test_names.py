@@ -22,9 +22,7 @@ def _files(folder: Path) -> set[str]:
     return {path.parent.name for path in folder.rglob("events.csv")}
 
 
-def test_names_of_dots_and_of_capitals_have_folders_of_their_own(
-    workplace: Path, rps: Invoke
-) -> None:
+def test_names_of_dots_and_capitals_have_folders_of_their_own(workplace: Path, rps: Invoke) -> None:
     records = ["...at2", "A.at2", "a.at2"]
     for folder, name in zip("xyz", records, strict=True):
         (workplace / folder).mkdir()
@@ -81,9 +79,7 @@ def test_lists_and_folders_hold_names_with_marks(workplace: Path, rps: Invoke) -
 
 
 @pytest.mark.parametrize("files", ["5", "null", '["..", "../small.yaml"]', '"ab"', "[[1]]", "{}"])
-def test_damaged_descriptions_of_results_harm_nothing(
-    workplace: Path, rps: Invoke, files: str
-) -> None:
+def test_damaged_run_files_harm_nothing(workplace: Path, rps: Invoke, files: str) -> None:
     rps(*HISTORY, "-o", "o")
     run = json.loads((workplace / "o/run.json").read_text())
     (workplace / "o/run.json").write_text(json.dumps({**run, "files": json.loads(files)}))

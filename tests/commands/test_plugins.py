@@ -223,9 +223,7 @@ def test_constants_are_checked(example: None, workplace: Path, given: str, said:
         rpscli.load_case("small.yaml", [f"podium.devices=[{given}]"])
 
 
-def test_what_is_broken_is_named_and_breaks_nothing_else(
-    broken: None, rps: Invoke, workplace: Path
-) -> None:
+def test_what_is_broken_is_told_and_stays_alone(broken: None, rps: Invoke, workplace: Path) -> None:
     motion = rpscli.load_record("pulse:sine?amplitude=0.3g&period=0.5")
     assert motion.scaled_to("PGV", 1.0).npts == motion.npts  # ours stays ours
     named = r"XYZ of broken-plugins 1\.0 \(no_such_module:X\): ModuleNotFoundError"

@@ -143,9 +143,7 @@ def changed(document: dict[str, Any], path: str, value: object) -> str:
         ("name", "../../x", "name must be that of a file"),
     ],
 )
-def test_what_a_folder_says_is_checked_whole(
-    rps: Invoke, path: str, value: object, said: str
-) -> None:
+def test_what_a_folder_says_is_checked(rps: Invoke, path: str, value: object, said: str) -> None:
     rps("timehistory", "small.yaml", "-o", "old", "--figures", "none")
     run = Path("old/run.json")
     run.write_text(changed(json.loads(run.read_text("utf-8")), path, value), encoding="utf-8")
@@ -198,7 +196,7 @@ def test_only_an_earlier_page_of_the_same_is_replaced(rps: Invoke) -> None:
 
 
 @pytest.mark.parametrize(
-    ("arguments", "said"),
+    ("words", "said"),
     [
         (("old", "--set", "podium.bearing.slenderness=0.2"), "leave --set out"),
         (("old", "--scale", "2"), "a stored history has its record"),
@@ -213,9 +211,7 @@ def test_only_an_earlier_page_of_the_same_is_replaced(rps: Invoke) -> None:
         (("small.yaml", "--set", "record=null", "--budget"), "--budget needs a ground motion"),
     ],
 )
-def test_what_makes_no_page_is_said(
-    rps: Invoke, study: str, arguments: tuple[str, ...], said: str
-) -> None:
+def test_what_makes_no_page(rps: Invoke, study: str, words: tuple[str, ...], said: str) -> None:
     rps("timehistory", "small.yaml", "-o", "old", "--figures", "none")
     rps("timehistory", "small.yaml", "-o", "above/one", "--figures", "none")
     rps("modal", "small.yaml", "-o", "modes", "--figures", "none")
@@ -223,7 +219,7 @@ def test_what_makes_no_page_is_said(
     Path("begun").mkdir()
     Path("begun/study.sqlite").touch()
     Path("design.yaml").write_text(DESIGN, encoding="utf-8")
-    rps("report", *arguments, exit_code=2, says=said)
+    rps("report", *words, exit_code=2, says=said)
     assert not list(Path().rglob("*.html"))
 
 
@@ -233,9 +229,7 @@ def test_titles_with_tags_are_harmless(rps: Invoke) -> None:
     assert "<script" not in Path("out.html").read_text(encoding="utf-8")
 
 
-def test_a_study_that_is_stopped_goes_on(
-    rps: Invoke, study: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_stopped_study_goes_on(rps: Invoke, study: str, monkeypatch: pytest.MonkeyPatch) -> None:
     with monkeypatch.context() as patch:
         patch.setattr("rpscli.studies.run", lambda *_: Progress(9, 0, 1, 0, 1.0))
         result = rps("report", study, "-o", "out.html", exit_code=130)

@@ -35,9 +35,7 @@ def small_result() -> TimeHistoryResult:
     return time_history(case.structure, load_record(case.record.source), case.analysis)
 
 
-def test_results_say_that_one_direction_is_not_conservative(
-    rps: Invoke, rps_json: InvokeJson
-) -> None:
+def test_results_say_one_direction_is_not_conservative(rps: Invoke, rps_json: InvokeJson) -> None:
     told = rps_json("timehistory", "small.yaml", "--figures", "none")["note"]
     assert "not conservative" in told
     assert json.loads((FOLDER / "summary.json").read_text(encoding="utf-8"))["note"] == told
@@ -178,12 +176,10 @@ def test_fail_on(rps_json: InvokeJson, conditions: list[str]) -> None:
 
 
 def test_limits_of_the_case(rps: Invoke) -> None:
-    passing = ("--set", "limits.rotation_ratio=0.9")
-    result = rps("timehistory", "small.yaml", *passing)
+    passing = ("timehistory", "small.yaml", "--set", "limits.rotation_ratio=0.9")
+    result = rps(*passing)
     assert "met" in result.stdout
-    result = rps(
-        "timehistory", "small.yaml", *passing, "--set", "limits.base_shear_ratio=0.5", exit_code=10
-    )
+    result = rps(*passing, "--set", "limits.base_shear_ratio=0.5", exit_code=10)
     assert "EXCEEDED" in result.stdout
     assert "error: limit exceeded: base_shear_ratio = " in result.stderr
     assert (FOLDER / "rotation.png").is_file()
@@ -236,9 +232,8 @@ def test_scale_multiplies_the_record(rps_json: InvokeJson) -> None:
     assert document["record"]["scale"] == -0.25
     # Far below the uplift the building is linear, whatever its sign: g tan(alpha) is 0.15 g.
     assert document["outcome"] == "at_rest"
-    assert document["max_base_shear"] == pytest.approx(
-        0.25 * whole["fixed_base"]["storey_shears"][0], rel=1e-9
-    )
+    shear = whole["fixed_base"]["storey_shears"][0]
+    assert document["max_base_shear"] == pytest.approx(0.25 * shear, rel=1e-9)
 
 
 def test_a_vertical_component(rps_json: InvokeJson) -> None:
@@ -311,17 +306,11 @@ def test_the_cost_of_a_long_history_is_told_before_it_begins(rps: Invoke) -> Non
 def test_a_coefficient_of_friction_is_judged(rps: Invoke, rps_json: InvokeJson) -> None:
     document = rps_json("timehistory", "small.yaml", "--set", "podium.friction=0.9")
     assert document["friction_ratio"] == pytest.approx(document["friction_demand"] / 0.9)
-    (verdict,) = (v for v in document["verdicts"] if v["source"] == "podium.friction")
-    assert (verdict["name"], verdict["limit"], verdict["exceeded"]) == (
-        "friction_ratio",
-        1.0,
-        False,
-    )
-    slides = rps(
-        "timehistory", "small.yaml", "--force", "--set", "podium.friction=0.01", exit_code=10
-    )
-    assert "friction_ratio" in slides.stderr
-    assert "; slides at t = " in slides.stdout
+    (own,) = (v for v in document["verdicts"] if v["source"] == "podium.friction")
+    assert (own["name"], own["limit"], own["exceeded"]) == ("friction_ratio", 1.0, False)
+    low = rps("timehistory", "small.yaml", "--force", "--set", "podium.friction=0.01", exit_code=10)
+    assert "friction_ratio" in low.stderr
+    assert "; slides at t = " in low.stdout
 
 
 def test_an_unusual_scale_is_named(rps_json: InvokeJson) -> None:
@@ -355,20 +344,14 @@ def test_both_components_are_advised_where_they_can_act(rps: Invoke, more: tuple
     ],
     ids=["spherical", "plane"],
 )
-def test_pictures_of_both_components_where_nothing_happens_upright(
-    rps_json: InvokeJson, ends: str
-) -> None:
+def test_pictures_of_both_where_nothing_happens_upright(rps_json: InvokeJson, ends: str) -> None:
     """All are drawn, of losses at impacts, and friction resists with its force at most."""
-    x, y = (
-        f"pulse:sine?amplitude={peak}g&period={T}&dt=0.005" for peak, T in ((0.3, 0.9), (0.2, 0.7))
-    )
+    x, y = (f"pulse:sine?amplitude={a}g&period={T}&dt=0.005" for a, T in ((0.3, 0.9), (0.2, 0.7)))
     motion = ["--set", f"record={{x: '{x}', y: '{y}'}}"]
     friction = "podium.devices=[{kind: friction, force: 10 kN}]"
     words = ("timehistory", "small.yaml", *motion, "--set", ends, "--set", friction)
-    document = rps_json(
-        *words, "--set", "podium.impact.law=flexible", "--figures", "svg", "-o", "o"
-    )
-    assert not [text for text in document["warnings"] if "not drawn" in text]
+    made = rps_json(*words, "--set", "podium.impact.law=flexible", "--figures", "svg", "-o", "o")
+    assert not [text for text in made["warnings"] if "not drawn" in text]
     assert Path("o/orbit.svg").exists()
     assert "lost at passes" not in Path("o/energy.svg").read_text("utf-8")
     found = columns(Path("o/timehistory.csv"))

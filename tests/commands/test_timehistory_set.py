@@ -45,9 +45,7 @@ def test_a_folder_belongs_to_one_record(rps: Invoke) -> None:
     assert "replaces" in rps(*scaled).stderr
 
 
-def test_forces_of_columns_and_dampers_stand_in_the_table_where_the_case_has_them(
-    rps: Invoke,
-) -> None:
+def test_forces_of_columns_and_dampers_stand_where_the_case_has_them(rps: Invoke) -> None:
     words = ("timehistory", "small.yaml", *asked(PULSES[1:]), "--figures", "none", "--force")
     heads = ("damper", "axial")
     plain = rps(*words).stdout
@@ -143,9 +141,8 @@ def test_a_least_force_judges_the_set_from_below(rps: Invoke, rps_json: InvokeJs
     (verdict,) = document["sets"][0]["verdicts"]
     assert (verdict["beyond"]["count"], verdict["value"]) == (1, None)  # the overturned one
     forces = [history["min_column_force"] for history in document["histories"][:3]]
-    (verdict,) = rps_json(*words, f"min_column_force={sorted(forces)[1]}", exit_code=10)["sets"][0][
-        "verdicts"
-    ]
+    document = rps_json(*words, f"min_column_force={sorted(forces)[1]}", exit_code=10)
+    (verdict,) = document["sets"][0]["verdicts"]
     assert verdict["beyond"]["count"] == 2
     assert "overturned" in rps(*words, "min_column_force=-1e9", exit_code=10).stdout
 
@@ -184,13 +181,11 @@ def test_records_are_scaled_to_a_measure(
 
 
 def test_a_case_scales_its_record_too(rps_json: InvokeJson) -> None:
-    scaled = "record.scale_to={measure: PGA, value: 0.2 g}"
-    document = rps_json("timehistory", "small.yaml", "--set", scaled)
+    goal = "record.scale_to={measure: PGA, value: 0.2 g}"
+    document = rps_json("timehistory", "small.yaml", "--set", goal)
     assert document["record"]["pga"] == pytest.approx(0.2 * 9.80665, rel=1e-12)
-    assert rps_json("check", "small.yaml", "--set", scaled)["record"]["scale"] == pytest.approx(
-        2 / 3
-    )
-    again = rps_json("timehistory", "small.yaml", "--set", scaled, "--scale", "1")
+    assert rps_json("check", "small.yaml", "--set", goal)["record"]["scale"] == pytest.approx(2 / 3)
+    again = rps_json("timehistory", "small.yaml", "--set", goal, "--scale", "1")
     assert again["record"]["scale"] == 1.0
 
 

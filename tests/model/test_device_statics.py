@@ -14,13 +14,7 @@ from paper_structures import FLAT, known, oracle_devices, oracle_system, podium
 from rpscli.analyses.modal import linearised_matrices, modal
 from rpscli.analyses.pushover import pushover
 from rpscli.model.bearing import uplifted_state
-from rpscli.model.devices import (
-    FrictionDamper,
-    RollingResistance,
-    Stop,
-    Tendon,
-    ViscousDamper,
-)
+from rpscli.model.devices import FrictionDamper, RollingResistance, Stop, Tendon, ViscousDamper
 from rpscli.model.podium import Device, PodiumStructure
 from rpscli.model.statics import device_consequences, returns, secant_period, uplift_force
 

@@ -43,9 +43,7 @@ def test_ratios_of_the_paper() -> None:
 
 
 @given(structures, st.floats(0.05, 1.5))
-def test_the_force_does_the_work_that_lifts_the_weight(
-    structure: PodiumStructure, share: float
-) -> None:
+def test_the_force_does_the_work_of_lifting(structure: PodiumStructure, share: float) -> None:
     """Integral of F du_b = W v_b, across beta and beyond theta_cr."""
     bearing, end = structure.bearing, share * structure.critical_rotation
     diameter = 2.0 * bearing.semi_diagonal

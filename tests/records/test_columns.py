@@ -41,17 +41,11 @@ HEADERS = [
     "unit is g\n",
     "units in g\n",
 ]
-TIMED_HEADERS = [
-    "dt: 0.02\nunits: g\n",
-    "# dt = 0.02\n# units = g\n",
-    "# time step: 2.E-2 s; units: g\n",
-]
+WITH_DT = ["dt: 0.02\nunits: g\n", "# dt = 0.02\n# units = g\n", "# time step: 2.E-2 s; units: g\n"]
 FORMS = ["{:.2f} {}", "{:.4e}\t{}", "{:.3f}, {}", "  {:.2f} {}"]
 
 
-@pytest.mark.parametrize(
-    ("header", "form"), [*product(HEADERS, FORMS), *product(TIMED_HEADERS, ["{1}"])]
-)
+@pytest.mark.parametrize(("header", "form"), [*product(HEADERS, FORMS), *product(WITH_DT, ["{1}"])])
 def test_one_or_two_columns_with_a_header(tmp_path: Path, header: str, form: str) -> None:
     made = load(tmp_path, f"{header}{table(form)}\n# the end\n")
     np.testing.assert_allclose(made.acceleration, np.array(FOUR) * STANDARD_GRAVITY, rtol=1e-15)
@@ -90,9 +84,7 @@ def test_a_leading_count_or_step_is_not_an_acceleration(tmp_path: Path, lines: s
         ("0.02\n.1\n.2\n.3", [0.02, 0.1, 0.2, 0.3], "equals dt"),
     ],
 )
-def test_values_that_are_doubted(
-    tmp_path: Path, text: str, values: list[float], warning: str
-) -> None:
+def test_doubted_values(tmp_path: Path, text: str, values: list[float], warning: str) -> None:
     made = load(tmp_path, text, "?dt=0.02&units=m/s2")
     assert (made.acceleration.tolist(), made.dt) == (values, 0.02)
     assert warning in made.warnings[0]
@@ -123,9 +115,7 @@ PEAK = float(np.max(np.abs(VALUES)))
 
 
 def rows(*columns: np.ndarray, form: str = "{:.6f}", between: str = ",") -> str:
-    lines = (
-        between.join(form.format(value) for value in row) for row in zip(*columns, strict=True)
-    )
+    lines = (between.join(form.format(v) for v in row) for row in zip(*columns, strict=True))
     return "\n".join(lines) + "\n"
 
 

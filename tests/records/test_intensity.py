@@ -151,9 +151,7 @@ def simulated(made: GroundMotion, period: float, damping: float) -> tuple[float,
     st.floats(0.5, 20.0),
     st.floats(0.0, 0.9),
 )
-def test_against_an_independent_simulation(
-    values: list[int], period: float, damping: float
-) -> None:
+def test_against_another_simulation(values: list[int], period: float, damping: float) -> None:
     # At least 50 samples a period: nothing is refined.
     made = motion([value / 1000 for value in values], 0.01)
     spectrum = response_spectrum(made, [period], damping)

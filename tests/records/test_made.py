@@ -166,9 +166,7 @@ def test_the_spectrum_is_that_of_the_ground() -> None:
 
 @pytest.mark.evidence("synthetic motions", "exact")
 def test_the_strong_part_follows_the_envelope() -> None:
-    squares = sum(
-        load_record(f"synthetic:?pga=1&seed={seed}").acceleration ** 2 for seed in range(20)
-    )
+    squares = sum(load_record(f"synthetic:?pga=1&seed={n}").acceleration ** 2 for n in range(20))
     assert isinstance(squares, np.ndarray)
     thirds = squares.reshape(-1)[:3000].reshape(10, 300).sum(axis=1)
     assert np.argmax(thirds) in {1, 2}  # the peak lies at a fifth of the duration

@@ -265,17 +265,13 @@ NAMES = (
 )  # fmt: skip
 
 
-def test_names_tell_both_components_of_a_folder(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_names_tell_pairs_of_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("rpscli.records.formats.contents", lambda _: (Channel(),))
     folder = tmp_path / "all"
     folder.mkdir()
     for name in (*(name for pair in NAMES for name in pair), "RSN953_A_MUL-UP.AT2", "MULV.at2"):
         (folder / name).touch()
-    expected = sorted(
-        f"all/{first}?second={second}&both&rotation=30&factor=2" for first, second in NAMES
-    )
+    expected = sorted(f"all/{x}?second={y}&both&rotation=30&factor=2" for x, y in NAMES)
     found = expand_sources(["all?both&rotation=30&factor=2"], folder=tmp_path)
     assert sorted(found) == expected
     assert len(set(clusters([each for pair in NAMES for each in pair]))) == len(NAMES)

@@ -164,9 +164,7 @@ def test_a_long_name_is_told_in_a_short_line() -> None:
         ("nearfield_pulse/1/b", 6.5, 1.4, 203.0),
     ],
 )
-def test_what_is_known_of_the_recording(
-    place: str, magnitude: float, kilometres: float, vs30: float
-) -> None:
+def test_what_is_known(place: str, magnitude: float, kilometres: float, vs30: float) -> None:
     found = load_record(f"fema_p695:{place}").scaled(2.0).recording
     assert (found.magnitude, found.vs30) == (magnitude, vs30)
     assert found.distance == pytest.approx(1e3 * kilometres)

@@ -56,10 +56,8 @@ NPTS=  5, DT=   .0050 SEC
 def test_titles_of_at2_files_tell_a_pair(tmp_path: Path) -> None:
     for name, direction in (("one", "67"), ("two", "337"), ("up", "UP")):
         write(tmp_path, AT2.format(direction, len(direction) / 10), f"{name}.at2")
-    recording = load_record("one.at2", folder=tmp_path).recording
-    assert recording == Recording(
-        "Loma Prieta, 10/18/1989", "Gilroy - Gavilan Coll.", direction="67"
-    )
+    found = load_record("one.at2", folder=tmp_path).recording
+    assert found == Recording("Loma Prieta, 10/18/1989", "Gilroy - Gavilan Coll.", direction="67")
     assert clusters(["one.at2", "two.at2", "x.at2"], tmp_path) == (0, 0, 1)
     assert clusters(["one.at2", "two.at2"], tmp_path, "events") == (0, 0)
     (pair,) = expand_sources([".?both"], folder=tmp_path)

@@ -42,14 +42,12 @@ def synthetic(count: int) -> list[GroundMotion]:
     ]
 
 
-def admissible(
-    count: int, recordings: list[int], events: list[int], per_event: int
-) -> list[list[int]]:
+def admissible(n: int, recordings: list[int], events: list[int], per_event: int) -> list[list[int]]:
     """Every choice that keeps the rules about recordings and events."""
     return [
         list(places)
-        for places in itertools.combinations(range(len(events)), count)
-        if len({recordings[place] for place in places}) == count
+        for places in itertools.combinations(range(len(events)), n)
+        if len({recordings[place] for place in places}) == n
         and max(Counter(events[place] for place in places).values()) <= per_event
     ]
 
@@ -114,11 +112,9 @@ def test_against_all_choices_of_motions() -> None:
     """With 0.9 of the target everywhere and the mean PGA, as EN 1998-1 asks."""
     motions, target = synthetic(9), load_target(TARGET)
     selection = select(motions, target, SelectionRequest(3, (0.2, 2.0), (0.05, 20.0)))
-    periods = np.geomspace(0.2, 2.0, PERIODS)
-    wanted = target.acceleration(np.array([0.0, *periods]))
-    spectra = np.array(
-        [[m.pga, *response_spectrum(m, periods).pseudo_acceleration] for m in motions]
-    )
+    at = np.geomspace(0.2, 2.0, PERIODS)
+    wanted = target.acceleration(np.array([0.0, *at]))
+    spectra = np.array([[m.pga, *response_spectrum(m, at).pseudo_acceleration] for m in motions])
     # The best factor of each by a search that knows no formula.
     factors = np.geomspace(0.05, 20.0, 4001)
     own = [factors[np.argmin(misfit(factors[:, None] * s[1:], wanted[1:]))] for s in spectra]

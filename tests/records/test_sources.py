@@ -21,9 +21,7 @@ VALUES = (0.0, 1.0, -0.5, 2.0, 0.25, 0.0)
 
 KINDS = {
     "file": ("x.txt", ("dt=0.01", "units=m/s2", "factor=2")),
-    "files, a direction": (
-        "x.txt", ("dt=0.01", "units=m/s2", "second=y.txt", "angle=30", "factor=2")
-    ),
+    "files, angle": ("x.txt", ("dt=0.01", "units=m/s2", "second=y.txt", "angle=30", "factor=2")),
     "files together": (
         "x.txt", ("dt=0.01", "units=m/s2", "second=y.txt", "both", "rotation=20", "factor=2")
     ),
@@ -129,9 +127,7 @@ NPTS=  5, DT=   .0050 SEC
         (("IT.NRC..HGE.D.x", "IT.NRC..HGN.D.x"), "IT.NRC..HGZ.D.x"),
     ],
 )
-def test_verticals_are_no_horizontal_records(
-    tmp_path: Path, names: tuple[str, str], up: str
-) -> None:
+def test_verticals_are_no_horizontals(tmp_path: Path, names: tuple[str, str], up: str) -> None:
     for name, component in zip((*names, up), ("0", "90", "UP"), strict=True):
         (tmp_path / name).write_text(AT2.format(component), encoding="utf-8")
     found, notes = expanded(["."], folder=tmp_path)
@@ -341,9 +337,7 @@ def test_files_whose_names_look_like_something_else(tmp_path: Path, name: str) -
         (b"PEER NGA\n\x00\x01\x02", "not a text file"),
     ],
 )
-def test_files_that_are_not_what_their_name_says(
-    tmp_path: Path, content: bytes, message: str
-) -> None:
+def test_files_that_are_not_what_they_say(tmp_path: Path, content: bytes, message: str) -> None:
     path = tmp_path / "rec.AT2"
     path.write_bytes(content)
     with pytest.raises(RecordError, match=message) as raised:
@@ -363,9 +357,7 @@ def test_encodings(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("ending", ["v1", "v1c", "V2", "V2c", "V2A"])
 @pytest.mark.parametrize("query", ["", "?channel=1"])
-def test_a_file_without_the_series_its_ending_promises(
-    tmp_path: Path, ending: str, query: str
-) -> None:
+def test_a_file_without_the_series_of_its_ending(tmp_path: Path, ending: str, query: str) -> None:
     path = tmp_path / f"another.{ending}"
     path.write_text("0.1\n0.2\nabc\n")
     with pytest.raises(RecordError, match=r"no series of accelerations begins.*another ending"):

@@ -35,9 +35,8 @@ PREFIXES = {"": 1.0, "k": 1e-3, "M": 1e-6}
 def building(storeys: int, *, heights: bool = True) -> Superstructure:
     masses = np.full(storeys, 2e5)
     stiffnesses = profile_stiffnesses(masses, 0.1 * storeys)
-    return Superstructure(
-        masses, stiffnesses, ModalDamping(0.05), np.full(storeys, 3.0) if heights else None
-    )
+    known = np.full(storeys, 3.0) if heights else None
+    return Superstructure(masses, stiffnesses, ModalDamping(0.05), known)
 
 
 def yielding(storeys: int = 2, hardening: float = 0.05) -> PodiumStructure:
@@ -49,9 +48,8 @@ def yielding(storeys: int = 2, hardening: float = 0.05) -> PodiumStructure:
 def structure(
     bearing: Bearing = CURVED, storeys: int = 2, *, heights: bool = True
 ) -> PodiumStructure:
-    return PodiumStructure(
-        bearing, 2e4, 2e5, building(storeys, heights=heights) if storeys else None
-    )
+    above = building(storeys, heights=heights) if storeys else None
+    return PodiumStructure(bearing, 2e4, 2e5, above)
 
 
 def history(made: PodiumStructure, pulse: str, free: float | None = 0.5) -> TimeHistoryResult:

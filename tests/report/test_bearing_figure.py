@@ -17,11 +17,7 @@ from rpscli.model.bearing import Bearing
 from rpscli.model.devices import FrictionDamper, Stop, Tendon
 from rpscli.model.podium import PodiumStructure
 from rpscli.report.figures import style
-from rpscli.report.figures.bearing import (
-    BearingView,
-    draw_bearing,
-    draw_end,
-)
+from rpscli.report.figures.bearing import BearingView, draw_bearing, draw_end
 from rpscli.report.figures.look import Look
 from rpscli.report.figures.structure import bearing_figure
 

@@ -106,11 +106,7 @@ def test_the_branch_of_the_critical_rotation_is_the_one_that_is_travelled() -> N
 
 def test_numbers_have_six_digits() -> None:
     row = next(row for row in found(case_of("six_storey")) if row.name == "column_height")
-    assert (row.symbol, row.formula, row.numbers) == (
-        "2H",
-        "2 R cos(α)",
-        "2 · 1.5 · cos(0.14889)",
-    )
+    assert (row.symbol, row.formula, row.numbers) == ("2H", "2 R cos(α)", "2 · 1.5 · cos(0.14889)")
 
 
 def test_a_case_in_memory_will_do() -> None:
@@ -121,19 +117,15 @@ def test_a_case_in_memory_will_do() -> None:
 DESIGNED = next(path for path in CASES if path.stem == "designed_columns")
 
 ROUND = "podium.column={section: round, modulus: 35 GPa, poisson: 0.2, contact_strength: 25 MPa}"
+FLAT_ENDS = ("podium.bearing.dimensions.radius=0", "limits.contact_pressure_ratio=null")
 COLUMNS = {
     "square": (),
     "concrete": ("podium.column.modulus=35GPa", "podium.column.contact_strength=60MPa"),
     "round": (ROUND,),
-    "flat": ("podium.bearing.dimensions.radius=0", "limits.contact_pressure_ratio=null"),
-    "flat and round": (
-        ROUND, "podium.bearing.dimensions.radius=0", "limits.contact_pressure_ratio=null"
-    ),
-    "flat, crushed whole": (
-        ROUND.replace("25", "0.5"), "podium.bearing.dimensions.radius=0",
-        "limits.contact_pressure_ratio=null",
-    ),
-}  # fmt: skip
+    "flat": FLAT_ENDS,
+    "flat and round": (ROUND, *FLAT_ENDS),
+    "flat, crushed whole": (ROUND.replace("25", "0.5"), *FLAT_ENDS),
+}
 
 
 def result_of(name: str, *, both: bool = False, factor: float = 1.0) -> TimeHistoryResult:
@@ -169,9 +161,7 @@ def test_instants_and_their_formulas(name: str, monkeypatch: pytest.MonkeyPatch)
 @needs_compiled_kernels
 def test_ends_of_concrete_would_not_do() -> None:
     """What the comment of the case says, at the scale of its record."""
-    ratios = [
-        result_of(n, factor=0.7).contact_pressure_ratio or 0.0 for n in ("square", "concrete")
-    ]
+    ratios = [result_of(n, factor=0.7).contact_pressure_ratio or 0 for n in ("square", "concrete")]
     assert ratios[0] < 1.0 < ratios[1]
 
 

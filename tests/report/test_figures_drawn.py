@@ -52,10 +52,7 @@ from rpscli.report.figures.floors import (
     profile_figure,
     shown_floors,
 )
-from rpscli.report.figures.history import (
-    displacement_figure,
-    rotation_figure,
-)
+from rpscli.report.figures.history import displacement_figure, rotation_figure
 from rpscli.report.figures.look import FilmRequest
 from rpscli.report.figures.motions import record_figure
 from rpscli.report.figures.structure import (
@@ -439,9 +436,8 @@ def test_a_scene_is_true_to_scale_but_for_the_drifts(kind: str) -> None:
         for floor, line in enumerate(scene.floors):
             drift = trace.floor_displacements[sample, floor] - u
             x, y = line.get_data()
-            assert np.asarray(x, float).mean() == pytest.approx(
-                u + scene.magnification * drift, abs=1e-12
-            )
+            middle = u + scene.magnification * drift
+            assert np.asarray(x, float).mean() == pytest.approx(middle, abs=1e-12)
             height = levels[floor + 1] + lift + scene.thickness
             assert np.asarray(y).tolist() == pytest.approx([height, height], rel=1e-12)
     drifts = f"; storey drifts x {scene.magnification:g}" if storeys else ""

@@ -16,17 +16,9 @@ from report.small_results import ANGLE, KINDS, curve, drawn, is_drawn, legend, p
 from rpscli import figures
 from rpscli.analyses.trace import Direction
 from rpscli.errors import UsageError
+from rpscli.report.figures import history
 from rpscli.report.figures.animation import PlanView, Scene, frame_plan, history_film
 from rpscli.report.figures.floors import draw_accelerations
-from rpscli.report.figures.history import (
-    component,
-    displacement_figure,
-    draw_moment,
-    in_plane,
-    lean_azimuth,
-    orbit_figure,
-    rotation_figure,
-)
 from rpscli.report.figures.look import FilmRequest
 
 
@@ -38,7 +30,7 @@ def kind(request: pytest.FixtureRequest) -> str:
 def test_a_plane_motion_is_found_again(kind: str) -> None:
     """In the plane of the tilt all is as it was, but for which side is called right."""
     plane, pair = KINDS[kind]().trace, turned(kind)
-    seen = in_plane(pair).trace
+    seen = history.in_plane(pair).trace
     peak = int(np.argmax(np.abs(plane.rotation)))
     side = 1.0 if seen.rotation[peak] * plane.rotation[peak] >= 0.0 else -1.0
     if not plane.rotation.any():  # it never leans, and is looked at along x
@@ -48,11 +40,10 @@ def test_a_plane_motion_is_found_again(kind: str) -> None:
         if getattr(plane, name) is None:  # nothing yields
             continue
         was, found = getattr(plane, name), side * getattr(seen, name)
-        np.testing.assert_allclose(
-            found, was, rtol=0.0, atol=1e-12 * (1.0 + np.abs(was).max(initial=0.0))
-        )
+        rounding = 1e-12 * (1.0 + np.abs(was).max(initial=0.0))
+        np.testing.assert_allclose(found, was, rtol=0.0, atol=rounding)
     assert seen.y is None
-    assert in_plane(KINDS[kind]()).trace.rotation is not None
+    assert history.in_plane(KINDS[kind]()).trace.rotation is not None
 
 
 def test_the_plane_turns_without_jumps_and_on_while_all_stands() -> None:
@@ -61,7 +52,7 @@ def test_the_plane_turns_without_jumps_and_on_while_all_stands() -> None:
     time = pair.trace.time
     steady = turned("rolls", 2.0 * time)
     leans = steady.trace.rotation > 0.0
-    found = lean_azimuth(steady.trace)
+    found = history.lean_azimuth(steady.trace)
     from_first = found[leans] - found[leans][0]
     np.testing.assert_allclose(from_first, 2.0 * (time[leans] - time[leans][0]), atol=1e-9)
     assert np.abs(np.diff(found)).max() < 2.0 * pair.record.dt + 1e-9
@@ -69,18 +60,18 @@ def test_the_plane_turns_without_jumps_and_on_while_all_stands() -> None:
 
 def test_displacements_in_x_and_in_y() -> None:
     pair, plane = turned(), KINDS["rolls"]().trace
-    figure = drawn(displacement_figure, pair, "a title")
+    figure = drawn(history.displacement_figure, pair, "a title")
     axes = figure.axes
     assert [of.get_ylabel()[:2] for of in axes] == ["x:", "y:"] * 2
     for of, part in zip(axes[:2], (np.cos(ANGLE), np.sin(ANGLE)), strict=True):
         is_drawn(curve(of, "cap beam"), plane.time, part * plane.cap_beam_displacement)
     assert "x, y: y" in figure.get_suptitle()
-    assert component(pair, "y").trace.y is None
+    assert history.component(pair, "y").trace.y is None
 
 
 def test_rotation_and_azimuth() -> None:
     pair = turned()
-    ground, rotation, azimuth, events = drawn(rotation_figure, pair, "a title").axes
+    ground, rotation, azimuth, events = drawn(history.rotation_figure, pair, "a title").axes
     assert legend(ground) == ["± resultant", "in y", "in x", "$g\\,\\tan\\alpha$ (uplift)"]
     (band,) = ground.collections
     resultant = np.asarray(band.get_paths()[0].vertices)[:, 1].max()
@@ -100,7 +91,7 @@ def circles(axes: Axes) -> list[float]:
 
 def test_orbit_and_its_circles() -> None:
     pair, trace = turned("frame"), KINDS["frame"]().trace
-    orbit, push, bar = drawn(orbit_figure, pair, "a title").axes
+    orbit, push, bar = drawn(history.orbit_figure, pair, "a title").axes
     assert bar.get_xlabel() == "time [s]"
     made, critical = pair.structure, pair.structure.critical_rotation
     # One block rolls about its edges: 2 R times what leaning moves the middle of a flat end.
@@ -123,7 +114,7 @@ def test_orbit_and_its_circles() -> None:
 def test_the_moment_along_the_tilt_is_that_of_the_plane() -> None:
     """Of a pair to one side: the driving moment away from upright, over the size of the tilt."""
     trace, axes = KINDS["rolls"]().trace, Figure().subplots()
-    draw_moment(axes, turned())
+    history.draw_moment(axes, turned())
     rotation, moment = curve(axes, "driving moment (ground and building)")
     leans = trace.rotation != 0.0
     assert np.isnan(moment[~leans]).all()

@@ -123,11 +123,9 @@ def numbers(of: Sequence[Row], name: str) -> Array:
     return np.array([float(row[name]) if row[name] else np.nan for row in of])
 
 
-def chosen(of: Sequence[Row], rho: str, slenderness: str | None = None) -> list[Row]:
+def chosen(of: Sequence[Row], rho: str, alpha: str | None = None) -> list[Row]:
     """Rows of one curvature ratio, and of one slenderness."""
-    return [
-        row for row in of if row[RHO] == rho and (slenderness is None or row[ALPHA] == slenderness)
-    ]
+    return [row for row in of if row[RHO] == rho and (alpha is None or row[ALPHA] == alpha)]
 
 
 def panels(figure: Figure) -> dict[str, Axes]:
@@ -137,9 +135,8 @@ def panels(figure: Figure) -> dict[str, Axes]:
 
 def same(found: object, wanted: object) -> None:
     """Require equal numbers, to the ten digits of a CSV file."""
-    np.testing.assert_allclose(
-        np.asarray(found, float), np.asarray(wanted, float), rtol=1e-9, atol=1e-12
-    )
+    mine, other = (np.asarray(of, float) for of in (found, wanted))
+    np.testing.assert_allclose(mine, other, rtol=1e-9, atol=1e-12)
 
 
 def labelled(figure: Figure, x_label: str, y_label: str) -> None:
@@ -194,11 +191,8 @@ def test_the_table_of_overturning(histories: Open) -> None:
 @needs_compiled_kernels
 def test_rotations_against_the_reference(histories: Open) -> None:
     figure, table = histories("rotation")
-    labelled(
-        figure,
-        r"$|\theta_{max}|/\alpha$ [-], flat ends",
-        r"$|\theta_{max}|/\alpha$ [-], the others",
-    )
+    ratio = r"$|\theta_{max}|/\alpha$ [-]"
+    labelled(figure, f"{ratio}, flat ends", f"{ratio}, the others")
     mine, reference = "rotation_over_alpha", "reference_rotation_over_alpha"
     x_top, y_top = (1.08 * np.nanmax(numbers(table, name)) for name in (reference, mine))
     for slenderness in ("0.1", "0.15"):
@@ -361,10 +355,10 @@ def test_the_spectrum_of_pulses(tmp_path: Path) -> None:
         fell = [row for row in panel if row["outcome"].startswith("overturned")]
         least = [
             min(
-                (float(row[amplitude]) for row in fell if float(row[frequency]) == ratio),
+                (float(row[amplitude]) for row in fell if float(row[frequency]) == r),
                 default=np.nan,
             )
-            for ratio in ratios
+            for r in ratios
         ]
         same(curve(axes, "least that overturns"), (ratios, least))
 
@@ -376,9 +370,7 @@ def test_modes_against_a_varied_key(tmp_path: Path) -> None:
     for rho in ("critical", "0.5"):
         axes = panels(figure)[NAMES[rho]]
         for name, dashes in (("rolling", "-"), ("rocking", "--")):
-            line = [
-                row for row in chosen(table, rho) if row["result"] == f"{name}.frequency_ratio.0"
-            ]
+            line = [r for r in chosen(table, rho) if r["result"] == f"{name}.frequency_ratio.0"]
             assert len(line) == 3
             wanted = [numbers(line, c) for c in ("superstructure.storeys", "value")]
             same(curve(axes, name), wanted)

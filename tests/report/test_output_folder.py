@@ -209,9 +209,8 @@ def test_a_cell_may_hold_anything(cells: list[str], head: str) -> None:
 
 
 def test_lists_and_mappings_are_written_as_json() -> None:
-    assert (
-        csv_text([Column("a", "-", [[1, 2], {"b": None}])]) == 'a [-]\n"[1, 2]"\n"{""b"": null}"\n'
-    )
+    lists = Column("a", "-", [[1, 2], {"b": None}])
+    assert csv_text([lists]) == 'a [-]\n"[1, 2]"\n"{""b"": null}"\n'
 
 
 def test_a_table_has_one_row_for_readers_files_and_documents() -> None:

@@ -14,12 +14,7 @@ from PIL import Image
 
 from report.small_results import KINDS, history, structure
 from rpscli.report.bundles import timehistory_files
-from rpscli.report.case_page import (
-    derived_blocks,
-    hidden_table,
-    motion_pictures,
-    structure_blocks,
-)
+from rpscli.report.case_page import derived_blocks, hidden_table, motion_pictures, structure_blocks
 from rpscli.report.figures.look import USUAL
 from rpscli.report.files import Drawing, undrawn
 from rpscli.report.page import (

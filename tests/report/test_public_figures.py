@@ -159,9 +159,7 @@ def test_other_axes_and_other_results_are_refused() -> None:
         ("bearing", (10.0,), "must be less than a quarter turn"),
     ],
 )
-def test_panels_that_are_not_there_are_refused(
-    name: str, other: tuple[object, ...], said: str
-) -> None:
+def test_panels_that_are_not_there(name: str, other: tuple[object, ...], said: str) -> None:
     drawn = PANELS[name][0]()[0]
     with pytest.raises(UsageError, match=said):
         getattr(figures, name)(Figure().subplots(), drawn, *other)

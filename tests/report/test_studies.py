@@ -44,9 +44,7 @@ def result() -> rpscli.StudyResult:
 
 
 def points(study: rpscli.Study) -> list[object]:
-    return [
-        (point.values, point.record and point.record.source, point.scale) for point in study.layout
-    ]
+    return [(p.values, p.record and p.record.source, p.scale) for p in study.layout]
 
 
 def test_a_mapping_and_a_file_say_the_same(tmp_path: Path) -> None:
@@ -215,9 +213,7 @@ def test_a_temporary_store_ends_with_its_result() -> None:
 
 
 @pytest.mark.parametrize("name", ["overturning", "lines"])
-def test_reports_are_drawn_into_figures_parts_and_axes(
-    result: rpscli.StudyResult, name: str
-) -> None:
+def test_reports_are_drawn_into_figures_and_axes(result: rpscli.StudyResult, name: str) -> None:
     own: Any = result.draw(name)
     assert isinstance(own, Figure)
     assert own.get_suptitle().startswith("A small study")
@@ -240,9 +236,7 @@ def test_reports_are_drawn_into_figures_parts_and_axes(
 
 
 def test_what_cannot_be_drawn_is_told(result: rpscli.StudyResult) -> None:
-    with pytest.raises(
-        rpscli.RpsError, match="demand is not a report of the study; it has overturn"
-    ):
+    with pytest.raises(rpscli.RpsError, match="demand is not a report of the study; it has over"):
         result.draw("demand")
     loose = Figure().add_axes((0.1, 0.1, 0.8, 0.8))
     with pytest.raises(rpscli.RpsError, match="no subplot"):
@@ -299,11 +293,9 @@ def test_changes_of_the_impact_law_are_mapped(tmp_path: Path) -> None:
     heads = [variables[name] for name in ("ENDS", "STOREYS", "PERIOD", "SLENDERNESS", "MASSES")]
     heads += [variables["LAW"], "outcome [-]", *variables["RESULTS"]]
     rows = [
-        ["0.5", "3", "0.3", "0.1", "3", law, outcome, str(rotation), "2"]
+        ["0.5", "3", "0.3", "0.1", "3", law, end, str(rotation), "2"]
         for law, rotations in {"flexible": (1.0, 2.0, 4.0), "rigid": (1.5, 4.0, 4.0)}.items()
-        for rotation, outcome in zip(
-            rotations, ("survived", "survived", f"{law} stood"), strict=True
-        )
+        for rotation, end in zip(rotations, ("survived", "survived", f"{law} stood"), strict=True)
     ]
     rows[-1][6] = "overturned_rocking"
     (tmp_path / "points.csv").write_text("\n".join(",".join(row) for row in [heads, *rows]) + "\n")
@@ -318,9 +310,7 @@ def test_changes_of_the_impact_law_are_mapped(tmp_path: Path) -> None:
     ]  # fmt: skip
 
 
-def test_a_study_of_many_systems_prints_few_lines(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_many_systems_print_few_lines(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """What limits and reports ask for, verdicts once; the rest with `--all`."""
     monkeypatch.chdir(tmp_path)
     alphas = [0.10, 0.12, 0.15]

@@ -151,7 +151,4 @@ def fixed_base(layout: StudyPoints, shears: list[float]) -> dict[Any, Any]:
 
 def cells(found: Found, suffix: str = "") -> dict[str, list[Any]]:
     """Values of the columns of a table of a report, by name."""
-    return {
-        column.name: np.asarray(column.values, dtype=object).tolist()
-        for column in found.tables[suffix]
-    }
+    return {c.name: np.asarray(c.values, dtype=object).tolist() for c in found.tables[suffix]}

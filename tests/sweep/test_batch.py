@@ -91,9 +91,7 @@ def test_results_are_those_of_a_single_time_history(
 def test_whole_histories_tell_more_and_nothing_else(study_of: Make) -> None:
     friction = ("podium.friction=0.12",)  # less than is asked of it: columns slide
     change = ("scale: [", "whole_histories: true\nscale: [")
-    brief, whole = (
-        lay_out(study_of(STUDY, *changes, overrides=friction)) for changes in ((), (change,))
-    )
+    brief, whole = (lay_out(study_of(STUDY, *of, overrides=friction)) for of in ((), (change,)))
     context, more = brief.context, whole.context
     for number in (3, 20):
         (without,) = rows(run_batch(context, [brief[number]]))
@@ -166,10 +164,7 @@ def test_the_last_axis_runs_fastest(study_of: Make) -> None:
     expected = itertools.product(
         [(0.10, 0.20), (0.15, 0.30)], ["critical", 0.5, 0], [1, 2, 3], [0.5, 1.0]
     )
-    points = [
-        (*point.values, point.record and int(point.record.source[-1]), point.scale)
-        for point in design
-    ]
+    points = [(*p.values, p.record and int(p.record.source[-1]), p.scale) for p in design]
     assert points == [(*pair, rho, seed, scale) for pair, rho, seed, scale in expected]
     assert len(design) == 2 * 3 * 3 * 2
     assert [point.number for point in design] == list(range(len(design)))
@@ -235,10 +230,7 @@ def test_records_are_scaled_to_a_measure(study_of: Make, measure: str) -> None:
 
 def test_sa_is_taken_at_the_first_period_of_each_system(study_of: Make) -> None:
     sa = ("scale: [0.5, 1.0]", "scale: {measure: Sa, values: [2.0]}")
-    vary = (
-        "  - podium.bearing.curv",
-        "  - superstructure.period: [0.3, 0.6]\n  - podium.bearing.curv",
-    )
+    vary = ("  - podium.bearing.c", "  - superstructure.period: [0.3, 0.6]\n  - podium.bearing.c")
     design = lay_out(study_of(STUDY, sa, vary))
     context = design.context
     periods = set()
@@ -265,10 +257,7 @@ def test_keys_do_not_depend_on_how_a_study_arrives_at_a_point(study_of: Make) ->
 
 
 def test_batches_hold_every_point_once_and_one_size_of_building(study_of: Make) -> None:
-    vary = (
-        "  - podium.bearing.curv",
-        "  - superstructure.storeys: [2, 3]\n  - podium.bearing.curv",
-    )
+    vary = ("  - podium.bearing.c", "  - superstructure.storeys: [2, 3]\n  - podium.bearing.c")
     design = lay_out(study_of(STUDY, vary))
     pending = [number for number in range(len(design)) if number % 5]
     found = list(batches(design, pending, jobs=2))

@@ -17,13 +17,7 @@ from rpscli.report.study.scatter import (
     overturning_spectrum,
     records_without_period,
 )
-from rpscli.sweep.statistics.lognormal import (
-    Bootstrap,
-    Lognormal,
-    band,
-    lognormal_fit,
-    probit_fit,
-)
+from rpscli.sweep.statistics.lognormal import Bootstrap, Lognormal, band, lognormal_fit, probit_fit
 from sweep.small_studies import (
     BROKEN,
     RHO,
@@ -309,9 +303,8 @@ def test_a_file_has_its_place_in_a_spectrum_and_systems_share_the_axes(study_of:
     lines = [f"{0.01 * i} {math.sin(math.pi * i / 40.0)}" for i in range(81)]
     Path("mine.txt").write_text("# Time (s) Acceleration (m/s2)\n" + "\n".join(lines) + "\n")
     # Rounding decides at the border of uplift: 1e-9 of the critical rotation is none in a figure.
-    results = made(
-        study_of, lambda _: stored(scale=0.4, rotation_ratio=1e-9), text=WITHOUT_RECORDS + PULSES
-    )
+    low = stored(scale=0.4, rotation_ratio=1e-9)
+    results = made(study_of, lambda _: low, text=WITHOUT_RECORDS + PULSES)
     layout = results.table.layout
     missing = list(records_without_period(layout, SpectrumOptions()))
     assert len(missing) == 1

@@ -8,14 +8,13 @@ import shlex
 import shutil
 import signal
 import sqlite3
-import subprocess
-import sys
 import threading
 import time
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from concurrent.futures import Executor, Future
 from contextlib import closing
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -23,6 +22,7 @@ from typing import Any
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from paper_structures import printed_by, python
 
 import rpscli
 from rpscli.cli import program
@@ -30,31 +30,12 @@ from rpscli.errors import OutputError, Refused, RpsError, UsageError
 from rpscli.records.formats.at2 import at2_text
 from rpscli.records.loading import load_record
 from rpscli.studies import load_study
-from rpscli.sweep.evaluation import (
-    MISSING,
-    SOLVING,
-    Plan,
-    Point,
-    PointResults,
-    StudyContext,
-    digest_of_sources,
-    run_batch,
-)
+from rpscli.sweep.evaluation import MISSING, SOLVING, PointResults, digest_of_sources, run_batch
 from rpscli.sweep.points import lay_out, reproduction
 from rpscli.sweep.run import Engine, Progress, compute, run, start
 from rpscli.sweep.store import FILE, Store
 from rpscli.sweep.table import Table, points_csv
-from sweep.small_studies import (
-    BASE,
-    FOLDER,
-    ROOT,
-    STUDY,
-    Make,
-    Sweep,
-    SweepJson,
-    csv_rows,
-    study_file,
-)
+from sweep.small_studies import BASE, FOLDER, STUDY, Make, Sweep, SweepJson, csv_rows
 
 POINTS = 36
 """Of the study; one thread computes them in batches of nine."""
@@ -62,37 +43,21 @@ POINTS = 36
 CSV = "results/study/sweep/points.csv"
 
 
-def ended(*arguments: str, folder: Path, program: str = "-mrpscli") -> tuple[int, str, str]:
-    """Exit code, output and errors of a process."""
-    done = subprocess.run(
-        [sys.executable, program, *arguments],
-        cwd=folder,
-        env={**os.environ, "PYTHONPATH": os.pathsep.join([str(ROOT), *sys.path])},
-        capture_output=True,
-        text=True,
-        timeout=120,
-        check=False,
-    )
-    return done.returncode, done.stdout, done.stderr
-
-
 @pytest.mark.posix
 def test_the_first_ctrl_c_drains_and_says_how_to_go_on(workplace: Path) -> None:
     """Runs that are killed: tests/hunt/test_hostile_edges.py."""
     study = ("sweep", "study.yaml", "--jobs", "1", "--json")
     program = str(Path(__file__).with_name("interrupted.py"))
-    code, out, err = ended(*study, folder=workplace, program=program)
-    assert code == 130
-    assert "Ctrl-C again" in err
-    assert "the same command continues" in err
-    document = json.loads(out)
+    stopped = python(program, *study, folder=workplace, exit_code=130)
+    assert "Ctrl-C again" in stopped.stderr
+    assert "the same command continues" in stopped.stderr
+    document = json.loads(stopped.stdout)
     assert document["error"]["type"] == "Interrupted"
     # The batch under way was finished and stored.
     assert document["points"] == {"total": POINTS, "stored": 27}
     assert not (workplace / CSV).exists()
-    code, out, err = ended(*study, folder=workplace)
-    assert code == 0, err
-    assert json.loads(out)["points"]["kept"] == 27
+    done = python("-mrpscli", *study, folder=workplace)
+    assert json.loads(done.stdout)["points"]["kept"] == 27
 
 
 @pytest.mark.posix
@@ -103,7 +68,7 @@ def test_the_second_ctrl_c_stops_at_once(
     told: list[str] = []
     over = threading.Event()
 
-    def one_batch(context: StudyContext, points: Sequence[Point]) -> PointResults:
+    def one_batch(context: Any, points: Any) -> PointResults:
         if points[0].number:
             over.wait()
         return run_batch(context, points)
@@ -132,7 +97,7 @@ def test_a_ctrl_c_given_to_another_thread_is_heard(
     layout = lay_out(study_of())
     heard = threading.Event()
 
-    def one_batch(context: StudyContext, points: Sequence[Point]) -> PointResults:
+    def one_batch(context: Any, points: Any) -> PointResults:
         time.sleep(0.5)  # until the main thread waits
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
         os.kill(os.getpid(), signal.SIGINT)  # only this thread takes it: the waiting one sleeps on
@@ -271,7 +236,8 @@ def test_each_failure_has_a_command_that_reproduces_it(spoilt: Path, sweep_json:
 
 
 def test_the_command_of_a_good_point_gives_its_numbers(spoilt: Path) -> None:
-    layout = study_file("study.yaml", "perturb={members: 3}", "podium.cap_beam_mass_ratio=8").layout
+    overrides = ("perturb={members: 3}", "podium.cap_beam_mass_ratio=8")
+    layout = load_study("study.yaml", overrides).layout
     point = layout[2]
     row = run_batch(layout.context, [point]).columns
     words = shlex.split(reproduction(layout, point, Path("base.yaml")))
@@ -281,9 +247,7 @@ def test_the_command_of_a_good_point_gives_its_numbers(spoilt: Path) -> None:
     assert found["record"]["scale"] == row["scale"][0]
 
 
-def test_failed_points_are_tried_again_when_asked_or_repaired(
-    spoilt: Path, sweep_json: SweepJson
-) -> None:
+def test_failed_points_are_tried_again(spoilt: Path, sweep_json: SweepJson) -> None:
     sweep_json("study.yaml", exit_code=5)
     kept = sweep_json("study.yaml", exit_code=5)
     assert (kept["points"]["computed"], kept["points"]["failed"]) == (0, 12)
@@ -351,10 +315,9 @@ def test_what_is_stored_is_there_after_reopening(tmp_path: Path) -> None:
 
 
 def test_a_second_process_is_refused(tmp_path: Path) -> None:
-    with Store(tmp_path), pytest.raises(Refused, match=r"in use.*-o"):
-        Store(tmp_path).__enter__()
-    with Store(tmp_path), pytest.raises(Refused, match="in use"):
-        Store(tmp_path, fresh=True).__enter__()
+    for fresh in (False, True):
+        with Store(tmp_path), pytest.raises(Refused, match=r"in use.*-o"):
+            Store(tmp_path, fresh=fresh).__enter__()
 
 
 def test_fresh_begins_anew_even_where_the_file_is_damaged(tmp_path: Path) -> None:
@@ -392,17 +355,11 @@ def test_a_store_that_is_deleted_while_it_is_used_is_told(tmp_path: Path, what: 
 
 
 def test_files_of_others_are_left_alone(tmp_path: Path) -> None:
-    (tmp_path / FILE).write_text("notes of mine, not to be lost")
-    for fresh in (False, True):
-        with pytest.raises(Refused, match="not the store"):
-            Store(tmp_path, fresh=fresh).__enter__()
-    assert (tmp_path / FILE).read_text().startswith("notes")
-    (tmp_path / FILE).unlink()
-    with sqlite3.connect(tmp_path / FILE) as db:
+    with closing(sqlite3.connect(tmp_path / FILE)) as db:
         db.execute("CREATE TABLE mine (x)")
-    db.close()
     whole = (tmp_path / FILE).read_bytes()
-    for content in (whole, whole[:1024] + b"\xff" * (len(whole) - 1024)):  # damaged as well
+    damaged = whole[:1024] + b"\xff" * (len(whole) - 1024)
+    for content in (b"notes of mine, not to be lost", whole, damaged):
         (tmp_path / FILE).write_bytes(content)
         for fresh in (False, True):
             with pytest.raises(Refused, match="not the store"):
@@ -458,20 +415,9 @@ def test_a_changed_source_changes_the_digest(package: Path, name: str) -> None:
 
 
 def test_every_module_behind_a_stored_number_counts() -> None:
-    script = """
-import sys
-import rpscli.sweep.evaluation
-print(*(m.__file__ for n, m in sys.modules.items() if n.startswith("rpscli.")), sep=chr(10))
-"""
-    paths = [str(PACKAGE.parent), *sys.path]
-    done = subprocess.run(
-        [sys.executable, "-c", script],
-        env={**os.environ, "PYTHONPATH": os.pathsep.join(paths)},
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    modules = {Path(line).relative_to(PACKAGE).as_posix() for line in done.stdout.split()}
+    code = "import sys, rpscli.sweep.evaluation; "
+    code += "print(*(m.__file__ for n, m in sys.modules.items() if n.startswith('rpscli.')))"
+    modules = {Path(p).relative_to(PACKAGE).as_posix() for p in printed_by("-c", code).split()}
     counted = {name for name in modules if name.startswith(tuple(SOLVING))}
     assert "analyses/demand.py" in counted
     others = {"errors.py", "machine.py", "shown.py", "sweep/__init__.py", "version.py"}
@@ -526,15 +472,12 @@ def test_a_killed_worker_changes_no_byte(
 
 
 def test_a_worker_of_another_version_is_refused(study_of: Make) -> None:
-    plan: Plan = lay_out(study_of()).plan
-    other = Plan(**{**plan.__dict__, "solver": "another"})
+    other = replace(lay_out(study_of()).plan, solver="another")
     with pytest.raises(RpsError, match="same version"):
         compute("digest", other, [])
 
 
-def test_points_that_kill_every_worker_come_back_as_failed(
-    study_of: Make, distributed: Any
-) -> None:
+def test_points_that_kill_every_worker_come_back_failed(study_of: Make, distributed: Any) -> None:
     layout = lay_out(study_of())
     engine = Engine(layout.context, 1)
     tried: list[list[int]] = []

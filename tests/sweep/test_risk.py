@@ -164,9 +164,7 @@ def test_units_comments_and_rates_of_zero_of_a_hazard_file(tmp_path: Path, zeros
         (HEADER + "10,0.1,3\n20,1\n", (":2:", "two numbers > 0")),
     ],
 )
-def test_a_hazard_file_that_is_none_is_refused(
-    text: str, parts: tuple[str, ...], tmp_path: Path
-) -> None:
+def test_hazard_files_that_are_refused(text: str, parts: tuple[str, ...], tmp_path: Path) -> None:
     path = tmp_path / "hazard.csv"
     path.write_text(text, encoding="utf-8")
     with pytest.raises(CaseError) as refused:
@@ -239,9 +237,7 @@ def test_rates_margins_and_dispersions_are_those_of_fema_p695(
         " spectral_shape: 1.2, resamples: 50, limits: {rotation_ratio: 0.2},"
         " dispersion: {design_requirements: 0.2, test_data: 0.3, modelling: 0.4}}"
     )
-    curves = (
-        "PGV [cm/s],mean [1/year],0.84 [1/year]\n1,1,3\n10,0.1,0.3\n100,1e-3,3e-3\n400,3e-4,9e-4\n"
-    )
+    curves = "PGV [cm/s],mean [1/a],0.84 [1/a]\n1,1,3\n10,0.1,0.3\n100,1e-3,3e-3\n400,3e-4,9e-4\n"
     text = with_risk(options, curves).replace("[critical, 0.5, 0]", "[0.5, 0]")
     found = sweep_json("study.yaml", "-o", "out", study=text)["reports"]["risk"]
     known = [row for row in found["rows"] if row["median"] is not None]
@@ -291,9 +287,7 @@ def test_rates_margins_and_dispersions_are_those_of_fema_p695(
         ("{limits: {rotation_ratio: 0.2}}", ("hazard",)),
     ],
 )
-def test_a_risk_without_a_hazard_is_refused(
-    options: str, parts: tuple[str, ...], sweep: Sweep
-) -> None:
+def test_a_risk_needs_a_hazard(options: str, parts: tuple[str, ...], sweep: Sweep) -> None:
     result = sweep("study.yaml", "--dry-run", study=with_risk(options, HEADER + "1,1\n10,0.1\n"))
     assert result.exit_code == 3
     for part in parts:

@@ -54,10 +54,8 @@ def factors(layout: StudyPoints) -> list[float]:
 def velocities(source: str = PAIR) -> np.ndarray:
     """(180,) peak velocities over the directions, by own rotation and integration."""
     a, b = (load_record(f"{source}/{side}") for side in "ab")
-    turned = [
-        math.cos(t) * a.acceleration + math.sin(t) * b.acceleration
-        for t in np.radians(np.arange(180.0))
-    ]
+    angles = np.radians(np.arange(180.0))
+    turned = [math.cos(t) * a.acceleration + math.sin(t) * b.acceleration for t in angles]
     return np.array([np.abs(cumulative_trapezoid(each, dx=a.dt)).max() for each in turned])
 
 

@@ -106,9 +106,7 @@ def test_the_overturning_table_counts_and_keeps_failures_apart(study_of: Make) -
     assert (turned["scale=0.5"][2], turned["scale=1"][2]) == (0.0, 1.0)
 
 
-def test_tables_show_statistics_in_which_an_overturned_history_is_the_largest(
-    study_of: Make,
-) -> None:
+def test_tables_in_which_an_overturned_history_is_the_largest(study_of: Make) -> None:
     def answer(at: Place) -> Stored:
         falls = at["record"] == 3 and at["scale"] == 1.0
         return fallen(falls, rotation_ratio=float(at["record"]))
@@ -253,10 +251,8 @@ def test_lines_say_what_stands_for_the_records(
         falls = at["record"] == 3 or (at[ALPHA] == 0.15 and at[RHO] == 0)
         return fallen(falls, max_rotation=at["record"])
 
-    options = LinesOptions(
-        x=ALPHA, result=("max_rotation",), statistic=statistic, series=("scale",)
-    )
-    found = lines(made(study_of, answer), options)
+    asked = LinesOptions(x=ALPHA, result=("max_rotation",), statistic=statistic, series=("scale",))
+    found = lines(made(study_of, answer), asked)
     assert f"pools 3 values of {RHO}" in found.notes[0]
     assert any("survivors: 16 of 36" in note for note in found.notes) == (statistic == "mean")
     shown = cells(found)

@@ -63,8 +63,8 @@ def test_what_is_asked_for_and_cannot_be_is_told(study_of: Make) -> None:
         study_file("stduy.yaml")
 
 
-SLENDERNESS = "podium.bearing.slenderness"
-HEIGHT = "superstructure.period"
+ALPHA = "podium.bearing.slenderness"
+T1 = "superstructure.period"
 
 
 PRODUCT = """
@@ -83,20 +83,14 @@ def a_range(key: str, count: int) -> str:
     ("text", "told"),
     [
         (
-            f"sample: {{size: 1000000000, ranges: {{{SLENDERNESS}: [0.1, 0.2]}}}}",
+            f"sample: {{size: 1000000000, ranges: {{{ALPHA}: [0.1, 0.2]}}}}",
             f"1000000000 systems .* more than {MOST_SYSTEMS}; use fewer",
         ),
         ("perturb: {members: 1000000000}", f"1000000000 points .* {MOST_POINTS};"),
         (f"perturb: {{members: {9**300}}}", r"over 10{18} points \(over 10{18}\)"),
-        (
-            f"vary:\n{a_range(SLENDERNESS, 1000)}\n{a_range(HEIGHT, 1001)}",
-            r"1001000 systems \(1000 x 1001\)",
-        ),
+        (f"vary:\n{a_range(ALPHA, 1000)}\n{a_range(T1, 1001)}", r"1001000 systems \(1000 x 1001\)"),
         (PRODUCT, "stands for 10000000000 ground motions"),
-        (
-            f"vary:\n{a_range(SLENDERNESS, 3000)}\nscale: {{low: 1, high: 2, count: 2000}}",
-            "6000000",
-        ),
+        (f"vary:\n{a_range(ALPHA, 3000)}\nscale: {{low: 1, high: 2, count: 2000}}", "6000000"),
     ],
 )
 def test_a_study_that_is_too_large_is_refused(text: str, told: str) -> None:
@@ -106,7 +100,7 @@ def test_a_study_that_is_too_large_is_refused(text: str, told: str) -> None:
 
 
 def test_the_largest_study_is_none_too_many() -> None:
-    text = f"sample: {{size: {MOST_SYSTEMS}, ranges: {{{SLENDERNESS}: [0.1, 0.2]}}}}"
+    text = f"sample: {{size: {MOST_SYSTEMS}, ranges: {{{ALPHA}: [0.1, 0.2]}}}}"
     parse_study(f"rps: 1\nbase: cases/six_storey.yaml\n{text}\n", name="s.yaml", kinds=REPORTS)
 
 
@@ -183,7 +177,7 @@ def sampled(distribution: str) -> tuple[str, str]:
         (*added(SAMPLED.replace("[5, 10]", "{mean: 5}")), ("mean and cov",)),
         (*added(SAMPLED.replace("size: 4, ", "")), ("sample.size is missing",)),
         (*added(SAMPLED.replace("cap_beam", "cab_beam")), ("cap_beam_mass_ratio?",)),
-        (*added(SAMPLED.replace(BEAM, SLENDERNESS)), ("varies already", "line 5")),
+        (*added(SAMPLED.replace(BEAM, ALPHA)), ("varies already", "line 5")),
         (*added("vary: []"), ("vary is written twice",)),
         (STUDY[STUDY.index("records:") : STUDY.index("scale:")], "", ("no record",)),
         (*added("sample: {ranges: text}"), ("sample.ranges = 'text'", "keys with their ranges")),
@@ -194,7 +188,7 @@ def sampled(distribution: str) -> tuple[str, str]:
         (*axis("- 3"), ("vary.1 = 3", "mapping")),
         (RHOS, "[]", ("study.yaml:7:37", "must not be an empty list")),
         (*axis("- podium.bearing: [{}]"), ("varies as a whole", "must not vary too")),
-        (*axis(f"- {SLENDERNESS}: [0.1]"), ("varies already in another axis", "line 5", REMOVE)),
+        (*axis(f"- {ALPHA}: [0.1]"), ("varies already in another axis", "line 5", REMOVE)),
         (*axis("- record.scale: [1, 2]"), ("record.scale must not vary beside", REMOVE)),
         (*added("linked: {podium.friction: {scale: 2}}"), ("scale, which no axis of",)),
         (*added(f"linked: {{podium.friction: {{{RHO}: 2}}}}"), ("friction is a sum of numbers",)),
@@ -288,16 +282,14 @@ SPHERES = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize(
-    "report", ["storey_shear", "rotation", "overturning_spectrum", "fragility"]
-)
-def test_what_is_over_the_uplift_is_refused_without_a_flat_part(report: object) -> None:
+@pytest.mark.parametrize("kind", ["storey_shear", "rotation", "overturning_spectrum", "fragility"])
+def test_what_is_over_the_uplift_is_refused_without_a_flat_part(kind: str) -> None:
     study = {
         "rps": 1, "base": SPHERES, "records": ["pulse:sine?amplitude=0.1g&period=0.8"],
-        "scale": {"measure": "PGA", "values": [1.0, 2.0]}, "reports": [report],
+        "scale": {"measure": "PGA", "values": [1.0, 2.0]}, "reports": [kind],
         "vary": [{"podium.bearing.dimensions.radius": [2, 2.5]}],
     }  # fmt: skip
-    if report == "fragility":
+    if kind == "fragility":
         load_study({**study, "reports": [{"fragility": {"limits": {"max_lift": 0.01}}}]})
         return
     with pytest.raises(CaseError, match="which is 0 without a flat part"):

@@ -152,7 +152,7 @@ def test_least_values_have_columns_of_their_own(study_of: Make) -> None:
 
 @pytest.mark.evidence("statistics and fragilities", "exact")
 @pytest.mark.parametrize(
-    ("condition", "exceeded", "beyond", "fallen"),
+    ("of", "exceeded", "beyond", "fallen"),
     [
         (Condition("rotation_ratio", 0.45, ""), True, 2, 2),
         (Condition("rotation_ratio", 0.25, ""), True, 3, 2),
@@ -171,13 +171,9 @@ def test_least_values_have_columns_of_their_own(study_of: Make) -> None:
         (Condition("residual_rotation", 1.0, ""), True, 5, 2),  # nobody knows it
     ],
 )
-def test_verdicts(
-    study_of: Make, condition: Condition, exceeded: bool, beyond: int, fallen: int
-) -> None:
+def test_verdicts(study_of: Make, of: Condition, exceeded: bool, beyond: int, fallen: int) -> None:
     table, result = judged_study(study_of)
-    (verdict,) = [
-        found for found in judged(table, result, [condition]) if found.values == (0.10, 0, 1.0)
-    ]
+    (verdict,) = [found for found in judged(table, result, [of]) if found.values == (0.10, 0, 1.0)]
     assert verdict.exceeded == exceeded
     assert (verdict.beyond.number, verdict.beyond.of, verdict.overturned) == (beyond, 5, fallen)
 
@@ -195,9 +191,7 @@ def test_verdicts(
         (Condition("rotation_ratio", 0.5, "", share=0.1), 0, 1, "met"),
     ],
 )
-def test_what_is_met_is_shown_by_enough_records(
-    condition: Condition, number: int, of: int, word: str
-) -> None:
+def test_enough_records_show_it(condition: Condition, number: int, of: int, word: str) -> None:
     """Enough are those under which the probability of so few is small where it is admissible."""
     verdict = Verdict(condition, (), share(number, of), 0, 0.0, "", None, exceeded=False)
     assert verdict.word == word
@@ -242,9 +236,8 @@ def test_limits_of_the_study_replace_those_of_its_case(study_of: Make) -> None:
     base.write_text(BASE + "limits: {rotation_ratio: 0.5, drift_ratio: 0.01}\n", encoding="utf-8")
     given = STUDY + "limits: {rotation_ratio: {at_most: 0.4, share: 0.1}}\n"
     layout = lay_out(study_of(given))
-    assert layout.properties[3].limits == (
-        Condition("rotation_ratio", 0.4, "limits of the study", share=0.1),
-    )
+    own = Condition("rotation_ratio", 0.4, "limits of the study", share=0.1)
+    assert layout.properties[3].limits == (own,)
     assert lay_out(study_of(STUDY + "limits: {}\n")).properties[3].limits == ()
     assert lay_out(study_of(STUDY)).properties[3].limits == (
         Condition("rotation_ratio", 0.5, "limits of the case"),
@@ -315,10 +308,7 @@ def test_the_table_is_in_terminal_csv_and_json(sweep: Sweep, sweep_json: SweepJs
     [
         ("limits: {drift_ratio: 0.01}\n", "limits.drift_ratio needs"),
         ("reports: [ida: {demand: drift_ratio}]\n", "the report ida: drift_ratio needs"),
-        (
-            "reports: [fragility: {limits: {drift_ratio: 0.01}}]\n",
-            "the report fragility: drift_ratio needs",
-        ),
+        ("reports: [fragility: {limits: {drift_ratio: 0.01}}]\n", "fragility: drift_ratio needs"),
         ("reports: [lines: {x: scale, y: drift_ratio}]\n", "the report lines: drift_ratio needs"),
         ("limits: {friction_ratio: 1}\n", "friction_ratio needs podium.friction"),
     ],

