@@ -150,8 +150,8 @@ def test_a_history_alone_is_that_of_the_scaled_record() -> None:
     together = all_bits(MIXED, ALONE)
     assert together[::-1] == all_bits(MIXED[::-1], ALONE)
     for request, found in zip(MIXED, together, strict=True):
-        parts = request.motion.named.items()
-        motion = MotionComponents(**{name: of.scaled(request.scale) for name, of in parts})
+        of = {name: each.scaled(request.scale) for name, each in request.motion.named.items()}
+        motion = MotionComponents(of["horizontal"], of.get("vertical"), y=of.get("y"))
         with np.errstate(all="ignore"):
             run = sampled_history(request.structure, motion, request.settings)
         assert bits(Demand(request.structure, run.history)) == found
