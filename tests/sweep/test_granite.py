@@ -167,9 +167,8 @@ def test_the_readme_shows_what_its_commands_give(
     for told, parts in found.items():
         agreed, counted, _ = map(sum, zip(*parts, strict=True))
         shares = [*(a / of for a, of, _ in parts), agreed / counted]
-        assert [float(cell.removesuffix(" %")) for cell in shown[told][:3]] == [
-            round(100 * share, 1) for share in shares
-        ]
         digits = 1 if told.startswith("model") else 0
-        fallen = (f"{fell / (of / 126):.{digits}f}" for _, of, fell in parts)
-        assert shown[told][3] == " + ".join(fallen)
+        fallen = " + ".join(f"{fell / (of / 126):.{digits}f}" for _, of, fell in parts)
+        row = [*(f"{100 * share:.1f} %" for share in shares), fallen]
+        # The filter of the records rounds differently on other processors, and the fit is a tie.
+        assert row in [shown[told], *([shown["the same on another processor"]] * digits)]
