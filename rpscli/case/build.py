@@ -64,9 +64,24 @@ def structure_of(file: CaseFile, document: Document) -> PodiumStructure:
         structure = _built(bearing, file)
         if structure.bed is not None:
             structure.bed.refuse_start(file.analysis.initial_rotation)
+        document.refuse(too_weak(structure))
     except ValueError as error:
         raise document.refusal([refused_by_model(error, document)]) from None
     return structure
+
+
+LEAST_STRENGTH = 1e-4
+"""Of the weight of the floors: storeys that are weaker yield at every step, for hours."""
+
+
+def too_weak(structure: PodiumStructure) -> Iterator[Fault]:
+    """Storeys without strength to speak of."""
+    above = structure.superstructure
+    if above is not None and above.strengths is not None:
+        least, weight = float(above.strengths.min()), above.mass * structure.gravity
+        if least < LEAST_STRENGTH * weight:
+            text = f": a strength of {least:.3g} N is less than a ten-thousandth of the weight of"
+            yield _at_key(YIELD, f"{text} the floors, {weight:.3g} N; check its unit")
 
 
 def bearing_of(section: BearingSection) -> Bearing:

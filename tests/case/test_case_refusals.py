@@ -74,6 +74,8 @@ OF_A_BUILDING: list[Row] = [
     ("  profile: sine", "  yield: 1.3", "7:10: superstructure.yield = 1.3", "among ratio, shears"),
     ("  profile: sine", "  yield: {ratio: 0}", "7:18: superstructure.yield.ratio = 0 must be > 0"),
     ("  profile: sine", "  yield: {ratio: 1, hardening: 1}", "7:32", ">= 0 and < 1 (h)"),
+    ("  profile: sine", "  yield: {shears: 1}", "7:3: superstructure.yield: a strength of 1 N is",
+     "of the weight of the floors, 5.88e+06 N; check its unit"),
     ("  profile: sine", "  yield: {shears: [1 MN, 2 MN]}", "7:19", "yield.shears has 2 values"),
     ("  profile: sine", "  yield: {shears: 1 t}", "7:19", "yield.shears = '1 t' is a mass"),
     ("  profile: sine", "  yields: {ratio: 1}", "7:3", "did you mean superstructure.yield?"),
