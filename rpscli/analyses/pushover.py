@@ -12,15 +12,13 @@ from rpscli.analyses.result_quantities import PUSHOVER, STOREY_CURVE, values_of
 from rpscli.analyses.settings import require_structure
 from rpscli.errors import listed
 from rpscli.model.podium import Array, PodiumStructure
-from rpscli.model.statics import friction_force, restoring_force, storey_strengths
+from rpscli.model.statics import NEARLY, friction_force, restoring_force, storey_strengths
 from rpscli.model.superstructure import Superstructure
 from rpscli.shown import Shown, with_unit
 
 PatternName = Literal["uniform", "triangular", "first_mode"]
 
 PATTERNS: tuple[PatternName, ...] = ("uniform", "triangular", "first_mode")
-NEARLY = 1.0 + 1e-9
-"""Forces that differ by less are equal but for rounding: what yields together, or at uplift."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -112,13 +110,13 @@ class PushoverResult(Shown):
             for storey, force in curve.yielding.items():
                 if NEARLY * force < self.uplift_force:
                     weak.setdefault(storey, []).append(curve.pattern)
-        return tuple(
-            f"the podium does not protect storey {storey}: under floor forces"
-            f" ({listed(patterns, 'and')}) it yields before the columns lift{slowly}"
-            for storey, patterns in sorted(weak.items())
-            for first in [strengths[storey - 1].uplift_first]
-            for slowly in ["; under slow ground motion the columns lift first" if first else ""]
-        )
+        if not weak:
+            return ()
+        told = listed((f"storey {i} ({', '.join(of)})" for i, of in sorted(weak.items())), "and")
+        late = [str(storey) for storey in sorted(weak) if strengths[storey - 1].uplift_first]
+        slowly = f"; under slow ground motion they lift before storey {', '.join(late)} yields"
+        text = "under these floor forces yielding comes before the columns lift"
+        return (f"the podium does not protect {told}: {text}{slowly * bool(late)}",)
 
     def curve_ratios(self) -> dict[str, Array]:
         """The podium's curve without units."""

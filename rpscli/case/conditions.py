@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -115,6 +116,14 @@ def case_conditions(
     if every and not any(each.name == "overturning" for each in found):
         found = (Condition("overturning", 0.0, "limits of the case"), *found)
     return with_friction(found, structure)
+
+
+def unknown_of_pairs(conditions: Iterable[Condition], structure: PodiumStructure) -> list[str]:
+    """Reasons why conditions cannot be judged where both components act, each with its source."""
+    from rpscli.analyses.column_forces import no_bound  # numpy is slow
+
+    found = ((each.source, no_bound(each.name, structure)) for each in conditions)
+    return [f"{source}: {why}".removeprefix(": ") for source, why in found if why]
 
 
 def with_friction(

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from rpscli.case.conditions import Condition, conditions_of
+from rpscli.case.conditions import Condition, conditions_of, unknown_of_pairs
 from rpscli.commands import inputs
 from rpscli.commands.shell import options
 from rpscli.errors import CaseError, RecordError, RpsError, UsageError
@@ -104,7 +104,6 @@ def command(
 
 def _record(case: Case) -> tuple[dict[str, Any] | None, RpsError | None]:
     """The case's own record, or why it cannot be read; nothing if the case names none."""
-    from rpscli.analyses.column_forces import no_bound  # numpy is slow
     from rpscli.case.plausibility import doubts_of_directions
 
     if case.record is None:
@@ -116,8 +115,7 @@ def _record(case: Case) -> tuple[dict[str, Any] | None, RpsError | None]:
     found, both = motion.horizontal, motion.y is not None
     warnings = [*found.warnings, *motion.warnings]
     doubts = [str(doubt) for doubt in doubts_of_directions(case.structure, both=both)]
-    names = [each.name for each in conditions_of(case.limits, "")] if both else []
-    doubts += filter(None, (no_bound(name, case.structure) for name in names))
+    doubts += unknown_of_pairs(conditions_of(case.limits, ""), case.structure) if both else []
     known, y = {name: getattr(found, name) for name in RECORD}, motion.y
     across = y and {name: getattr(y, name) for name in RECORD}
     return {**known, "y": across, "scale": motion.scale, "warnings": [*warnings, *doubts]}, None

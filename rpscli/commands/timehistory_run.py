@@ -10,11 +10,11 @@ from functools import partial
 from itertools import groupby
 from typing import Any, NamedTuple
 
-from rpscli.analyses.column_forces import OF_COLUMNS, no_bound
+from rpscli.analyses.column_forces import OF_COLUMNS
 from rpscli.analyses.result_quantities import LIMITED, NEEDS, ResultQuantity
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.timehistory import Neighbour, neighbours, time_history
-from rpscli.case.conditions import LIMITS, Condition, case_conditions
+from rpscli.case.conditions import LIMITS, Condition, case_conditions, unknown_of_pairs
 from rpscli.case.plausibility import doubts_of_directions
 from rpscli.commands import inputs
 from rpscli.commands.shell.options import Output
@@ -141,9 +141,7 @@ def compute(history: History, conditions: Sequence[Condition], out: Output) -> T
     """Run a history, judge it, and collect its files; the caller writes them."""
     case, ground, folder = history.given.case, history.ground, history.folder
     limits = [*case_conditions(case.limits, case.structure), *conditions]
-    both = limits if ground.y is not None else []
-    reasons = [(limit.source, no_bound(limit.name, case.structure)) for limit in both]
-    if lines := [f"{source}: {why}" for source, why in reasons if why]:
+    if ground.y is not None and (lines := unknown_of_pairs(limits, case.structure)):
         raise UsageError("\n".join(lines))  # known before minutes are spent
     with patience(case, ground, out.terminal):
         result = time_history(case.structure, ground, case.analysis)

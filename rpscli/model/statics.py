@@ -12,6 +12,9 @@ from rpscli.model.podium import Array, PodiumStructure
 PARTS = (0.25, 0.5, 0.75)
 """Parts of the critical rotation from which the structure may come back."""
 
+NEARLY = 1.0 + 1e-9
+"""Forces that differ by less are equal but for rounding: what yields together, or at uplift."""
+
 POINTS = 400
 """Rotations that are looked at; the curve has no more than a few bends."""
 
@@ -47,9 +50,8 @@ def storey_strengths(structure: PodiumStructure) -> list[StoreyStrength]:
         structure.uplift_acceleration, uplift_acceleration(structure)
     )
     columns = building.strengths, at_uplift, building.stiffnesses
-    nearly = 1.0 + 1e-9  # rounding of what is equal is no weakness
     return [
-        StoreyStrength(F, F / static if static else None, shear, shear <= nearly * F, F / k)
+        StoreyStrength(F, F / static if static else None, shear, shear <= NEARLY * F, F / k)
         for F, shear, k in zip(*(column.tolist() for column in columns), strict=True)
     ]
 

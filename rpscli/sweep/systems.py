@@ -11,10 +11,9 @@ from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
-from rpscli.analyses.column_forces import no_bound
 from rpscli.analyses.result_quantities import HISTORY, NEEDS, SAMPLED, YIELDING
 from rpscli.case.case import Case, case_from_mapping
-from rpscli.case.conditions import Condition, conditions_of, with_friction
+from rpscli.case.conditions import Condition, conditions_of, unknown_of_pairs, with_friction
 from rpscli.case.overrides import Override
 from rpscli.case.plausibility import Doubt, doubts_of_directions
 from rpscli.case.study.schema import PerturbSection, RangeSection, SampleSection, Values
@@ -237,8 +236,7 @@ def _limits(study: Study, case: Case, *, both: bool) -> tuple[Condition, ...]:
     own = study.file.limits
     given = (case.limits, "limits of the case") if own is None else (own, "limits of the study")
     limits = conditions_of(*given)
-    reasons = [(limit.source, no_bound(limit.name, case.structure)) for limit in limits if both]
-    if lines := [f"{source}: {why}" for source, why in reasons if why]:
+    if both and (lines := unknown_of_pairs(limits, case.structure)):
         raise CaseError("\n".join(lines))
     return with_friction(limits, case.structure)
 

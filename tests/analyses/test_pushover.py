@@ -109,7 +109,7 @@ def test_storeys_that_yield_bend_the_curve(pattern: PatternName, rho: float, rat
     assert own[highest:][fallen < most] == pytest.approx(unloads[fallen < most], abs=1e-12)
     assert np.all(own[highest:][fallen > most + 1e3] < unloads[fallen > most + 1e3])  # yields back
     weak = {storey for storey, force in curve.yielding.items() if force < result.uplift_force}
-    assert len(result.warnings) == len(weak)
+    assert "".join(result.warnings).count(f"({pattern})") == len(weak)
     assert (len(weak) > 0) == (ratio == 1.1 or pattern == "triangular")
     assert len(curve.yielding) >= (1 if rho == 1.5 else len(weak))
 

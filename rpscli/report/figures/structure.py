@@ -282,9 +282,7 @@ def draw_capacity(axes: style.Axes, result: PushoverResult) -> None:
         begins = "uplift" if result.uplift_force else "rolling begins"
         axes.plot([], [], "o", color=style.GREY, ms=4.5, label=begins)
     if any(curve.yielding for curve in result.capacity):
-        axes.plot(
-            [], [], "D", color=style.GREY, ms=4.5, label="a storey yields, the first to do so"
-        )
+        axes.plot([], [], "D", color=style.GREY, ms=4.5, label="first yield of a storey")
     lowest = min(0.0, *(factor * np.min(c.sum_of_floor_forces) for c in result.capacity))
     axes.set(xlim=(0.0, None), ylim=(lowest, None), xlabel="roof displacement [m]")
     axes.set_ylabel(f"sum of floor forces [{prefix}N]")

@@ -243,12 +243,9 @@ def of_first_system(layout: StudyPoints) -> str:
     text = f"{text}; {restitution_text(first.structure)}"
     text += " (the first system)" * (len(layout.properties) > 1)
     of_base = layout.plan.base.get("limits") if layout.study.file.limits else None
-    replaced = (
-        ""
-        if not of_base
-        else f"; its own limits replace those of the base case: {', '.join(of_base)}"
-    )
-    return text + replaced
+    if of_base:
+        text += f"; its own limits replace those of the base case: {', '.join(of_base)}"
+    return text
 
 
 def note_of_directions(layout: StudyPoints) -> str:
