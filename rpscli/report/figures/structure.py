@@ -173,7 +173,7 @@ DISPLACEMENT = "cap beam displacement $u_b$ [m]"
 
 def storey_curve_figure(result: PushoverResult, title: str, figure: style.Figure) -> None:
     """Force and lift of the cap beam against its displacement, to the critical rotation."""
-    style.begin(figure, (title, "storey of the bearings alone"), 4.8, 5.8)
+    style.begin(figure, (title, "podium alone"), 4.8, 5.8)
     panels = [partial(draw_one, result=result) for draw_one in (draw_force, draw_lift)]
     style.grid(figure, panels, ratios=[2.6, 1.0], sharex=True)
 
