@@ -26,7 +26,7 @@ import math
 from typing import TypeAlias
 
 from rpscli.physics.compile import compiled, inlined
-from rpscli.physics.devices import act, has_friction, raise_devices, worked
+from rpscli.physics.devices import act, has_friction, power_in_step, raise_devices, worked
 from rpscli.physics.events import path_of
 from rpscli.physics.friction import grip_at, push_at_rest
 from rpscli.physics.ground import ground_now, log_row
@@ -51,6 +51,7 @@ from rpscli.physics.laws import (
 from rpscli.physics.peaks import middle_of, peak, turning_value
 from rpscli.physics.quintic import (
     Quintic,
+    cubic,
     first_descent,
     lower_hull,
     offset,
@@ -478,7 +479,7 @@ def measures_within(s: Record, l: int, t: float) -> tuple[float, Measures]:
     x, n, azimuth, _, _ = polar(s, l, tilt, rate)
     w, dw = patch(s, l, x)
     if s.devices[l] > 0:
-        act(s, l, worked(s, l, tilt, rate))
+        act(s, l, tilt, rate)
         if stands(s, l):
             push_at_rest(s, l, (V_x, V_y), (a_x, a_y), g_felt)
     drive_x, drive_y = s.drive[0, l], (s.drive[1, l] if ways == 2 else 0.0)
@@ -491,7 +492,7 @@ def measures_within(s: Record, l: int, t: float) -> tuple[float, Measures]:
     return stays, measures_of(s, l, stays, beam, motion.lift, V, (a_x, a_y), (g_up, V_up))
 
 
-@compiled
+@inlined
 def tilt_within(s: Record, l: int, t: float) -> tuple[tuple[float, float], tuple[float, float]]:
     """The tilt and its rate a fraction t into the step, by quintics through both ends."""
     x = axis_path(s, l, 0)
@@ -706,20 +707,36 @@ def observe(s: Record, systems: Record, log: Record) -> None:
         if s.demands_rise[l] > 0.0 and s.n > 0:
             first = s.system[l]
             raise_floors(s, l, systems[first : first + ways])
-        friction = s.devices[l] > 0 and has_friction(s, l) and stands(s, l)
-        if s.contacts_rise[l] > 0.0 or friction:
+        # In full contact forces without what friction dampers take were not larger either.
+        if s.contacts_rise[l] > 0.0 or (has_friction(s, l) and s.phase[l] == STUCK):
             raise_contacts(s, l)
-        if s.devices[l] > 0 and s.moves[l] > 0.0:
-            observe_devices(s, l)
+    if s.equipped > 0:
+        observe_devices(s)
 
 
 @compiled
-def observe_devices(s: Record, l: int) -> None:
-    """Raise what devices see in the step just taken, and book what they dissipated."""
-    tilt, rate = tilt_within(s, l, 0.5)
-    middle = worked(s, l, tilt, rate)
-    tilt, rate = tilt_within(s, l, 1.0)
-    start, end = worked(s, l, tilt_of(s, l), rate_of(s, l)), worked(s, l, tilt, rate)
-    raise_devices(s, l, start, middle, end)
-    for i in range(s.devices[l]):
-        s.device_energy[i, l] += s.h[l] * s.device_work[i, l]
+def observe_devices(s: Record) -> None:
+    """Raise what devices see in accepted steps, and book what they dissipated."""
+    lanes = lanes_of(s)
+    for l in range(lanes):
+        speed, end, least = s.speed[l], s.new_speed[l], NEARLY * s.device_velocity[0, l]
+        path = cubic(s.h[l], speed * speed, s.square_rate[l], end * end, s.new_square_rate[l])
+        rises = max(upper_hull(path), path[0]) > least * least
+        # the force that does what rolling resistance does is larger the lower the path is
+        low = s.new_height[l]
+        rises |= (s.branched[l] > 0.0) | ((s.friction_moment[l] > 0.0) & (low < s.least_height[l]))
+        counts = (s.accepted[l] > 0.0) & (s.moves[l] > 0.0) & (s.devices[l] > 0)
+        s.attention[l] = 1.0 if counts & rises else 0.0
+        s.least_height[l] = low if counts & (low < s.least_height[l]) else s.least_height[l]
+    for i in range(s.equipped):
+        for l in range(lanes):
+            counts = (s.accepted[l] > 0.0) & (s.moves[l] > 0.0) & (s.devices[l] > i)
+            work = s.h[l] * power_in_step(s, l, i)
+            s.device_energy[i, l] += work if counts else 0.0
+    for l in range(lanes):
+        if s.attention[l] > 0.0:
+            tilt, rate = tilt_within(s, l, 0.5)
+            middle = worked(s, l, tilt, rate)
+            tilt, rate = tilt_within(s, l, 1.0)
+            start, end = worked(s, l, tilt_of(s, l), rate_of(s, l)), worked(s, l, tilt, rate)
+            raise_devices(s, l, start, middle, end)

@@ -3,8 +3,8 @@
 Dampers and stops push the cap beam, a tendon pulls both ends of its column together, rolling
 resistance turns the columns back. Which branch of its law a device follows is part of the state, so
 that all is smooth within a step; a law changes where a watched value falls below zero. A new law is
-its force and its power in `drag_of` or `resistance` and `power_of`, what it watches in `watched`
-and `change_law`, and where it has any, its constants in `load_devices`, its energy in `stored_in`.
+its force and its power in `drag_of` and `power_of`, what it watches in `watched` and
+`change_law`, and where it has any, its constants in `load_devices`, its energy in `stored_in`.
 
 Friction in one plane has the sign of `direction`. Where the tilt may have any azimuth it acts along
 the velocity, which seldom is zero: what comes to a stop is held, or turns at once to where it is
@@ -20,7 +20,7 @@ from rpscli.physics import geometry
 from rpscli.physics.compile import compiled, inlined, own_law
 from rpscli.physics.ground import log_event
 from rpscli.physics.laws import (
-    beam_rates,
+    Place,
     lanes_of,
     new_rate_of,
     new_tilt_of,
@@ -145,103 +145,156 @@ def own(s: Record, l: int, i: int, which: int, path: float, speed: float) -> flo
     return own_law(s.own_law[i, which, l], given)
 
 
+# Linear dampers, friction and rolling resistance are sums of a lane, and lanes act together. What
+# has branches or powers is looked at device by device.
+
+
+@inlined
+def is_branched(s: Record, l: int, i: int) -> bool:
+    """Whether the law of a device has branches or powers."""
+    kind = s.device_kind[i, l]
+    branched = (kind == VISCOUS) & (s.law[i, DAMPER_EXPONENT, l] != 1.0)
+    return branched | (kind == STOP) | (kind == TENDON) | (kind == OWN)  # type: ignore[no-any-return]
+
+
 @compiled
 def drag_of(s: Record, l: int, i: int, path: float, speed: float) -> float:
-    """Resistance of what acts along the velocity, over |u_b'|; else 0 [N s/m]."""
-    if s.device_kind[i, l] == FRICTION and ways_of(s) == 2:
-        return float(s.law[i, FRICTION_FORCE, l] / max(speed, 1e-150))
+    """Resistance over |u_b'| of dampers with an exponent and of own laws; else 0 [N s/m]."""
     if s.device_kind[i, l] == OWN:
         return own(s, l, i, 0, path, speed) / max(speed, 1e-150)
     if s.device_kind[i, l] != VISCOUS:
         return 0.0
     exponent = s.law[i, DAMPER_EXPONENT, l] - 1.0
-    constant = s.law[i, DAMPER_COEFFICIENT, l]
-    if exponent == 0.0:
-        return float(constant)
-    return float(constant * max(speed, s.linear_speed[l]) ** exponent)
+    return float(s.law[i, DAMPER_COEFFICIENT, l] * max(speed, s.linear_speed[l]) ** exponent)
 
 
 @compiled
-def resistance(s: Record, l: int, i: int, path: float, along: float) -> float:
-    """Resistance of stops, and of friction in one plane, along the tilt [N]; 0 of others."""
-    kind = s.device_kind[i, l]
-    if kind == FRICTION and ways_of(s) == 1:
-        return float(s.direction[l] * s.law[i, FRICTION_FORCE, l])
-    if kind == STOP and s.branch[i, l] == WORKING:
-        beyond = path - s.law[i, STOP_GAP, l]
-        return float(s.law[i, STOP_STIFFNESS, l] * beyond + s.law[i, STOP_DAMPING, l] * along)
-    return 0.0
+def stop_force(s: Record, l: int, i: int, path: float, along: float) -> float:
+    """Resistance of a stop that is met, along the tilt; else 0 [N]."""
+    if s.device_kind[i, l] != STOP or s.branch[i, l] != WORKING:
+        return 0.0
+    beyond = path - s.law[i, STOP_GAP, l]
+    return float(s.law[i, STOP_STIFFNESS, l] * beyond + s.law[i, STOP_DAMPING, l] * along)
 
 
 @compiled
-def power_of(s: Record, l: int, i: int, at: Worked) -> float:  # noqa: PLR0911 -- a law each
-    """What a device dissipates [W]."""
-    kind = s.device_kind[i, l]
-    if kind in (VISCOUS, OWN) or (kind == FRICTION and ways_of(s) == 2):
-        speed = math.sqrt(at.along * at.along + at.across * at.across)
-        return drag_of(s, l, i, at.path, speed) * (speed * speed)
-    if kind == FRICTION:
-        return float(s.direction[l] * s.law[i, FRICTION_FORCE, l] * at.along)
-    if kind == ROLLING_RESISTANCE:
-        rate = s.direction[l] * at.p if ways_of(s) == 1 else math.sqrt(at.p * at.p + at.q * at.q)
-        return float(s.law[i, ROLLING_MOMENT, l] * rate)
-    if kind == STOP and s.branch[i, l] == WORKING:
+def power_of(s: Record, l: int, i: int, at: Worked) -> float:
+    """What such a device dissipates [W]."""
+    kind, branch = s.device_kind[i, l], s.branch[i, l]
+    if kind == STOP and branch == WORKING:
         return float(s.law[i, STOP_DAMPING, l] * (at.along * at.along))
-    if kind == STOP and s.branch[i, l] == BEYOND:  # it recovers by itself
+    if kind == STOP and branch == BEYOND:  # it recovers by itself
         beyond = at.path - s.law[i, STOP_GAP, l]
         return float(-s.law[i, STOP_STIFFNESS, l] * beyond * at.along)
-    if kind == TENDON and s.branch[i, l] == BEYOND:
+    if kind == TENDON and branch == BEYOND:
         return float(s.columns[l] * s.law[i, TENDON_YIELD, l] * at.lever * at.p)
-    return 0.0
+    speed = math.sqrt(at.along * at.along + at.across * at.across)
+    return drag_of(s, l, i, at.path, speed) * (speed * speed)
+
+
+@inlined
+def paces(
+    s: Record, l: int, at: Place, p: float, q: float
+) -> tuple[float, float, float, float, float]:
+    """u_b' along the tilt, across it, and its size [m/s]; rates against which friction acts.
+
+    These are of dampers [m/s] and of rolling resistance [rad/s]; in one plane they have the sign of
+    `direction`.
+    """
+    along, across = s.diameter[l] * at.C * p, s.diameter[l] * at.h * q
+    if ways_of(s) == 1:
+        return along, 0.0, abs(along), s.direction[l] * along, s.direction[l] * p
+    speed = math.sqrt(along * along + across * across)
+    return along, across, speed, speed, math.sqrt(p * p + q * q)
+
+
+@inlined
+def push(s: Record, l: int, at: Place, n: float, t: float, p: float, q: float) -> None:
+    """Write what the devices of a lane do at a place and rate: `drive` and `turning`."""
+    along, across, speed, _, swing = paces(s, l, at, p, q)
+    drag, resisting, moves = s.drag_branched[l] + s.viscous[l], s.stop_force[l], s.moves[l] > 0.0
+    rolls, aside_rolls = s.direction[l] * s.friction_moment[l], 0.0
+    if ways_of(s) == 1:
+        resisting += s.direction[l] * s.friction_force[l]
+    else:
+        drag += s.friction_force[l] / max(speed, 1e-150)
+        per_rate = s.friction_moment[l] / max(swing, 1e-300)
+        rolls, aside_rolls = per_rate * p, per_rate * q
+    moment, diameter = s.tendon_moment[l] + rolls, s.diameter[l]
+    s.turning[l] = -s.share[l] * moment / diameter if moves else 0.0
+    s.turning_across[l] = -s.share[l] * aside_rolls / diameter if moves else 0.0
+    out, aside = -(drag * along + resisting), -drag * across
+    s.drive[0, l] = out * n - aside * t if moves else 0.0
+    if ways_of(s) == 2:
+        s.drive[1, l] = out * t + aside * n if moves else 0.0
 
 
 @compiled
-def act(s: Record, l: int, at: Worked) -> None:
-    """Write what the devices of a lane do at a motion: `drive`, `turning`, `tied` and `pull`."""
+def act_branched(s: Record, l: int, at: Worked) -> None:
+    """Write the sums of what has branches or powers, and of tendons `tied` and `pull`."""
     speed = math.sqrt(at.along * at.along + at.across * at.across)
     drag, resisting, tense = 0.0, 0.0, 0.0
     for i in range(s.devices[l]):
-        drag += drag_of(s, l, i, at.path, speed)
-        resisting += resistance(s, l, i, at.path, at.along)
-        tense += s.columns[l] * tension(s, l, i, at.e)
-    rolls, across = s.direction[l] * s.friction_moment[l], 0.0
-    if ways_of(s) == 2:
-        per_rate = s.friction_moment[l] / max(math.sqrt(at.p * at.p + at.q * at.q), 1e-300)
-        rolls, across = per_rate * at.p, per_rate * at.q
-    moment = tense * at.lever + rolls
-    s.turning[l] = -s.share[l] * moment / s.diameter[l]
-    s.turning_across[l] = -s.share[l] * across / s.diameter[l]
+        if is_branched(s, l, i):
+            drag += drag_of(s, l, i, at.path, speed)
+            resisting += stop_force(s, l, i, at.path, at.along)
+            tense += s.columns[l] * tension(s, l, i, at.e)
+    s.drag_branched[l], s.stop_force[l], s.tendon_moment[l] = drag, resisting, tense * at.lever
     s.tied[l], s.pull[l] = -tense * at.sin_psi, tense * at.cos_psi
-    out, aside = -(drag * at.along + resisting), -drag * at.across
-    s.drive[0, l] = out * at.n - aside * at.t
-    if ways_of(s) == 2:
-        s.drive[1, l] = out * at.t + aside * at.n
-    if stands(s, l):
-        s.turning[l], s.turning_across[l] = 0.0, 0.0
-        for axis in range(ways_of(s)):
-            s.drive[axis, l] = 0.0
 
 
 @compiled
-def act_at_stage(s: Record, weight: float) -> None:
-    """The same at a stage of the step, in all lanes with devices; adds to the step's work."""
-    for l in range(lanes_of(s)):
-        if s.devices[l] == 0:
-            continue
-        at = worked(s, l, new_tilt_of(s, l), new_rate_of(s, l))
-        act(s, l, at)
-        for i in range(s.devices[l]):
-            s.device_work[i, l] += weight * power_of(s, l, i, at)
+def act(s: Record, l: int, tilt: tuple[float, float], rate: tuple[float, float]) -> None:
+    """Write what all devices of a lane do at a tilt and its rate."""
+    if s.branched[l] > 0.0:
+        act_branched(s, l, worked(s, l, tilt, rate))
+    x, n, t, p, q = polar(s, l, tilt, rate)
+    push(s, l, place_with(s, l, x, 0.0, 0.0), n, t, p, q)
+
+
+@inlined
+def add_work(s: Record, l: int, at: Place, p: float, q: float, weight: float) -> float:
+    """Add what flows at an instant to the means of the step; |u_b'| [m/s]."""
+    _, _, speed, pace, swing = paces(s, l, at, p, q)
+    s.mean_square[l] += weight * (speed * speed)
+    s.mean_pace[l] += weight * pace
+    s.mean_swing[l] += weight * swing
+    return speed
 
 
 @compiled
 def begin_work(s: Record, weight: float) -> None:
-    """Begin the sums of the step's work with the power at its start."""
+    """Begin the means of the step with what is worked at its start."""
     for l in range(lanes_of(s)):
-        if s.devices[l] > 0:
+        x, _, _, p, q = polar(s, l, tilt_of(s, l), rate_of(s, l))
+        s.mean_square[l], s.mean_pace[l], s.mean_swing[l] = 0.0, 0.0, 0.0
+        add_work(s, l, place_with(s, l, x, 0.0, 0.0), p, q, weight)
+    for l in range(lanes_of(s)):
+        if s.branched[l] > 0.0:
             at = worked(s, l, tilt_of(s, l), rate_of(s, l))
             for i in range(s.devices[l]):
                 s.device_work[i, l] = weight * power_of(s, l, i, at)
+
+
+@compiled
+def act_branched_at_stage(s: Record, weight: float) -> None:
+    """`act_branched` at a stage of the step, in all lanes that have such; adds to their work."""
+    for l in range(lanes_of(s)):
+        if s.branched[l] > 0.0:
+            at = worked(s, l, new_tilt_of(s, l), new_rate_of(s, l))
+            act_branched(s, l, at)
+            for i in range(s.devices[l]):
+                s.device_work[i, l] += weight * power_of(s, l, i, at)
+
+
+@inlined
+def power_in_step(s: Record, l: int, i: int) -> float:
+    """Mean of what a device dissipated in the step just taken [W]."""
+    kind, constant = s.device_kind[i, l], s.law[i, 0, l]
+    mean = s.mean_square[l] if kind == VISCOUS else 0.0
+    mean = s.mean_pace[l] if kind == FRICTION else mean
+    mean = s.mean_swing[l] if kind == ROLLING_RESISTANCE else mean
+    return s.device_work[i, l] if is_branched(s, l, i) else constant * mean  # type: ignore[no-any-return]
 
 
 # Loading, beginning an excursion, being held.
@@ -251,10 +304,10 @@ STOP_SPEED = 1e-9
 """Of sqrt(g R): what slides more slowly to any side is stopped, or turned to where it is pushed."""
 
 
-@compiled
+@inlined
 def has_friction(s: Record, l: int) -> bool:
     """Whether something holds the tilt at rest."""
-    return bool(s.friction_force[l] + s.friction_moment[l] > 0.0)
+    return s.friction_force[l] + s.friction_moment[l] > 0.0  # type: ignore[no-any-return]
 
 
 @compiled
@@ -262,33 +315,46 @@ def load_devices(s: Record, l: int, system: Record) -> None:
     """Begin a history with its devices as they are at rest and upright."""
     s.devices[l], s.columns[l], s.tendons[l] = system.devices, system.columns, 0
     s.linear_speed[l], s.direction[l] = system.linear_speed, 1.0
-    s.friction_force[l], s.friction_moment[l], s.kinks[l] = 0.0, 0.0, 0.0
+    s.viscous[l], s.friction_force[l], s.friction_moment[l], s.kinks[l] = 0.0, 0.0, 0.0, 0.0
     s.turning[l], s.turning_across[l], s.tied[l], s.pull[l] = 0.0, 0.0, 0.0, 0.0
+    s.branched[l], s.drag_branched[l], s.stop_force[l], s.tendon_moment[l] = 0.0, 0.0, 0.0, 0.0
+    s.least_height[l] = math.inf
     s.stop_speed[l] = STOP_SPEED * math.sqrt(system.gravity * system.R)
     s.start_speed[l] = system.start_speed
     for axis in range(ways_of(s)):
         s.drive[axis, l] = 0.0
     for i in range(system.devices):
-        kind, of = system.device_kind[i], system.device_constants[i]
-        s.device_kind[i, l], s.branch[i, l], s.permanent[i, l] = kind, IDLE, 0.0
-        s.device_force[i, l], s.device_velocity[i, l], s.device_energy[i, l] = 0.0, 0.0, 0.0
-        for k in range(4):
-            s.law[i, k, l] = of[k]
-        for k in range(2):
-            s.own_law[i, k, l] = system.own_law[i, k]
-        if system.own_law[i, 2] == 1:
-            s.kinks[l] = 1.0
-        turns = ways_of(s) == 2 and kind in (FRICTION, ROLLING_RESISTANCE)
-        if turns or (kind == VISCOUS and of[DAMPER_EXPONENT] != 1.0):
-            s.kinks[l] = 1.0
-        if kind == FRICTION:
-            s.friction_force[l] += of[FRICTION_FORCE]
-        elif kind == ROLLING_RESISTANCE:
-            s.friction_moment[l] += of[ROLLING_MOMENT]
-        elif kind == TENDON:
-            s.tendons[l] += 1
-            s.branch[i, l], s.device_force[i, l] = WORKING, of[TENDON_PRESTRESS]
-            s.pull[l] += system.columns * of[TENDON_PRESTRESS]
+        load_device(s, l, i, system)
+
+
+@compiled
+def load_device(s: Record, l: int, i: int, system: Record) -> None:
+    """Begin with one of them."""
+    kind, of = system.device_kind[i], system.device_constants[i]
+    s.device_kind[i, l], s.branch[i, l], s.permanent[i, l] = kind, IDLE, 0.0
+    s.device_force[i, l], s.device_velocity[i, l], s.device_energy[i, l] = 0.0, 0.0, 0.0
+    for k in range(4):
+        s.law[i, k, l] = of[k]
+    for k in range(2):
+        s.own_law[i, k, l] = system.own_law[i, k]
+    branched, turns = (
+        is_branched(s, l, i),
+        ways_of(s) == 2 and kind in (FRICTION, ROLLING_RESISTANCE),
+    )
+    if branched:
+        s.branched[l] = 1.0
+    if turns or (branched and kind == VISCOUS) or system.own_law[i, 2] == 1:
+        s.kinks[l] = 1.0
+    if kind == VISCOUS and not branched:
+        s.viscous[l] += of[DAMPER_COEFFICIENT]
+    elif kind == FRICTION:
+        s.friction_force[l] += of[FRICTION_FORCE]
+    elif kind == ROLLING_RESISTANCE:
+        s.friction_moment[l] += of[ROLLING_MOMENT]
+    elif kind == TENDON:
+        s.tendons[l] += 1
+        s.branch[i, l], s.device_force[i, l] = WORKING, of[TENDON_PRESTRESS]
+        s.pull[l] += system.columns * of[TENDON_PRESTRESS]
 
 
 @compiled
@@ -349,14 +415,29 @@ def may_be_watched(s: Record, l: int, which: int) -> bool:
     return which in (0, SLOWING) or (which - 1) % SLOTS < s.devices[l]
 
 
-@compiled
-def speed_of_stop(s: Record, l: int, end: int) -> tuple[bool, float, float]:
-    """|u_b'|^2 over that of a stop, and its slope, where friction brakes it."""
-    if ways_of(s) == 1 or not has_friction(s, l):
-        return False, 0.0, 0.0
-    x, y, faster_x, faster_y = beam_rates(s, l, end)
-    least = s.stop_speed[l]
-    return True, x * x + y * y - least * least, 2.0 * (x * faster_x + y * faster_y)
+@inlined
+def slowing(s: Record, l: int, end: int) -> tuple[float, float]:
+    """What falls below zero where friction stops a tilt, and its slope.
+
+    In one plane the rate in the direction of friction; to any side |u_b'|^2 over that of a stop.
+    """
+    if ways_of(s) == 1:
+        p, a = (s.new_v[l], s.new_a[l]) if end > 0 else (s.v[l], s.a[l])
+        return s.direction[l] * p, s.direction[l] * a
+    speed, least = (s.new_speed[l] if end > 0 else s.speed[l]), s.stop_speed[l]
+    return speed * speed - least * least, s.new_square_rate[l] if end > 0 else s.square_rate[l]
+
+
+@inlined
+def kink_limit(s: Record, l: int) -> float:
+    """Longest step over which |u_b'| changes by a part of itself only."""
+    speed, least = s.speed[l], s.linear_speed[l]
+    most = 2.0 * least if speed <= least else KINK * speed
+    return most / max(s.quicker[l], 1e-300)  # type: ignore[no-any-return]
+
+
+KINK = 0.25
+"""Largest change of |u_b'| over a step, where a damper has a kink at its zero."""
 
 
 @compiled
@@ -369,11 +450,12 @@ def watched(  # noqa: PLR0911 -- a law each
     device i; `SLOWING` is the velocity of what friction brakes while it may tilt to any side.
     Returns first whether there is such a one.
     """
-    if which == SLOWING:
-        return speed_of_stop(s, l, end)
+    if which == SLOWING or (which == 0 and ways_of(s) == 1 and has_friction(s, l)):
+        value, slope = slowing(s, l, end)
+        return has_friction(s, l) and (which == 0) == (ways_of(s) == 1), value, slope
     x, p, a = (s.new_x[l], s.new_v[l], s.new_a[l]) if end > 0 else (s.x[l], s.v[l], s.a[l])
     if which == 0:
-        there = ways_of(s) == 1 and has_friction(s, l)
+        there = False
         for i in range(s.devices[l]):
             there |= s.device_kind[i, l] == TENDON and s.branch[i, l] == BEYOND
         return there, s.direction[l] * p, s.direction[l] * a
@@ -418,9 +500,9 @@ def watched_by_own(s: Record, l: int, i: int, end: int) -> tuple[bool, float, fl
     x, p = (s.new_x[l], s.new_v[l]) if end > 0 else (s.x[l], s.v[l])
     path, diameter = s.diameter[l] * path_at(s, l, x), s.diameter[l]
     out = diameter * place_of(s, l, x).C * p
-    u_x, u_y, faster_x, faster_y = beam_rates(s, l, end)
-    speed, near = math.sqrt(u_x * u_x + u_y * u_y), NEARBY * s.dt[l]
-    faster = (u_x * faster_x + u_y * faster_y) / max(speed, 1e-150)
+    speed, near = (s.new_speed[l] if end > 0 else s.speed[l]), NEARBY * s.dt[l]
+    rate = s.new_square_rate[l] if end > 0 else s.square_rate[l]
+    faster = 0.5 * rate / max(speed, 1e-150)
     later = own(s, l, i, 1, path + near * out, speed + near * faster)
     before = own(s, l, i, 1, path - near * out, speed - near * faster)
     return True, sign * own(s, l, i, 1, path, speed), sign * (later - before) / (2.0 * near)
@@ -498,11 +580,13 @@ def device_at(s: Record, l: int, i: int, at: Worked) -> tuple[float, float, floa
     if kind == ROLLING_RESISTANCE:
         moment = s.direction[l] * s.law[i, ROLLING_MOMENT, l]
         return moment / (s.diameter[l] * at.C), speed, at.path
-    if kind == FRICTION and ways_of(s) == 2:
-        return s.law[i, FRICTION_FORCE, l], speed, at.path
-    if kind in (VISCOUS, OWN):
-        return drag_of(s, l, i, at.path, abs(speed)) * speed, speed, at.path
-    return resistance(s, l, i, at.path, at.along), at.along, at.path
+    if kind == FRICTION:
+        return s.direction[l] * s.law[i, FRICTION_FORCE, l], speed, at.path
+    if kind == STOP:
+        return stop_force(s, l, i, at.path, at.along), at.along, at.path
+    if not is_branched(s, l, i):
+        return s.law[i, DAMPER_COEFFICIENT, l] * speed, speed, at.path
+    return drag_of(s, l, i, at.path, abs(speed)) * speed, speed, at.path
 
 
 @compiled

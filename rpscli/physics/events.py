@@ -11,12 +11,13 @@ from __future__ import annotations
 import math
 
 from rpscli.physics.compile import compiled, inlined
-from rpscli.physics.devices import WATCHED, may_be_watched, watched
+from rpscli.physics.devices import WATCHED, has_friction, may_be_watched, slowing, watched
 from rpscli.physics.friction import grip_at
 from rpscli.physics.laws import felt_at, lanes_of, ways_of
 from rpscli.physics.quintic import (
     NO_PASSAGE,
     Quintic,
+    cubic,
     first_descent,
     lower_hull,
     offset,
@@ -180,7 +181,18 @@ def check_steps(s: Record, systems: Record) -> None:
         s.accepted[l] = 1.0 if clear & short & (s.wanted[l] == NOTHING) else 0.0
     if s.equipped > 0:
         for l in range(lanes_of(s)):
-            if s.devices[l] > 0 and s.accepted[l] > 0.0 and s.moves[l] > 0.0 and may_change(s, l):
+            value, slope = slowing(s, l, 0)
+            end, end_slope = slowing(s, l, 1)
+            path = cubic(s.h[l], max(value, 0.0), slope, end, end_slope)
+            stops = has_friction(s, l) & (min(lower_hull(path), path[0]) < 0.0)
+            s.accepted[l] = 0.0 if stops & (s.moves[l] > 0.0) else s.accepted[l]
+        for l in range(lanes_of(s)):
+            if (
+                s.branched[l] > 0.0
+                and s.accepted[l] > 0.0
+                and s.moves[l] > 0.0
+                and may_change(s, l)
+            ):
                 s.accepted[l] = 0.0
     if s.yielding > 0:
         for l in range(lanes_of(s)):
@@ -234,16 +246,6 @@ def watched_path(s: Record, l: int, which: int) -> tuple[bool, Quintic]:
         return False, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     _, end, end_slope = watched(s, l, which, 1)
     return True, cubic(s.h[l], max(value, 0.0), slope, end, end_slope)
-
-
-@compiled
-def cubic(h: float, value: float, slope: float, end: float, end_slope: float) -> Quintic:
-    """The cubic through values and slopes at both ends of a step."""
-    mean = (end - value) / h if h > 0.0 else 0.0
-    per_h = 1.0 / h if h > 0.0 else 0.0
-    bend = (6.0 * mean - 4.0 * slope - 2.0 * end_slope) * per_h
-    end_bend = (2.0 * slope + 4.0 * end_slope - 6.0 * mean) * per_h
-    return quintic(h, value, slope, bend, end, end_slope, end_bend)
 
 
 @compiled

@@ -21,6 +21,7 @@ from rpscli.physics.devices import (
     change_law,
     find_branches,
     has_friction,
+    kink_limit,
     load_devices,
     release_devices,
     stored_in,
@@ -31,7 +32,6 @@ from rpscli.physics.fields import fields_of, records_of
 from rpscli.physics.friction import grip_at, set_limits, sticks
 from rpscli.physics.ground import azimuth_of, log_event, set_ground, time_of
 from rpscli.physics.laws import (
-    beam_rates,
     lanes_of,
     place_of,
     polar,
@@ -115,7 +115,7 @@ def integrate(run: Run, lanes: int = LANES, *, interruptible: bool = False) -> N
     state = scratch(run.ways, lanes)
     plain = state.view(np.ndarray)
     plain["n"], plain["stop"] = systems["n"][0], 0
-    plain["equipped"] = int(systems["devices"].any())
+    plain["equipped"] = int(systems["devices"].max(initial=0))
     plain["yielding"] = int(systems["yields"].any())
     plain["gives_way"], plain["axes"] = int(systems["compliant"].any()), systems["axes"][0]
     given = run.systems, run.requests, run.acceleration, run.results, run.output
@@ -258,6 +258,11 @@ def accept_steps(s: Record) -> None:  # noqa: C901 -- few fields a loop
         yes = s.accepted[l]
         s.x[l], s.v[l] = chosen(yes, s.new_x[l], s.x[l]), chosen(yes, s.new_v[l], s.v[l])
         s.a[l], s.lift[l] = chosen(yes, s.new_a[l], s.a[l]), chosen(yes, s.new_lift[l], s.lift[l])
+    for l in range(lanes if s.equipped > 0 else 0):
+        yes = s.accepted[l]
+        s.speed[l] = chosen(yes, s.new_speed[l], s.speed[l])
+        s.square_rate[l] = chosen(yes, s.new_square_rate[l], s.square_rate[l])
+        s.quicker[l] = chosen(yes, s.new_quicker[l], s.quicker[l])
     for l in range(lanes):
         s.time[l] += s.h[l] if s.accepted[l] > 0.0 else 0.0
         s.steps[l] += 1.0
@@ -274,9 +279,6 @@ ARC = 0.2
 
 SAME = 1e-12
 """Of the sampling interval: nothing is left of it."""
-
-KINK = 0.25
-"""Largest change of |u_b'| over a step, where a damper has a kink at its zero."""
 
 CALM, EASY = 1 / 128, 0.25
 """Errors of a step below which the next may be twice as long, or a fifth longer."""
@@ -312,16 +314,6 @@ def plan(s: Record, l: int) -> float:
 
 
 @compiled
-def kink_limit(s: Record, l: int) -> float:
-    """Longest step over which |u_b'| changes by a part of itself only."""
-    x, y, faster_x, faster_y = beam_rates(s, l, 0)
-    speed, change = math.sqrt(x * x + y * y), faster_x * faster_x + faster_y * faster_y
-    least = s.linear_speed[l]
-    most = 2.0 * least if speed <= least else KINK * speed
-    return most / max(math.sqrt(change), 1e-300)
-
-
-@compiled
 def next_intervals(s: Record, acceleration: Floats) -> None:
     """Lanes that have come to a sample enter the next interval; plan the steps of all.
 
@@ -352,8 +344,8 @@ def next_intervals(s: Record, acceleration: Floats) -> None:
         s.h[l] = plan(s, l) if goes_on else s.h[l]
     if s.equipped > 0:
         for l in range(lanes):
-            if s.kinks[l] > 0.0 and s.accepted[l] > 0.0 and s.moves[l] > 0.0:
-                s.h[l] = min(s.h[l], kink_limit(s, l))
+            goes_on = (s.kinks[l] > 0.0) & (s.accepted[l] > 0.0) & (s.moves[l] > 0.0)
+            s.h[l] = min(s.h[l], kink_limit(s, l) if goes_on else math.inf)
 
 
 STALL = 100
@@ -581,7 +573,8 @@ def next_history(
 @compiled
 def idle(s: Record, l: int) -> None:
     """Leave a lane without a history: it takes steps of zero length."""
-    s.history[l], s.devices[l], s.kinks[l], s.outcome[l] = NO_HISTORY, 0, 0.0, RUNNING
+    s.history[l], s.devices[l], s.outcome[l] = NO_HISTORY, 0, RUNNING
+    s.kinks[l], s.branched[l] = 0.0, 0.0
     s.yields[l], s.marked[l] = 0, 0
     s.kind[l], s.wanted[l], s.phase[l], s.moves[l] = NOTHING, NOTHING, FULL_CONTACT, 0.0
     s.time[l], s.dt[l], s.h[l], s.h_most[l], s.h_limit[l] = 0.0, 1.0, 0.0, 1.0, 0.0

@@ -10,7 +10,7 @@ import math
 from typing import NamedTuple
 
 from rpscli.physics.compile import compiled
-from rpscli.physics.devices import has_friction, resistance, tendon_elongation, tension
+from rpscli.physics.devices import has_friction, stop_force, tendon_elongation, tension
 from rpscli.physics.ground import log_event
 from rpscli.physics.laws import felt_at, patch, path_at, place_of, polar, tilt_of, ways_of
 from rpscli.physics.state import STICKING, STOP, STUCK, Record
@@ -22,7 +22,7 @@ def push_of_stops(s: Record, l: int) -> float:
     path, push = s.diameter[l] * path_at(s, l, s.x[l]), 0.0
     for i in range(s.devices[l]):
         if s.device_kind[i, l] == STOP:
-            push += resistance(s, l, i, path, 0.0)
+            push += stop_force(s, l, i, path, 0.0)
     return push
 
 

@@ -288,36 +288,34 @@ def beam_at(s: Record, l: int, tilt: tuple[float, float], rate: tuple[float, flo
         return 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     x, n, t, p, q = polar(s, l, tilt, rate)
     diameter, u, at = s.diameter[l], path_at(s, l, x), place_with(s, l, x, 0.0, 0.0)
-    way, along, up, rise = diameter * u, diameter * at.C * p, 0.0, 0.0
+    way, up, rise = diameter * u, 0.0, 0.0
+    u_x, u_y = velocity_with(s, l, at, (n, t), (p, q))
     if s.axes > ways_of(s):
         up = lift_at(s, l, x) if s.bed_u[l] == 0.0 else 0.0
         rise = diameter * (place_of(s, l, x).Bv * p)
     if ways_of(s) == 1:
-        return way * n, up, 0.0, along * n, rise, 0.0
-    across = diameter * at.h * q
-    return way * n, way * t, up, along * n - across * t, along * t + across * n, rise
+        return way * n, up, 0.0, u_x, rise, 0.0
+    return way * n, way * t, up, u_x, u_y, rise
+
+
+@inlined
+def velocity_with(
+    s: Record, l: int, at: Place, azimuth: tuple[float, float], rate: tuple[float, float]
+) -> tuple[float, float]:
+    """u_b' in x and in y, of rates p and q at an azimuth (n, t) [m/s]."""
+    along, across = s.diameter[l] * at.C * rate[0], s.diameter[l] * at.h * rate[1]
+    if ways_of(s) == 1:
+        return along * azimuth[0], 0.0
+    return (
+        along * azimuth[0] - across * azimuth[1],
+        along * azimuth[1] + across * azimuth[0],
+    )
 
 
 @compiled
 def beam_now(s: Record, l: int) -> Beam:
     """The same at the start of the step."""
     return beam_at(s, l, tilt_of(s, l), rate_of(s, l))
-
-
-@compiled
-def beam_rates(s: Record, l: int, end: int) -> tuple[float, float, float, float]:
-    """u_b' and u_b'' in x and in y, at the start of the step (0) or at its end (1)."""
-    tilt, rate, time = tilt_of(s, l), rate_of(s, l), s.time[l] + end * s.h[l]
-    if end > 0:
-        tilt, rate = new_tilt_of(s, l), new_rate_of(s, l)
-    beam = beam_at(s, l, tilt, rate)
-    u_x, u_y = beam[RATES], (beam[RATES + 1] if ways_of(s) == 2 else 0.0)
-    faster_x, faster_y = 0.0, 0.0
-    for axis in range(ways_of(s)):
-        shaking = s.new_shaking[axis, l] if end > 0 else s.shaking[axis, l]
-        faster = shaking - (s.a_g[axis, l] + time * s.a_g_slope[axis, l])
-        faster_x, faster_y = (faster, faster_y) if axis == 0 else (faster_x, faster)
-    return u_x, u_y, faster_x, faster_y
 
 
 @compiled

@@ -21,7 +21,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.physics.compile import compiled
+from rpscli.physics.compile import compiled, inlined
 
 Quintic: TypeAlias = tuple[float, float, float, float, float, float]
 
@@ -44,6 +44,16 @@ def quintic(
     d0, d1 = 0.2 * h * df0, 0.2 * h * df1
     c0, c1 = 0.05 * h**2 * ddf0, 0.05 * h**2 * ddf1
     return (f0, f0 + d0, f0 + 2.0 * d0 + c0, f1 - 2.0 * d1 + c1, f1 - d1, f1)
+
+
+@inlined
+def cubic(h: float, value: float, slope: float, end: float, end_slope: float) -> Quintic:
+    """The cubic through values and slopes at both ends of a step."""
+    mean = (end - value) / h if h > 0.0 else 0.0
+    per_h = 1.0 / h if h > 0.0 else 0.0
+    bend = (6.0 * mean - 4.0 * slope - 2.0 * end_slope) * per_h
+    end_bend = (2.0 * slope + 4.0 * end_slope - 6.0 * mean) * per_h
+    return quintic(h, value, slope, bend, end, end_slope, end_bend)
 
 
 @compiled

@@ -123,7 +123,7 @@ def write_row(
         a_y = s.a_g[ways - 1, l] + time * s.a_g_slope[ways - 1, l]
     if s.devices[l] > 0:
         at = worked(s, l, tilt, rate)
-        act(s, l, at)
+        act(s, l, tilt, rate)
         if s.moves[l] == 0.0:
             share = push_at_rest(s, l, (V_x, V_y), (a_x, a_y), g_felt)
         store_devices(s, l, at, share, output.devices[row])

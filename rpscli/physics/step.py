@@ -11,7 +11,7 @@ import math
 
 from rpscli.physics.bed import set_patches
 from rpscli.physics.compile import compiled, fma, inlined, together
-from rpscli.physics.devices import act, act_at_stage, begin_work, worked
+from rpscli.physics.devices import act, act_branched_at_stage, add_work, begin_work, push
 from rpscli.physics.ground import g_up_now, ground_now
 from rpscli.physics.laws import (
     UPRIGHT,
@@ -27,6 +27,7 @@ from rpscli.physics.laws import (
     polar,
     rate_of,
     tilt_of,
+    velocity_with,
     ways_of,
 )
 from rpscli.physics.state import Record
@@ -34,13 +35,20 @@ from rpscli.physics.storeys import free_storeys, slip_rates
 from rpscli.physics.tableau import A2, END, ERROR, USED, A, C
 
 
-@compiled
-def accelerate(s: Record, at: float) -> None:
+@inlined
+def find(s: Record, at: float, weight: float, equipped: bool) -> None:  # noqa: FBT001 -- a constant
     """Accelerations of all lanes a part of the step behind its start, from `new_tilt` and the like.
 
-    Reads `new_V`; writes `new_bend`, `new_shaking` and the polar values of the tilt.
+    Reads `new_V`; writes `new_bend`, `new_shaking` and the polar values of the tilt, and adds to
+    the work of devices.
     """
     for l in range(lanes_of(s)):
+        tilt, rate = new_tilt_of(s, l), new_rate_of(s, l)
+        x, n, t, p, q = polar(s, l, tilt, rate)
+        place = place_with(s, l, x, s.w[l], s.dw[l])
+        if equipped:
+            push(s, l, place, n, t, p, q)
+            s.new_height[l], s.new_speed[l] = place.C, add_work(s, l, place, p, q, weight)
         time = s.time[l] + at * s.h[l]
         ground = s.a_g[0, l] + time * s.a_g_slope[0, l]
         z_x = s.share[l] * (s.new_V[0, l] + s.drive[0, l]) - s.load[l] * ground
@@ -48,9 +56,6 @@ def accelerate(s: Record, at: float) -> None:
         if ways_of(s) == 2:
             ground_y = s.a_g[1, l] + time * s.a_g_slope[1, l]
             z_y = s.share[l] * (s.new_V[1, l] + s.drive[1, l]) - s.load[l] * ground_y
-        tilt, rate = new_tilt_of(s, l), new_rate_of(s, l)
-        x, _, _, p, _ = polar(s, l, tilt, rate)
-        place = place_with(s, l, x, s.w[l], s.dw[l])
         g_up, up = s.g_up[l] + time * s.g_up_slope[l], ways_of(s)
         g_felt = felt(s, l, g_up, s.new_V[up, l])
         motion = motion_at(s, l, place, s.w[l], tilt, rate, (z_x, z_y), g_felt)
@@ -59,6 +64,22 @@ def accelerate(s: Record, at: float) -> None:
         if ways_of(s) == 2:
             s.new_bend[1, l], s.new_shaking[1, l] = motion.bend_y, ground_y + motion.beam_y
         s.new_x[l], s.new_v[l], s.new_a[l], s.new_lift[l] = x, p, motion.a, motion.lift
+        if equipped:
+            u_x, u_y = velocity_with(s, l, place, (n, t), (p, q))
+            s.new_square_rate[l] = 2.0 * (u_x * motion.beam_x + u_y * motion.beam_y)
+            s.new_quicker[l] = math.sqrt(motion.beam_x**2 + motion.beam_y**2)
+
+
+@compiled
+def accelerate(s: Record, at: float) -> None:
+    """The same without devices."""
+    find(s, at, 0.0, False)  # noqa: FBT003
+
+
+@compiled
+def accelerate_equipped(s: Record, at: float, weight: float) -> None:
+    """The same with devices."""
+    find(s, at, weight, True)  # noqa: FBT003
 
 
 @inlined
@@ -127,8 +148,10 @@ def find_accelerations(s: Record, k: int) -> None:
     if s.gives_way > 0:
         set_patches(s)
     if s.equipped > 0:
-        act_at_stage(s, weight)
-    accelerate(s, C[k])
+        act_branched_at_stage(s, weight)
+        accelerate_equipped(s, C[k], weight)
+    else:
+        accelerate(s, C[k])
     for axis in range(ways_of(s)):
         for l in range(lanes_of(s)):
             s.bends[k, axis, l] = s.new_bend[axis, l]
@@ -216,10 +239,10 @@ def end_rates(s: Record) -> None:
 def renew(s: Record, l: int) -> None:
     """Accelerations of one lane at its present state and time: what the next step begins with."""
     tilt, rate = tilt_of(s, l), rate_of(s, l)
-    x, _, _, p, _ = polar(s, l, tilt, rate)
+    x, n, t, p, q = polar(s, l, tilt, rate)
     s.w[l], s.dw[l] = patch(s, l, x)
     if s.devices[l] > 0:
-        act(s, l, worked(s, l, tilt, rate))
+        act(s, l, tilt, rate)
     z_x, z_y, ground, ground_y = 0.0, 0.0, 0.0, 0.0
     for axis in range(s.axes):
         V = 0.0
@@ -240,6 +263,10 @@ def renew(s: Record, l: int) -> None:
     motion = motion_at(s, l, place, s.w[l], tilt, rate, (z_x, z_y), g_felt)
     s.shaking[up, l] = (g_up - s.gravity[l]) + motion.lift
     s.x[l], s.v[l], s.a[l], s.lift[l] = x, p, motion.a, motion.lift
+    u_x, u_y = velocity_with(s, l, place, (n, t), (p, q))
+    s.speed[l] = math.sqrt(u_x * u_x + u_y * u_y)
+    s.square_rate[l] = 2.0 * (u_x * motion.beam_x + u_y * motion.beam_y)
+    s.quicker[l] = math.sqrt(motion.beam_x**2 + motion.beam_y**2)
     s.bend[0, l], s.shaking[0, l] = motion.bend_x, ground + motion.beam_x
     if ways_of(s) == 2:
         s.bend[1, l], s.shaking[1, l] = motion.bend_y, ground_y + motion.beam_y
