@@ -26,7 +26,7 @@ import math
 from typing import TypeAlias
 
 from rpscli.physics.compile import compiled, inlined
-from rpscli.physics.devices import act, has_friction, power_in_step, raise_devices, worked
+from rpscli.physics.devices import act, power_in_step, raise_devices, worked
 from rpscli.physics.events import path_of
 from rpscli.physics.friction import grip_at, push_at_rest
 from rpscli.physics.ground import ground_now, log_row
@@ -364,7 +364,10 @@ def bulge(s: Record, l: int, first: int, end: int) -> float:
 
 @compiled
 def observe_contacts(s: Record) -> None:
-    """Say in `contacts_rise` where the forces of contacts at the ends come near the largest."""
+    """Say in `contacts_rise` where the forces of contacts at the ends come near the largest.
+
+    In full contact without what friction dampers may take: the more.
+    """
     for l in range(lanes_of(s)):
         time = s.time[l] + s.h[l]
         ground = s.a_g[0, l] + time * s.a_g_slope[0, l]
@@ -372,12 +375,16 @@ def observe_contacts(s: Record) -> None:
         if ways_of(s) == 2:
             ground_y = s.a_g[1, l] + time * s.a_g_slope[1, l]
             beam_y, V_y = s.new_shaking[1, l] - ground_y, s.new_V[1, l] + s.drive[1, l]
+        stuck = s.phase[l] == STUCK
         tilt, rate = new_tilt_of(s, l), new_rate_of(s, l)
         x, n, t, _, _ = polar(s, l, tilt, rate)
         beam, g_up = s.new_shaking[0, l] - ground, s.g_up[l] + time * s.g_up_slope[l]
-        V = s.new_V[0, l] + s.drive[0, l] + s.tied[l] * n
-        stays = without_shock(s, l, x, rate)
-        V_y += s.tied[l] * t
+        stays, V = without_shock(s, l, x, rate), s.new_V[0, l] + s.drive[0, l]
+        if s.equipped > 0:  # friction dampers push until all is what the columns hold
+            per_share, load = 2.0 / (s.diameter[l] * s.share[l]), s.load[l] / s.share[l]
+            V = s.held_x[l] * per_share + load * ground if stuck else V
+            V_y = s.held_y[l] * per_share + load * ground_y if stuck else V_y
+        V, V_y = V + s.tied[l] * n, V_y + s.tied[l] * t
         pressed, V_up = (g_up, s.new_V[ways_of(s), l]), bulge(s, l, ways_of(s), ways_of(s) + 1)
         found = measures_of(
             s, l, stays, (beam, beam_y), s.new_lift[l], (V, V_y), (ground, ground_y), pressed
@@ -398,6 +405,7 @@ def observe_contacts(s: Record) -> None:
         rises |= found[3] - heavier < 1.0 - NEARLY * (1.0 - s.normal_bottom[l])
         rises |= found[3] + heavier > 1.0 + NEARLY * (s.heavy_bottom[l] - 1.0)
         rises |= found[2] - heavier < 1.0 - NEARLY * (1.0 - s.normal_top[l])
+        rises |= stuck & ((s.friction_moment[l] > 0.0) | (g_up != s.gravity[l]) | springs)
         # A vibration upwards may turn just behind the end of the step before.
         near = s.contacts_near[l] > 0.0
         s.contacts_rise[l] = 1.0 if rises | (near & springs) else 0.0
@@ -707,8 +715,7 @@ def observe(s: Record, systems: Record, log: Record) -> None:
         if s.demands_rise[l] > 0.0 and s.n > 0:
             first = s.system[l]
             raise_floors(s, l, systems[first : first + ways])
-        # In full contact forces without what friction dampers take were not larger either.
-        if s.contacts_rise[l] > 0.0 or (has_friction(s, l) and s.phase[l] == STUCK):
+        if s.contacts_rise[l] > 0.0:
             raise_contacts(s, l)
     if s.equipped > 0:
         observe_devices(s)

@@ -300,8 +300,13 @@ def power_in_step(s: Record, l: int, i: int) -> float:
 # Loading, beginning an excursion, being held.
 
 
-STOP_SPEED = 1e-9
-"""Of sqrt(g R): what slides more slowly to any side is stopped, or turned to where it is pushed."""
+STOP_SPEED = 0.01
+"""Of that at which sliding begins: what slides more slowly to any side is stopped, or turned to
+where it is pushed. A step may err by a third of it, however slow the motion is."""
+
+STOP_SPEED_OF_PASSES, SLOW_RATE = 1e-9, 1e-3
+"""Of sqrt(g R), and of sqrt(g/R): the same of rigid ends. What passes upright asks for velocities
+in proportion, except where it tilts more slowly than this."""
 
 
 @inlined
@@ -319,12 +324,17 @@ def load_devices(s: Record, l: int, system: Record) -> None:
     s.turning[l], s.turning_across[l], s.tied[l], s.pull[l] = 0.0, 0.0, 0.0, 0.0
     s.branched[l], s.drag_branched[l], s.stop_force[l], s.tendon_moment[l] = 0.0, 0.0, 0.0, 0.0
     s.least_height[l] = math.inf
-    s.stop_speed[l] = STOP_SPEED * math.sqrt(system.gravity * system.R)
     s.start_speed[l] = system.start_speed
     for axis in range(ways_of(s)):
         s.drive[axis, l] = 0.0
     for i in range(system.devices):
         load_device(s, l, i, system)
+    s.stop_speed[l] = STOP_SPEED * system.start_speed
+    error = s.stop_speed[l] / (3.0 * s.diameter[l])
+    if system.alpha > 0.0 and system.compliant == 0:
+        s.stop_speed[l] = STOP_SPEED_OF_PASSES * math.sqrt(system.gravity * system.R)
+        error = system.step_error * SLOW_RATE * math.sqrt(system.gravity / system.R)
+    s.least_error[l] = error if ways_of(s) == 2 and has_friction(s, l) else 0.0
 
 
 @compiled

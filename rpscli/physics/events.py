@@ -143,9 +143,13 @@ def surely_held(s: Record, l: int) -> bool:
     if ways_of(s) == 2:
         y, most = push_path(s, l, 1), 0.0
         for i in range(6):
-            most = max(most, x[i] * x[i] + y[i] * y[i])
+            off_x, off_y = x[i] - s.held_x[l], y[i] - s.held_y[l]
+            most = max(most, off_x * off_x + off_y * off_y)
+        steady = (
+            (start == s.gravity[l]) & (end == start) & (s.axes == 2)
+        )  # else what holds it moves
         within = (right >= 0.0) & (most <= right * right)
-        return within & (s.phase[l] != STUCK)  # type: ignore[no-any-return]
+        return within & (steady | (s.phase[l] != STUCK))  # type: ignore[no-any-return]
     left = min(s.limit_left[l] * start, s.limit_left[l] * end) + s.held_left[l]
     left -= max(s.limit_left[l] * most_spared, s.limit_left[l] * least_spared)
     held = (max(upper_hull(x), x[0]) <= right) & (-min(lower_hull(x), x[0]) <= left)

@@ -492,6 +492,7 @@ def reverse(s: Record, l: int, system: Record, log: Record) -> None:
 def hold(s: Record, l: int, system: Record) -> None:
     """Be held where the tilt stands."""
     enter_phase(s, l, system, STUCK)
+    s.h_limit[l] = math.inf  # that of a standstill was short
     set_limits(s, l)
     renew(s, l)
 

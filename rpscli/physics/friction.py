@@ -51,6 +51,7 @@ def set_limits(s: Record, l: int) -> None:
     right = s.tan_a[l] * weigh
     s.limit_right[l], s.limit_left[l] = right, right
     s.held_right[l], s.held_left[l] = elastic + friction, elastic + friction
+    s.held_x[l], s.held_y[l] = 0.0, 0.0
     if s.bed_back[l] > 0.0:  # outwards as the lifted ends, inwards as the bed
         at, back = place_of(s, l, s.x[l]), R * s.bed_back[l]
         missing = R * (s.root[l] - s.sink[l]) * s.w[l] * s.gravity[l] * s.weigh[l]
@@ -64,6 +65,14 @@ def set_limits(s: Record, l: int) -> None:
         at, side = place_of(s, l, s.x[l]), s.side[l]
         missing = (s.root[l] - s.sink[l]) * s.w[l] * s.gravity[l] * s.weigh[l]
         elastic += R * (missing + s.bed_k[l] * s.x[l]) / at.C
+        _, n, t, _, _ = polar(s, l, tilt_of(s, l), (0.0, 0.0))
+        back = elastic + at.Bv / at.C * weigh * s.gravity[l] if s.x[l] > 0.0 else 0.0
+        s.held_x[l], s.held_y[l] = back * n, back * t
+        if ways_of(s) == 2:  # within this circle it surely is: what (13.25) asks of dampers alone
+            moment = s.friction_moment[l] / (s.diameter[l] * max(at.C, at.h))
+            s.held_right[l] = R * s.share[l] * (s.friction_force[l] + moment)
+            s.limit_right[l] = 0.0
+            return
         right, elastic = side * at.Bv / at.C * weigh, side * elastic
         s.limit_right[l], s.limit_left[l] = right, -right
         s.held_right[l], s.held_left[l] = friction + elastic, friction - elastic

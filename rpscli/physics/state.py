@@ -323,6 +323,7 @@ STATE = (
     # At rest: what multiplies g + a_v in the limits of R |z| to either side, and what adds to it.
     *_fields("lanes", "-", limit_right="tan(alpha) (1 + 2 gamma + 2 gamma eta)", limit_left="too"),
     *_fields("lanes", "m/s2", held_right="of devices and beds", held_left="likewise"),
+    *_fields("lanes", "m/s2", held_x="what friction holds a tilt to any side about", held_y="in y"),
     # The ground, linear over the interval; and time.
     Field("a_g", "ways lanes", "m/s2", "at the interval's start"),
     Field("a_g_slope", "ways lanes", "m/s3", "over it"),
@@ -382,6 +383,7 @@ STATE = (
         stop_speed="|u_b'| at which friction stops a tilt to any side",
         start_speed="see `system`",
     ),
+    *_fields("lanes", "rad/s", least_error="what a step may err by, where friction turns the tilt"),
     *_fields("lanes", "N", friction_force="of all friction dampers", tied="by tendons, along it"),
     *_fields("lanes", "N", pull="on the cap beam, downwards"),
     *_fields("lanes", "N m", friction_moment="of all rolling resistance"),

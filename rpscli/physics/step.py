@@ -211,7 +211,7 @@ def error_of(s: Record, l: int) -> float:
         faster = s.h[l] * (abs(s.bend[axis, l]) + abs(s.new_bend[axis, l]))
         fast = abs(s.tilt_rate[axis, l]) + abs(s.new_tilt_rate[axis, l]) + faster
         speed += fast * fast
-    limit = s.step_error[l] * math.sqrt(speed)
+    limit = s.step_error[l] * math.sqrt(speed) + s.least_error[l]
     limit += s.h[l] * (NOISE * s.weigh[l] * s.gravity[l] * s.tan_a[l] / s.one[l])
     return s.h[l] * math.sqrt(missed) / (limit if limit > 0.0 else 1.0)  # type: ignore[no-any-return]
 
