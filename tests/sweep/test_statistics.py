@@ -70,7 +70,7 @@ def test_too_few_points_have_no_bilinear_fit() -> None:
     assert bilinear_fit(np.repeat([1.0, 2.0, 3.0], 10), np.zeros(30)) is None
 
 
-def test_an_overturning_table_over_lists_of_devices(study_of: Make) -> None:
+def test_overturning_and_lines_over_lists_of_devices(study_of: Make) -> None:
     """Values of a study may be lists, which are no keys of a dictionary."""
     friction = "[{kind: friction, force: 300 kN}]"
     swap = "podium.bearing.curvature_ratio: [critical, 0.5, 0]"
@@ -81,6 +81,9 @@ def test_an_overturning_table_over_lists_of_devices(study_of: Make) -> None:
     assert [name for name in found if name.endswith(";number")] == [
         "podium.devices=none;number", "podium.devices=friction 300 kN;number"
     ]  # fmt: skip
+    options = LinesOptions(x="scale", result=("max_rotation",), series=("podium.devices",))
+    rows = cells(lines(results, options))
+    assert len({repr(devices) for devices in rows["podium.devices"]}) == 2
 
 
 def test_the_overturning_table_counts_and_keeps_failures_apart(study_of: Make) -> None:

@@ -135,7 +135,7 @@ def lines(study: StoredPoints, options: LinesOptions) -> Found:
         note=panels.remarks(
             panels.over(found.pooled) if together else "",
             "hollow: means without those that overturned, counts in the CSV" * hollow,
-            panels.shaded(max(len({line.values for line in every}), len(names))),
+            panels.shaded(max(len(_series(every)), len(names))),
             f"not drawn where the {statistic} overturned"
             * any(math.inf in line.y for line in every),
             panels.left_out(found.failed),
@@ -179,6 +179,11 @@ def _lines(
     return [Line(series.values, name, *zip(*each, strict=True)) for each in points if each]
 
 
+def _series(every: Sequence[Line]) -> list[tuple[object, ...]]:
+    """Values of the series, each once; some are lists of devices."""
+    return [*{repr(line.values): line.values for line in every}.values()]
+
+
 def _draw(
     axes: style.Axes,
     panel: Panel,
@@ -189,7 +194,7 @@ def _draw(
 ) -> None:
     """One line a series and result; dashed ones are comparisons."""
     results = (*options.result, *options.dashed)
-    series = list(dict.fromkeys(line.values for line in every))
+    series = _series(every)
     words = (LEGEND.get(name, name) for name in _distinct(results))
     names = dict(zip(results, words, strict=True))
     dashed = [line for line in panel.lines if line.result in options.dashed]
