@@ -337,9 +337,9 @@ class TimeHistoryResult(Demand):
         ):
             brake = "but its joints" if self.structure.bed is not None else "at its ends"
             notes.append(
-                f"at the end the podium still moves in a circle, and nothing {brake} dissipates;"
-                " no larger rotation can occur (friction dampers or rolling resistance would bring"
-                " it to rest)"
+                f"at the end the podium still swings or circles, and nothing {brake} dissipates:"
+                " the residual rotation is that of this instant; no larger rotation can occur"
+                " (friction dampers or rolling resistance would bring it to rest)"
             )
         elif self.outcome == "survived" and self.history["phase"] not in RESTING:
             if self.structure.bearing.is_spherical:

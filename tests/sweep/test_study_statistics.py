@@ -337,6 +337,18 @@ def test_points_with_unusual_factors_are_counted(study_of: Make) -> None:
     assert not list(scale_notes(made(study_of, lambda _: stored()).table))
 
 
+def test_survivors_that_still_move_are_counted(study_of: Make) -> None:
+    """What is left of a motion that goes on is no residual rotation."""
+    of = {True: 0.05, False: 0.0005}
+    results = made(
+        study_of,
+        lambda at: stored(max_rotation=0.1, residual_rotation=of[at["scale"] == 1.0]),
+    )
+    notes = summary(results.table, fixed_base(results.table.layout, [4e6, 1.0, 1.0])).notes
+    (note,) = [note for note in notes if "still move" in note]
+    assert note.startswith("18 of 36 histories that survived")
+
+
 def test_no_report_takes_the_place_of_the_statistics(study_of: Make) -> None:
     names = "reports: [ida: {name: statistics}, ida: {name: points}, ida]\n"
     found = [request.stem for request in study_of(STUDY + names).reports]

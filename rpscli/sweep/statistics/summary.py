@@ -68,7 +68,9 @@ def summary(table: Table, fixed: FixedBaseReferences) -> Summary:
         known_of = np.isfinite(values).reshape(len(lacks), -1).any(axis=1)
         values[np.repeat(lacks & ~known_of, table.layout.points_of_system)] = np.nan
     rows = (_row(known, each) for each in found.groups)
-    notes = [*found.notes]
+    notes = [*found.notes, *_still_moving(table)]
+    if any(table.layout.pairs) and not all(table.layout.pairs):
+        notes.append("histories of one component and of pairs are counted together")
     if any("ductility" not in system.lacking for system in table.layout.properties):
         notes.append("on the fixed base every building is elastic, also where its storeys yield")
     return Summary(found.keys, found.pooled, tuple(notes), tuple(known), tuple(rows))
@@ -110,6 +112,22 @@ def shear_over_fixed_base(table: Table, fixed: FixedBaseReferences) -> Array:
                 reference[first : first + within] = fixed[system, request][0]
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.asarray(table.columns["max_base_shear"] / (np.abs(table.scale) * reference))
+
+
+MOVING = 0.01
+"""Of its largest rotation: what survives and is tilted by more at its end still moves."""
+
+
+def _still_moving(table: Table) -> Iterator[str]:
+    """The remark on residual rotations that are those of an instant."""
+    at_end, largest = table.columns["residual_rotation"], table.columns["max_rotation"]
+    survived = table.outcomes == "survived"
+    if number := np.count_nonzero(survived & (at_end > MOVING * largest)):
+        yield (
+            f"{number} of {np.count_nonzero(survived)} histories that survived still move at their"
+            " end: their residual rotations and displacements are those of that instant; a longer"
+            " `analysis.free_vibration` or something that dissipates brings them to rest"
+        )
 
 
 def scale_notes(table: Table) -> Iterator[str]:
