@@ -211,12 +211,12 @@ def _draw(
             x = range(len(line.x))
             axes.set_xticks(x, [plain(value) for value in line.x])
         parts = (labels(series_keys, line.values), names[line.result])
-        look: dict[str, Any] = {"ls": _staggered(place, among)}
+        name, shade = ", ".join(filter(None, parts)) or None, panels.colour(place, count)
+        look: dict[str, Any] = {"ls": _staggered(place, among), "color": shade}
         if line.result not in options.dashed:
             look = {"ls": ("-", "-.", ":")[options.result.index(line.result) % 3]}
-            look["marker"] = "o" if len(x) < 25 else ""
-        name, shade = ", ".join(filter(None, parts)) or None, panels.colour(place, count)
-        axes.plot(x, line.y, lw=1.4, color=shade, ms=3.0, label=name, **look)
+            look |= panels.look(place, count) if len(x) < 25 else {"color": shade}
+        axes.plot(x, line.y, lw=1.4, ms=3.0, label=name, **look)
         if statistic == MEAN:
             fallen = [n for n, overturned in enumerate(line.overturned) if overturned]
             at = [[values[n] for n in fallen] for values in (x, line.y)]
