@@ -40,8 +40,9 @@ def command(
 ) -> None:
     """Change of each limited result of CASE for one input at a time, in the unit of its limit.
 
-    Numerics, loss at impacts, contact, the other component, damping, 1 % of the motion and of the
-    dimensions, vertical motion, records: of several --record the first is the history itself, else
+    Numerics, loss at impacts, contact, the other component, damping, a tenth of the period, a
+    fifth of strengths and devices, 1 % of the motion and of the dimensions, vertical motion,
+    records: of several --record the first is the history itself, else
     the far-field set of FEMA P695 at its PGA shows the scatter. Each row names the options with
     which `rps timehistory CASE` gives its numbers. The exit code is 0 whatever the verdicts are.
     """
@@ -159,11 +160,34 @@ def _values(case: Case) -> Iterator[tuple[str, str]]:
     if (period := file.superstructure.vertical_period) is not None:
         for factor in (0.5, 2.0):
             yield "vertical period", f"superstructure.vertical_period={factor * period:g} s"
+    yield from _of_building_and_devices(case)
     place = "podium.bearing.dimensions" if bearing.dimensions else "podium.bearing"
     for name in ("semi_diagonal", "slenderness", "height", "width"):
         value = float(getattr(bearing.dimensions or bearing, name, None) or 0.0)
         for factor in (0.99, 1.01) if value else ():
             yield "1 % of dimensions", f"{place}.{name}={factor * value:.12g}"
+
+
+def _of_building_and_devices(case: Case) -> Iterator[tuple[str, str]]:
+    """Changes of its period and strengths, and of what devices do."""
+    building, fifth = case.file.superstructure, (0.8, 1.2)
+    if building.period is not None:
+        for factor in (0.9, 1.1):
+            yield "period", f"superstructure.period={factor * building.period:.12g}"
+    if (strengths := building.yields) is not None:
+        name = "ratio" if strengths.ratio is not None else "shears"
+        given = getattr(strengths, name)
+        for factor in fifth:
+            each = [
+                f"{factor * of:.12g}" for of in (given if isinstance(given, tuple) else [given])
+            ]
+            changed = f"[{', '.join(each)}]" if isinstance(given, tuple) else each[0]
+            yield "strength of storeys", f"superstructure.yield.{name}={changed}"
+    for n, device in enumerate(case.file.podium.devices):
+        for name in ("coefficient", "force", "stiffness", "lever"):
+            value = float(getattr(device, name) or 0.0)
+            for factor in fifth if value else ():
+                yield "devices", f"podium.devices.{n}.{name}={factor * value:.12g}"
 
 
 def _scaled(motion: inputs.MotionRequest, scale: float) -> inputs.MotionRequest:

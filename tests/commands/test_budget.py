@@ -12,6 +12,8 @@ from typing import Any
 import pytest
 from paper_structures import needs_compiled_kernels
 
+from rpscli.case.case import load_case
+from rpscli.commands.budget import _values
 from rpscli.records.loading import load_components
 
 from .conftest import SMALL_CASE, Invoke, write_case
@@ -82,6 +84,19 @@ def test_the_other_component_and_what_is_not_known(workplace: Path, rps_json: Js
     assert told == {
         "damping": "the case has none, of which there is no half or double", "damping model": ""
     }  # fmt: skip
+
+
+@pytest.mark.parametrize("given", ["ratio: 1.5", "shears: [2 MN, 1 MN, 1 MN]", "shears: 2 MN"])
+def test_period_strengths_and_devices_are_changed(workplace: Path, given: str) -> None:
+    """Every value is one that the case could have."""
+    strengths = f"  yield: {{{given}}}\n"
+    devices = "podium:\n  devices: [{kind: viscous, coefficient: 2 MN s/m}]\n"
+    write_case("limited.yaml", ("podium:\n", strengths + devices))
+    case = load_case("limited.yaml")
+    found = [*_values(case)]
+    assert {"period", "strength of storeys", "devices"} <= {cause for cause, _ in found}
+    for _, change in found:
+        assert load_case("limited.yaml", (change,)).structure is not None
 
 
 def test_the_other_component_that_a_case_names(
