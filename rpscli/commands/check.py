@@ -149,7 +149,8 @@ def check_tables(
             texts.append((row.label, row.symbol, shown(value), unit))
         if rows is LEADING:
             given = document["stiffnesses"]
-            ends = zip(("bottom", "roof"), (*given[:1], *given[1:][-1:]), strict=False)
+            roof = "roof (see profile)" if given[-1:] > given[:1] else "roof"
+            ends = zip(("bottom", roof), (*given[:1], *given[1:][-1:]), strict=False)
             texts += [(f"storey stiffness, {n}", "", shown(1e-3 * k), "kN/m") for n, k in ends]
         if texts:
             yield Table.of_texts(heads, texts, words=2)
