@@ -248,7 +248,7 @@ class DesignTask:
         """The study of some designs, (designs, keys), under the design's records or others."""
         owner = {key: "linked" if key in self.file.linked else "variables" for key in self.keys}
         places = tuple((self.study.document.value_place((owner[k], k)),) for k in self.keys)
-        axis = Axis(self.keys, self.rows(values), places)
+        axis = Axis(self.keys, self.rows(values), places, of_designs=True)
         own = self.study.sources if sources is None else sources
         return replace(self.study, axes=(axis,), sources=own)
 

@@ -468,6 +468,15 @@ def test_pooled_histories_count_recordings_or_stand_for_their_record_alone(study
         assert note in found.notes[0]
 
 
+def test_all_keys_of_an_axis_name_its_rows_where_the_first_has_a_value_twice(
+    study_of: Make,
+) -> None:
+    wedge, scale = "podium.bearing.wedge_slenderness", "scale"
+    for values, keys in (("[0.1, 0.15]", (ALPHA,)), ("[0.15, 0.15]", (ALPHA, wedge))):
+        study = made(study_of, lambda _: stored(), ("[0.10, 0.15]", values))
+        assert grouping(study.table).keys == (*keys, RHO, scale)
+
+
 def test_several_records_of_a_case_count_recordings() -> None:
     sources = ["d/RSN1_A.at2", "d/RSN1_B.at2", "d/RSN2_A.at2", "d/RSN2_B.at2"]
     demands = [{"rotation_ratio": 0.1, "uplifts": 1.0}] * 4

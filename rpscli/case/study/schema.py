@@ -103,6 +103,13 @@ class Axis:
     keys: tuple[str, ...]
     rows: tuple[Values, ...]
     places: tuple[tuple[Place, ...], ...]
+    of_designs: bool = False
+
+    @property
+    def naming(self) -> tuple[str, ...]:
+        """Keys that name a row: the first, but all of designs, and where it has a value twice."""
+        twice = len({repr(row[0]) for row in self.rows}) < len(self.rows)
+        return self.keys if twice or self.of_designs else self.keys[:1]
 
     def place(self, key: int, row: int) -> Place:
         """Position of a value in the file."""
