@@ -144,7 +144,7 @@ def sampled(distribution: str) -> tuple[str, str]:
     ("old", "new", "parts"),
     [
         ("[0.20, 0.30]", "[0.20]", ("study.yaml:6:5", "has 1 values", "line 5", "2")),
-        ("critical, 0.5, 0]", "critical, null]", ("study.yaml:7:48", "no value")),
+        ("critical, 0.5, 0]", "critical, null]", ("study.yaml:7:48", "curvature_ratio is missing")),
         (RHOS, "0.5", ("study.yaml:7:37", "list of values")),
         (RHOS, "{low: 0, hgh: 1, count: 2}", ("curvature_ratio.high?",)),
         ("curvature_ratio:", "curvature_ration:", ("study.yaml:7:5", "curvature_ratio?")),
