@@ -47,6 +47,14 @@ def test_sa_at_t1_needs_storeys(study_of: Make) -> None:
     assert "scale.period is missing" in text
 
 
+def test_values_of_an_unknown_measure_are_not_judged(study_of: Make) -> None:
+    for values in ("[40 cm/s]", "{low: 20 cm/s, high: 40 cm/s, count: 3}"):
+        scale = f"scale: {{measure: Pgv, values: {values}}}"
+        text = refusal(study_of, ("scale: [0.5, 1.0]", scale))
+        assert "did you mean PGV?" in text
+        assert "\n" not in text
+
+
 def test_overrides_reach_the_study_and_its_case(study_of: Make) -> None:
     study = study_of(overrides=("scale=[2]", "podium.cap_beam_mass_ratio=7", "analysis.accuracy=2"))
     assert study.file.scale == (2.0,)
