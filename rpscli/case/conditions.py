@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rpscli.analyses.result_quantities import LIMITED
+from rpscli.case.text.document import Document
 from rpscli.errors import UsageError, alike, hint
 from rpscli.units import KINDS, Written, bare_or_si
 
@@ -133,3 +134,11 @@ def with_friction(
     if structure.friction is None or any(each.name == "friction_ratio" for each in conditions):
         return conditions
     return (*conditions, Condition("friction_ratio", 1.0, FRICTION))
+
+
+def replaced_limits(base: dict[str, Any], own: LimitsSection | None) -> str:
+    """Names of the limits of a base case that a study has its own in place of, if it has any."""
+    given = Document("", base).has(("podium", "friction"))
+    still = given and own and "friction_ratio" not in own.model_fields_set
+    said = {"friction_ratio": f"friction_ratio (still at most 1, by {FRICTION})"} if still else {}
+    return ", ".join(said.get(name, name) for name in base.get("limits") or () if own)

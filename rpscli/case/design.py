@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from pydantic import BeforeValidator, Field, PlainValidator, WithJsonSchema, model_validator
 
 from rpscli.analyses.result_quantities import DEMANDS, SAMPLED
+from rpscli.case.conditions import replaced_limits
 from rpscli.case.schema.check import checked
 from rpscli.case.schema.fields import Quantity, Section, Whole, must_be, refuse
 from rpscli.case.schema.keys import is_whole, unit
@@ -248,7 +249,7 @@ class DesignTask:
         """The study of some designs, (designs, keys), under the design's records or others."""
         owner = {key: "linked" if key in self.file.linked else "variables" for key in self.keys}
         places = tuple((self.study.document.value_place((owner[k], k)),) for k in self.keys)
-        axis = Axis(self.keys, self.rows(values), places)
+        axis = Axis(self.keys, self.rows(values), places, of_designs=True)
         own = self.study.sources if sources is None else sources
         return replace(self.study, axes=(axis,), sources=own)
 
@@ -289,8 +290,7 @@ def parse_design(
 
 def _notes(file: DesignFile, base: dict[str, Any]) -> Iterator[str]:
     """What the design takes from its base, or not, in another way than may be meant."""
-    if file.limits and base.get("limits"):
-        names = ", ".join(base["limits"])
+    if names := replaced_limits(base, file.limits):
         yield f"the limits of the design replace those of the base case: {names}"
     own = {"slenderness", "semi_diagonal", "dimensions"}
     sizes = [key for key in file.variables if {*key.split(".")[2:3]} & own]

@@ -10,6 +10,8 @@ from collections.abc import Iterable, Iterator, Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
+import numpy as np
+
 from rpscli.case.build import each_storey
 from rpscli.case.schema.case_file import SuperstructureSection
 from rpscli.errors import listed
@@ -69,8 +71,9 @@ LARGEST_DRIFT = 0.02
 
 
 def doubts_of_structure(structure: PodiumStructure) -> Iterator[Doubt]:
-    """Sizes, masses, period, restitution and friction; storey shears at uplift."""
+    """Sizes, masses, period, restitution, friction, pressure; storey shears at uplift."""
     yield from _unusual_sizes(structure)
+    yield from _pressed_arcs(structure)
     bearing, building = structure.bearing, structure.superstructure
     if structure.friction is not None and structure.friction < HOLDS * bearing.slenderness:
         yield Doubt(
@@ -145,6 +148,21 @@ def _unusual_sizes(structure: PodiumStructure) -> Iterator[Doubt]:
                 f"{name} = {{0}}{unit and f' {unit}'} is unusual: {usual} is usual{advice}",
                 float(value),
             )
+
+
+def _pressed_arcs(structure: PodiumStructure) -> Iterator[Doubt]:
+    """Columns whose arcs bear more than they can before anything moves."""
+    bearing, column, tilt = structure.bearing, structure.column, 0.1 * structure.bearing.alpha
+    if column is None or tilt >= bearing.beta:
+        return
+    pressure, *_ = column.pressed(bearing, np.array(tilt), np.array(structure.rest_force))
+    if pressure > (strength := column.contact_strength):
+        yield Doubt(
+            "podium.column: under the weight alone the pressure on arcs is {0} times"
+            " contact_strength{1}; a larger radius or more columns lower it",
+            float(pressure / strength),
+            f" ({1e-6 * pressure:.4g} MPa over {1e-6 * strength:.4g} MPa)",
+        )
 
 
 def _weak_storeys(structure: PodiumStructure) -> Iterator[Doubt]:

@@ -263,6 +263,12 @@ class PodiumStructure(Shown):
         return self.gamma * (1.0 + self.eta)
 
     @property
+    def rest_force(self) -> float:
+        """Weight on the lower end of a column [N]."""
+        mass = self.columns_mass + self.cap_beam_mass + self.superstructure_mass
+        return self.gravity * mass / self.columns
+
+    @property
     def restoring_mass(self) -> float:
         """N m_c/2 + m_b + M_tot: what the bearings lift, reduced to the cap beam [kg]."""
         return 0.5 * self.columns_mass + self.cap_beam_mass + self.superstructure_mass

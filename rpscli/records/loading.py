@@ -398,7 +398,8 @@ def _require_file(path: Path, source: str) -> None:
         raise RecordError(f"{path}: {what}")
     if not path.parent.is_dir():
         raise RecordError(f"{source}: there is no folder {path.parent}")
-    names = sorted(entry.name for entry in path.parent.iterdir())
+    entries = (entry for entry in path.parent.iterdir() if entry.suffix not in {".yaml", ".yml"})
+    names = sorted(entry.name for entry in entries)
     close = nearest(path.name, names, LIKENESS)
     suggestion = f"; did you mean {path.parent / close}?" if close else ""
     raise RecordError(f"{source}: there is no file {path}{suggestion}")

@@ -151,8 +151,7 @@ UPWARDS = (
 def _column_at_rest(structure: PodiumStructure) -> dict[str, float]:
     """One column under the weight at rest, tilted to a tenth of alpha, by letters."""
     b, x = structure.bearing, 0.1 * structure.bearing.alpha
-    mass = structure.columns_mass + structure.cap_beam_mass + structure.superstructure_mass
-    N, y, r = structure.gravity * mass / structure.columns, min(x, b.beta), b.radius
+    N, y, r = structure.rest_force, min(x, b.beta), b.radius
     turned = math.sin(x) + math.sin(y) * math.cos(x) - math.cos(y) * math.sin(x)
     moment = N * (b.half_width * math.cos(x) + r * turned)
     return {"N_0": N, "x": x, "y": y, "moment": moment, **_ends(structure, x, N)}

@@ -40,6 +40,9 @@ Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 Columns = dict[str, NDArray[Any]]
 
+NONE = "none"
+"""For the value of a varied key that is taken out."""
+
 LINES_A_PIECE = 1000
 """Of `points.csv`."""
 
@@ -262,7 +265,7 @@ def _cell(value: object, unit: str) -> str:
     value = in_si(value, unit)
     if isinstance(value, str):
         return value
-    return "" if value is None else json.dumps(value)
+    return NONE if value is None else json.dumps(value)
 
 
 def point_columns(table: Table) -> Columns:

@@ -57,6 +57,11 @@ SLIPS = [
     ("  damping", "  yield: {shears: [300 kN, 2 MN, 2 MN]}\n  damping",
      ["yield before columns lift, at 0.3187 of their shear at uplift (storey 1)"]),
     ("  cap_beam_mass_ratio", "  friction: 5\n  cap_beam_mass_ratio", ["friction = 5 is"]),
+    # 874.7 t on four columns: p_0^2 = N E*/(pi L r) of (16.4), with E* = E/1.92
+    ("  cap_beam_mass_ratio",
+     "  columns: 4\n  column: {section: square, edge_length: 0.4, modulus: 30 GPa,"  # noqa: ISC004
+     " poisson: 0.2, contact_strength: 100 MPa}\n  cap_beam_mass_ratio",
+     ["1.826 times contact_strength (182.6 MPa over 100 MPa)"]),
 ]  # fmt: skip
 
 

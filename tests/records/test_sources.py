@@ -228,6 +228,7 @@ def records(tmp_path: Path) -> Path:
     (tmp_path / "README.md").write_text("About 3 records\n\n1 2 3\nand more\n")
     (tmp_path / "table.csv").write_text("file,dt\na.txt,0.01\nb.txt,0.01\n")
     (tmp_path / "page.at2").write_text("<html></html>")
+    (tmp_path / "xyz.yaml").write_text("rps: 1\n")
     return tmp_path
 
 

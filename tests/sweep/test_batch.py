@@ -6,10 +6,12 @@ import itertools
 import math
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from paper_structures import FLAT, building, needs_compiled_kernels, podium, stillness, waves
+from pydantic import ValidationError
 
 from rpscli.analyses.demand import Request, demands, histories
 from rpscli.analyses.largest_demands import Demands
@@ -208,6 +210,16 @@ def test_distributions_have_the_moments_that_are_asked_for() -> None:
 def test_latin_hypercube_has_one_value_in_each_stratum() -> None:
     section = SampleSection(method="latin_hypercube", size=10, ranges={"x": (0.0, 1.0)})
     assert sorted((sample(section)[:, 0] * 10).astype(int)) == list(range(10))
+
+
+def test_ranges_may_have_the_unit_of_their_key() -> None:
+    width, period = "podium.bearing.dimensions.width", "superstructure.period"
+    ranges: dict[str, Any] = {width: ["323 mm", 0.337]}
+    ranges[period] = {"distribution": "normal", "mean": "420 ms", "cov": 0.1}
+    found = SampleSection(size=2, ranges=ranges).ranges
+    assert (found[width].low, found[width].high, found[period].mean) == (0.323, 0.337, 0.42)
+    with pytest.raises(ValidationError, match=r"is a mass, but must be a length"):
+        SampleSection(size=2, ranges={width: ["323 kg", 0.337]})
 
 
 def test_uneven_sobol_sizes_are_remarked_on() -> None:

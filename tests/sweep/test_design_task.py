@@ -175,6 +175,10 @@ def test_verdicts_are_those_of_a_study(design_json: SweepJson) -> None:
     designs = csv_rows("designs.csv", "out")
     verdicts = csv_rows("verdicts.csv", "out")
     assert len(verdicts) == 8 * len(designs)
+    keys = [name for name in designs[0] if name.startswith("podium.")]
+    assert len(keys) == 3
+    rows = [tuple(row[key] for key in keys) for row in verdicts[::8]]
+    assert rows == [tuple(design[key] for key in keys) for design in designs]
     exceeded = [row["exceeded [-]"] == "true" for row in verdicts]
     assert 0 < sum(exceeded) < len(exceeded)
     by_design = np.array(exceeded).reshape(len(designs), -1)

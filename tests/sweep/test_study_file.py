@@ -47,6 +47,14 @@ def test_sa_at_t1_needs_storeys(study_of: Make) -> None:
     assert "scale.period is missing" in text
 
 
+def test_values_of_an_unknown_measure_are_not_judged(study_of: Make) -> None:
+    for values in ("[40 cm/s]", "{low: 20 cm/s, high: 40 cm/s, count: 3}"):
+        scale = f"scale: {{measure: Pgv, values: {values}}}"
+        text = refusal(study_of, ("scale: [0.5, 1.0]", scale))
+        assert "did you mean PGV?" in text
+        assert "\n" not in text
+
+
 def test_overrides_reach_the_study_and_its_case(study_of: Make) -> None:
     study = study_of(overrides=("scale=[2]", "podium.cap_beam_mass_ratio=7", "analysis.accuracy=2"))
     assert study.file.scale == (2.0,)
@@ -144,7 +152,7 @@ def sampled(distribution: str) -> tuple[str, str]:
     ("old", "new", "parts"),
     [
         ("[0.20, 0.30]", "[0.20]", ("study.yaml:6:5", "has 1 values", "line 5", "2")),
-        ("critical, 0.5, 0]", "critical, null]", ("study.yaml:7:48", "no value")),
+        ("critical, 0.5, 0]", "critical, null]", ("study.yaml:7:48", "curvature_ratio is missing")),
         (RHOS, "0.5", ("study.yaml:7:37", "list of values")),
         (RHOS, "{low: 0, hgh: 1, count: 2}", ("curvature_ratio.high?",)),
         ("curvature_ratio:", "curvature_ration:", ("study.yaml:7:5", "curvature_ratio?")),

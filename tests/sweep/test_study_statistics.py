@@ -18,6 +18,7 @@ from rpscli.case.conditions import Condition
 from rpscli.case.design import parse_design
 from rpscli.errors import CaseError
 from rpscli.report.study.registry import not_judged
+from rpscli.report.study.report import key_columns, label
 from rpscli.report.study.statistics import summary_columns, summary_document
 from rpscli.sweep.design import weights_of
 from rpscli.sweep.points import lay_out
@@ -25,7 +26,7 @@ from rpscli.sweep.statistics.fractiles import Share, clustered, fractiles, share
 from rpscli.sweep.statistics.grouping import grouping
 from rpscli.sweep.statistics.summary import Records, Summary, scale_notes, summary
 from rpscli.sweep.statistics.verdicts import Verdict, decisive, judge, judged, judged_records
-from rpscli.sweep.table import Table
+from rpscli.sweep.table import Table, points_csv
 from sweep.small_studies import (
     ALPHA,
     BASE,
@@ -478,6 +479,28 @@ def test_pooled_histories_count_recordings_or_stand_for_their_record_alone(study
         found = grouping(made(study_of, lambda _: stored(), change).table, ())
         assert str(found.groups[0].overturned) == share_text
         assert note in found.notes[0]
+
+
+def test_all_keys_of_an_axis_name_its_rows_where_the_first_has_a_value_twice(
+    study_of: Make,
+) -> None:
+    wedge, scale = "podium.bearing.wedge_slenderness", "scale"
+    for values, keys in (("[0.1, 0.15]", (ALPHA,)), ("[0.15, 0.15]", (ALPHA, wedge))):
+        study = made(study_of, lambda _: stored(), ("[0.10, 0.15]", values))
+        assert grouping(study.table).keys == (*keys, RHO, scale)
+
+
+def test_null_among_the_values_of_a_varied_key_takes_it_out(study_of: Make) -> None:
+    key = "superstructure.vertical_period"
+    change = (f"{RHO}: [critical, 0.5, 0]", f"{key}: [null, 100 ms]")
+    table = made(study_of, lambda _: stored(), change).table
+    springs = [table.layout.system(n).structure.superstructure for n in range(2)]
+    assert [building and building.vertical_period for building in springs] == [None, 0.1]
+    lines = "".join(points_csv(table)).splitlines()[1:8:6]
+    assert [line.split(",")[2] for line in lines] == ["none", "0.1"]
+    column = key_columns([key], [(None,), ("100 ms",)])[0]
+    assert [*column.values] == ["none", 0.1]
+    assert label(key, None) == "vertical_period = none"
 
 
 def test_several_records_of_a_case_count_recordings() -> None:

@@ -322,10 +322,13 @@ def test_limits_of_the_base_that_do_not_count_are_named() -> None:
     study["records"] = ["pulse:sine?amplitude=0.3g&period=0.8"]
     said = []
     of_base, own = {"limits": {"drift_ratio": 0.01}}, {"limits": {"overturning": 0.1}}
-    for first, second in ((of_base, own), (of_base, {}), ({}, own)):
+    base["podium"]["friction"], friction = 0.5, {"limits": {"friction_ratio": 0.8}}
+    for first, second in ((of_base, own), (of_base, {}), ({}, own), (friction, own)):
         layout = load_study(study | {"base": base | first} | second).layout
         said.append(of_first_system(layout).partition("; its own limits")[2])
-    assert said == [" replace those of the base case: drift_ratio", "", ""]
+    whose = " replace those of the base case:"
+    still = f"{whose} friction_ratio (still at most 1, by podium.friction)"
+    assert said == [f"{whose} drift_ratio", "", "", still]
 
 
 MEASURED = (

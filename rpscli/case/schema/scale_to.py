@@ -36,9 +36,9 @@ MeasureName = Annotated[Measure, NameOf(MEASURES), BeforeValidator(_scalable)]
 
 def measured_value(value: object, info: ValidationInfo) -> float:
     """A value of the measure that stands before it, in SI: a number, or text with a unit."""
-    measure = info.data.get("measure")
-    bounds = Quantity(MEASURES[measure].unit, symbol=measure, above=0) if measure else Quantity()
-    number = bounds.read(value)
+    if (measure := info.data.get("measure")) is None:
+        return 1.0  # whatever it is: the measure is refused
+    number = Quantity(MEASURES[measure].unit, symbol=measure, above=0).read(value)
     assert isinstance(number, float), "there are no words in place of the number"
     return number
 

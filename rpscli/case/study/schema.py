@@ -26,6 +26,7 @@ from pydantic_core import CoreSchema
 from rpscli.case.schema.case_file import DocumentSection, PositiveRatio, Time, TitledFile
 from rpscli.case.schema.fields import (
     CHECKED_BY_ITSELF,
+    PLAIN,
     DampingRatio,
     Quantity,
     Section,
@@ -60,11 +61,12 @@ def _ends_in_si(value: object, info: ValidationInfo) -> object:
     return value | {key: measured_value(end, info) for key, end in ends.items()}
 
 
+_NUMBER = {"type": ["number", "string"]}
 Option = Annotated[
-    Any,
-    must_be((int, float, str), "a value or a list of values"),
-    WithJsonSchema({"type": ["number", "string"]}),
+    Any, must_be((int, float, str), "a value or a list of values"), WithJsonSchema(_NUMBER)
 ]
+InUnit = Annotated[float, Quantity(), WithJsonSchema(_NUMBER)]
+"""A number, or in the file a text with the unit of a key."""
 Key = Annotated[str, must_be(str, "a key or a list of keys, as text", filled=True)]
 Keys = Annotated[tuple[str, ...], Several(Key, spaced=False)]
 """One key or several."""
@@ -103,6 +105,13 @@ class Axis:
     keys: tuple[str, ...]
     rows: tuple[Values, ...]
     places: tuple[tuple[Place, ...], ...]
+    of_designs: bool = False
+
+    @property
+    def naming(self) -> tuple[str, ...]:
+        """Keys that name a row: the first, but all of designs, and where it has a value twice."""
+        twice = len({repr(row[0]) for row in self.rows}) < len(self.rows)
+        return self.keys if twice or self.of_designs else self.keys[:1]
 
     def place(self, key: int, row: int) -> Place:
         """Position of a value in the file."""
@@ -134,7 +143,7 @@ def _linear(given: tuple[str, object]) -> dict[str, float]:
 
 
 _TERMS = {"type": "object", "additionalProperties": {"type": "number"}} | {
-    "properties": {PLUS: {"type": ["number", "string"]}}
+    "properties": {PLUS: _NUMBER}
 }
 Linked = Annotated[
     dict[str, Annotated[dict[str, float], PlainValidator(_linear), WithJsonSchema(_TERMS)]],
@@ -178,13 +187,13 @@ Scale = Annotated[
 class RangeSection(Section):
     """What an uncertain parameter may be: uniform between bounds, or a distribution."""
 
-    low: Number | None = None
+    low: InUnit | None = None
     """lower bound of a uniform distribution"""
-    high: Number | None = None
+    high: InUnit | None = None
     """upper bound of a uniform distribution"""
     distribution: Literal["uniform", "normal", "lognormal"] = "uniform"
     """its kind; all but bounds need mean and cov"""
-    mean: Number | None = None
+    mean: InUnit | None = None
     """mean value"""
     cov: PositiveRatio | None = None
     """standard deviation over mean"""
@@ -194,7 +203,7 @@ class RangeSection(Section):
         cls, schema: CoreSchema, handler: GetJsonSchemaHandler
     ) -> dict[str, Any]:
         """The JSON schema: the bounds alone may stand in place of the mapping."""
-        items = {"type": "array", "items": {"type": "number"}, "minItems": 2, "maxItems": 2}
+        items = {"type": "array", "items": _NUMBER, "minItems": 2, "maxItems": 2}
         return {"anyOf": [handler(schema), items]}
 
     @model_validator(mode="before")
@@ -221,8 +230,21 @@ class RangeSection(Section):
         return self
 
 
+def _range(given: tuple[str, object]) -> object:
+    """A range whose texts are numbers in the unit of its key."""
+    key, of = given
+    read = Quantity(unit(key).replace("-", PLAIN)).read
+    if isinstance(of, list | tuple):
+        return [read(end) if isinstance(end, str) else end for end in of]
+    if not isinstance(of, dict):
+        return of
+    texts = (name for name in ("low", "high", "mean") if isinstance(of.get(name), str))
+    return of | {name: read(of[name]) for name in texts}
+
+
 Ranges = Annotated[
-    dict[str, RangeSection],
+    dict[str, Annotated[RangeSection, BeforeValidator(_range)]],
+    BeforeValidator(with_keys),
     must_be(dict, "keys with their ranges, as in {podium.impact.factor: [0.9, 1]}", filled=True),
 ]
 
@@ -237,7 +259,7 @@ class SampleSection(Section):
     seed: Seed = 1
     """of the scrambling; the same seed gives the same sample"""
     ranges: Ranges
-    """dotted case keys with [low, high] or a distribution"""
+    """dotted case keys with [low, high] or a distribution, SI or with a unit"""
 
 
 class PerturbSection(Section):

@@ -27,7 +27,7 @@ from rpscli.report.table import (
     shown,
 )
 from rpscli.sweep.points import StudyPoints
-from rpscli.sweep.table import StoredPoints, unit_of
+from rpscli.sweep.table import NONE, StoredPoints, unit_of
 from rpscli.units import Written, as_written, in_si
 
 if TYPE_CHECKING:
@@ -218,8 +218,10 @@ def plain(value: object) -> str:
     """A value as text: numbers short, devices and contacts by their kinds, lists as written."""
     if isinstance(value, float):
         return as_written(value, "-")
+    if value is None:
+        return NONE
     if isinstance(value, list) and all(isinstance(item, dict) and "kind" in item for item in value):
-        return ", ".join(_device(item) for item in value) or "none"
+        return ", ".join(_device(item) for item in value) or NONE
     if isinstance(value, dict) and "kind" in value:
         return _device(value)
     return value if isinstance(value, str) else json.dumps(value)
@@ -240,10 +242,9 @@ def _with_unit(key: str, value: object) -> str:
 
 def key_columns(keys: Sequence[str], rows: Sequence[Values]) -> list[Column]:
     """One column a key, from its values in each row."""
-    return [
-        Column(key, unit_of(key), [in_si(row[place], unit_of(key)) for row in rows])
-        for place, key in enumerate(keys)
-    ]
+    values = ([NONE if row[n] is None else row[n] for row in rows] for n in range(len(keys)))
+    named = ((key, unit_of(key), of) for key, of in zip(keys, values, strict=True))
+    return [Column(key, unit, [in_si(value, unit) for value in of]) for key, unit, of in named]
 
 
 def key_cells(column: Column, name: str) -> tuple[str, list[str]]:

@@ -8,6 +8,7 @@ from dataclasses import asdict
 from typing import Any
 
 from rpscli.analyses.result_quantities import HISTORY, SAMPLED, YIELDING
+from rpscli.case.conditions import replaced_limits
 from rpscli.report.limits import (
     VERDICT,
     limit_unit,
@@ -242,9 +243,8 @@ def of_first_system(layout: StudyPoints) -> str:
     text = overturned_text(first.structure, first.settings)
     text = f"{text}; {restitution_text(first.structure)}"
     text += " (the first system)" * (len(layout.properties) > 1)
-    of_base = layout.plan.base.get("limits") if layout.study.file.limits else None
-    if of_base:
-        text += f"; its own limits replace those of the base case: {', '.join(of_base)}"
+    if of_base := replaced_limits(layout.plan.base, layout.study.file.limits):
+        text += f"; its own limits replace those of the base case: {of_base}"
     return text
 
 

@@ -18,7 +18,7 @@ from rpscli.records.measures import measure_label
 from rpscli.shown import Frozen, frozen
 from rpscli.sweep.points import StudyPoints
 from rpscli.sweep.statistics.fractiles import Share, demand, fractiles, share_of
-from rpscli.sweep.table import Array, Indices, Outcomes, Table, groups, leading_keys
+from rpscli.sweep.table import Array, Indices, Outcomes, Table, groups
 
 INTENSITY = "scale"
 """Name of the axis of factors and intensities in groups of a table."""
@@ -132,7 +132,8 @@ def grouping(
 def own_keys(layout: StudyPoints, besides: Sequence[str] = ()) -> tuple[str, ...]:
     """Keys of systems and intensities, without those that vary with one of `besides`."""
     together = {key for other in besides for key in axis_keys(layout, other)}
-    keys = tuple(key for key in leading_keys(layout) if key not in together)
+    naming = (key for axis in layout.study.axes for key in axis.naming)
+    keys = tuple(key for key in naming if key not in together)
     several = len(layout.scales) > 1 and INTENSITY not in besides
     return (*keys, INTENSITY) if several else keys
 
