@@ -23,6 +23,7 @@ from rpscli.report.study.report import (
     Found,
     Report,
     Statistic,
+    cell_of,
     keyed,
     labels,
     plain,
@@ -42,7 +43,6 @@ from rpscli.sweep.statistics.grouping import (
     statistic_words,
 )
 from rpscli.sweep.table import Array, StoredPoints, unit_of
-from rpscli.units import in_si
 
 LEGEND = {"frequency_parameter": "model", "frequency_parameter_rigid": "rigid estimate"}
 """Names of results that are compared in one figure, where the last word says too much."""
@@ -135,7 +135,7 @@ def lines(study: StoredPoints, options: LinesOptions) -> Found:
         note=panels.remarks(
             panels.over(found.pooled) if together else "",
             "hollow: means without those that overturned, counts in the CSV" * hollow,
-            panels.shaded(max(len({line.values for line in every}), len(names))),
+            panels.shaded(max(len(_series(every)), len(names))),
             f"not drawn where the {statistic} overturned"
             * any(math.inf in line.y for line in every),
             panels.left_out(found.failed),
@@ -174,9 +174,14 @@ def _lines(
             found = group.statistic(y, options.statistic)
             if not math.isnan(found):
                 known = int((~np.isnan(y[group.survivors])).sum())
-                at = in_si(group.values[0], unit_of(options.x))
+                at = cell_of(options.x, *group.values)
                 points[0].append((at, found, known, group.overturned.number))
     return [Line(series.values, name, *zip(*each, strict=True)) for each in points if each]
+
+
+def _series(every: Sequence[Line]) -> list[tuple[object, ...]]:
+    """Values of each series once; they may be lists or mappings."""
+    return [*{repr(line.values): line.values for line in every}.values()]
 
 
 def _draw(
@@ -189,7 +194,7 @@ def _draw(
 ) -> None:
     """One line a series and result; dashed ones are comparisons."""
     results = (*options.result, *options.dashed)
-    series = list(dict.fromkeys(line.values for line in every))
+    series = _series(every)
     words = (LEGEND.get(name, name) for name in _distinct(results))
     names = dict(zip(results, words, strict=True))
     dashed = [line for line in panel.lines if line.result in options.dashed]
