@@ -225,6 +225,17 @@ def test_lines_go_over_si_values_of_what_was_written_with_units(study_of: Make) 
     assert found["podium.bearing.semi_diagonal"] == [1.5, 2.0, 2.5]
 
 
+def test_lines_are_of_values_of_any_kind_or_of_none(study_of: Make) -> None:
+    key, springs = "superstructure.yield", "superstructure.vertical_period"
+    axes = f"{springs}: [null, 0.1]\n  - {key}: [null, {{ratio: 1.5}}]"
+    study = made(study_of, lambda _: stored(), (f"{RHO}: [critical, 0.5, 0]", axes))
+    found = lines(study, LinesOptions(x=springs, result=("max_rotation",), series=(key,)))
+    assert cells(found)[springs] == ["none", 0.1] * 2
+    assert cells(found)[key] == ["none"] * 2 + [{"ratio": 1.5}] * 2
+    (axis,) = found.drawn("title").axes
+    assert [text.get_text() for text in axis.get_xticklabels()] == ["none", "0.1"]
+
+
 def test_lines_draw_one_curve_for_each_point_where_results_are_lists(study_of: Make) -> None:
     def answer(at: Place) -> Stored:
         curve = {"curve.force": [2.0, at["number"]], "curve.displacement": [0.0, 1.0]}

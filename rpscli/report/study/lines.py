@@ -23,6 +23,7 @@ from rpscli.report.study.report import (
     Found,
     Report,
     Statistic,
+    cell_of,
     keyed,
     labels,
     plain,
@@ -42,7 +43,6 @@ from rpscli.sweep.statistics.grouping import (
     statistic_words,
 )
 from rpscli.sweep.table import Array, StoredPoints, unit_of
-from rpscli.units import in_si
 
 LEGEND = {"frequency_parameter": "model", "frequency_parameter_rigid": "rigid estimate"}
 """Names of results that are compared in one figure, where the last word says too much."""
@@ -174,13 +174,13 @@ def _lines(
             found = group.statistic(y, options.statistic)
             if not math.isnan(found):
                 known = int((~np.isnan(y[group.survivors])).sum())
-                at = in_si(group.values[0], unit_of(options.x))
+                at = cell_of(options.x, *group.values)
                 points[0].append((at, found, known, group.overturned.number))
     return [Line(series.values, name, *zip(*each, strict=True)) for each in points if each]
 
 
 def _series(every: Sequence[Line]) -> list[tuple[object, ...]]:
-    """Values of the series, each once; some are lists of devices."""
+    """Values of each series once; they may be lists or mappings."""
     return [*{repr(line.values): line.values for line in every}.values()]
 
 

@@ -242,9 +242,15 @@ def _with_unit(key: str, value: object) -> str:
 
 def key_columns(keys: Sequence[str], rows: Sequence[Values]) -> list[Column]:
     """One column a key, from its values in each row."""
-    values = ([NONE if row[n] is None else row[n] for row in rows] for n in range(len(keys)))
-    named = ((key, unit_of(key), of) for key, of in zip(keys, values, strict=True))
-    return [Column(key, unit, [in_si(value, unit) for value in of]) for key, unit, of in named]
+    return [
+        Column(key, unit_of(key), [cell_of(key, row[place]) for row in rows])
+        for place, key in enumerate(keys)
+    ]
+
+
+def cell_of(key: str, value: object) -> object:
+    """A value of a key in SI units; the word for one that is taken out."""
+    return NONE if value is None else in_si(value, unit_of(key))
 
 
 def key_cells(column: Column, name: str) -> tuple[str, list[str]]:
