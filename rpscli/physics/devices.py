@@ -300,7 +300,7 @@ def power_in_step(s: Record, l: int, i: int) -> float:
 # Loading, beginning an excursion, being held.
 
 
-STOP_SPEED = 0.01
+STOP_SPEED = 3e-3
 """Of that at which sliding begins: what slides more slowly to any side is stopped, or turned to
 where it is pushed. A step may err by a third of it, however slow the motion is."""
 
