@@ -300,9 +300,9 @@ def power_in_step(s: Record, l: int, i: int) -> float:
 # Loading, beginning an excursion, being held.
 
 
-STOP_SPEED = 3e-3
+STOP_SPEED = 5e-3
 """Of that at which sliding begins: what slides more slowly to any side is stopped, or turned to
-where it is pushed. A step may err by a third of it, however slow the motion is."""
+where it is pushed. A step may err by a fiftieth of it, however slow the motion is."""
 
 STOP_SPEED_OF_PASSES, SLOW_RATE = 1e-9, 1e-3
 """Of sqrt(g R), and of sqrt(g/R): the same of rigid ends. What passes upright asks for velocities
@@ -330,7 +330,7 @@ def load_devices(s: Record, l: int, system: Record) -> None:
     for i in range(system.devices):
         load_device(s, l, i, system)
     s.stop_speed[l] = STOP_SPEED * system.start_speed
-    error = s.stop_speed[l] / (3.0 * s.diameter[l])
+    error = 0.02 * s.stop_speed[l] / s.diameter[l]
     if system.alpha > 0.0 and system.compliant == 0:
         s.stop_speed[l] = STOP_SPEED_OF_PASSES * math.sqrt(system.gravity * system.R)
         error = system.step_error * SLOW_RATE * math.sqrt(system.gravity / system.R)
