@@ -17,7 +17,7 @@ from rpscli.case.case import load_case
 from rpscli.model.podium import PodiumStructure
 from rpscli.records.loading import load_components
 
-ROUNDS = 3
+ROUNDS = 7
 ARCS = {"semi_diagonal": 1.5, "slenderness": 0.15, "wedge_slenderness": 0.3, "curvature_ratio": 0.5}
 SPHERICAL = {**ARCS, "slenderness": 0.0, "curvature_ratio": 0.8}
 JOINT = {"damping": 0.03, "period_ratio": 1.2}
