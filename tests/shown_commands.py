@@ -74,6 +74,7 @@ OTHERS = {
     r"granite/(convert|judged)\.py": GRANITE,
     r"impact_law/changes\.py": CHANGES_OF_LAW,
     r"benchmarks\.histories": BENCHMARKS,
+    r"benchmarks\.pairs": BENCHMARKS.replace("benchmark_runs", "benchmark_of_pairs_runs"),
     r"oracles\.resolved_contact": ENGINE,
 }
 """Other lines of blocks, and what runs them."""
