@@ -102,7 +102,8 @@ def panel_figure(
         each = 2.6 if columns < 3 and width >= style.WIDTH else 2.1
         height = 3.8 if rows == 1 and columns == 1 else 1.0 + each * rows
         own = style.WIDTH if widest > 1 else 0.72 * style.WIDTH
-        style.begin(figure, (title, remarks(note, cut)), height, own)
+        # A heading may be cut at its end: what is left out comes first.
+        style.begin(figure, (title, remarks(cut, note)), height, own)
         grid = figure.subplots(rows, columns, squeeze=False, sharex=True, sharey=share == "both")
         for axes, panel, name in zip(grid.flat, shown, titles, strict=False):
             axes.locator_params(nbins=max(2, 5 - rows) if style.tight(figure) else MOST_TICKS)

@@ -178,7 +178,7 @@ def _picture(
         most = min(most, max(1, int((style.inches(figure)[1] - other) / height)))
     counts = ("rows", most, len(cells)), ("columns", columns, len(heads))
     cut = [f"the first {some} of {of} {what}" for what, some, of in counts if some < of]
-    style.begin(figure, (title, *above, *cut), other + most * height, own)
+    style.begin(figure, (title, *cut, *above), other + most * height, own)
     axes = figure.subplots()
     shades = [[cell.shade for cell in row] for row in drawn[:most]]
     axes.pcolormesh(shades, cmap="Blues", vmin=0.0, vmax=1.0, alpha=0.75)
