@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.analyses.column_design import no_line
-from rpscli.analyses.trace import Trace
+from rpscli.analyses.trace import Direction, Trace
 from rpscli.errors import listed
 from rpscli.model.podium import PodiumStructure
 from rpscli.physics import state
@@ -30,15 +30,18 @@ AMPLE = 1.3
 
 @dataclass(frozen=True)
 class AxialForces:
-    """Axial forces of single columns, of all rows and times, and what the rows share."""
+    """Axial forces of single columns, of all rows and times, and what the rows share.
+
+    Under both components the outer column is that of the corner (Theory (8.7)).
+    """
 
     largest: dict[str, float]
     least: dict[str, float]
     """At the `top` and at the `bottom` of a column, compression positive [N]."""
     overturning_ratio: float | None
-    """Largest r: what the moment of the floors' inertia about the cap beam adds to an outer row,
-    over its mean force; None without rows."""
-    lift_off: float | None  # Time at which an outer row would first lift off [s]; None if never
+    """Largest r: what the moment of the floors' inertia about the cap beam adds to an outer column,
+    over the mean force; None without rows."""
+    lift_off: float | None  # Time at which one would first lift off [s]; None if never
     sliding_time: float
     """Time during which columns would slide with a friction of `AMPLE` tan(alpha) [s]."""
     heaviest: dict[str, Array]
@@ -67,13 +70,17 @@ def axial_forces(structure: PodiumStructure, trace: Trace) -> AxialForces:
     """Axial forces of single columns from a trace that is dense beside the vertical period."""
     normal = {"top": trace.normal_top, "bottom": trace.normal_bottom}
     uneven, ratio, lift_off = np.zeros_like(trace.time), None, None
-    if structure.rows and trace.y is None:
-        rows = np.array(structure.rows) - np.mean(structure.rows)
-        lever = float(np.mean(rows**2) / np.max(np.abs(rows)))
-        moment = overturning_moment(structure, trace)
+    inertia = uneven.copy()
+    directions = _directions(trace)
+    if all((rows := (structure.rows, structure.rows_y))[: len(directions)]):
+        for places, (of, towards) in zip(rows, directions, strict=False):
+            from_middle = np.array(places) - np.mean(places)
+            lever = float(np.mean(from_middle**2) / np.max(np.abs(from_middle)))
+            moment = overturning_moment(structure, of)
+            inertia += np.abs(moment) / lever
+            uneven += np.abs(moment + thrust_moment(structure, trace, of, towards)) / lever
         stands, least = trace.normal_top > 0.0, np.maximum(trace.normal_top, 1.0)
-        ratio = float(np.max(np.where(stands, np.abs(moment) / (least * lever), np.inf)))
-        uneven = np.abs(moment + thrust_moment(structure, trace)) / lever
+        ratio = float(np.max(np.where(stands, inertia / least, np.inf)))
         lifts = np.flatnonzero(uneven > trace.normal_top)
         lift_off = float(trace.time[lifts[0]]) if len(lifts) else None
     N = structure.columns
@@ -97,28 +104,35 @@ def sliding_time(structure: PodiumStructure, trace: Trace) -> float:
     return float(share * trace.time[-1])
 
 
-def overturning_moment(structure: PodiumStructure, trace: Trace) -> Array:
+def _directions(trace: Trace) -> list[tuple[Direction, Array]]:
+    """What a history has in x and, of both components, in y, with the part of the tilt to there."""
+    if trace.y is None or trace.azimuth is None:
+        return [(trace, np.sign(trace.rotation))]
+    return [(trace, np.cos(trace.azimuth)), (trace.y, np.sin(trace.azimuth))]
+
+
+def overturning_moment(structure: PodiumStructure, of: Direction) -> Array:
     """Moment of the floors' inertia about the cap beam (samples,) [N m], positive to the right."""
     building = structure.superstructure
     if building is None or building.storey_heights is None:
-        return np.zeros_like(trace.time)
-    return -(trace.floor_accelerations @ (building.masses * np.cumsum(building.storey_heights)))
+        return np.zeros(len(of.shear_top))
+    return -(of.floor_accelerations @ (building.masses * np.cumsum(building.storey_heights)))
 
 
-def thrust_moment(structure: PodiumStructure, trace: Trace) -> Array:
+def thrust_moment(structure: PodiumStructure, t: Trace, of: Direction, towards: Array) -> Array:
     """Moment of leaning thrust lines and drifts, beside that of inertia (samples,) [N m]."""
     # Columns bear on the beam at the edge they turn about, or where one at rest is in equilibrium.
-    b, t = structure.bearing, trace
+    b = structure.bearing
     B = structure.weight_arm(np.abs(t.rotation))
-    edge = np.sign(t.rotation) * b.semi_diagonal * B + 0.5 * t.cap_beam_displacement
+    edge = towards * b.semi_diagonal * B + 0.5 * of.cap_beam_displacement
     height = b.semi_diagonal * math.cos(b.alpha)
-    rest = -height * (t.shear_top + t.shear_bottom)
+    rest = -height * (of.shear_top + of.shear_bottom)
     rest = rest / np.maximum(t.normal_top + t.normal_bottom, 1.0)
     beside = np.where(t.phase == state.FULL_CONTACT, rest, edge)
     carried = structure.cap_beam_mass + structure.superstructure_mass
     weighs = np.zeros_like(t.time)
     if (building := structure.superstructure) is not None:
-        drifted = t.floor_displacements - t.cap_beam_displacement[:, None]
+        drifted = of.floor_displacements - of.cap_beam_displacement[:, None]
         weighs = t.normal_top / carried * (drifted @ building.masses)
         if t.vertical_accelerations is not None:
             pressing = building.masses * (structure.gravity + t.vertical_accelerations)

@@ -242,7 +242,7 @@ class TimeHistoryResult(Demand):
 
     @property
     def overturning_ratio(self) -> float | None:
-        """Force of the floors' inertia in an outer row over its mean force; None without rows."""
+        """Force of the floors' inertia in an outer column over the mean; None without rows."""
         return self.axial.overturning_ratio if self.axial else None
 
     @property
@@ -312,7 +312,7 @@ class TimeHistoryResult(Demand):
             )
         if self.axial and self.axial.lift_off is not None:
             notes.append(
-                f"an outer row of columns would lift off at t = {self.axial.lift_off:.4g} s: the"
+                f"an outer column would lift off at t = {self.axial.lift_off:.4g} s: the"
                 " overturning moment takes more than its share of the weight; the model assumes"
                 " that all columns stand"
             )

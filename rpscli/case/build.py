@@ -19,6 +19,7 @@ from rpscli.case.schema.case_file import (
     CaseFile,
     DeviceSection,
     PodiumSection,
+    RowsSection,
     SuperstructureSection,
 )
 from rpscli.case.schema.fields import Section
@@ -153,11 +154,16 @@ def _built(bearing: Bearing, file: CaseFile) -> PodiumStructure:
         devices=tuple(map(_device, podium.devices)),
         columns=podium.columns or 1,
         friction=podium.friction,
-        rows=() if plan is None else plan.rows or (0.0, plan.length or 0.0),
+        rows=_rows(plan),
+        rows_y=_rows(plan and plan.y),
         superstructure_y=None if across is None else _building(across, at_uplift),
         contact=Contact(**podium.contact.model_dump()),
         column=column,
     )
+
+
+def _rows(plan: RowsSection | None) -> tuple[float, ...]:
+    return () if plan is None else plan.rows or (0.0, plan.length or 0.0)
 
 
 def _device(section: DeviceSection) -> Device:
@@ -514,6 +520,7 @@ class Rules:
             yield _at_key(COLUMNS, f" is missing: {COLUMN} asks for the force of one")
         text = "length, between two rows of columns, or the places of all rows"
         yield from _one_of("podium.plan", podium.plan, text, "length", "rows")
+        yield from _one_of("podium.plan.y", podium.plan and podium.plan.y, text, "length", "rows")
         if podium.plan is not None and building.storeys and building.storey_height is None:
             yield _at_key("podium.plan", f" needs {HEIGHT}: the moment has lever arms")
 
@@ -555,6 +562,7 @@ OF_THE_MODEL = {
     "yield_force": "podium.devices",
     "edge_length": f"{COLUMN}.edge_length",
     "rows": "podium.plan.rows",
+    "rows_y": "podium.plan.y.rows",
     "contact": "podium.contact",
     "initial_rotation": "analysis.initial_rotation",
 }

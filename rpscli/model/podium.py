@@ -60,6 +60,9 @@ class PodiumStructure(Shown):
     rows
         Where rows of columns, with equally many each, stand along the motion [m]; none where that
         is not known.
+    rows_y
+        Where they stand in y, with a column wherever two rows cross [m]; axial forces under both
+        components ask for it.
     superstructure_y
         The same floors on the stiffnesses across the first direction, y, where they differ from
         those along it, x; None if they do not.
@@ -89,6 +92,7 @@ class PodiumStructure(Shown):
     columns: int = 1
     friction: float | None = None
     rows: tuple[float, ...] = ()
+    rows_y: tuple[float, ...] = ()
     superstructure_y: Superstructure | None = None
     contact: Contact = field(default_factory=Contact)
     column: ColumnDesign | None = None
@@ -104,8 +108,9 @@ class PodiumStructure(Shown):
         if self.friction is not None and self.friction < 0.0:
             raise ValueError(f"friction = {told(self.friction)} must be >= 0, or None")
         self._refuse_buildings()
-        if self.rows and (len(self.rows) < 2 or not is_size(max(self.rows) - min(self.rows))):
-            raise ValueError("rows must be at least two positions that differ, as in [0, 4, 8]")
+        for name, rows in (("rows", self.rows), ("rows_y", self.rows_y)):
+            if rows and (len(rows) < 2 or not is_size(max(rows) - min(rows))):
+                raise ValueError(f"{name} must be at least two positions that differ, as in [0, 4]")
         if not (isinstance(self.columns, Integral) and 1 <= self.columns <= MOST_COLUMNS):
             raise ValueError(f"columns = {told(self.columns)} must be a whole number from 1 on")
         if len(self.devices) > MOST_DEVICES:
@@ -209,8 +214,8 @@ class PodiumStructure(Shown):
         passes = both and not self.passes_smoothly
         if not (axial or passes):
             return ()
-        if axial and building is not None and (both or not self.rows):
-            key = "known under one component" if both else "podium.plan"
+        if axial and building is not None and not (self.rows and (self.rows_y or not both)):
+            key = "podium.plan, with y" if both else "podium.plan"
             parts.append(f"the overturning moment of the building ({key})")
         shocks = f"passes shorter than {1e3 * self.shock_time:g} ms" if passes else "impacts"
         if building is None:

@@ -163,6 +163,6 @@ def test_limits_are_refused_for_what_is_left_out() -> None:
     )
     assert no_bound("max_column_shear", known) == ""
     for of in (known, unknown):
-        assert "known under one component" in no_bound("max_column_force", of)
+        assert "(podium.plan, with y)" in no_bound("max_column_force", of)
     assert no_bound("max_rotation", unknown) == ""
     assert "passes shorter than 25 ms" in no_bound("max_column_force", podium(0))

@@ -15,6 +15,7 @@ import pytest
 from paper_structures import ground, known, needs_compiled_kernels, podium
 from scipy.signal import lsim
 
+from rpscli.analyses.column_forces import in_shocks
 from rpscli.analyses.floor_spectra import fixed_base_floor_spectra, isolated_floor_spectra
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
@@ -256,6 +257,34 @@ def test_outer_rows_balance_the_moment_of_the_building() -> None:
 
 
 @pytest.mark.evidence("forces in columns, friction", "exact")
+@pytest.mark.parametrize("azimuth", [0.0, math.pi / 2, math.pi / 4, 0.3])
+def test_corner_columns_carry_what_a_grid_needs_for_the_moments_of_a_plane_motion(
+    azimuth: float,
+) -> None:
+    """A plane motion to any side, whose moment the columns of a grid balance in x and in y."""
+    of = with_plan(2, (0.0, 2.0, 9.0), 0.1)
+    grid = replace(of, rows_y=(0.0, 6.0), columns=6)
+    x, y = (motion().scaled(part(azimuth)) for part in (math.cos, math.sin))
+    plane = time_history(replace(of, rows=(0.0, 6.0)), motion(), SHORT)
+    pair = time_history(grid, MotionComponents(x, y=y), SHORT)
+    assert plane.impacts > 2
+    t, axial = denser_trace(plane, 5e-4), known(plane.axial)
+    M = 6.0 * (4.0 * axial.heaviest["top"] - t.normal_top) / 2.0  # rows of two carry N/2 +- M/6 m
+    places = np.array([(a, b) for a in (0.0, 2.0, 9.0) for b in (0.0, 6.0)])
+    places -= places.mean(axis=0)
+    # forces linear in the places, with no more than the moments of both directions
+    slopes = np.array([math.cos(azimuth), math.sin(azimuth)]) / np.sum(places**2, axis=0)
+    shares = M[:, None] * np.abs(places @ slopes)
+    corner = t.normal_top / 6.0 + shares.max(axis=1)
+    found = known(pair.axial).heaviest["top"]
+    # instants of passes that floors cannot follow are left out of the forces of pairs alone
+    rows = np.flatnonzero(~in_shocks(grid, denser_trace(pair, 5e-4)))
+    rows = rows[rows < len(corner)]
+    assert len(rows) > 0.9 * len(corner)
+    assert found[rows] == pytest.approx(corner[rows], abs=1e-5 * float(corner.max()))
+
+
+@pytest.mark.evidence("forces in columns, friction", "exact")
 def test_floors_on_springs_press_with_their_own_forces() -> None:
     """N = m_b (g + v_b'') + sum m_i (g + y_i''), with v_b'' by differences of v_b (8.5), (14.2)."""
     result = time_history(with_plan(2, (), 0.12), motion(), SHORT)
@@ -283,3 +312,7 @@ def test_what_forces_leave_out_is_said() -> None:
     assert len(with_plan(1, (0.0, 8.0), None).left_out_of_columns(both=False)) == 1
     assert with_plan(1, (0.0, 8.0), 0.1).left_out_of_columns(both=False) == ()
     assert podium(0).left_out_of_columns(both=False) == ()  # a beam has neither
+    (moment,) = with_plan(1, (0.0, 8.0), 0.1).left_out_of_columns(both=True)
+    assert "(podium.plan, with y)" in moment
+    grid = replace(with_plan(1, (0.0, 8.0), 0.1), rows_y=(0.0, 5.0))
+    assert grid.left_out_of_columns(both=True) == ()

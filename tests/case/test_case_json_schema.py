@@ -81,7 +81,7 @@ def test_closed_and_without_null() -> None:
     sections = [at for at in walk(SCHEMA) if isinstance(at, dict) and at.get("type") == "object"]
     # A limit may be a mapping, which is described once for all of a unit and a bound.
     rules = {(q.unit in KINDS and q.unit, q.whole or q.from_below, q.from_below) for q in LIMITED}
-    assert len(sections) == 19 + len(rules)
+    assert len(sections) == 20 + len(rules)
     assert all(section["additionalProperties"] is False for section in sections)
     assert None not in [item for item in walk(SCHEMA) if not isinstance(item, dict | list)]
     assert "null" not in list(walk(SCHEMA))

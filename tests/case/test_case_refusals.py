@@ -35,6 +35,8 @@ OF_A_BUILDING: list[Row] = [
     ("  impact", "  plan: {rows: [0 m]}\n  impact", "17:16: podium.plan.rows must be", "positions"),
     ("  impact", "  plan: {rows: [4, 4 m]}\n  impact", "17:16", "podium.plan.rows", "as in [0, "),
     ("  impact", "  plan: {}\n  impact", "17:9: podium.plan: give length", "not neither"),
+    ("  impact", "  plan: {length: 1, y: {}}\n  impact", "17:24: podium.plan.y: give", "neither"),
+    ("  impact", "  plan: {length: 1, y: {rows: [4, 4]}}\n  impact", "17:25", "plan.y.rows", "[0"),
     ("  impact", "  plan: {length: 1, rows: [0, 4]}\n  impact", "17:9", "not both"),
     ("period: 0.3", "period: .inf", "6:11", "finite"),
     ("period: 0.3", f"period: {'9' * 350}", "6:11", "finite"),

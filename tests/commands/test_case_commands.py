@@ -10,6 +10,7 @@ import pytest
 from paper_structures import known
 from PIL import Image
 
+from rpscli.analyses.column_forces import OF_COLUMNS
 from rpscli.analyses.modal import modal
 from rpscli.analyses.pushover import pushover
 from rpscli.case.case import load_case
@@ -131,12 +132,15 @@ def test_limits_that_pairs_refuse_are_told_before_anything_is_computed(
     both = f'record={{x: "{pair[0]}", y: "{pair[1]}"}}'
     document = rps_json("check", case, "--set", both)
     told = [text.split(" cannot be a limit")[0] for text in document["warnings"]]
-    assert {"max_column_force", "column_moment", "contact_pressure_ratio"} <= set(told)
+    assert {"crushed_width_ratio", "contact_pressure_ratio"} == set(told) & set(OF_COLUMNS)
     assert "p_0" in rps("check", case).stdout
     assert "p_0" not in rps("check", case, "--set", both).stdout  # square columns on a corner
     refused = rps("timehistory", case, "--set", both, exit_code=2)
-    for name in ("max_column_force", "contact_pressure_ratio"):  # all at once
+    for name in ("crushed_width_ratio", "contact_pressure_ratio"):  # all at once
         assert f"{name} cannot be a limit under both components" in refused.stderr
+    one_way = ("--set", both, "--set", "podium.plan.y=null")
+    refused = rps("timehistory", case, *one_way, exit_code=2)
+    assert "the overturning moment of the building (podium.plan, with y)" in refused.stderr
     assert not list(workplace.rglob("timehistory.csv"))
 
 

@@ -234,8 +234,8 @@ class ContactSection(Section):
     """damping ratio of the podium's own vibration in full contact"""
 
 
-class PlanSection(Section):
-    """Where columns stand along the motion."""
+class RowsSection(Section):
+    """Where columns stand in one direction."""
 
     length: Length | None = None
     """between two rows of columns, the outer ones"""
@@ -247,6 +247,14 @@ class PlanSection(Section):
         | None
     ) = None
     """places of all rows, with equally many columns each"""
+
+
+class PlanSection(RowsSection):
+    """Where columns stand: along the motion, and across it."""
+
+    y: RowsSection | None = None
+    """in the second horizontal direction, with a column wherever two rows cross; forces of columns
+    under both components need it"""
 
 
 Modulus = Annotated[float, Quantity("Pa", symbol="E", above=0)]
@@ -303,8 +311,8 @@ class PodiumSection(Section):
     ] = None
     """coefficient of friction at both ends of the columns; the friction demand is then judged"""
     plan: PlanSection | None = None
-    """where columns stand along the motion; gives the overturning moment in the forces of columns,
-    with superstructure.storey_height"""
+    """where columns stand; gives the overturning moment in their forces, with
+    superstructure.storey_height"""
     column: ColumnSection | None = None
     """section and material of a column; give its moment and the pressure under its ends"""
     devices: tuple[Annotated[DeviceSection, OWN_DAMPERS], ...] = ()
