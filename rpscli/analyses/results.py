@@ -338,7 +338,8 @@ class TimeHistoryResult(Demand):
             brake = "but its joints" if self.structure.bed is not None else "at its ends"
             notes.append(
                 f"at the end the podium still swings or circles, and nothing {brake} dissipates:"
-                " the residual rotation is that of this instant; no larger rotation can occur"
+                " the residual rotation is that of this instant; no larger rotation can occur, but"
+                " forces and plastic drifts may still grow"
                 " (friction dampers or rolling resistance would bring it to rest)"
             )
         elif self.outcome == "survived" and self.history["phase"] not in RESTING:

@@ -26,6 +26,8 @@ WOBBLES = 20.0
 def is_over(s: Record, l: int, systems: Record) -> bool:
     """Whether no later moment of the free vibration can bring a new maximum.
 
+    Of what wobbles only the tilt is looked at: rigid ends lose nothing as it goes on.
+
     At rest each mode decays from its present energy, which bounds every demand and the push that
     could uplift the storey again. Uplifted in one plane a history is never over: impacts excite the
     building until the storey is down.
