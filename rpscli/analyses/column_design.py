@@ -51,6 +51,10 @@ class ColumnDemand:
     crushed_ratio: float | None
     """Largest b_c over the width of an end; 0 where no column came onto an edge."""
     shear: float  # largest |F| [N]
+    mean_force: float  # N of all columns over their number, at the largest moment [N]
+    moments: tuple[tuple[float, float], ...]
+    """Then, in x and in y: that of the podium [N m], and the lever of the rows [m], which give the
+    column more than the mean; empty without rows."""
 
 
 def no_line(structure: PodiumStructure, *, both: bool) -> str:
@@ -94,7 +98,11 @@ def _loads(structure: PodiumStructure, trace: Trace, heaviest: dict[str, Array])
 
 
 def column_demand(
-    structure: PodiumStructure, design: ColumnDesign, trace: Trace, heaviest: dict[str, Array]
+    structure: PodiumStructure,
+    design: ColumnDesign,
+    trace: Trace,
+    heaviest: dict[str, Array],
+    moments: list[tuple[Array, float]],
 ) -> ColumnDemand:
     """Worst instants, from axial forces of the most loaded column at the times of a trace."""
     b, t, x = structure.bearing, trace, np.abs(trace.rotation)
@@ -137,7 +145,10 @@ def column_demand(
     forces = of.F[0, i], N[0, i], of.F[1, i], N[1, i]
     at = of.side[i], x[i], t.rotation_rate[i], of.lever[i], of.rise[i], *forces
     state = ColumnState(*map(float, at))
-    return ColumnDemand(tuple(found), state, ratio, crushed, float(np.abs(of.F).max()))
+    shares = tuple((float(moment[i]), lever) for moment, lever in moments)
+    mean = float(getattr(trace, f"normal_{found[0].end}")[i]) / structure.columns
+    shear = float(np.abs(of.F).max())
+    return ColumnDemand(tuple(found), state, ratio, crushed, shear, mean, shares)
 
 
 def _along_tilt(trace: Trace, down: NDArray[np.bool_]) -> Array:

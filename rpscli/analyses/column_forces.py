@@ -46,6 +46,8 @@ class AxialForces:
     """Time during which columns would slide with a friction of `AMPLE` tan(alpha) [s]."""
     heaviest: dict[str, Array]
     """Of the most loaded column at each time of the trace, at both ends [N]."""
+    moments: list[tuple[Array, float]]
+    """In x and in y: that of the podium at each time [N m], and mean(x^2)/max(x) of rows [m]."""
 
 
 def no_bound(name: str, structure: PodiumStructure) -> str:
@@ -54,7 +56,8 @@ def no_bound(name: str, structure: PodiumStructure) -> str:
         return ""
     on_end = name in ("contact_pressure_ratio", "crushed_width_ratio")
     if on_end and (corner := no_line(structure, both=True)):
-        return f"{name} cannot be a limit under both components: {corner}"
+        remedy = f"make it round, or remove the limit (--set limits.{name}=null)"
+        return f"{name} cannot be a limit under both components: {corner}; {remedy}"
     axial = name != "max_column_shear"
     left_out = structure.left_out_of_columns(both=True, axial=axial)
     if not left_out:
@@ -70,15 +73,15 @@ def axial_forces(structure: PodiumStructure, trace: Trace) -> AxialForces:
     """Axial forces of single columns from a trace that is dense beside the vertical period."""
     normal = {"top": trace.normal_top, "bottom": trace.normal_bottom}
     uneven, ratio, lift_off = np.zeros_like(trace.time), None, None
-    inertia = uneven.copy()
-    directions = _directions(trace)
+    inertia, moments, directions = uneven.copy(), [], _directions(trace)
     if all((rows := (structure.rows, structure.rows_y))[: len(directions)]):
         for places, (of, towards) in zip(rows, directions, strict=False):
             from_middle = np.array(places) - np.mean(places)
             lever = float(np.mean(from_middle**2) / np.max(np.abs(from_middle)))
             moment = overturning_moment(structure, of)
             inertia += np.abs(moment) / lever
-            uneven += np.abs(moment + thrust_moment(structure, trace, of, towards)) / lever
+            moments.append((moment + thrust_moment(structure, trace, of, towards), lever))
+            uneven += np.abs(moments[-1][0]) / lever
         stands, least = trace.normal_top > 0.0, np.maximum(trace.normal_top, 1.0)
         ratio = float(np.max(np.where(stands, inertia / least, np.inf)))
         lifts = np.flatnonzero(uneven > trace.normal_top)
@@ -92,6 +95,7 @@ def axial_forces(structure: PodiumStructure, trace: Trace) -> AxialForces:
         lift_off,
         sliding_time(structure, trace),
         heaviest,
+        moments,
     )
 
 

@@ -169,7 +169,9 @@ SAMPLED = (
     _Q("max_column_force", "N", "axial force of a column", limit="2e6", needs="columns"),
     _Q("min_column_force", "N", "minimum axial force of a column", limit="1e4", from_below=True,
         needs="columns"),
-    _Q("overturning_ratio", "-", "overturning ratio of an outer column"),
+    _Q("overturning_ratio", "-", "overturning ratio, of floors' inertia",
+        meaning="what it adds to the mean force of an outer column; its forces hold the shift of"
+        " contacts and drifts too"),
     _Q("column_moment", "N m", "moment at an end of a column", "$M_{end}$", limit="2e5",
         needs="designed columns"),
     _Q("contact_pressure_ratio", "-", "contact pressure ratio", "$p_0/f$", limit="1",

@@ -76,7 +76,9 @@ def time_history(
         return result
     dense = denser_trace(result, AXIAL_STEP)
     axial = axial_forces(structure, dense)
-    designed = None if design is None else column_demand(structure, design, dense, axial.heaviest)
+    designed = None
+    if design is not None:
+        designed = column_demand(structure, design, dense, axial.heaviest, axial.moments)
     return replace(result, axial=None if even else axial, column_demand=designed)
 
 

@@ -521,6 +521,14 @@ class Rules:
         text = "length, between two rows of columns, or the places of all rows"
         yield from _one_of("podium.plan", podium.plan, text, "length", "rows")
         yield from _one_of("podium.plan.y", podium.plan and podium.plan.y, text, "length", "rows")
+        if podium.plan is not None and (number := podium.columns) is not None:
+            x, y = len(_rows(podium.plan)), len(_rows(podium.plan.y))
+            if y and number != x * y:
+                of_rows = f"must be {x} x {y}: one stands wherever two rows of podium.plan cross"
+                yield _of_value(COLUMNS, f" = {number} {of_rows}")
+            elif number % x:
+                of_rows = f"cannot stand in {x} rows of podium.plan with equally many each"
+                yield _of_value(COLUMNS, f" = {number} {of_rows}")
         if podium.plan is not None and building.storeys and building.storey_height is None:
             yield _at_key("podium.plan", f" needs {HEIGHT}: the moment has lever arms")
 

@@ -105,8 +105,8 @@ def _row(
 def _wishes(case: Case, motions: Sequence[inputs.Motion]) -> Iterator[Wish]:
     """All changes, in the order of the tables."""
     motion, ground = motions[0]
-    for cause, text in _values(case):
-        yield cause, (text,), motion
+    for cause, *texts in _values(case):
+        yield cause, tuple(texts), motion
     given = [f"superstructure.{name}=null" for name in ("vertical_period", "vertical_damping")
              if getattr(case.file.superstructure, name) is not None]  # fmt: skip
     if given:
@@ -137,8 +137,8 @@ def _with_own_vertical(case: Case, motion: inputs.MotionRequest) -> inputs.Motio
     return both
 
 
-def _values(case: Case) -> Iterator[tuple[str, str]]:
-    """Changes of a value of the case."""
+def _values(case: Case) -> Iterator[tuple[str, ...]]:
+    """Causes, and changes of values of the case."""
     file, bearing = case.file, case.file.podium.bearing
     for factor in (2.0, 4.0):
         yield "numerics", f"analysis.accuracy={factor * file.analysis.accuracy:g}"
@@ -168,12 +168,13 @@ def _values(case: Case) -> Iterator[tuple[str, str]]:
             yield "1 % of dimensions", f"{place}.{name}={factor * value:.12g}"
 
 
-def _of_building_and_devices(case: Case) -> Iterator[tuple[str, str]]:
-    """Changes of its period and strengths, and of what devices do."""
+def _of_building_and_devices(case: Case) -> Iterator[tuple[str, ...]]:
+    """Changes of its periods and strengths, and of what devices do."""
     building, fifth = case.file.superstructure, (0.8, 1.2)
-    if building.period is not None:
-        for factor in (0.9, 1.1):
-            yield "period", f"superstructure.period={factor * building.period:.12g}"
+    of_both = {"superstructure": building, "superstructure.y": building.y}
+    periods = {key: of.period for key, of in of_both.items() if of is not None and of.period}
+    for factor in (0.9, 1.1) if periods else ():
+        yield "period", *(f"{key}.period={factor * of:.12g}" for key, of in periods.items())
     if (strengths := building.yields) is not None:
         name = "ratio" if strengths.ratio is not None else "shears"
         given = getattr(strengths, name)

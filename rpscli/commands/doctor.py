@@ -8,7 +8,7 @@ import platform
 import re
 import shutil
 import sys
-from importlib import metadata
+from importlib import metadata, resources
 from pathlib import Path
 from typing import Any
 
@@ -62,6 +62,7 @@ def _surroundings() -> list[tuple[str, str, str]]:
     mine = "" if place in cache_places()[:1] else f"set {VARIABLE} to a folder that is yours alone"
     return [
         ("rps", f"{VERSION}, cases in {shipped_cases()}", anew),
+        ("GUIDE.md, THEORY.md, GLOSSARY.md", f"in {Path(str(resources.files('rpscli')))}", ""),
         ("Python", f"{platform.python_version()}, {sys.executable}", ""),
         ("system", f"{platform.platform()}, text in {locale.getencoding()}", ""),
         ("cores", str(available_cores()), ""),

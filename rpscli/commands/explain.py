@@ -64,7 +64,7 @@ def command(words: tuple[str, ...], terminal: Terminal) -> None:
     """What KEY means: a key of cases or studies, a report, a result, a symbol, a word of tables.
 
     Keys are named in full (podium.bearing.slenderness), by their end (slenderness) or by their
-    symbol (rho). `plugins` lists what other packages add.
+    symbol (rho). `plugins` lists what other packages add. `rps doctor` says where the guide is.
     """
     word = " ".join(words)
     meant = [

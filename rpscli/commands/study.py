@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 import click
 
 from rpscli import studies
+from rpscli.analyses.demand import WORTH_LANES
 from rpscli.analyses.kernels import history as compilation
 from rpscli.case.conditions import Condition
 from rpscli.commands.inputs import RESULTS, write
@@ -160,7 +161,8 @@ class Swept(NamedTuple):
         listing.append(("records scaled to", result.layout.scaled_to))
         head: list[Part] = [Heading(result.study.title), Table.listing(listing)]
         if not most:
-            return [*head, *of_study.summary_tables(result.summary), *told]
+            every = {of.name for of in result.summary.quantities} if result.summary else None
+            return [*head, *of_study.summary_tables(result.summary, every), *told]
         statistics = list(of_study.summary_tables(result.summary, asked(result.layout)))
         elsewhere, few = f"statistics are in statistics.csv{ALL}", head
         for rows, of_reports in [(n, FEWER[0]) for n in FEWER] + [(0, n) for n in FEWER]:
@@ -248,8 +250,9 @@ def show_dry_run(command: str, study: Study, choices: RunChoices, terminal: Term
         if histories and layout.plan.measure is None:  # no measure decides about the factor
             points[number + 1]["scale"] = point.scale * point.scale_change
     listed = [{"point": number, **varied} for number, varied in points.items()]
-    ways = 2 if any(record and record.is_pair for record in layout.records) else 1
-    if histories and not compilation.is_ready(ways, LANES):
+    ways = {2 if record and record.is_pair else 1 for record in layout.records}
+    lanes = 1 if layout.plan.whole or count < WORTH_LANES else LANES
+    if histories and not all(compilation.is_ready(way, lanes) for way in ways):
         seconds = GUESSED_POINT_SECONDS * count / jobs
         source = "a guess; first the kernel is compiled, for half a minute or more"
     else:

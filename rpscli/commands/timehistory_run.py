@@ -372,8 +372,13 @@ def set_tables(computed: Sequence[Computed]) -> Iterator[Part]:
         spreads = zip(case.together.quantities, row.spreads, strict=True)
         own = case.first.given.case
         # Forces of single columns are known where their number is.
-        further = ("max_damper_force", *OF_ONE_COLUMN * (own.structure.columns > 1))
-        main = [pair for pair in spreads if pair[0].demand or pair[0].name in further]
+        further = {"max_damper_force", *OF_ONE_COLUMN * (own.structure.columns > 1)}
+        further |= {verdict.condition.name for verdict in case.verdicts}
+        main = [
+            pair
+            for pair in spreads
+            if pair[0].demand or (pair[0].name in further and not pair[0].from_below)
+        ]
         for first in range(0, len(main), A_TABLE):
             yield _records_table(case, dict(main[first : first + A_TABLE]))
         if len(case.histories) > 1:

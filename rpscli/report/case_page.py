@@ -302,7 +302,7 @@ def column_sections(
         "f is podium.column.contact_strength. By EN 1992-1-1, formula 6.63, concrete in a strip at"
         " the edge of a column has f_cd, since there is nothing outside it; under an arc the line"
         " lies inside, and a wider plate has up to 3 f_cd. Steel on steel by EN 1337-4 has"
-        f" 2.0 f_u, for rotations up to {STEEL_ROTATION:g} rad."
+        f" 2.0 f_u on lines, for rotations up to {STEEL_ROTATION:g} rad."
     )
     yield Section("Forces and pressures of a column", [
         f"Maxima at instants of a dense trace under {result.record.name}, without {without}.",

@@ -278,7 +278,13 @@ def column_derivations(result: TimeHistoryResult) -> Iterator[Derivation]:
             P, Q = N * math.cos(x) + F * math.sin(x), F * math.cos(x) - N * math.sin(x)
             letters |= {"s": state.side, "F_1": each.shear, "d": rise, "P": P, "Q": Q}
             letters["e"] = (each.moment + rise * Q) / P
+            letters |= {"N_mean": demand.mean_force, "columns": structure.columns}
+            carried = "N_mean"
+            for way, (moment, lever) in zip("xy", demand.moments, strict=False):
+                letters |= {f"M_{way}": abs(moment), f"l_{way}": lever}
+                carried += f" + M_{way} / (columns * l_{way})"
             rows = [
+                ("axial force, by moments of the podium", "N", N, "N", carried),
                 ("axial force at its end", "P", P, "N", "N_1 * cos(x) + s * F_1 * sin(x)"),
                 ("shear at its end", "Q", Q, "N", "s * F_1 * cos(x) - N_1 * sin(x)"),
                 ("largest moment", "M", each.moment, "N m", "e * P - d * Q"),
@@ -495,7 +501,7 @@ def strength_tables(structure: PodiumStructure) -> Iterator[Part]:
                 shown(1e-3 * each.strength),
                 "" if each.strength_ratio is None else shown(each.strength_ratio),
                 shown(1e-3 * each.shear_at_uplift),
-                f"yields {'after' if each.uplift_first else 'BEFORE'} uplift",
+                "columns lift first" if each.uplift_first else "yields BEFORE uplift",
                 shown(1e3 * each.yield_drift),
             )
             for storey, each in enumerate(storey_strengths(seen), 1)

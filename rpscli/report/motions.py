@@ -157,6 +157,12 @@ def selection_doubts(selection: Selection, fixed: float | None) -> Iterator[str]
         yield f"filtered before the end of the range, {last:.4g} s: {', '.join(short)}"
     if asked is not None and target.damping != USUAL_DAMPING:
         yield f"{asked.clause} is about spectra of 5 % damping"
+    if selection.of == "srss" and (asked is None or asked.of != "srss"):
+        yield (
+            "the SRSS of a pair is some 1.4 times one component: pairs that meet a target of single"
+            " components by it are too weak for both together (EN 1998-2 asks for 1.3 times the"
+            f" target, {NOT_VERIFIED}: from memory); choose --component geomean or rotd50"
+        )
     if selection.clamped:
         of = f"{selection.clamped} of {len(chosen)} factors"
         yield f"{of} are held at a bound: widen --factors, or give motions of another size"

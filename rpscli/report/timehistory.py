@@ -349,7 +349,7 @@ def column_table(result: TimeHistoryResult) -> Iterator[Part]:
     """Worst instants of the most loaded column, and where its pressure is another one."""
     if (column := result.column_demand) is None:
         return
-    heads = ("largest", "end", "t s", "rad", "N kN", "F kN", "e m", "M kN m", "p_0 MPa", "b_c mm")
+    heads = ("largest", "end", "t s", "rad", "N kN", "F kN", "M/N m", "M kN m", "p_0 MPa", "b_c mm")
     rows = [
         (
             LARGEST[each.largest], each.end, shown(each.time, 5), shown(each.rotation),

@@ -27,6 +27,7 @@ from typing import Any
 
 import numpy as np
 
+from rpscli.analyses.demand import WORTH_LANES
 from rpscli.analyses.kernels.systems import most_seconds
 from rpscli.case.text.document import shown
 from rpscli.errors import Refused, RpsError, UsageError
@@ -144,6 +145,9 @@ kernel busy but at its end."""
 
 SMALLEST_BATCH = 8
 
+WHOLE_BATCH = 16
+"""Whole histories, which are followed one by one."""
+
 TOGETHER = 32
 """Systems whose points are computed one record after the other: the kernels keep what they read of
 the systems of a batch, near a megabyte of each."""
@@ -152,7 +156,8 @@ the systems of a batch, near a megabyte of each."""
 def batches(layout: StudyPoints, pending: Sequence[int], jobs: int) -> Iterator[list[Point]]:
     """Batches of the pending points, which are given in the order of the study."""
     # Small enough that all threads have something to do until the end.
-    size = min(LARGEST_BATCH, max(SMALLEST_BATCH, len(pending) // (4 * jobs)))
+    largest = WHOLE_BATCH if layout.plan.whole else LARGEST_BATCH
+    size = min(largest, max(SMALLEST_BATCH, len(pending) // (4 * jobs)))
     storeys = np.array([properties.storeys for properties in layout.properties])
     block = np.zeros_like(storeys)
     for count in np.unique(storeys):
@@ -403,14 +408,17 @@ def estimated_seconds(layout: StudyPoints, jobs: int) -> float:
     """Compute points spread over the study, in batches, and take the rest to be like them."""
     context, count = layout.context, len(layout)
     spent, points = 0.0, 0
+    few = 1 if layout.plan.whole else WORTH_LANES  # by the kernel that computes the study
     numbers = sorted({count * (2 * i + 1) // (2 * PROBES) for i in range(PROBES)})
     for batch in batches(layout, numbers, jobs=1):
         alone = _most_seconds(layout, batch[0])
         if alone <= 10.0 * LONGEST_PROBING:  # else not to be tried
-            alone = _seconds(context, batch[:1])  # reads records, loads kernels
+            alone = _seconds(context, batch[:few]) / len(
+                batch[:few]
+            )  # reads records, loads kernels
         if alone > 2.0 * LONGEST_PROBING:  # of which loading is little
             return alone * count / min(jobs, count)
-        affordable = batch[: 1 + int(LONGEST_PROBING / _seconds(context, batch[:1]))]
+        affordable = batch[: few * (1 + int(LONGEST_PROBING / _seconds(context, batch[:few])))]
         spent, points = spent + _seconds(context, affordable), points + len(affordable)
         if spent > LONGEST_PROBING:
             break

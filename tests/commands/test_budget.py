@@ -94,9 +94,15 @@ def test_period_strengths_and_devices_are_changed(workplace: Path, given: str) -
     write_case("limited.yaml", ("podium:\n", strengths + devices))
     case = load_case("limited.yaml")
     found = [*_values(case)]
-    assert {"period", "strength of storeys", "devices"} <= {cause for cause, _ in found}
-    for _, change in found:
-        assert load_case("limited.yaml", (change,)).structure is not None
+    assert {"period", "strength of storeys", "devices"} <= {cause for cause, *_ in found}
+    for _, *changes in found:
+        assert load_case("limited.yaml", changes).structure is not None
+    both = load_case("limited.yaml", ("superstructure.y={period: 0.4}",))
+    (changes, _) = (changes for cause, *changes in _values(both) if cause == "period")
+    assert [text.partition("=")[0] for text in changes] == [
+        "superstructure.period", "superstructure.y.period"
+    ]  # fmt: skip
+    assert float(changes[1].partition("=")[2]) == pytest.approx(0.36)
 
 
 def test_the_other_component_that_a_case_names(

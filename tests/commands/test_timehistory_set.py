@@ -56,6 +56,10 @@ def test_forces_of_columns_and_dampers_stand_where_the_case_has_them(rps: Invoke
     (folder,) = Path("results/small/timehistory").glob("*_records_*")
     rows = csv_rows("records.csv", folder)
     assert float(rows[0]["max_column_force [N]"]) > 0.0
+    # and whatever has a limit
+    assert "largest rotation" not in plain
+    limited = rps(*words, "--set", "limits={max_rotation: 1}").stdout
+    assert "largest rotation" in limited
 
 
 def test_several_records_end_with_mean_and_largest(rps_json: InvokeJson) -> None:

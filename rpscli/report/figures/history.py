@@ -26,13 +26,14 @@ WAYS: tuple[Way, ...] = get_args(Way)
 
 
 def record_name(result: TimeHistoryResult) -> str:
-    """The name of the horizontal motion."""
-    name, y = result.record.name, result.motion.y
+    """The name of the horizontal motion, and its factor."""
+    name, y, scale = result.record.name, result.motion.y, result.motion.scale
+    times = "" if scale == 1.0 else f", times {scale:.4g}"
     pair, found, turned = name.partition("_both")
     if y is None or not found:
-        return name if y is None else f"{name}, y: {y.name}"
+        return f"{name}{times}" if y is None else f"{name}, y: {y.name}{times}"
     rest = "both components" if y.name.startswith(pair) else f"y: {y.name}"
-    return f"{pair}{turned}, {rest}"
+    return f"{pair}{turned}, {rest}{times}"
 
 
 def lean_azimuth(trace: Trace) -> NDArray[np.float64]:

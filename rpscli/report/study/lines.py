@@ -355,7 +355,7 @@ def ida(study: StoredPoints, options: IdaOptions) -> Found:
             found,
             f"fractiles of {listed(numbers)} curves",
             "level to the right: overturned at the next intensity" if found.overturned else "",
-            "back to the left: stronger motions, smaller rotations",
+            "back to the left: stronger motions, smaller demands",
         ),
     )
     return Found({"": keyed(found.keys, heads, rows)}, figure, found.notes)

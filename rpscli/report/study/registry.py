@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
+from rpscli.analyses.result_quantities import LIMITED
 from rpscli.case.conditions import FRICTION, Condition
 from rpscli.case.text.document import Fault
 from rpscli.registry import Registry
@@ -34,12 +35,12 @@ REPORTS: Registry[Report[Any]] = Registry(
 )
 
 
-def asked(layout: StudyPoints) -> set[str] | None:
-    """Results that the reports of a study are about; None where it has none."""
+def asked(layout: StudyPoints) -> set[str]:
+    """Results of the limits and reports of a study, the main ones where it has no reports."""
+    limits = {limit.name for system in layout.properties for limit in system.limits}
     requests = layout.study.reports
-    if not requests:
-        return None
-    return set().union(*(REPORTS[each.kind].results(each.options) for each in requests))
+    main = set() if requests else {quantity.name for quantity in LIMITED if quantity.demand}
+    return limits.union(main, *(REPORTS[each.kind].results(each.options) for each in requests))
 
 
 def requirement_faults(layout: StudyPoints) -> Iterator[Fault]:

@@ -169,8 +169,10 @@ def step_notes(table: Table) -> Iterator[str]:
     layout, known = table.layout, np.flatnonzero(~table.failed)
     some = known[:: max(-(-len(known) // COMPUTED_AGAIN), 1)].tolist()
     requests = [layout.context.history(layout[number]) for number in some]
-    lanes = LANES if len(requests) >= WORTH_LANES else 1
-    if not all(is_ready(1 if of.motion.y is None else 2, lanes) for of in requests):
+    ways = {1 if of.motion.y is None else 2 for of in requests}
+    # In lanes, or one by one as whole histories are followed.
+    together = len(requests) >= WORTH_LANES and all(is_ready(way, LANES) for way in ways)
+    if not (together or all(is_ready(way, 1) for way in ways)):
         yield (
             "steps: whether points change with steps of half the length was not tried: all of them"
             " were stored before, and the kernel that computes them is not compiled yet"
@@ -180,7 +182,8 @@ def step_notes(table: Table) -> Iterator[str]:
         replace(of, settings=replace(of.settings, accuracy=2.0 * of.settings.accuracy))
         for of in requests
     ]
-    after = zip(some, demands(finer), strict=True)
+    worth = WORTH_LANES if together else len(finer) + 1
+    after = zip(some, demands(finer, worth_lanes=worth), strict=True)
     changes = sorted((_change(table, *each) for each in after), key=lambda change: -change[0])
     if names := [text for change, text in changes if change > 0.0]:
         more = f" and {len(names) - NAMED} more" * (len(names) > NAMED)
