@@ -187,18 +187,18 @@ def summary_tables(summary: Summary | None, wanted: set[str] | None = None) -> I
         outcomes.append([*map(str, counts), over.interval])
     heads = ["counted", *behind, "failed", "overturned", "95 % interval"]
     yield _of_systems(summary, systems, heads, outcomes)
-    main = [
+    shown = [
         (place, quantity)
         for place, quantity in enumerate(summary.quantities)
         if (quantity.demand if wanted is None else quantity.name in wanted)
         and not quantity.from_below
     ]
-    for first in range(0, len(main), A_TABLE):
-        some = main[first : first + A_TABLE]
+    kinds = ([each for each in shown if each[1].demand is main] for main in (True, False))
+    for some in (of[n : n + A_TABLE] for of in kinds for n in range(0, len(of), A_TABLE)):
         named = [headed(quantity.label, quantity.unit) for _, quantity in some]
         spreads = [[_spread(row.spreads[place], of.unit) for place, of in some] for row in rows]
         yield _of_systems(summary, systems, named, spreads)
-    if main:
+    if shown:
         yield (
             "demands: median / 84 % fractile / largest; - where so many overturned, and in brackets"
             " the least and the largest of those that stand"
