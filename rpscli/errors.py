@@ -199,8 +199,14 @@ def require_fields(made: Any, fault: type[Exception] = ValueError) -> None:
 _kinds = cache(get_type_hints)
 
 
+def origin_of(kind: Any) -> Any:
+    """The class of an annotation, also behind an alias, as NDArray is one since numpy 2.5."""
+    origin = get_origin(kind) or kind
+    return get_origin(getattr(origin, "__value__", None)) or origin
+
+
 def _fits(value: object, kind: Any) -> bool:
-    origin, parts = get_origin(kind) or kind, get_args(kind)
+    origin, parts = origin_of(kind), get_args(kind)
     if origin is UnionType:
         return any(_fits(value, part) for part in parts)
     if origin is tuple:

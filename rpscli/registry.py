@@ -21,7 +21,7 @@ from typing import (
     get_type_hints,
 )
 
-from rpscli.errors import PluginError, RpsError, is_number
+from rpscli.errors import PluginError, RpsError, is_number, origin_of
 
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
@@ -136,7 +136,7 @@ def _blaming(what: str) -> Iterator[None]:
 
 def _sound(value: Any, kind: Any, name: str, what: str) -> Any:
     """A value of the kind that an annotation names; its functions give what theirs say."""
-    origin, kinds = get_origin(kind) or kind, get_args(kind)
+    origin, kinds = origin_of(kind), get_args(kind)
     if origin is Callable and callable(value):
         return _guarded(value, kinds[-1], what)
     if type(None) in kinds:

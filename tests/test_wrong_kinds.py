@@ -9,11 +9,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 from paper_structures import podium
 
 import rpscli
 from rpscli.case.schema.scale_to import scale_to_of
-from rpscli.errors import RecordError, RpsError, UsageError
+from rpscli.errors import RecordError, RpsError, UsageError, origin_of
 from rpscli.model.column import ColumnDesign
 from rpscli.model.contact import Contact
 from rpscli.model.devices import Stop, Tendon, ViscousDamper
@@ -113,3 +114,14 @@ def test_numbers_without_a_unit_are_asked_about() -> None:
     (doubt,) = rpscli.load_record("pulse:sine?amplitude=0.3&period=0.8").warnings
     assert "0.03059 g; was 0.3g meant?" in doubt
     assert not rpscli.load_record("pulse:sine?amplitude=0.3 m/s2&period=0.8").warnings
+
+
+def test_annotations_behind_an_alias_are_followed() -> None:
+    """Since numpy 2.5 NDArray is an alias, which is no class that `isinstance` takes."""
+
+    class Alias:
+        __value__ = np.ndarray[Any, np.dtype[np.float64]]
+
+    assert origin_of(Alias) is np.ndarray
+    assert origin_of(NDArray[np.float64]) is np.ndarray
+    assert origin_of(float) is float
