@@ -347,6 +347,7 @@ STATE = (
     Field("bends", "stages ways lanes", "rad/s2", "at all stages"),
     *_fields("axes lanes", "m/s2", shaking="a_g + u_b'', upwards a_v + v_b''", new_shaking="so"),
     *_fields("axes lanes", "N", V="base shear, springs and dampers", new_V="at the end"),
+    *_fields("lanes", "N", taken="sum of k_1 abs(delta_1) of the ways, out of V"),
     *_fields("axes lanes", "N/s", dV="its rate", new_dV="at the end"),
     *_fields("axes lanes", "N/s2", ddV="while it stands", new_ddV="at the end"),
     *_fields("lanes", "rad", x="tilt, along its side in one plane", new_x="at the end"),

@@ -196,7 +196,8 @@ def take_steps(s: Record, systems: Record) -> None:
 
 
 NOISE = 5e-13
-"""Of what turns the columns back: what of a difference of both rules is rounding."""
+"""Of what turns the columns back, and of what plastic drifts take from the base shear: what of a
+difference of both rules is rounding."""
 
 
 @inlined
@@ -212,7 +213,8 @@ def error_of(s: Record, l: int) -> float:
         fast = abs(s.tilt_rate[axis, l]) + abs(s.new_tilt_rate[axis, l]) + faster
         speed += fast * fast
     limit = s.step_error[l] * math.sqrt(speed) + s.least_error[l]
-    limit += s.h[l] * (NOISE * s.weigh[l] * s.gravity[l] * s.tan_a[l] / s.one[l])
+    turned = NOISE * s.weigh[l] * s.gravity[l] * s.tan_a[l] + NOISE * s.share[l] * s.taken[l]
+    limit += s.h[l] * (turned / s.one[l])
     return s.h[l] * math.sqrt(missed) / (limit if limit > 0.0 else 1.0)  # type: ignore[no-any-return]
 
 

@@ -133,7 +133,7 @@ def load_storeys(s: Record, l: int, system: Record, axis: int) -> None:
     """Begin a history with storeys that have not yielded."""
     if axis == 0:
         s.hardening[l], s.yields[l] = system.hardening, system.yields
-        s.marked[l], s.energy_yielded[l] = 0, 0.0
+        s.marked[l], s.energy_yielded[l], s.taken[l] = 0, 0.0, 0.0
     for i in range(system.n):
         r = axis * system.n + i
         s.stiffness[r, l], s.strength[r, l] = system.stiffness[i], system.strength[i]
@@ -163,6 +163,15 @@ def keep_slips(s: Record, l: int, systems: Record) -> None:
         write_load(s, l, system, axis, elastic)
         for r in range(axis * n, (axis + 1) * n):
             s.freed[r, l] = s.new_freed[r, l]
+    sum_taken(s, l)
+
+
+@compiled
+def sum_taken(s: Record, l: int) -> None:
+    """Sum what plastic drifts of first storeys take from the base shears."""
+    free, s.taken[l] = 1.0 - s.hardening[l], 0.0
+    for axis in range(ways_of(s)):
+        s.taken[l] += free * s.stiffness[axis * s.n, l] * abs(s.middle[axis * s.n, l])
 
 
 @compiled
@@ -219,6 +228,7 @@ def yield_at_once(s: Record, l: int, system: Record, r: int, middle: float, drif
     n, before = s.n, slip_energy(s, l)
     moved = (1.0 - s.hardening[l]) * (middle - s.middle[r, l])
     s.middle[r, l] = middle
+    sum_taken(s, l)
     for of in range(n):
         row = r // n * n + of
         s.freed[row, l] += system.storey_shear_of[of, r % n] * moved

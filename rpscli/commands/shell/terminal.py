@@ -363,7 +363,7 @@ def patience(
         return nullcontext()
     steps = most_steps(case.structure, case.analysis, motion.duration)
     terminal.note(
-        f"a long history: up to {steps:.2g} steps of {case.structure.storeys} modes, {seconds:.0f}"
+        f"a long history: about {steps:.2g} steps of {case.structure.storeys} modes, {seconds:.0f}"
         " s if it does not come to rest before; analysis.free_vibration shortens it"
     )
     return passing_time("computing", terminal)
