@@ -88,7 +88,7 @@ from rpscli.physics.upright import (
     pass_on_bed,
     pass_upright,
     set_polar,
-    settles,
+    settle,
     uplift,
 )
 
@@ -364,12 +364,14 @@ def look_after(s: Record, l: int, systems: Record, output: Output) -> bool:
         s.stalled[l] = s.stalled[l] + 1 if stands_still else 0
         switch(s, l, systems, output, kind)
         review_laws(s, l, systems, kind)
+        stay_inside(s, l)
         if s.outcome[l] != RUNNING or too_many(s, l, system):
             return True
         observe_start(s, l)
     else:
         if s.interval[l] + 1 == s.npts[l]:  # the ground acceleration may jump to zero
             renew(s, l)
+            stay_inside(s, l)
             observe_start(s, l)
         if s.audited > 0:
             store_sample(s, l, systems, output)
@@ -428,8 +430,7 @@ def switch(s: Record, l: int, systems: Record, output: Output, kind: int) -> Non
     if kind == NEAREST or (kind == LOW and is_upright(s, l, system)):
         pass_upright(s, l, system, log, kind == LOW)
         renew(s, l)
-        if not settles(s, l, system, log, kind == LOW):
-            stay_inside(s, l)
+        settle(s, l, system, log, kind == LOW)
         return
     if phase == BEDDED or (kind == LOW and s.x_low[l] == system.bed_uplift):
         pass_on_bed(s, l, system, log, phase != BEDDED)
@@ -448,7 +449,6 @@ def switch(s: Record, l: int, systems: Record, output: Output, kind: int) -> Non
     else:  # curved ends leave their flat part, or come back to it
         enter_phase(s, l, system, phase)
     renew(s, l)
-    stay_inside(s, l)
 
 
 @compiled
@@ -468,7 +468,9 @@ def change(s: Record, l: int, system: Record, log: Record) -> None:
 @compiled
 def stay_inside(s: Record, l: int) -> None:
     """Have the next step begin within its range: of a tilt to any side x is a root, and rounded."""
-    s.x[l] = min(max(s.x[l], s.x_low[l]), s.x_high[l])
+    # after all that renews it: one that is below its range by rounding would pass upright at once
+    if s.phase[l] != FULL_CONTACT:
+        s.x[l] = min(max(s.x[l], s.x_low[l]), s.x_high[l])
 
 
 @compiled

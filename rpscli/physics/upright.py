@@ -240,8 +240,8 @@ def pushes(s: Record, l: int) -> tuple[float, float, float, float]:
 
 
 @compiled
-def settles(s: Record, l: int, system: Record, log: Record, near: bool) -> bool:  # noqa: FBT001
-    """After it: True if the storey comes to rest; what is too slow to get away starts anew.
+def settle(s: Record, l: int, system: Record, log: Record, near: bool) -> None:  # noqa: FBT001
+    """After it: come to rest if it is that slow; what is too slow to get away starts anew.
 
     Impacts accumulate: each excursion is e^2 times as high as the last. At constant deceleration
     one reaches v^2/(2 |x''|). Reads the accelerations behind the impact or the pass.
@@ -250,21 +250,18 @@ def settles(s: Record, l: int, system: Record, log: Record, near: bool) -> bool:
     x, _, _, p, q = polar(s, l, tilt_of(s, l), rate_of(s, l))
     at = place_of(s, l, x)
     if ways_of(s) == 1:
-        if not (s.a[l] < 0.0 and p * p < 2.0 * abs(s.a[l]) * low):
-            return False
-        come_to_rest(s, l, system, log)
-        return True
+        if s.a[l] < 0.0 and p * p < 2.0 * abs(s.a[l]) * low:
+            come_to_rest(s, l, system, log)
+        return
     z_x, z_y, push, limit = pushes(s, l)
     v2 = p * p + (s.kappa[l] * q) * (s.kappa[l] * q)
     if near and push >= limit and v2 < SLOW * (push + limit) * UPRIGHT_TILT / at.A:
         begin_tilt(s, l, system, z_x, z_y)
         renew(s, l)
-        return False
+        return
     slows = math.cos(system.alpha) * (limit - push) / at.A
-    if slows <= 0.0 or v2 >= 2.0 * slows * low or x >= low:
-        return False
-    come_to_rest(s, l, system, log)
-    return True
+    if slows > 0.0 and v2 < 2.0 * slows * low and x < low:
+        come_to_rest(s, l, system, log)
 
 
 @compiled

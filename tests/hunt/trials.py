@@ -37,8 +37,9 @@ PROMISED = frozenset({0, 3, 4, 5, 7, 10})
 LONGEST_LINE = 700
 """Letters of a message: place, value, rule and remedy, beside the path of a temporary folder."""
 
-SLOWEST = 30.0
-"""Seconds that one trial may compute; it may wait ten times as long on a busy machine."""
+SLOWEST = 90.0
+"""Seconds that one trial may compute: some histories of 5 s, as estimated, and four times as long
+on a slow machine. It may wait ten times as long on a busy one."""
 
 
 class TooSlow(BaseException):
