@@ -257,8 +257,7 @@ def show_dry_run(command: str, study: Study, choices: RunChoices, terminal: Term
         source = "a guess; first the kernel is compiled, for half a minute or more"
     else:
         with passing_time("trying some of the points", terminal):
-            seconds = estimated_seconds(layout, jobs)
-        source = "trying some of the points"
+            seconds, source = estimated_seconds(layout, jobs)
     counts = {
         "points": count,
         "systems": len(layout.properties),

@@ -404,31 +404,37 @@ LONGEST_PROBING = 3.0
 """Time after which no further points are tried [s]."""
 
 
-def estimated_seconds(layout: StudyPoints, jobs: int) -> float:
-    """Compute points spread over the study, in batches, and take the rest to be like them."""
+def estimated_seconds(layout: StudyPoints, jobs: int) -> tuple[float, str]:
+    """Compute points spread over the study, in batches, and take the rest to be like them.
+
+    Returns the time [s], and how it was found: what may take too long to be tried is estimated.
+    """
     context, count = layout.context, len(layout)
-    spent, points = 0.0, 0
+    spent, points, tried = 0.0, 0, "trying some of the points"
     few = 1 if layout.plan.whole else WORTH_LANES  # by the kernel that computes the study
     numbers = sorted({count * (2 * i + 1) // (2 * PROBES) for i in range(PROBES)})
     for batch in batches(layout, numbers, jobs=1):
-        alone = _most_seconds(layout, batch[0])
-        if alone <= 10.0 * LONGEST_PROBING:  # else not to be tried
-            alone = _seconds(context, batch[:few]) / len(
-                batch[:few]
-            )  # reads records, loads kernels
+        most = np.array([_most_seconds(layout, point) for point in batch])
+        if most.max() > 10.0 * LONGEST_PROBING:  # not to be tried
+            seconds = float(most.mean()) * count / min(jobs, count)
+            return seconds, "the most steps that some points may take"
+        within = max(int(np.sum(np.cumsum(most) <= 10.0 * LONGEST_PROBING)), 1)
+        first = batch[: min(few, within)]
+        alone = _seconds(context, first) / len(first)  # reads records, loads kernels
         if alone > 2.0 * LONGEST_PROBING:  # of which loading is little
-            return alone * count / min(jobs, count)
-        affordable = batch[: few * (1 + int(LONGEST_PROBING / _seconds(context, batch[:few])))]
+            return alone * count / min(jobs, count), tried
+        more = few * (1 + int(LONGEST_PROBING / _seconds(context, first)))
+        affordable = batch[: min(more, within)]
         spent, points = spent + _seconds(context, affordable), points + len(affordable)
         if spent > LONGEST_PROBING:
             break
-    return spent / points * count / min(jobs, count)
+    return spent / points * count / min(jobs, count), tried
 
 
 def _most_seconds(layout: StudyPoints, point: Point) -> float:
     """About the longest that the history of a point may take [s]."""
     if layout.plan.analysis == "timehistory":
-        with suppress(RpsError):  # which the point tells when it is tried
+        with suppress(Exception):  # which the point tells when it is tried
             request = layout.context.history(point)
             return most_seconds(request.structure, request.settings, request.motion)
     return 0.0

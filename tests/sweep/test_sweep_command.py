@@ -155,6 +155,18 @@ def test_dry_runs_compile_no_kernel(sweep_json: SweepJson, monkeypatch: pytest.M
         assert told in sweep_json("study.yaml", "--dry-run")["estimate"]["source"]
 
 
+def test_a_dry_run_does_not_try_what_takes_hours(
+    sweep_json: SweepJson, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A long record behind short ones was followed for hours."""
+    monkeypatch.setattr(compilation, "is_ready", lambda *_: True)
+    pulses = 'records: [{source: "pulse:sine?amplitude=0.3g", period: [0.5, 0.6, 1.2e9]}]\n'
+    text = STUDY[: STUDY.index("records:")] + pulses
+    estimate = sweep_json("study.yaml", "--dry-run", study=text)["estimate"]
+    assert estimate["seconds"] > 3600.0
+    assert "may take" in estimate["source"]
+
+
 def test_a_report_that_cannot_be_drawn_is_refused_at_once(sweep: Sweep, workplace: Path) -> None:
     text = STUDY + "reports: [overturning, overturning_spectrum]\n"
     for options in (("--dry-run",), ()):
