@@ -9,7 +9,7 @@ import warnings
 from rpscli.cli import program
 
 OBJECTS_BETWEEN_COLLECTIONS = 100_000
-"""Importing numba and matplotlib makes half a million objects that all stay: looking through them
+"""What is imported makes many objects that all stay: looking through them
 for garbage as often as Python does by default takes a tenth of a command's time."""
 
 

@@ -9,7 +9,7 @@ Each entry point has a name, which users write, and belongs to one of these grou
   a `TargetSpectrum`, or raises `RecordError`;
 - `rpscli.reports`: a `Report` of studies, a class of `ReportOptions` with a function of
   `StoredPoints` and such options that returns what was `Found`;
-- `rpscli.dampers`: a `DamperLaw`, a kind of `podium.devices` whose force numba compiles;
+- `rpscli.dampers`: a `DamperLaw`, a kind of `podium.devices` whose force is compiled;
 - `rpscli.impact_laws`: a `RestitutionLaw`, a law of `podium.impact`, likewise;
 - `rpscli.figures`: a function that draws a result into axes, as those of `rpscli.figures` do;
   ``--figures png,NAME`` makes files of it.

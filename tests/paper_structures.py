@@ -12,7 +12,6 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, TypeVar
 
-import numba
 import numpy as np
 import pytest
 from numpy.typing import ArrayLike, NDArray
@@ -37,6 +36,7 @@ from rpscli.model.superstructure import (
     first_mode_strengths,
     profile_stiffnesses,
 )
+from rpscli.physics.kernels import are_interpreted
 from rpscli.records.ground_motion import GroundMotion
 
 Array = NDArray[np.float64]
@@ -46,11 +46,11 @@ RecordLoader = Callable[[str], GroundMotion]
 
 Value = TypeVar("Value")
 
-COMPILED = not getattr(numba.config, "DISABLE_JIT")  # noqa: B009
+COMPILED = not are_interpreted()
 """Whether the kernels are machine code; interpreted they are some hundred times slower."""
 
 needs_compiled_kernels = pytest.mark.skipif(
-    not COMPILED, reason="many time steps: too slow with NUMBA_DISABLE_JIT=1"
+    not COMPILED, reason="many time steps: too slow with RPS_INTERPRETED=1"
 )
 
 needs_recorded_motions = pytest.mark.skipif(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
 from typing import Any, Generic, Literal, TypeVar, cast, overload
@@ -21,6 +21,7 @@ from rpscli.analyses.result_quantities import (
 )
 from rpscli.analyses.trace import DeviceDemand
 from rpscli.model.devices import own_laws
+from rpscli.model.own import OwnLaw
 from rpscli.model.podium import Array, Device, PodiumStructure
 from rpscli.model.statics import uplift_acceleration
 from rpscli.model.superstructure import Superstructure
@@ -496,12 +497,22 @@ def outcomes_of(left: Record) -> NDArray[np.str_]:
     return np.asarray(np.where(held, "stays_tilted", words))
 
 
+def refusals(law: OwnLaw) -> Iterator[str]:
+    """What the functions of a law of another package said where they gave no finite number."""
+    from rpscli.physics.own_laws import said_of
+
+    for function, taken in law.taken().items():
+        if said := said_of(function, taken):
+            yield said
+
+
 def failure_text(history: Record, structure: PodiumStructure) -> str | None:
     """Time, phase, rotation and reason of a failure; None if the history ended well."""
     reason = REASONS.get(int(history["outcome"]))
     if reason is None:
         return None
-    if own := [*own_laws(structure)]:
+    if own := own_laws(structure):
         reason = f"{reason}; with laws of other packages: {', '.join(own)}"
+        reason += "".join(f"; {text}" for law in own.values() for text in refusals(law))
     phase, theta = PHASE_NAMES[int(history["phase"])], history["rotation"] + 0.0
     return f"at t = {history['time']:.6g} s, {phase}, theta = {theta:.6g} rad: {reason}"

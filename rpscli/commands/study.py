@@ -11,8 +11,6 @@ from typing import Any, NamedTuple
 import click
 
 from rpscli import studies
-from rpscli.analyses.demand import WORTH_LANES
-from rpscli.analyses.kernels import history as compilation
 from rpscli.case.conditions import Condition
 from rpscli.commands.inputs import RESULTS, write
 from rpscli.commands.shell import terminal as shell
@@ -20,7 +18,6 @@ from rpscli.commands.shell.options import CaseRequest, Output, RunChoices
 from rpscli.commands.shell.terminal import Terminal, duration, passing_time
 from rpscli.errors import LimitExceeded, Refused, RpsError
 from rpscli.machine import available_cores
-from rpscli.physics.state import LANES
 from rpscli.report.files import OutputFolder, failure_document, heading
 from rpscli.report.limits import counts_of_limits, verdicts_in_short
 from rpscli.report.study import statistics as of_study
@@ -36,8 +33,6 @@ from rpscli.sweep.systems import balance_note
 
 POINTS_SHOWN = 3
 """At each end of a study."""
-GUESSED_POINT_SECONDS = 0.01
-"""Where trying would mean compiling first: some 40 s of motion of a few storeys."""
 OF_A_REPORT = 12
 """Warnings that are shown at most."""
 FEWER = (40, 30, 22, 16, 12, 9, 6, 4, 2, 1)
@@ -250,14 +245,8 @@ def show_dry_run(command: str, study: Study, choices: RunChoices, terminal: Term
         if histories and layout.plan.measure is None:  # no measure decides about the factor
             points[number + 1]["scale"] = point.scale * point.scale_change
     listed = [{"point": number, **varied} for number, varied in points.items()]
-    ways = {2 if record and record.is_pair else 1 for record in layout.records}
-    lanes = 1 if layout.plan.whole or count < WORTH_LANES else LANES
-    if histories and not all(compilation.is_ready(way, lanes) for way in ways):
-        seconds = GUESSED_POINT_SECONDS * count / jobs
-        source = "a guess; first the kernel is compiled, for half a minute or more"
-    else:
-        with passing_time("trying some of the points", terminal):
-            seconds, source = estimated_seconds(layout, jobs)
+    with passing_time("trying some of the points", terminal):
+        seconds, source = estimated_seconds(layout, jobs)
     counts = {
         "points": count,
         "systems": len(layout.properties),

@@ -35,6 +35,10 @@ class OwnLaw:
         if len(self.constants) > MOST_CONSTANTS:
             raise ValueError(f"it has {len(self.constants)} constants, at most {MOST_CONSTANTS}")
 
+    def taken(self) -> dict[Callable[..., float], int]:
+        """Functions of the law that are compiled, and how many numbers each takes."""
+        raise NotImplementedError
+
     @property
     def sources(self) -> list[str]:
         """The files in which its functions are written, as far as there are any."""
@@ -47,7 +51,8 @@ class OwnLaw:
 class DamperLaw(OwnLaw):
     """A damper between ground and cap beam, which resists along the beam's velocity.
 
-    numba compiles `force` and `watched`, which may do what it knows, such as `math`. All in SI.
+    `force` and `watched` are compiled; what they may do is in `rpscli/compiler/LANGUAGE.md`. All in
+    SI.
 
     Parameters
     ----------
@@ -72,6 +77,11 @@ class DamperLaw(OwnLaw):
     stiffness: Callable[..., float] | None = None
     watched: Callable[..., float] | None = None
 
+    def taken(self) -> dict[Callable[..., float], int]:
+        """Its compiled functions, and how many numbers each takes."""
+        functions = [self.force] if self.watched is None else [self.force, self.watched]
+        return dict.fromkeys(functions, 2 + len(self.constants))
+
 
 @dataclass(frozen=True, eq=False)
 class RestitutionLaw(OwnLaw):
@@ -83,7 +93,11 @@ class RestitutionLaw(OwnLaw):
         As of every law.
     restitution
         Of the tilt's rate before an impact [rad/s], tan(alpha), I_o/(m_c R^2), gamma = m_b/(N m_c)
-        and eta = M_tot/m_b: e in (0, 1]; numba compiles it.
+        and eta = M_tot/m_b: e in (0, 1]; it is compiled.
     """
 
     restitution: Callable[..., float]
+
+    def taken(self) -> dict[Callable[..., float], int]:
+        """Its compiled function, and how many numbers it takes."""
+        return {self.restitution: 5 + len(self.constants)}

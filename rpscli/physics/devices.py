@@ -16,8 +16,8 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from rpscli.physics import geometry
 from rpscli.physics.compile import compiled, inlined, own_law
+from rpscli.physics.geometry import end_displacement
 from rpscli.physics.ground import log_event
 from rpscli.physics.laws import (
     Place,
@@ -65,8 +65,6 @@ from rpscli.physics.state import (
     Record,
 )
 
-end_displacement = compiled(geometry.end_displacement)
-
 
 class Worked(NamedTuple):
     """How the devices of a lane are worked at a motion."""
@@ -110,11 +108,12 @@ def tendon_elongation(s: Record, l: int, x: float) -> tuple[float, float, float,
     the ground while rolling and B + r beta while rocking, de/dx = 2 cos(psi) times that distance.
     """
     y = x if s.rolls[l] > 0.0 else s.beta[l]
+    half_sine, half_sine_y = math.sin(0.5 * x), math.sin(0.5 * y)
     across, upwards, reach = end_displacement(
         s.half_width[l],
         s.arc_radius[l],
-        (y, math.sin(y), 2.0 * math.sin(0.5 * y) ** 2),
-        (math.sin(x), 2.0 * math.sin(0.5 * x) ** 2),
+        (y, math.sin(y), 2.0 * (half_sine_y * half_sine_y)),
+        (math.sin(x), 2.0 * (half_sine * half_sine)),
     )
     distance = math.sqrt(across * across + upwards * upwards)
     if x < 0.0:  # on from upright as it came there, where a step may try

@@ -8,13 +8,11 @@ alone. A lane whose history is over takes the next one.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from threading import Event, Thread, current_thread, main_thread
 
 import numpy as np
 
 from rpscli.physics.bed import first_phase, load_bed
-from rpscli.physics.compile import compiled, inlined, kernel
+from rpscli.physics.compile import compiled, inlined
 from rpscli.physics.demands import observe, observe_start
 from rpscli.physics.devices import (
     SLOWING,
@@ -28,11 +26,11 @@ from rpscli.physics.devices import (
     worked,
 )
 from rpscli.physics.events import check_steps, resolve_step
-from rpscli.physics.fields import fields_of, records_of
 from rpscli.physics.friction import grip_at, set_limits, sticks
 from rpscli.physics.ground import azimuth_of, log_event, set_ground, time_of
 from rpscli.physics.laws import (
     lanes_of,
+    length,
     place_of,
     polar,
     rate_of,
@@ -41,7 +39,7 @@ from rpscli.physics.laws import (
     ways_of,
 )
 from rpscli.physics.rest import REST_EVERY, is_over
-from rpscli.physics.run import Output, Run
+from rpscli.physics.run import Output
 from rpscli.physics.samples import store_sample, store_within
 from rpscli.physics.state import (
     AT_REST,
@@ -54,7 +52,6 @@ from rpscli.physics.state import (
     FRICTION,
     FULL_CONTACT,
     HIGH,
-    LANES,
     LET_GO,
     LOW,
     NEAREST,
@@ -77,7 +74,6 @@ from rpscli.physics.state import (
     YIELD,
     Floats,
     Record,
-    scratch,
 )
 from rpscli.physics.step import renew, take_steps
 from rpscli.physics.storeys import keep_slips, load_storeys, review_storeys, turn_storey
@@ -92,65 +88,8 @@ from rpscli.physics.upright import (
     uplift,
 )
 
-HEARS = 0.1
-"""A Ctrl-C is heard within so many seconds."""
 
-
-def integrate(run: Run, lanes: int = LANES, *, interruptible: bool = False) -> None:
-    """Follow every history of `run.requests` from rest; writes `run.results`.
-
-    Machine code hears no signal: to be `interruptible` by Ctrl-C it runs in another thread, which
-    costs a tenth of a millisecond. Of many histories the longest begin first, so that no lane is
-    left with one at the end.
-    """
-    if len(run.requests) > lanes and not run.output.samples.size:
-        given = run.requests.view(np.ndarray)
-        order = np.argsort(-given["npts"] * given["dt"], kind="stable")
-        if np.any(order[1:] < order[:-1]):
-            ordered = run._replace(requests=run.requests[order], results=run.results[order])
-            integrate(ordered, lanes, interruptible=interruptible)
-            run.results[order] = ordered.results
-            return
-    systems = run.systems.view(np.ndarray)  # fields of records take ten times as long
-    state = scratch(run.ways, lanes)
-    plain = state.view(np.ndarray)
-    plain["n"], plain["stop"] = systems["n"][0], 0
-    plain["equipped"] = int(systems["devices"].max(initial=0))
-    plain["yielding"] = int(systems["yields"].any())
-    plain["gives_way"], plain["axes"] = int(systems["compliant"].any()), systems["axes"][0]
-    given = run.systems, run.requests, run.acceleration, run.results, run.output
-
-    def work() -> None:
-        follow(state, *given)
-
-    if interruptible and current_thread() is main_thread():
-        hear(work, state)
-    else:
-        work()
-
-
-def hear(work: Callable[[], None], state: Record) -> None:
-    """Do some work on a state in another thread; a Ctrl-C stops it, and waits for its end."""
-    ended = Event()
-
-    def whole() -> None:
-        try:
-            work()
-        finally:
-            ended.set()
-
-    Thread(target=whole, daemon=True).start()
-    try:
-        # Not Thread.join: interrupted, it takes a running thread for ended before Python 3.13.
-        while not ended.wait(HEARS):
-            pass
-    except BaseException:
-        state.view(np.ndarray)["stop"] = 1
-        ended.wait()
-        raise
-
-
-@kernel
+@compiled
 def follow(
     state: Record,
     systems: Record,
@@ -159,17 +98,8 @@ def follow(
     results: Record,
     output: Output,
 ) -> None:
-    """The same, in a state that is made already: an array of one record."""
-    s = fields_of(state[0])
-    lanes = lanes_of(s)
-    systems, requests, results = records_of(systems), records_of(requests), records_of(results)
-    output = Output(
-        records_of(output.samples),
-        output.floors,
-        records_of(output.log),
-        output.devices,
-        output.finer,
-    )
+    """Follow every history of `requests` from rest, in a state of one record; writes `results`."""
+    s, lanes = state[0], lanes_of(state[0])
     s.audited = 1 if output.samples.shape[0] > 0 else 0
     s.waiting, active = 0, 0
     for l in range(lanes):
@@ -189,7 +119,7 @@ def follow(
                 active -= 1 if s.history[l] == NO_HISTORY else 0
 
 
-@kernel
+@compiled
 def advance(s: Record, systems: Record, output: Output) -> None:
     """A step of all lanes together."""
     take_steps(s, systems)
@@ -352,7 +282,7 @@ STALL = 100
 """So many events in a row without time passing: the step cannot be made small enough."""
 
 
-@kernel
+@compiled
 def look_after(s: Record, l: int, systems: Record, output: Output) -> bool:
     """What a lane alone is to do: switch at an event, store, end; True if its history is over."""
     if s.outcome[l] != RUNNING:
@@ -520,7 +450,7 @@ def set_sliding(s: Record, l: int, system: Record, d_n: float, d_t: float, speed
     """
     x, _, _, _, _ = polar(s, l, tilt_of(s, l), (0.0, 0.0))
     at = place_of(s, l, x)
-    rate = speed / (s.diameter[l] * math.hypot(at.C * d_n, at.h * d_t) + 1e-300)
+    rate = speed / (s.diameter[l] * length(at.C * d_n, at.h * d_t) + 1e-300)
     lost = change_rate(s, l, system, rate * d_n, rate * d_t)
     for i in range(s.devices[l]):
         if s.device_kind[i, l] in (FRICTION, ROLLING_RESISTANCE):
@@ -553,7 +483,7 @@ def slide(s: Record, l: int, system: Record, log: Record, side: int) -> None:
 # Histories begin and end.
 
 
-@kernel
+@compiled
 def next_history(
     s: Record,
     l: int,

@@ -12,7 +12,16 @@ from typing import NamedTuple
 from rpscli.physics.compile import compiled
 from rpscli.physics.devices import has_friction, stop_force, tendon_elongation, tension
 from rpscli.physics.ground import log_event
-from rpscli.physics.laws import felt_at, patch, path_at, place_of, polar, tilt_of, ways_of
+from rpscli.physics.laws import (
+    felt_at,
+    length,
+    patch,
+    path_at,
+    place_of,
+    polar,
+    tilt_of,
+    ways_of,
+)
 from rpscli.physics.state import STICKING, STOP, STUCK, Record
 
 
@@ -190,7 +199,7 @@ def grip_of(
     aim_n, aim_t = (Q_n, Q_t) if pushed else (rate_n, rate_t)
     size = math.sqrt(aim_n * aim_n + aim_t * aim_t)
     d_n, d_t = (aim_n / size, aim_t / size) if size > 0.0 else (1.0, 0.0)
-    long = math.sqrt((at.C * d_n) ** 2 + (at.h * d_t) ** 2)
+    long = length(at.C * d_n, at.h * d_t)
     turns = 1 if M == 0.0 or P == 0.0 else TURNS  # of one alone d follows at once
     for _ in range(turns if P + M > 0.0 else 0):
         # Where Q is just held it is the gradient of P |W d| + M |d|.
@@ -198,7 +207,7 @@ def grip_of(
         d_t = aim_t / (P * at.h * at.h / long + M)
         far = math.sqrt(d_n * d_n + d_t * d_t)
         d_n, d_t = (d_n / far, d_t / far) if far > 0.0 else (1.0, 0.0)
-        long = math.sqrt((at.C * d_n) ** 2 + (at.h * d_t) ** 2)
+        long = length(at.C * d_n, at.h * d_t)
     most, pulled = P * long + M, Q_n * d_n + Q_t * d_t
     falls = max(rate_n * d_n + rate_t * d_t, 0.0)
     inert = (at.A * d_n * d_n + at.K * d_t * d_t) / (s.diameter[l] * long)

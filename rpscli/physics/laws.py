@@ -38,6 +38,12 @@ def lanes_of(s: Record) -> int:
     return s.x.shape[0] - PADDING  # type: ignore[no-any-return]
 
 
+@inlined
+def length(x: float, y: float) -> float:
+    """Length of a vector."""
+    return math.sqrt(x * x + y * y)
+
+
 S3, S5, S7, S9, S11, S13, S15, S17, S19 = (
     1 / math.factorial(k) * (-1) ** (k // 2 + 1) for k in range(3, 20, 2)
 )
@@ -63,9 +69,8 @@ def sines(x: float) -> tuple[float, float, float]:
 
 
 contact_arm, contact_height = inlined(geometry.contact_arm), inlined(geometry.contact_height)
-cap_beam_lift, inertia = compiled(geometry.cap_beam_lift), inlined(geometry.inertia)
-patch_at = inlined(plane_bed.patch)
-patch_integral = compiled(plane_bed.patch_integral)
+cap_beam_lift, inertia = geometry.cap_beam_lift, inlined(geometry.inertia)
+patch_at, patch_integral = inlined(plane_bed.patch), plane_bed.patch_integral
 
 
 @inlined

@@ -42,7 +42,7 @@ def quintic(
 ) -> Quintic:
     """Bernstein coefficients of the Hermite quintic over a step of length h [h s]."""
     d0, d1 = 0.2 * h * df0, 0.2 * h * df1
-    c0, c1 = 0.05 * h**2 * ddf0, 0.05 * h**2 * ddf1
+    c0, c1 = 0.05 * (h * h) * ddf0, 0.05 * (h * h) * ddf1
     return (f0, f0 + d0, f0 + 2.0 * d0 + c0, f1 - 2.0 * d1 + c1, f1 - d1, f1)
 
 
@@ -180,12 +180,13 @@ def descent_in(piece: NDArray[np.float64]) -> float:
 def slope(b: Quintic, t: float) -> float:
     """df/dt at t."""
     r = 1.0 - t
+    r2, t2 = r * r, t * t
     return 5.0 * (
-        (b[1] - b[0]) * r**4
-        + 4.0 * (b[2] - b[1]) * r**3 * t
-        + 6.0 * (b[3] - b[2]) * r**2 * t**2
-        + 4.0 * (b[4] - b[3]) * r * t**3
-        + (b[5] - b[4]) * t**4
+        (b[1] - b[0]) * (r2 * r2)
+        + 4.0 * (b[2] - b[1]) * (r * r2) * t
+        + 6.0 * (b[3] - b[2]) * r2 * t2
+        + 4.0 * (b[4] - b[3]) * r * (t * t2)
+        + (b[5] - b[4]) * (t2 * t2)
     )
 
 

@@ -119,7 +119,10 @@ def demands_stand(s: Record, l: int, systems: Record) -> bool:
                     return False
             if s.yields[l] > 0 and shear >= spare_strength(s, l, axis * s.n + i):
                 return False
-            shears, accelerations = shears + shear * shear, accelerations + acceleration**2
+            shears, accelerations = (
+                shears + shear * shear,
+                accelerations + acceleration * acceleration,
+            )
         if math.sqrt(shears) > s.largest[0, l, i]:
             return False
         if math.sqrt(accelerations) > s.largest[rows, l, i]:

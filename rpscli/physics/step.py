@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 
 from rpscli.physics.bed import set_patches
-from rpscli.physics.compile import compiled, fma, inlined, together
+from rpscli.physics.compile import compiled, fma, inlined
 from rpscli.physics.devices import act, act_branched_at_stage, add_work, begin_work, push
 from rpscli.physics.ground import g_up_now, ground_now
 from rpscli.physics.laws import (
@@ -18,6 +18,7 @@ from rpscli.physics.laws import (
     felt,
     inertia_unit,
     lanes_of,
+    length,
     lifted_mass,
     motion_at,
     new_rate_of,
@@ -67,7 +68,7 @@ def find(s: Record, at: float, weight: float, equipped: bool) -> None:  # noqa: 
         if equipped:
             u_x, u_y = velocity_with(s, l, place, (n, t), (p, q))
             s.new_square_rate[l] = 2.0 * (u_x * motion.beam_x + u_y * motion.beam_y)
-            s.new_quicker[l] = math.sqrt(motion.beam_x**2 + motion.beam_y**2)
+            s.new_quicker[l] = length(motion.beam_x, motion.beam_y)
 
 
 @compiled
@@ -159,15 +160,13 @@ def find_accelerations(s: Record, k: int) -> None:
         book_powers(s, C[k], weight)
 
 
+@compiled
 def all_stages(s: Record, systems: Record) -> None:
-    """All stages of a lane alone."""
-    for k in range(1, END + 1):
-        advance_to(s, systems, k)
-
-
-@together(all_stages)
-def all_stages_of_lanes(s: Record, systems: Record) -> None:
-    """The same of lanes side by side, written out: the sums become vector instructions."""
+    """All stages; of lanes side by side written out: the sums become vector instructions."""
+    if lanes_of(s) == 1:
+        for k in range(1, END + 1):
+            advance_to(s, systems, k)
+        return
     advance_to(s, systems, 1)
     advance_to(s, systems, 2)
     advance_to(s, systems, 3)
@@ -268,7 +267,7 @@ def renew(s: Record, l: int) -> None:
     u_x, u_y = velocity_with(s, l, place, (n, t), (p, q))
     s.speed[l] = math.sqrt(u_x * u_x + u_y * u_y)
     s.square_rate[l] = 2.0 * (u_x * motion.beam_x + u_y * motion.beam_y)
-    s.quicker[l] = math.sqrt(motion.beam_x**2 + motion.beam_y**2)
+    s.quicker[l] = length(motion.beam_x, motion.beam_y)
     s.bend[0, l], s.shaking[0, l] = motion.bend_x, ground + motion.beam_x
     if ways_of(s) == 2:
         s.bend[1, l], s.shaking[1, l] = motion.bend_y, ground_y + motion.beam_y

@@ -47,8 +47,8 @@ def _text(value: Any, indent: str) -> str:
 
 
 def versions() -> dict[str, str | None]:
-    """Versions of rps, Python, numpy and numba, without importing any of them."""
-    others = {name: installed(name) for name in ("numpy", "numba")}
+    """Versions of rps, Python, numpy and llvmlite, without importing any of them."""
+    others = {name: installed(name) for name in ("numpy", "llvmlite")}
     return {"rps": VERSION, "python": platform.python_version(), **others}
 
 

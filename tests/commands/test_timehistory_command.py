@@ -11,7 +11,6 @@ import pytest
 from paper_structures import known
 from PIL import Image
 
-from rpscli.analyses.kernels.history import is_ready
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.timehistory import time_history
 from rpscli.case.case import load_case
@@ -270,26 +269,12 @@ def test_an_animation(rps: Invoke, rps_json: InvokeJson) -> None:
 
 def test_the_first_compilation_is_announced(rps: Invoke, monkeypatch: pytest.MonkeyPatch) -> None:
     assert "compiling" not in rps("timehistory", "small.yaml").stderr
-    monkeypatch.setattr("rpscli.physics.compile.is_compiled", lambda _: False)
-    monkeypatch.setattr("rpscli.analyses.kernels.history._ready", set())
+    monkeypatch.setattr("rpscli.physics.kernels.is_ready", lambda *_: False)
     monkeypatch.setattr("rpscli.analyses.kernels.history._begun", set())
     heard = rps("timehistory", "small.yaml").stderr
     assert heard.count("compiling the kernel") == 1
     monkeypatch.setattr("rpscli.analyses.kernels.history._begun", set())
     assert rps("timehistory", "small.yaml", "--quiet").stderr == ""
-
-
-def test_machine_code_of_another_installation_is_not_ours(
-    rps: Invoke, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
-    """numba keeps it by the place of the sources: two environments compile, and both say so."""
-    rps("timehistory", "small.yaml")
-    ready = "rpscli.analyses.kernels.history"
-    monkeypatch.setattr(f"{ready}._ready", set())
-    assert is_ready(1, 1)
-    monkeypatch.setattr(f"{ready}._ready", set())
-    monkeypatch.setattr("rpscli.physics.compile.SOURCES", tmp_path)
-    assert not is_ready(1, 1)
 
 
 def test_the_cost_of_a_long_history_is_told_before_it_begins(rps: Invoke) -> None:

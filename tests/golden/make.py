@@ -142,7 +142,7 @@ def runs() -> Iterator[Run]:
 
 MASKS = (
     (
-        r'"(rps_version|python|numpy|numba|scipy|matplotlib|written|seconds|solver)": [^,\n]*',
+        r'"(rps_version|python|numpy|llvmlite|scipy|matplotlib|written|seconds|solver)": [^,\n]*',
         r'"\1": _',
     ),
     (r'"(sha256|digest)": "[0-9a-f]+"', r'"\1": _'),

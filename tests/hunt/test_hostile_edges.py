@@ -11,7 +11,6 @@ from __future__ import annotations
 import json
 import math
 import os
-import runpy
 import shutil
 import signal
 import time
@@ -33,7 +32,9 @@ from hunt.trials import PROMISED, hunt, judged, mutated, shares
 from rpscli import registry
 from rpscli.analyses.verification import ANSWERS, problem_files
 from rpscli.cli import program
-from rpscli.physics.compile import cache_folder
+from rpscli.compiler.functions import Program
+from rpscli.compiler.objects import Kept
+from rpscli.compiler.values import DOUBLE
 from rpscli.plugins import (
     Column,
     Found,
@@ -345,40 +346,26 @@ def test_killed_studies(long: bool) -> None:
     hunt("killed studies", trial, 1, 160 if long else None)
 
 
-PROGRAM = """
-from rpscli.physics import compile as compilation
-@compilation.kernel
 def four(x: float) -> float:
     return 4.0 * x
-assert four(0.5) == 2.0
-found = sum(four.stats.cache_hits.values()), compilation.is_compiled("four")
-compilation.remember_compiled("four")
-"""
 
 
 @shares
-def test_caches(long: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_caches(long: bool) -> None:
     """Machine code that is not what was written is compiled anew, and is then whole."""
-    Path("kernel.py").write_text(PROGRAM, encoding="utf-8")
-    monkeypatch.setenv("RPS_CACHE_DIR", str(Path("cache").absolute()))
-
-    def hits() -> int:
-        cache_folder.cache_clear()
-        return int(runpy.run_path("kernel.py")["found"][0])
+    program = Program()
+    program.add(four, [DOUBLE], "@four")
+    Path("cache").mkdir()
+    store, file = Kept(Path("cache")), Path("cache/four.o")
 
     def trial(random: Random) -> str:
-        hits()
-        file = random.choice(sorted(Path("cache").rglob("*.nb[ci]")))
+        code = store.get(file.name, program.text)
         data = bytearray(file.read_bytes())
-        whole = bytes(data)
         damage(data, random, DAMAGES[:-1])
         file.write_bytes(data)
-        same = bytes(data) == whole
-        assert (hits(), hits()) == (int(same), 1)
-        return file.suffix
+        assert store.find(file.name) in (None, code)
+        assert store.get(file.name, program.text) == code
+        assert store.find(file.name) == code
+        return "whole"
 
-    try:
-        hunt("caches", trial, 10, 200 if long else None)
-    finally:
-        monkeypatch.undo()
-        cache_folder.cache_clear()
+    hunt("caches", trial, 10, 200 if long else None)

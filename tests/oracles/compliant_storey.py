@@ -22,7 +22,8 @@ from typing import Any
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from rpscli.physics.compile import compiled, kernel
+from rpscli.compiler.functions import Program
+from rpscli.compiler.objects import Entry, kind_of_argument, machine_code
 
 from .storey_lagrangian import Array, OracleSystem, StoreyLagrangian
 
@@ -163,7 +164,6 @@ class CompliantStorey:
         return y, side, not bedded
 
 
-@compiled
 def pressed(depth: float, turn: float, rate: float, turn_rate: float, tau: float, B: float) -> Any:
     """Integrals of p and p xi over -B..B, over b: depth + turn xi with its rate, both cut at 0."""
     low, high = -B, B
@@ -184,10 +184,10 @@ def pressed(depth: float, turn: float, rate: float, turn_rate: float, tau: float
     return a * (high - low) + c * square, a * square + c * cube
 
 
-@compiled
 def rates(y: Any, out: Array, a_g: float, n: int, c: Array, M: Array, K: Array, D: Array) -> None:
     """y = [theta, v, u.., theta', v', u'..]; c as `follow` packs it."""
-    H, B, R, alpha, columns, beam, total, g, icm, bed, tau = c
+    H, B, R, alpha, columns = c[0], c[1], c[2], c[3], c[4]
+    beam, total, g, icm, bed, tau = c[5], c[6], c[7], c[8], c[9], c[10]
     theta, v, omega, rise = y[0], y[1], y[2 + n], y[3 + n]
     w = 0.5 * v + H * (1.0 - math.cos(theta))
     dw = 0.5 * rise + H * math.sin(theta) * omega
@@ -216,29 +216,34 @@ def rates(y: Any, out: Array, a_g: float, n: int, c: Array, M: Array, K: Array, 
     out[3 + n] = (force - (0.5 * columns + beam + total) * g) / (own + total)
 
 
-@kernel
 def follow(
-    y: Array, acc: Array, dt: float, parts: int, n: int, c: Array, M: Array, K: Array, D: Array,
-    k1: float, limit: float,
-) -> Any:  # fmt: skip
-    """Largest |theta| and base shear at all steps."""
-    k = np.zeros((4, y.size))
-    largest, shear, h = abs(y[0]), 0.0, dt / parts
-    for i in range(acc.size - 1):
+    y: Array, k: Array, found: Array, acc: Array, dt: float, parts: int, n: int, c: Array, M: Array,
+    K: Array, D: Array, k1: float, limit: float,
+) -> None:  # fmt: skip
+    """Largest |theta| and base shear at all steps [k (5, y), found (2,)]."""
+    largest, shear, h, at = abs(y[0]), 0.0, dt / parts, k[4]
+    for i in range(acc.shape[0] - 1):
         for part in range(parts):
             a0 = acc[i] + (acc[i + 1] - acc[i]) * part / parts
             a1 = acc[i] + (acc[i + 1] - acc[i]) * (part + 1) / parts
             rates(y, k[0], a0, n, c, M, K, D)
-            rates(y + 0.5 * h * k[0], k[1], 0.5 * (a0 + a1), n, c, M, K, D)
-            rates(y + 0.5 * h * k[1], k[2], 0.5 * (a0 + a1), n, c, M, K, D)
-            rates(y + h * k[2], k[3], a1, n, c, M, K, D)
-            y = y + h / 6.0 * (k[0] + 2.0 * k[1] + 2.0 * k[2] + k[3])
+            for j in range(y.shape[0]):
+                at[j] = y[j] + 0.5 * h * k[0, j]
+            rates(at, k[1], 0.5 * (a0 + a1), n, c, M, K, D)
+            for j in range(y.shape[0]):
+                at[j] = y[j] + 0.5 * h * k[1, j]
+            rates(at, k[2], 0.5 * (a0 + a1), n, c, M, K, D)
+            for j in range(y.shape[0]):
+                at[j] = y[j] + h * k[2, j]
+            rates(at, k[3], a1, n, c, M, K, D)
+            for j in range(y.shape[0]):
+                y[j] += h / 6.0 * (k[0, j] + 2.0 * k[1, j] + 2.0 * k[2, j] + k[3, j])
             largest = max(largest, abs(y[0]))
             base = 2.0 * c[2] * (math.sin(c[3]) - math.sin(c[3] - abs(y[0])))
             shear = max(shear, abs(k1 * (y[2] - (base if y[0] >= 0.0 else -base))))
+            found[0], found[1] = largest, shear
             if largest > limit:
-                return largest, shear
-    return largest, shear
+                return
 
 
 def resolved(
@@ -266,5 +271,11 @@ def resolved(
     y = np.zeros(4 + 2 * n)
     y[1] = -2.0 * settled
     acc = np.concatenate([acceleration, np.zeros(round(seconds / dt))])
-    largest, shear = follow(y, acc, dt, parts, n, c, M, K, D, float(above.stiffnesses[0]), limit)
-    return largest, shear
+    arrays = [np.ascontiguousarray(each, dtype=float) for each in (M, K, D)]
+    found = np.array([abs(y[0]), 0.0])
+    given = y, np.zeros((5, y.size)), found, acc, float(dt), parts, n, c, *arrays
+    given = *given, float(above.stiffnesses[0]), float(limit)
+    program, kinds = Program(), [kind_of_argument(each) for each in given]
+    program.add(follow, kinds, "@follow")
+    Entry(machine_code(program.text()), "follow", kinds, None)(*given)
+    return float(found[0]), float(found[1])

@@ -9,10 +9,10 @@ import shutil
 import signal
 import sqlite3
 import stat
-import sys
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing
 from pathlib import Path
 
@@ -20,11 +20,12 @@ import numpy as np
 import pytest
 from paper_structures import known, needs_compiled_kernels, printed_by
 
-from rpscli.physics import compile as compilation
-from rpscli.physics import prepare
-from rpscli.physics.compile import CONSTANTS, cache_folder, kernel, sources_digest
-from rpscli.physics.follow import hear
-from rpscli.physics.prepare import compile_kernel  # workers have one of their own
+from rpscli.compiler.functions import Program
+from rpscli.compiler.objects import DIGEST, Entry, Kept
+from rpscli.compiler.values import DOUBLE
+from rpscli.physics import kernels
+from rpscli.physics.integrate import hear
+from rpscli.physics.kernels import OTHERS, SOURCES, cache_folder, not_kept, sources_digest
 from rpscli.physics.state import Field, records
 from rpscli.user_cache import alone_in, user_cache
 
@@ -68,7 +69,6 @@ def test_the_place_is_that_of_the_user_then_of_the_system_then_none(
         folder = cache_folder()
         assert (folder and folder.parent) == parent
         assert folder is None or folder.is_dir()
-    assert kernel(twice)(3.0) == 6.0
 
 
 owners = pytest.mark.skipif(not hasattr(os, "getuid"), reason="folders have no owner here")
@@ -116,21 +116,22 @@ def test_a_temporary_folder_that_somebody_else_made_is_not_used(
         assert user_cache() is None
 
 
-@pytest.mark.parametrize("source", ["laws.py", "devices.py", CONSTANTS.name])
+@pytest.mark.parametrize(
+    "source", ["physics/laws.py", "physics/devices.py", "constants.py", "compiler/values.py"]
+)
 def test_the_folder_is_named_after_the_sources(
     fresh_folder: pytest.MonkeyPatch, tmp_path: Path, source: str
 ) -> None:
-    """A changed kernel must not meet machine code of the old one, inlined functions included."""
+    """A changed kernel, or compiler, must not meet machine code of the old one."""
     fresh_folder.setenv("RPS_CACHE_DIR", str(tmp_path / "cache"))
-    sources = tmp_path / "physics"
-    shutil.copytree(compilation.SOURCES, sources, ignore=shutil.ignore_patterns("__pycache__"))
-    constants = shutil.copy(CONSTANTS, tmp_path)
-    fresh_folder.setattr(compilation, "SOURCES", sources)
-    fresh_folder.setattr(compilation, "CONSTANTS", Path(constants))
+    places = [tmp_path / place.name for place in (SOURCES, *OTHERS)]
+    for place, copy in zip((SOURCES, *OTHERS), places, strict=True):
+        (shutil.copytree if place.is_dir() else shutil.copy)(place, copy)  # type: ignore[operator]
+    fresh_folder.setattr(kernels, "SOURCES", places[0])
+    fresh_folder.setattr(kernels, "OTHERS", tuple(places[1:]))
     before = known(cache_folder())
-    here = Path(compilation.__file__).parent
-    assert before.name == f"kernels-{sources_digest(here, CONSTANTS)}"  # wherever they are
-    with (tmp_path if source == CONSTANTS.name else sources).joinpath(source).open("a") as file:
+    assert before.name == f"kernels-{sources_digest(SOURCES, *OTHERS)}"  # wherever they are
+    with tmp_path.joinpath(source).open("a") as file:
         file.write("\n")
     cache_folder.cache_clear()
     assert known(cache_folder()) != before
@@ -139,76 +140,69 @@ def test_the_folder_is_named_after_the_sources(
 def test_what_physics_imports_decides_about_no_number_but_for_the_constants() -> None:
     imported = {
         name
-        for source in compilation.SOURCES.rglob("*.py")
+        for source in SOURCES.rglob("*.py")
         for node in ast.walk(ast.parse(source.read_text(encoding="utf-8")))
         if isinstance(node, ast.ImportFrom)
         and (name := str(node.module)).startswith("rpscli.")
-        and not name.startswith("rpscli.physics")
+        and not name.startswith(("rpscli.physics", "rpscli.compiler"))
     }
     assert imported <= {"rpscli.constants", "rpscli.errors", "rpscli.user_cache"}
 
 
-TWO_RECORDS = """
-import sys
-import numpy as np
-from rpscli.physics.compile import kernel
-
-@kernel
-def inner(record) -> float:
-    total = 0.0
-    for i in range(record.x.shape[0]):
-        total += record.x[i]
-    BULK
-    return total * record.y
-
-@kernel
-def outer(records) -> float:
-    return inner(records[0])
-
-KINDS = {
-    "small": np.dtype([("y", float), ("x", float, (3,)), ("z", float, (2,))]),
-    "large": np.dtype([("z", float, (20,)), ("x", float, (7,)), ("y", float)]),
-}
-for name in sys.argv[1:]:
-    records = np.ones(1, KINDS[name]).view(np.recarray)
-    records.y = 4.0
-    print(round(outer(records), 9), sum(outer.stats.cache_hits.values()))
-"""
-
-
-@pytest.mark.long
-@needs_compiled_kernels
-def test_code_of_one_record_is_not_called_for_another(tmp_path: Path) -> None:
-    """Compiled by two processes, loaded by a third."""
-    program = tmp_path / "program.py"
-    # Were it shorter, the compiler would copy the inner function into the outer one.
-    bulk = "\n    ".join(
-        f"total += np.cos(total) * np.sin({i}.0 * record.y) * 0.0" for i in range(60)
-    )
-    program.write_text(TWO_RECORDS.replace("BULK", bulk))
-    for kinds, printed in (
-        (("small",), "12.0 0\n"),
-        (("large",), "28.0 0\n"),
-        (("small", "large"), "12.0 1\n28.0 2\n"),
-    ):
-        found = printed_by(str(program), *kinds, RPS_CACHE_DIR=str(tmp_path / "cache"))
-        assert found == printed
+def run_of_kernels(cache: Path, **more: str) -> str:
+    """What a process prints that computes one history, with its cache in a folder."""
+    script = "from physics import test_without_compilation as t; print(t.everything(1)['several'])"
+    return printed_by("-c", script, RPS_CACHE_DIR=str(cache), **more)
 
 
 @needs_compiled_kernels
-def test_other_processes_compile_and_run_nothing_from_the_working_folder(
-    fresh_folder: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
-    (tmp_path / "numba.py").write_text("open('was_run', 'w').close()\n")
-    fresh_folder.chdir(tmp_path)
-    fresh_folder.setenv("RPS_CACHE_DIR", str(tmp_path / "cache"))
-    fresh_folder.setenv("NUMBA_DISABLE_JIT", "1")  # the others: they have nothing to compile
+def test_processes_that_compile_at_once_leave_one_whole_kernel(tmp_path: Path) -> None:
+    """Four of them; and a fifth takes what they left."""
+    with ThreadPoolExecutor(4) as pool:
+        four = list(pool.map(lambda _: run_of_kernels(tmp_path), range(4)))
+    (folder,) = (each for each in tmp_path.glob("kernels-*"))
+    assert [file.suffix for file in sorted(folder.iterdir()) if file.name != "saving"] == [".o"]
+    before = {file: file.stat().st_mtime_ns for file in folder.glob("*.o")}
+    assert {*four, run_of_kernels(tmp_path)} == {four[0]}
+    assert {file: file.stat().st_mtime_ns for file in folder.glob("*.o")} == before
 
-    for part in ("compile_alone", "compile_whole"):
-        fresh_folder.setattr(prepare, part, lambda *_: None)
-    fresh_folder.setattr(sys, "path", [place for place in sys.path if place])
-    compile_kernel(1, 1)
-    assert not (tmp_path / "was_run").exists()
+
+@needs_compiled_kernels
+@pytest.mark.posix
+def test_a_cache_that_cannot_be_written_stops_nothing(tmp_path: Path) -> None:
+    """A home that is read only, before and after it holds the kernel; root may write anyway."""
+    cache = tmp_path / "cache"
+    cache.mkdir(mode=0o500)
+    elsewhere = {"XDG_CACHE_HOME": str(tmp_path / "other")}
+    assert run_of_kernels(cache, **elsewhere) == run_of_kernels(tmp_path / "fresh")
+    (kept,) = (tmp_path / "fresh").glob("kernels-*")
+    kept.chmod(0o500)
+    assert run_of_kernels(tmp_path / "fresh") == run_of_kernels(cache, **elsewhere)
+
+
+@needs_compiled_kernels
+def test_damaged_machine_code_is_made_anew(tmp_path: Path) -> None:
+    made = []
+
+    def make() -> str:
+        made.append(True)
+        return program_of(twice)
+
+    store = Kept(tmp_path)
+    code = store.get("twice.o", make)
+    assert store.get("twice.o", make) == code
+    assert len(made) == 1
+    for damaged in (b"", code, code[:-1] + bytes(DIGEST), code[: len(code) // 2]):
+        (tmp_path / "twice.o").write_bytes(damaged)
+        assert store.get("twice.o", make) == code
+        assert (tmp_path / "twice.o").read_bytes()[:-DIGEST] == code
+    assert len(made) == 5
+
+
+def program_of(function: Callable[..., float]) -> str:
+    program = Program()
+    program.add(function, [DOUBLE], "@f")
+    return program.text()
 
 
 HISTORIES = """
@@ -251,15 +245,15 @@ def test_right_after_the_compilation_bits_are_those_of_later(tmp_path: Path) -> 
 def test_a_full_disk_keeps_nothing_and_stops_nothing(
     fresh_folder: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    fresh_folder.setenv("RPS_CACHE_DIR", str(tmp_path))
-    made = kernel(twice)
-
     def full(*_: object) -> None:
         raise OSError(errno.ENOSPC, "No space left on device")
 
-    fresh_folder.setattr("numba.core.caching.IndexDataCacheFile.save", full)
+    fresh_folder.setattr(os, "fdopen", full)
+    not_kept.cache_clear()
     with pytest.warns(UserWarning, match=rf"{tmp_path}.*No space left.*make room"):
-        assert made(2.0) == 4.0
+        code = Kept(tmp_path, not_kept=not_kept).get("f.o", lambda: program_of(twice))
+    assert Entry(code, "f", [DOUBLE], DOUBLE)(2.0) == 4.0
+    assert [*tmp_path.iterdir()] == []
 
 
 @pytest.mark.posix

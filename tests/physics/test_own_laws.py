@@ -236,6 +236,10 @@ def test_what_a_law_may_not_give_ends_the_history(name: str, law: Any) -> None:
     assert failure is not None
     assert said in failure
     assert "laws of other packages: own" in failure
+    if law is raises:
+        assert failure.endswith(", 150000): ValueError: too fast")
+    if law is no_force:
+        assert failure.endswith(": gives nan")
 
 
 def unknown_to_numba(path: float, speed: float, c: float) -> float:

@@ -8,7 +8,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, TypeAlias
 
-import numba
 import numpy as np
 import pytest
 from paper_structures import FLAT, needs_compiled_kernels, podium, printed_by, waves
@@ -19,25 +18,19 @@ from rpscli.analyses.kernels.systems import stacked_systems
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.model.devices import FrictionDamper, RollingResistance, Stop, Tendon, ViscousDamper
 from rpscli.model.impact import ImpactLaw
-from rpscli.physics.compile import OPTIONS
-from rpscli.physics.fields import fields_of
-from rpscli.physics.follow import integrate
+from rpscli.physics.integrate import integrate
 from rpscli.physics.run import Run
 from rpscli.physics.state import (
     IMPACT,
     LANES,
     RECONTACT,
     SLIDING,
-    STATE,
     STICKING,
     STOP_LEFT,
     STOP_MET,
     TENDON_YIELDING,
     UPLIFT,
-    Record,
-    records,
 )
-from rpscli.physics.step import accelerate
 from rpscli.records.ground_motion import MotionComponents
 
 Histories: TypeAlias = dict[str, list[dict[str, Any]]]
@@ -118,7 +111,7 @@ def as_python(function: str, **environment: str) -> Any:
     script = f"import json; from physics import {__name__.rpartition('.')[2]} as here\n"
     script += f"print(json.dumps(here.{function}()))"
     options = ("-P", "-W", "error", "-c", script)
-    return json.loads(printed_by(*options, **{"NUMBA_DISABLE_JIT": "1"} | environment))
+    return json.loads(printed_by(*options, **{"RPS_INTERPRETED": "1"} | environment))
 
 
 @pytest.fixture(scope="module")
@@ -151,17 +144,4 @@ def test_the_histories_compared_are_not_trivial(interpreted: Histories) -> None:
 @needs_compiled_kernels
 def test_python_and_machine_code_agree_under_both_components(tmp_path: Path) -> None:
     assert as_python("digest_of_a_pair", RPS_CACHE_DIR=str(tmp_path)) == digest_of_a_pair()
-    assert not [*tmp_path.rglob("*.compiled")]  # which would tell others that they have it
-
-
-@needs_compiled_kernels
-@pytest.mark.parametrize("ways", [1, 2])
-def test_loops_over_lanes_become_vector_instructions(ways: int) -> None:
-    def accelerate_all(state: Record) -> None:
-        accelerate(fields_of(state[0]), 0.5)
-
-    fresh: Any = numba.njit(accelerate_all, **OPTIONS)
-    fresh(records(STATE, 1, ways, LANES))
-    ((_, code),) = fresh.inspect_llvm().items()
-    assert "x double>" in code
-    assert "= load double" not in code  # nothing is left that goes lane by lane
+    assert not [*tmp_path.rglob("*.o")]

@@ -40,7 +40,7 @@ def test_run_json_says_what_was_run(tmp_path: Path) -> None:
     assert run["inputs"] == {"scale": 2.0}
     assert run["file"] == "../x.yaml"  # a project may move as a whole
     assert run["files"] == ["a.csv"]
-    assert set(run["versions"]) == {"rps", "python", "numpy", "numba"}
+    assert set(run["versions"]) == {"rps", "python", "numpy", "llvmlite"}
 
 
 def test_files_of_an_earlier_run_that_are_no_longer_made_go_away(tmp_path: Path) -> None:

@@ -318,7 +318,3 @@ def test_points_that_change_with_half_the_steps_are_named(monkeypatch: pytest.Mo
     (found,) = notes(Points(4))  # the first and the third
     assert found.startswith("steps: of 2 points (of 4) computed again")
     assert "point 3 (" in found
-    monkeypatch.setattr(summary, "is_ready", lambda *_: False)
-    (found,) = notes(Points(4))
-    assert "steps of half the length was not tried" in found
-    assert "the kernel that computes them is not compiled yet" in found

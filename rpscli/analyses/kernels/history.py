@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import hashlib
 import math
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import AbstractContextManager, ExitStack, contextmanager
+from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager, ExitStack
 from dataclasses import dataclass, replace
 from itertools import accumulate
 from threading import Lock
@@ -107,10 +106,10 @@ def run_of(
 
 def follow(run: Run, lanes: int, *, interruptible: bool = False) -> None:
     """Follow every history of a run, of one component or of pairs; writes `run.results`."""
-    from rpscli.physics.follow import integrate
+    from rpscli.physics.integrate import integrate
 
-    with compiled(run.ways, lanes):
-        integrate(run, lanes, interruptible=interruptible)
+    prepare(run.ways, lanes)
+    integrate(run, lanes, interruptible=interruptible)
 
 
 @dataclass(frozen=True, eq=False)
@@ -229,8 +228,6 @@ _listeners: list[Listener] = []
 _begun: set[str] = set()
 """Kernels that somebody compiles, or has compiled."""
 _lock = Lock()
-_ready: set[str] = set()
-"""Kernels that are known to be compiled: a file tells, which is looked for once."""
 
 KERNELS = {
     (1, 1): "kernel",
@@ -246,45 +243,18 @@ def announce_to(listener: Listener) -> None:
     _listeners[:] = [listener]
 
 
-def is_ready(ways: int, lanes: int) -> bool:
-    """True if the kernel was compiled before, so that calling it starts at once."""
-    from rpscli.physics.compile import is_compiled
+def prepare(ways: int, lanes: int) -> None:
+    """Compile a kernel that is not compiled yet, and tell of it."""
+    from rpscli.physics.integrate import in_background
+    from rpscli.physics.kernels import is_ready, kernel
 
-    name = KERNELS[ways, lanes]
-    if name not in _ready and is_compiled(_mark(name)):
-        _ready.add(name)
-    return name in _ready
-
-
-def _mark(name: str) -> str:
-    """A kernel of this installation: machine code is kept by the place of its sources."""
-    from rpscli.physics.compile import SOURCES
-
-    return f"{name} {hashlib.sha256(str(SOURCES).encode()).hexdigest()[:8]}"
-
-
-@contextmanager
-def compiled(ways: int, lanes: int) -> Iterator[None]:
-    """Around a call of the kernel: announce the compilation if there is one, and remember it."""
-    from rpscli.physics.compile import cache_folder, remember_compiled
-    from rpscli.physics.prepare import can_prepare, compile_kernel
-
-    name = KERNELS[ways, lanes]
     if is_ready(ways, lanes):
-        yield
         return
+    name = KERNELS.get((ways, lanes), "kernel")
     with _lock:
         first = name not in _begun
         _begun.add(name)
     with ExitStack() as told:
-        if first:
-            for listener in _listeners:
-                told.enter_context(listener(name))
-            compile_kernel(ways, lanes)
-            if cache_folder() is not None:  # else the first call compiles
-                told.close()
-        yield
-    if can_prepare():
-        remember_compiled(_mark(name))
-    else:  # there is no machine code that other processes find
-        _ready.add(name)
+        for listener in _listeners if first else ():
+            told.enter_context(listener(name))
+        in_background(kernel, ways, lanes)

@@ -99,8 +99,6 @@ def _system(structure: PodiumStructure, settings: TimeHistorySettings) -> Record
 
 def fill_podium(record: Record, structure: PodiumStructure) -> None:
     """The rocking storey, its devices with the constants of their laws, and what it stands on."""
-    from rpscli.physics.compile import address_of  # numba is slow
-
     b = structure.bearing
     record["n"], record["axes"] = structure.storeys, 1
     record["R"], record["alpha"], record["beta"] = b.semi_diagonal, b.alpha, b.beta
@@ -117,8 +115,10 @@ def fill_podium(record: Record, structure: PodiumStructure) -> None:
     record["shock_time"] = structure.shock_time
     record["floors_jump"] = structure.impact_law.floors_jump
     if (own := (impact := structure.impact_law).own) is not None:
+        from rpscli.physics.own_laws import address_of  # few have such
+
         numbers = impact.factor * (1.0 - impact.loss), impact.factor * impact.loss
-        record["impact_law"] = address_of(own.restitution, 5 + len(impact.constants))
+        record["impact_law"] = address_of(own.restitution, own.taken()[own.restitution])
         record["impact_constants"][: 2 + len(impact.constants)] = *numbers, *impact.constants
     record["columns"], record["devices"] = structure.columns, len(structure.devices)
     for i, device in enumerate(structure.devices):
@@ -126,9 +126,12 @@ def fill_podium(record: Record, structure: PodiumStructure) -> None:
         constants = device.constants(structure)
         record["device_constants"][i, : len(constants)] = constants
         if isinstance(device, OwnDamper):
-            law, taken = device.law, 2 + len(constants)
-            addresses = address_of(law.force, taken), address_of(law.watched, taken)
-            record["own_law"][i] = *addresses, law.linear is None
+            from rpscli.physics.own_laws import address_of
+
+            law, taken = device.law, device.law.taken()
+            watched = 0 if law.watched is None else address_of(law.watched, taken[law.watched])
+            record["own_law"][i, 0] = address_of(law.force, taken[law.force])
+            record["own_law"][i, 1:] = watched, law.linear is None
     if (bed := structure.bed) is not None:
         record["compliant"], record["bed_uplift"] = 1, bed.uplift_rotation
         record["bed_full"], record["bed_height"] = bed.full_rotation, bed.height

@@ -291,7 +291,7 @@ MANY = 5000
 """Of what takes a millisecond each."""
 LONG = 10.0
 """Time that is worth a word [s]."""
-USUALLY = "half a minute, some minutes on a busy machine"
+USUALLY = "a few seconds"
 FIRST_LINE, GROWTH = 2.0, 1.6
 """Seconds until the first plain line; the next ones come after ever longer times."""
 
@@ -372,7 +372,7 @@ def patience(
 def announce_compilation(terminal: Terminal) -> None:
     """Say so if a kernel has to be compiled, and how long that takes."""
     from rpscli.analyses.kernels.history import announce_to
-    from rpscli.physics.compile import cache_folder
+    from rpscli.physics.kernels import cache_folder
 
     @contextmanager
     def announced(kernel: str) -> Iterator[None]:

@@ -8,11 +8,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rpscli.analyses.demand import WORTH_LANES, demands
-from rpscli.analyses.kernels.history import is_ready
+from rpscli.analyses.demand import demands
 from rpscli.analyses.largest_demands import Demand
 from rpscli.analyses.result_quantities import LIMITED, ResultQuantity
-from rpscli.physics.state import LANES
 from rpscli.records.ground_motion import LEAST, MOST
 from rpscli.records.measures import measure_label
 from rpscli.records.recordings import clusters
@@ -169,21 +167,11 @@ def step_notes(table: Table) -> Iterator[str]:
     layout, known = table.layout, np.flatnonzero(~table.failed)
     some = known[:: max(-(-len(known) // COMPUTED_AGAIN), 1)].tolist()
     requests = [layout.context.history(layout[number]) for number in some]
-    ways = {1 if of.motion.y is None else 2 for of in requests}
-    # In lanes, or one by one as whole histories are followed.
-    together = len(requests) >= WORTH_LANES and all(is_ready(way, LANES) for way in ways)
-    if not (together or all(is_ready(way, 1) for way in ways)):
-        yield (
-            "steps: whether points change with steps of half the length was not tried: all of them"
-            " were stored before, and the kernel that computes them is not compiled yet"
-        )
-        return
     finer = [
         replace(of, settings=replace(of.settings, accuracy=2.0 * of.settings.accuracy))
         for of in requests
     ]
-    worth = WORTH_LANES if together else len(finer) + 1
-    after = zip(some, demands(finer, worth_lanes=worth), strict=True)
+    after = zip(some, demands(finer), strict=True)
     changes = sorted((_change(table, *each) for each in after), key=lambda change: -change[0])
     if names := [text for change, text in changes if change > 0.0]:
         more = f" and {len(names) - NAMED} more" * (len(names) > NAMED)
