@@ -26,7 +26,6 @@ from rpscli.compiler.values import (
     Value,
     Widened,
     described,
-    elements_of,
     is_number,
     joined,
     kind_of,

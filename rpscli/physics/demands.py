@@ -35,6 +35,7 @@ from rpscli.physics.laws import (
     felt,
     felt_at,
     lanes_of,
+    mode_acceleration,
     motion_at,
     new_rate_of,
     new_tilt_of,
@@ -221,9 +222,9 @@ def parts_of(s: Record, l: int) -> int:
 @compiled
 def mode_path(s: Record, r: int, l: int, axis: int) -> Quintic:
     """A mode's displacement over the step just taken."""
-    ddq = -(s.Gamma[r, l] * s.new_shaking[axis, l]) - s.force[r, l]
-    start = s.ddq[0, r, l]
-    return quintic(s.h[l], s.q[r, l], s.dq[r, l], start, s.new_q[r, l], s.new_dq[r, l], ddq)
+    start = mode_acceleration(s, r, l, axis)
+    end = -(s.Gamma[r, l] * s.new_shaking[axis, l]) - s.force[r, l]
+    return quintic(s.h[l], s.q[r, l], s.dq[r, l], start, s.new_q[r, l], s.new_dq[r, l], end)
 
 
 @compiled
@@ -700,14 +701,15 @@ def observe_ways(s: Record) -> None:
 # All of it.
 
 
-@compiled
-def observe(s: Record, systems: Record, log: Record) -> None:
-    """Raise all demands by those of accepted steps."""
+@inlined
+def observe(s: Record, systems: Record, log: Record, stands: bool) -> None:  # noqa: FBT001 -- known
+    """Raise all demands by those of accepted steps; those of the tilt unless all lanes stand."""
     ways = ways_of(s)
     observe_floors(s)
     observe_contacts(s)
-    observe_tilt(s, log)
-    if ways == 2:
+    if not stands:
+        observe_tilt(s, log)
+    if ways == 2 and not stands:
         observe_ways(s)
     for l in range(lanes_of(s)):
         if s.accepted[l] == 0.0 or s.history[l] == NO_HISTORY:
@@ -717,7 +719,7 @@ def observe(s: Record, systems: Record, log: Record) -> None:
             raise_floors(s, l, systems[first : first + ways])
         if s.contacts_rise[l] > 0.0:
             raise_contacts(s, l)
-    if s.equipped > 0:
+    if s.equipped > 0 and not stands:
         observe_devices(s)
 
 

@@ -170,9 +170,24 @@ def falls(s: Record, l: int) -> bool:
     return (v < 0.0) & (v * v > least) & (s.cone[l] > 0.0)  # type: ignore[no-any-return]
 
 
+@inlined
+def check_steps(s: Record, systems: Record, stands: bool) -> None:  # noqa: FBT001 -- known
+    """Accept the steps that are short enough and surely hold no event; of lanes that all stand."""
+    if stands:
+        for l in range(lanes_of(s)):
+            held = surely_held(s, l) & (s.wanted[l] == NOTHING)
+            s.accepted[l] = 1.0 if held else 0.0
+    else:
+        check_all_steps(s)
+    if s.yielding > 0:
+        for l in range(lanes_of(s)):
+            if s.yields[l] > 0 and s.accepted[l] > 0.0 and first_yield(s, l, systems)[0] <= 1.0:
+                s.accepted[l] = 0.0
+
+
 @compiled
-def check_steps(s: Record, systems: Record) -> None:
-    """Accept the steps that are short enough and surely hold no event."""
+def check_all_steps(s: Record) -> None:
+    """The same of any lanes."""
     for l in range(lanes_of(s)):
         moves = s.moves[l] > 0.0
         path, low, high = path_in_range(s, l)
@@ -197,10 +212,6 @@ def check_steps(s: Record, systems: Record) -> None:
                 and s.moves[l] > 0.0
                 and may_change(s, l)
             ):
-                s.accepted[l] = 0.0
-    if s.yielding > 0:
-        for l in range(lanes_of(s)):
-            if s.yields[l] > 0 and s.accepted[l] > 0.0 and first_yield(s, l, systems)[0] <= 1.0:
                 s.accepted[l] = 0.0
 
 

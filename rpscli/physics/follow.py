@@ -28,6 +28,17 @@ from rpscli.physics.devices import (
 from rpscli.physics.events import check_steps, resolve_step
 from rpscli.physics.friction import grip_at, set_limits, sticks
 from rpscli.physics.ground import azimuth_of, log_event, set_ground, time_of
+from rpscli.physics.lanes import (
+    MOVING,
+    STANDING,
+    WAITING,
+    copy_lane,
+    free_lane,
+    is_called,
+    leave,
+    standing_is_next,
+    waiting_place,
+)
 from rpscli.physics.laws import (
     lanes_of,
     length,
@@ -41,6 +52,7 @@ from rpscli.physics.laws import (
 from rpscli.physics.rest import REST_EVERY, is_over
 from rpscli.physics.run import Output
 from rpscli.physics.samples import store_sample, store_within
+from rpscli.physics.standing import stand, stands_exactly
 from rpscli.physics.state import (
     AT_REST,
     BEDDED,
@@ -99,39 +111,138 @@ def follow(
     output: Output,
 ) -> None:
     """Follow every history of `requests` from rest, in a state of one record; writes `results`."""
-    s, lanes = state[0], lanes_of(state[0])
+    if lanes_of(state[0]) > 1:
+        follow_many(state, systems, requests, acceleration, results, output)
+        return
+    s = state[0]
     s.audited = 1 if output.samples.shape[0] > 0 else 0
-    s.waiting, active = 0, 0
-    for l in range(lanes):
-        s.history[l] = NO_HISTORY
-        next_history(s, l, systems, requests, acceleration, results, output)
-        active += 1 if s.history[l] != NO_HISTORY else 0
-    while active > 0 and s.stop == 0:
-        advance(s, systems, output)
-        next_intervals(s, acceleration)
-        for l in range(lanes):
-            if s.attention[l] == 0.0 or s.history[l] == NO_HISTORY:
-                continue
-            first = s.system[l]
-            both = systems[first : first + s.axes]
-            if look_after(s, l, both, output):
-                next_history(s, l, systems, requests, acceleration, results, output)
-                active -= 1 if s.history[l] == NO_HISTORY else 0
+    for history in range(requests.shape[0]):
+        begin_history(s, 0, systems, requests, history, acceleration, output)
+        over = False
+        while not over and s.stop == 0:
+            if stands_exactly(s, 0):
+                advance(s, systems, output, True)  # noqa: FBT003
+            else:
+                advance(s, systems, output, False)  # noqa: FBT003
+            next_intervals(s, acceleration)
+            if s.attention[0] > 0.0:
+                first = s.system[0]
+                over = look_after(s, 0, systems[first : first + s.axes], output)
+        if over:
+            finish_history(s, 0, systems[s.system[0]], results)
 
 
 @compiled
-def advance(s: Record, systems: Record, output: Output) -> None:
-    """A step of all lanes together."""
-    take_steps(s, systems)
-    check_steps(s, systems)
+def follow_many(
+    state: Record,
+    systems: Record,
+    requests: Record,
+    acceleration: Floats,
+    results: Record,
+    output: Output,
+) -> None:
+    """The same, side by side (`lanes`)."""
+    moving, standing = state[MOVING], state[STANDING]
+    for k in range(state.shape[0]):
+        empty(state[k])
+    begin_histories(state, systems, requests, acceleration, output)
+    while moving.present + standing.present > 0 and moving.stop == 0:
+        if standing_is_next(moving, standing):
+            advance(standing, systems, output, True)  # noqa: FBT003
+            next_intervals(standing, acceleration)
+            look_after_all(state, STANDING, systems, results, output)
+        else:
+            advance(moving, systems, output, False)  # noqa: FBT003
+            next_intervals(moving, acceleration)
+            look_after_all(state, MOVING, systems, results, output)
+        call_in(state)
+        if standing.waiting < requests.shape[0]:
+            begin_histories(state, systems, requests, acceleration, output)
+
+
+@compiled
+def empty(s: Record) -> None:
+    """Begin without histories."""
+    s.audited, s.waiting, s.present, s.active = 0, 0, 0, 0
+    for l in range(lanes_of(s)):
+        idle(s, l)
+
+
+@compiled
+def begin_histories(
+    state: Record, systems: Record, requests: Record, acceleration: Floats, output: Output
+) -> None:
+    """Begin histories as long as there is room, where others stand or wait to."""
+    moving, standing, lanes = state[MOVING], state[STANDING], lanes_of(state[MOVING])
+    while standing.waiting < requests.shape[0]:
+        if moving.present + standing.present >= (state.shape[0] - 1) * lanes:
+            return
+        place = STANDING * lanes + free_lane(standing)
+        if standing.active == lanes:
+            place = waiting_place(state)
+        s, l = state[place // lanes], place % lanes
+        begin_history(s, l, systems, requests, standing.waiting, acceleration, output)
+        s.active += 1
+        standing.waiting += 1
+        standing.present += 1
+        if not stands_exactly(s, l):
+            leave(state, STANDING, place)
+            idle(s, l)
+            s.active -= 1
+
+
+@compiled
+def look_after_all(state: Record, k: int, systems: Record, results: Record, output: Output) -> None:
+    """What lanes alone are to do; those whose histories are over, or go on otherwise, leave."""
+    s = state[k]
+    for l in range(lanes_of(s)):
+        if s.attention[l] == 0.0 or s.history[l] == NO_HISTORY:
+            continue
+        first = s.system[l]
+        if look_after(s, l, systems[first : first + s.axes], output):
+            finish_history(s, l, systems[first], results)
+            s.present -= 1
+        elif stands_exactly(s, l) != (k == STANDING):
+            leave(state, k, k * lanes_of(s) + l)
+        else:
+            continue
+        idle(s, l)
+        s.active -= 1
+
+
+@compiled
+def call_in(state: Record) -> None:
+    """Let histories that wait go on where there is room."""
+    moving, standing = state[MOVING], state[STANDING]
+    for k in range(WAITING, state.shape[0]):
+        s = state[k]
+        for l in range(lanes_of(s) if is_called(moving) or is_called(standing) else 0):
+            if s.history[l] == NO_HISTORY:
+                continue
+            to = standing if stands_exactly(s, l) else moving
+            if is_called(to):
+                copy_lane(to, free_lane(to), s, l)
+                to.active += 1
+                idle(s, l)
+                s.active -= 1
+
+
+@inlined
+def advance(s: Record, systems: Record, output: Output, stands: bool) -> None:  # noqa: FBT001 -- known
+    """A step of all lanes together: of those that stand, or of others."""
+    if stands:
+        stand(s)
+    else:
+        take_steps(s, systems)
+    check_steps(s, systems, stands)
     for l in range(lanes_of(s)):
         if s.accepted[l] == 0.0 and not resolve_step(s, l, systems):
             s.accepted[l] = 0.0
-    observe(s, systems, output.log)
+    observe(s, systems, output.log, stands)
     if lanes_of(s) == 1 and s.accepted[0] > 0.0:
         book_flows(s, systems, output)
     accept_steps(s)
-    for l in range(lanes_of(s) if s.yielding > 0 else 0):
+    for l in range(lanes_of(s) if s.yielding > 0 and not stands else 0):
         if s.marked[l] > 0 and s.accepted[l] > 0.0:
             keep_slips(s, l, systems[s.system[l] : s.system[l] + s.axes])
 
@@ -330,7 +441,7 @@ def too_many(s: Record, l: int, system: Record) -> bool:
     """Whether events pile up; sets the outcome."""
     events = 0
     for i in range(EVENT_KINDS):
-        events += s.events[l, i]
+        events += s.events[i, l]
     if events > system.max_events:
         s.outcome[l] = FAILED_TOO_MANY_EVENTS
     elif s.stalled[l] > STALL:
@@ -484,26 +595,6 @@ def slide(s: Record, l: int, system: Record, log: Record, side: int) -> None:
 
 
 @compiled
-def next_history(
-    s: Record,
-    l: int,
-    systems: Record,
-    requests: Record,
-    acceleration: Floats,
-    results: Record,
-    output: Output,
-) -> None:
-    """A lane's history is over: leave its results, and take the next, if there is one."""
-    if s.history[l] != NO_HISTORY:
-        finish_history(s, l, systems[s.system[l]], results)
-    if s.waiting < requests.shape[0]:
-        s.waiting += 1
-        begin_history(s, l, systems, requests, s.waiting - 1, acceleration, output)
-    else:
-        idle(s, l)
-
-
-@compiled
 def idle(s: Record, l: int) -> None:
     """Leave a lane without a history: it takes steps of zero length."""
     s.history[l], s.devices[l], s.outcome[l] = NO_HISTORY, 0, RUNNING
@@ -552,6 +643,7 @@ def begin_history(
     load_devices(s, l, system)
     load_bed(s, l, system)
     clear_results(s, l)
+    s.factors_h[l], s.within_h[l] = -1.0, -1.0
     s.side[l], s.x[l], s.v[l] = 1.0, 0.0, 0.0
     for axis in range(ways):
         s.tilt[axis, l], s.tilt_rate[axis, l] = 0.0, 0.0
@@ -649,7 +741,7 @@ def clear_results(s: Record, l: int) -> None:
     s.energy_lost[l], s.energy_created[l] = 0.0, 0.0
     s.steps[l], s.creating_impacts[l] = 0.0, 0
     for i in range(EVENT_KINDS):
-        s.events[l, i] = 0
+        s.events[i, l] = 0
 
 
 @compiled
@@ -698,7 +790,7 @@ def finish_history(s: Record, l: int, system: Record, results: Record) -> None:
     result.energy_stored = total_energy(s, l, system)
     if s.outcome[l] == RUNNING:
         released = system.initial_rotation != 0.0 or s.max_theta[l] > system.bed_uplift
-        s.outcome[l] = SURVIVED if released or s.events[l, UPLIFT] > 0 else AT_REST
+        s.outcome[l] = SURVIVED if released or s.events[UPLIFT, l] > 0 else AT_REST
     result.outcome, result.phase, result.intervals = s.outcome[l], s.phase[l], s.interval[l]
     result.ways = ways
     if s.phase[l] == STUCK and s.bed_k[l] > 0.0:
@@ -722,7 +814,7 @@ def finish_history(s: Record, l: int, system: Record, results: Record) -> None:
     result.bed_energy, result.bedded_time = s.bed_energy[l], s.bedded_time[l]
     result.impact_number = s.impact_number[l]
     for i in range(EVENT_KINDS):
-        result.events[i] = s.events[l, i]
+        result.events[i] = s.events[i, l]
     half = 2 * ways - 1
     for i in range(s.n):
         result.storey_shear[i] = s.largest[0, l, i]

@@ -60,11 +60,11 @@ def log_row(s: Record, l: int, log: Record, kind: int) -> int:
     row = -1
     if log.shape[0] > 0:
         row = 0
-        for i in range(s.events.shape[1]):
-            row += s.events[l, i]
+        for i in range(s.events.shape[0]):
+            row += s.events[i, l]
         if row >= log.shape[0]:
             row = -1
-    s.events[l, kind] += 1
+    s.events[kind, l] += 1
     return row
 
 

@@ -22,7 +22,7 @@ import math
 from typing import NamedTuple, TypeAlias
 
 from rpscli.physics import geometry, plane_bed
-from rpscli.physics.compile import compiled, inlined
+from rpscli.physics.compile import compiled, fma, inlined
 from rpscli.physics.state import FULL_CONTACT, PADDING, STUCK, Record
 
 
@@ -85,6 +85,13 @@ def patch(s: Record, l: int, x: float) -> tuple[float, float]:
 def phase_of(s: Record, l: int) -> geometry.Phase:
     """Constants of a lane's phase of motion."""
     return geometry.Phase(s.p[l], s.q0[l], s.c[l], s.u0[l], s.v0[l])
+
+
+@inlined
+def mode_acceleration(s: Record, r: int, l: int, axis: int) -> float:
+    """Acceleration of a mode at the start of the step."""
+    force = fma(s.omega2[r, l], s.q[r, l], s.two_xi_omega[r, l] * s.dq[r, l]) - s.freed[r, l]
+    return fma(-s.Gamma[r, l], s.shaking[axis, l], -force)
 
 
 @inlined

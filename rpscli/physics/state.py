@@ -32,6 +32,9 @@ LANES = 32
 """Histories that one core follows at once. Loops over fewer are unrolled by the compiler before it
 looks for vector instructions; more do not fit into the processor's first cache."""
 
+STATES = 5
+"""States of many histories: for those that move, those that stand, and those that wait."""
+
 PADDING = 8
 """Rows that no mode uses, and entries that no lane uses. Without them the rows of one lane would
 all fall into a few lines of the processor's cache, and drive each other out."""
@@ -294,7 +297,7 @@ STATE = (
         creating_impacts="impacts that created energy",
     ),
     Field("record", "ways lanes", WHOLE, "offsets of its records"),
-    Field("events", f"lanes {EVENT_KINDS}", WHOLE, "of each kind"),
+    Field("events", f"{EVENT_KINDS} lanes", WHOLE, "of each kind"),
     *_fields("lanes", "-", scale="factor on the records", steps="taken"),
     # The phase of motion and the range of the tilt in it.
     *_fields(
@@ -457,6 +460,10 @@ STATE = (
     *_fields("lanes", "W", power_upwards="of the dampers between floors upwards, so"),
     *_fields("lanes", "s", bedded_time="in full contact on a bed"),
     *_fields("lanes", "-", impact_number="largest chi"),
+    Field("factors", "6 rows lanes", "mixed", "of the exact step, see `standing`"),
+    *_fields("lanes", "s", factors_h="step that they are of"),
+    Field("within", "16 rows", "mixed", "factors of velocities within the step of the only lane"),
+    *_fields("lanes", "s", within_h="step that they are of"),
     Field("piece", "8", "mixed", "scratch of the search for roots"),
     Field("n", "", WHOLE, "storeys, and modes in each direction: the same in all lanes"),
     Field("axes", "", WHOLE, "directions with modes, see `system`: likewise"),
@@ -466,6 +473,8 @@ STATE = (
     Field("audited", "", WHOLE, "1 where energy flows are integrated"),
     Field("stop", "", WHOLE, "1: histories are to be left where they are"),
     Field("waiting", "", WHOLE, "number of the next request"),
+    Field("active", "", WHOLE, "lanes with a history"),
+    Field("present", "", WHOLE, "histories in it, or waiting for it"),
 )
 
 RESULT = (
@@ -570,12 +579,30 @@ EVENT = (
 )
 
 
+WORDS, MODE_WORDS = "words", "mode_words"
+"""Fields that overlay others of a state, see `record_type`."""
+
+
+def kind_of_field(field: Field) -> int:
+    """0 of numbers of all lanes, 1 of a lane, 2 of its modes, 3 of all else."""
+    if not field.sizes:
+        return 0
+    *sizes, last = field.sizes.split()
+    if last != "lanes" or "stages" in sizes:
+        return 3
+    if "rows" in sizes:
+        return 2 if len(sizes) == 1 else 3
+    return 1
+
+
 @cache
 def record_type(fields: tuple[Field, ...], ways: int = 1, lanes: int = 1) -> np.dtype[Any]:
     """The type of a record of such fields, for so many directions and lanes.
 
-    Fields of one shape stand together: a loop over a mode's lanes then writes either before or
-    behind what it reads, which the compiler can check at once.
+    Fields of one shape stand together, and single numbers before all: a loop over lanes then writes
+    before or behind what it reads, which the compiler can tell. Then come those of lanes, and those
+    of their modes. A lane is copied by `words` (number, lane) and `mode_words` (field, mode, lane),
+    which are all of these.
     """
     sizes = {
         "ways": ways,
@@ -586,16 +613,41 @@ def record_type(fields: tuple[Field, ...], ways: int = 1, lanes: int = 1) -> np.
         "stages": END + 1,
         "demands": 2 * (2 * ways - 1),
     }
-    return np.dtype(
-        [
-            (
-                field.name,
-                np.int64 if field.unit == WHOLE else np.float64,
-                tuple(int(sizes.get(size, size)) for size in field.sizes.split()),
-            )
-            for field in sorted(fields, key=lambda field: (len(field.sizes.split()), field.sizes))
-        ]
+    ordered = sorted(
+        fields, key=lambda field: (kind_of_field(field), len(field.sizes.split()), field.sizes)
     )
+    of, end, before = dict[str, tuple[np.dtype[Any], int]](), 0, 0
+    for field in ordered:
+        number = np.int64 if field.unit == WHOLE else np.float64
+        kind = np.dtype((number, tuple(int(sizes.get(z, z)) for z in field.sizes.split())))
+        if fields is STATE and kind_of_field(field) != before:  # and then all do, of many lanes
+            end = -(-end // LINE) * LINE
+        before, begin = kind_of_field(field), end
+        of[field.name] = kind, begin
+        end = begin + kind.itemsize
+    return record_of(of | (overlays(of) if fields is STATE else {}))
+
+
+LINE = 64
+"""Bytes of a line of the processor's cache, with which the fields of all lanes begin."""
+
+
+def record_of(fields: dict[str, tuple[np.dtype[Any], int]]) -> np.dtype[Any]:
+    """The type of a record with fields of kinds at offsets."""
+    kinds, offsets = zip(*fields.values(), strict=True)
+    return np.dtype({"names": [*fields], "formats": [*kinds], "offsets": [*offsets]})
+
+
+def overlays(of: dict[str, tuple[np.dtype[Any], int]]) -> dict[str, tuple[np.dtype[Any], int]]:
+    """The fields by which a lane is copied."""
+    found = {}
+    for kind, name in enumerate((WORDS, MODE_WORDS), 1):
+        members = [of[field.name] for field in STATE if kind_of_field(field) == kind]
+        words = sum(member.itemsize for member, _ in members) // 8
+        shape = members[0][0].shape
+        shape = (words // shape[-1], shape[-1]) if kind == 1 else (len(members), *shape)
+        found[name] = np.dtype((np.int64, shape)), min(offset for _, offset in members)
+    return found
 
 
 PAGE = 4096
@@ -616,11 +668,11 @@ _kept = local()
 
 
 def scratch(ways: int, lanes: int) -> Record:
-    """A state that this thread keeps, with whatever its last use left there.
+    """States that this thread keeps, with whatever their last use left there (1,) or (STATES,).
 
     A state takes megabytes: made anew for each short history, it would take as long as the history.
     """
     kept, name = vars(_kept), f"{ways} {lanes}"
     if name not in kept:
-        kept[name] = records(STATE, 1, ways, lanes)
+        kept[name] = records(STATE, 1 if lanes == 1 else STATES, ways, lanes)
     return kept[name]

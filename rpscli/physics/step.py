@@ -20,6 +20,7 @@ from rpscli.physics.laws import (
     lanes_of,
     length,
     lifted_mass,
+    mode_acceleration,
     motion_at,
     new_rate_of,
     new_tilt_of,
@@ -93,9 +94,9 @@ def terms(s: Record, k: int) -> int:
 def advance_mode(s: Record, r: int, l: int, axis: int, k: int) -> float:
     """Lead a mode of a lane to stage k; its part of the base shear there [N]."""
     h, omega2, damping, q, dq = s.h[l], s.omega2[r, l], s.two_xi_omega[r, l], s.q[r, l], s.dq[r, l]
-    base = s.shaking[axis, l] if k == 1 else s.new_shaking[axis, l]
-    before = fma(omega2, q, damping * dq) - s.freed[r, l] if k == 1 else s.force[r, l]
-    ddq = fma(-s.Gamma[r, l], base, -before)
+    ddq = fma(-s.Gamma[r, l], s.new_shaking[axis, l], -s.force[r, l])
+    if k == 1:
+        ddq = mode_acceleration(s, r, l, axis)
     s.ddq[k - 1, r, l] = ddq
     far, fast = 0.0, 0.0
     for j in range(terms(s, k)):
@@ -327,10 +328,18 @@ def book_power(
 
 
 @compiled
+def clear_powers(s: Record) -> None:
+    """Nothing has flowed yet."""
+    s.power_input[0] = 0.0
+    s.power_damped[0] = 0.0
+    s.power_bed[0] = 0.0
+    s.power_upwards[0] = 0.0
+
+
+@compiled
 def begin_powers(s: Record) -> None:
     """Begin with those at the start of the step."""
-    s.power_input[0], s.power_damped[0], s.power_bed[0] = 0.0, 0.0, 0.0
-    s.power_upwards[0] = 0.0
+    clear_powers(s)
     for r in range(s.axes * s.n):
         s.new_dq[r, 0] = s.dq[r, 0]
     book_power(s, s.time[0], A[END, 0], tilt_of(s, 0), rate_of(s, 0))

@@ -14,15 +14,20 @@ from rpscli.physics.state import LANES
 
 LANE_BY_LANE = {
     "act_branched_at_stage": 1,
-    "advance": 2,
+    "advance": 1,
     "begin_work": 1,
-    "check_steps": 2,
-    "follow": 2,
+    "call_in": 1,
+    "check_all_steps": 1,
+    "check_steps": 1,
+    "empty": 1,
+    "free_lane": 1,
     "free_storeys": 1,
+    "look_after_all": 1,
     "next_intervals": 1,
     "observe": 1,
     "observe_devices": 2,
     "observe_tilt": 1,
+    "stand": 1,
 }
 """Loops of which a lane rarely has something to do, by their functions."""
 
