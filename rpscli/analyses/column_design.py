@@ -16,7 +16,7 @@ from rpscli.analyses.trace import Trace
 from rpscli.model.column import ColumnDesign, ColumnState
 from rpscli.model.podium import PodiumStructure
 from rpscli.physics import state
-from rpscli.physics.geometry import path_along
+from rpscli.physics.laws.geometry import path_along
 
 Array = NDArray[np.float64]
 

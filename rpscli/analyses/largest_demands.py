@@ -25,7 +25,8 @@ from rpscli.model.own import OwnLaw
 from rpscli.model.podium import Array, Device, PodiumStructure
 from rpscli.model.statics import uplift_acceleration
 from rpscli.model.superstructure import Superstructure
-from rpscli.physics import geometry, state
+from rpscli.physics import state
+from rpscli.physics.laws import geometry
 from rpscli.physics.state import Record, record_type
 from rpscli.shown import Shown, frozen, with_unit
 

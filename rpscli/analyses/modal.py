@@ -21,7 +21,7 @@ from rpscli.analyses.settings import require_structure
 from rpscli.model.bearing import UpliftedState, uplifted_state
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import Superstructure
-from rpscli.physics import geometry
+from rpscli.physics.laws import geometry
 from rpscli.shown import Shown, frozen
 
 Array = NDArray[np.float64]

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.errors import is_size, require_fields
-from rpscli.physics import geometry
+from rpscli.physics.laws import geometry
 
 
 def first_order_critical_curvature_ratio(slenderness: float, wedge_slenderness: float) -> float:

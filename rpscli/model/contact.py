@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.errors import is_size, require_fields
-from rpscli.physics import geometry, plane_bed
+from rpscli.physics.laws import geometry, plane_bed
 
 Array: TypeAlias = NDArray[np.float64]
 ContactKind = Literal["rigid", "plane", "edges"]

@@ -20,7 +20,7 @@ from rpscli.model.column import ColumnDesign
 from rpscli.model.contact import Bed, Contact, bed_of
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.superstructure import Superstructure
-from rpscli.physics import geometry
+from rpscli.physics.laws import geometry
 from rpscli.shown import Shown, with_unit
 
 Array: TypeAlias = NDArray[np.float64]

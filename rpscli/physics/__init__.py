@@ -1,10 +1,12 @@
 """The compiled kernel on records with named fields; no strings, no exceptions, no files.
 
-`state` names every number once. `laws`, `devices` and `bed` are the physics, each law once, as a
-value that everything else asks: `step` takes a Runge-Kutta step of all lanes together (`tableau`),
-`events` finds where it is to end, `upright` has uplift, impact and pass, `demands` what is largest,
-`rest` when nothing more can come, `samples` and `ground` what is kept. `follow` strings them
-together; `compile`, `fields`, `parts` and `prepare` make machine code of all.
+`state` names every number once. `laws` are the physics, each law once, of plain named numbers;
+`lane` asks them with the numbers of a lane, and `energy`, `devices`, `friction`, `storeys` and `bed`
+say what else it has. `step` takes a Runge-Kutta step of all lanes together (`tableau`), `standing`
+the exact one, `events` finds where a step is to end, `upright` has uplift, impact and pass,
+`demands` what is largest, `rest` when nothing more can come, `samples` and `ground` what is kept.
+`follow` strings them together, in `groups` of those that stand and that move. `kernels` has machine
+code of all, `own_laws` of those of other packages, and `integrate` runs it.
 
 What the kernel's functions hand to each other everywhere stands here once:
 

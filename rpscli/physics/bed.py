@@ -13,7 +13,7 @@ from __future__ import annotations
 import math
 
 from rpscli.physics.compile import compiled
-from rpscli.physics.laws import lanes_of, new_tilt_of, patch, polar, ways_of
+from rpscli.physics.lane import lanes_of, new_tilt_of, patch, polar, ways_of
 from rpscli.physics.state import BEDDED, ROCKING, ROLLING, Record
 
 

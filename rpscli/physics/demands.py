@@ -27,27 +27,30 @@ from typing import TypeAlias
 
 from rpscli.physics.compile import compiled, inlined
 from rpscli.physics.devices import act, power_in_step, raise_devices, worked
+from rpscli.physics.energy import path_at
 from rpscli.physics.events import path_of
 from rpscli.physics.friction import grip_at, push_at_rest
-from rpscli.physics.ground import ground_now, log_row
-from rpscli.physics.laws import (
+from rpscli.physics.ground import log_row
+from rpscli.physics.lane import (
     contact_forces,
-    felt,
     felt_at,
+    g_up_at,
+    ground_at,
     lanes_of,
     mode_acceleration,
-    motion_at,
     new_rate_of,
     new_tilt_of,
     patch,
-    path_at,
     place_with,
     polar,
+    pushed_by,
     rate_of,
+    respond,
     stands,
     tilt_of,
     ways_of,
     without_shock,
+    z_of,
 )
 from rpscli.physics.peaks import middle_of, peak, turning_value
 from rpscli.physics.quintic import (
@@ -371,28 +374,28 @@ def observe_contacts(s: Record) -> None:
     """
     for l in range(lanes_of(s)):
         time = s.time[l] + s.h[l]
-        ground = s.a_g[0, l] + time * s.a_g_slope[0, l]
+        ground = ground_at(s, l, 0, time)
         ground_y, beam_y, V_y = 0.0, 0.0, 0.0
         if ways_of(s) == 2:
-            ground_y = s.a_g[1, l] + time * s.a_g_slope[1, l]
+            ground_y = ground_at(s, l, 1, time)
             beam_y, V_y = s.new_shaking[1, l] - ground_y, s.new_V[1, l] + s.drive[1, l]
         stuck = s.phase[l] == STUCK
-        tilt, rate = new_tilt_of(s, l), new_rate_of(s, l)
-        x, n, t, _, _ = polar(s, l, tilt, rate)
-        beam, g_up = s.new_shaking[0, l] - ground, s.g_up[l] + time * s.g_up_slope[l]
-        stays, V = without_shock(s, l, x, rate), s.new_V[0, l] + s.drive[0, l]
+        rate = new_rate_of(s, l)
+        now = polar(s, l, new_tilt_of(s, l), rate)
+        beam, g_up = s.new_shaking[0, l] - ground, g_up_at(s, l, time)
+        stays, V = without_shock(s, l, now.x, rate), s.new_V[0, l] + s.drive[0, l]
         if s.equipped > 0:  # friction dampers push until all is what the columns hold
             per_share, load = 2.0 / (s.diameter[l] * s.share[l]), s.load[l] / s.share[l]
             V = s.held_x[l] * per_share + load * ground if stuck else V
             V_y = s.held_y[l] * per_share + load * ground_y if stuck else V_y
-        V, V_y = V + s.tied[l] * n, V_y + s.tied[l] * t
+        V, V_y = V + s.tied[l] * now.n, V_y + s.tied[l] * now.t
         pressed, V_up = (g_up, s.new_V[ways_of(s), l]), bulge(s, l, ways_of(s), ways_of(s) + 1)
         found = measures_of(
             s, l, stays, (beam, beam_y), s.new_lift[l], (V, V_y), (ground, ground_y), pressed
         )
         more, heavier = (
             bulge(s, l, 0, ways_of(s)),
-            s.diameter[l] * s.share[l] / s.one[l] * s.tan_a[l],
+            pushed_by(s, l, s.diameter[l]) / s.one[l] * s.tan_a[l],
         )
         springs = s.axes > ways_of(s)
         heavier *= more / s.gravity[l] * s.moves[l]
@@ -471,34 +474,25 @@ def measures_within(s: Record, l: int, t: float) -> tuple[float, Measures]:
     The tilt is on the quintic through both ends, the base shear on the cubic; what accelerates
     follows by the laws.
     """
-    h, ways = s.h[l], ways_of(s)
     tilt, rate = tilt_within(s, l, t)
-    V_x, V_y, a_x, a_y, time = 0.0, 0.0, 0.0, 0.0, s.time[l] + t * h
-    for axis in range(ways):
-        force = force_within(s, l, axis, t)
-        a_g = s.a_g[axis, l] + time * s.a_g_slope[axis, l]
-        if axis == 0:
-            V_x, a_x = force, a_g
-        else:
-            V_y, a_y = force, a_g
-    g_up, V_up = s.g_up[l] + time * s.g_up_slope[l], 0.0
-    if s.axes > ways:
-        V_up = force_within(s, l, ways, t)
-    g_felt = felt(s, l, g_up, V_up)
-    x, n, azimuth, _, _ = polar(s, l, tilt, rate)
-    w, dw = patch(s, l, x)
+    now, up, time = polar(s, l, tilt, rate), ways_of(s), s.time[l] + t * s.h[l]
+    V_x, V_y, V_up = force_within(s, l, 0, t), 0.0, 0.0
+    if up == 2:
+        V_y = force_within(s, l, 1, t)
+    if s.axes > up:
+        V_up = force_within(s, l, up, t)
     if s.devices[l] > 0:
         act(s, l, tilt, rate)
         if stands(s, l):
-            push_at_rest(s, l, (V_x, V_y), (a_x, a_y), g_felt)
-    drive_x, drive_y = s.drive[0, l], (s.drive[1, l] if ways == 2 else 0.0)
-    z_x = s.share[l] * (V_x + drive_x) - s.load[l] * a_x
-    z_y = s.share[l] * (V_y + drive_y) - s.load[l] * a_y
-    place = place_with(s, l, x, w, dw)
-    motion = motion_at(s, l, place, w, tilt, rate, (z_x, z_y), g_felt)
-    V = V_x + drive_x + s.tied[l] * n, V_y + drive_y + s.tied[l] * azimuth
-    stays, beam = without_shock(s, l, x, rate), (motion.beam_x, motion.beam_y)
-    return stays, measures_of(s, l, stays, beam, motion.lift, V, (a_x, a_y), (g_up, V_up))
+            push_at_rest(s, l, (V_x, V_y), time, V_up)
+    w, dw = patch(s, l, now.x)
+    found = respond(s, l, place_with(s, l, now.x, w, dw), w, now, (V_x, V_y, V_up), time)
+    V = V_x + s.drive[0, l] + s.tied[l] * now.n, 0.0
+    if up == 2:
+        V = V[0], V_y + s.drive[1, l] + s.tied[l] * now.t
+    stays, beam = without_shock(s, l, now.x, rate), (found.beam_x, found.beam_y)
+    ground = found.a_x, found.a_y
+    return stays, measures_of(s, l, stays, beam, found.lift, V, ground, (found.g_up, V_up))
 
 
 @inlined
@@ -573,7 +567,7 @@ def is_held(s: Record, l: int) -> bool:
         return bool(grip_at(s, l, 0).margin >= 0.0)
     R, size, g_felt = 0.5 * s.diameter[l], 0.0, felt_at(s, l, 0)[0]
     for axis in range(ways_of(s)):
-        push = R * (s.share[l] * s.V[axis, l] - s.load[l] * ground_now(s, l, axis))
+        push = R * z_of(s, l, s.V[axis, l], ground_at(s, l, axis, s.time[l]))
         size = push if ways_of(s) == 1 else size + push * push
     right = s.limit_right[l] * g_felt + s.held_right[l]
     if ways_of(s) == 2:
@@ -587,18 +581,18 @@ def observe_start(s: Record, l: int) -> None:
     """Look at what begins anew, after an event or a sudden change of the ground."""
     h, time = s.h[l], s.time[l]
     tilt, rate = tilt_of(s, l), rate_of(s, l)
-    x, n, t, _, _ = polar(s, l, tilt, rate)
-    a_x, g_up = s.a_g[0, l] + time * s.a_g_slope[0, l], s.g_up[l] + time * s.g_up_slope[l]
+    now = polar(s, l, tilt, rate)
+    a_x, g_up = ground_at(s, l, 0, time), g_up_at(s, l, time)
     V_x, V_y, a_y, beam_y = s.V[0, l], 0.0, 0.0, 0.0
     if ways_of(s) == 2:
-        a_y = s.a_g[1, l] + time * s.a_g_slope[1, l]
+        a_y = ground_at(s, l, 1, time)
         V_y, beam_y = s.V[1, l], s.shaking[1, l] - a_y
     if stands(s, l):
-        push_at_rest(s, l, (V_x, V_y), (a_x, a_y), felt_at(s, l, 0)[0])
+        push_at_rest(s, l, (V_x, V_y), time, s.V[ways_of(s), l])
     V_y += s.drive[1, l] if ways_of(s) == 2 else 0.0
-    V = V_x + s.drive[0, l] + s.tied[l] * n, V_y + s.tied[l] * t
+    V = V_x + s.drive[0, l] + s.tied[l] * now.n, V_y + s.tied[l] * now.t
     if s.moves[l] > 0.0 or is_held(s, l):
-        stays, beam = without_shock(s, l, x, rate), (s.shaking[0, l] - a_x, beam_y)
+        stays, beam = without_shock(s, l, now.x, rate), (s.shaking[0, l] - a_x, beam_y)
         up = g_up, s.V[ways_of(s), l]
         raise_by(s, l, measures_of(s, l, stays, beam, s.lift[l], V, (a_x, a_y), up))
     if s.devices[l] > 0:

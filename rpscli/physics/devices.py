@@ -17,22 +17,25 @@ import math
 from typing import NamedTuple
 
 from rpscli.physics.compile import compiled, inlined, own_law
-from rpscli.physics.geometry import end_displacement
+from rpscli.physics.energy import path_at
 from rpscli.physics.ground import log_event
-from rpscli.physics.laws import (
-    Place,
+from rpscli.physics.lane import (
+    Polar,
     lanes_of,
     new_rate_of,
     new_tilt_of,
-    path_at,
     place_of,
     place_with,
     polar,
+    pushed_by,
     rate_of,
     stands,
     tilt_of,
+    turned,
     ways_of,
 )
+from rpscli.physics.laws.geometry import end_displacement
+from rpscli.physics.laws.place import Place, length
 from rpscli.physics.peaks import peak
 from rpscli.physics.state import (
     BEYOND,
@@ -69,10 +72,7 @@ from rpscli.physics.state import (
 class Worked(NamedTuple):
     """How the devices of a lane are worked at a motion."""
 
-    n: float  # the azimuth of the tilt
-    t: float
-    p: float  # x', and the rate across
-    q: float
+    tilt: Polar
     path: float  # |u_b| [m]
     along: float  # u_b' along the tilt and across it [m/s]
     across: float
@@ -86,17 +86,17 @@ class Worked(NamedTuple):
 @compiled
 def worked(s: Record, l: int, tilt: tuple[float, float], rate: tuple[float, float]) -> Worked:
     """How devices are worked at a tilt and its rate."""
-    x, n, t, p, q = polar(s, l, tilt, rate)
+    now, diameter = polar(s, l, tilt, rate), s.diameter[l]
     if s.phase[l] == FULL_CONTACT:
-        return Worked(n, t, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
-    at, diameter = place_with(s, l, x, 0.0, 0.0), s.diameter[l]  # C and h know of no patch
+        still = Polar(0.0, now.n, now.t, 0.0, 0.0)
+        return Worked(still, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
+    at = place_with(s, l, now.x, 0.0, 0.0)  # C and h know of no patch
     e, lever, sin_psi, cos_psi = 0.0, 0.0, 0.0, 1.0
     if s.tendons[l] > 0:
-        e, lever, sin_psi, cos_psi = tendon_elongation(s, l, x)
-    return Worked(
-        n, t, p, q, diameter * path_at(s, l, x), diameter * at.C * p, diameter * at.h * q, at.C,
-        e, lever, sin_psi, cos_psi,
-    )  # fmt: skip
+        e, lever, sin_psi, cos_psi = tendon_elongation(s, l, now.x)
+    out, aside = diameter * at.C * now.p, diameter * at.h * now.q
+    path = diameter * path_at(s, l, now.x)
+    return Worked(now, path, out, aside, at.C, e, lever, sin_psi, cos_psi)
 
 
 @compiled
@@ -186,31 +186,29 @@ def power_of(s: Record, l: int, i: int, at: Worked) -> float:
         beyond = at.path - s.law[i, STOP_GAP, l]
         return float(-s.law[i, STOP_STIFFNESS, l] * beyond * at.along)
     if kind == TENDON and branch == BEYOND:
-        return float(s.columns[l] * s.law[i, TENDON_YIELD, l] * at.lever * at.p)
+        return float(s.columns[l] * s.law[i, TENDON_YIELD, l] * at.lever * at.tilt.p)
     speed = math.sqrt(at.along * at.along + at.across * at.across)
     return drag_of(s, l, i, at.path, speed) * (speed * speed)
 
 
 @inlined
-def paces(
-    s: Record, l: int, at: Place, p: float, q: float
-) -> tuple[float, float, float, float, float]:
+def paces(s: Record, l: int, at: Place, tilt: Polar) -> tuple[float, float, float, float, float]:
     """u_b' along the tilt, across it, and its size [m/s]; rates against which friction acts.
 
     These are of dampers [m/s] and of rolling resistance [rad/s]; in one plane they have the sign of
     `direction`.
     """
-    along, across = s.diameter[l] * at.C * p, s.diameter[l] * at.h * q
+    out, aside = s.diameter[l] * at.C * tilt.p, s.diameter[l] * at.h * tilt.q
     if ways_of(s) == 1:
-        return along, 0.0, abs(along), s.direction[l] * along, s.direction[l] * p
-    speed = math.sqrt(along * along + across * across)
-    return along, across, speed, speed, math.sqrt(p * p + q * q)
+        return out, 0.0, abs(out), s.direction[l] * out, s.direction[l] * tilt.p
+    speed = length(out, aside)
+    return out, aside, speed, speed, length(tilt.p, tilt.q)
 
 
 @inlined
-def push(s: Record, l: int, at: Place, n: float, t: float, p: float, q: float) -> None:
+def push(s: Record, l: int, at: Place, tilt: Polar) -> None:
     """Write what the devices of a lane do at a place and rate: `drive` and `turning`."""
-    along, across, speed, _, swing = paces(s, l, at, p, q)
+    u_out, u_aside, speed, _, swing = paces(s, l, at, tilt)
     drag, resisting, moves = s.drag_branched[l] + s.viscous[l], s.stop_force[l], s.moves[l] > 0.0
     rolls, aside_rolls = s.direction[l] * s.friction_moment[l], 0.0
     if ways_of(s) == 1:
@@ -218,14 +216,14 @@ def push(s: Record, l: int, at: Place, n: float, t: float, p: float, q: float) -
     else:
         drag += s.friction_force[l] / max(speed, 1e-150)
         per_rate = s.friction_moment[l] / max(swing, 1e-300)
-        rolls, aside_rolls = per_rate * p, per_rate * q
+        rolls, aside_rolls = per_rate * tilt.p, per_rate * tilt.q
     moment, diameter = s.tendon_moment[l] + rolls, s.diameter[l]
-    s.turning[l] = -s.share[l] * moment / diameter if moves else 0.0
-    s.turning_across[l] = -s.share[l] * aside_rolls / diameter if moves else 0.0
-    out, aside = -(drag * along + resisting), -drag * across
-    s.drive[0, l] = out * n - aside * t if moves else 0.0
+    s.turning[l] = -pushed_by(s, l, moment) / diameter if moves else 0.0
+    s.turning_across[l] = -pushed_by(s, l, aside_rolls) / diameter if moves else 0.0
+    push_x, push_y = turned(tilt, -(drag * u_out + resisting), -drag * u_aside)
+    s.drive[0, l] = push_x if moves else 0.0
     if ways_of(s) == 2:
-        s.drive[1, l] = out * t + aside * n if moves else 0.0
+        s.drive[1, l] = push_y if moves else 0.0
 
 
 @compiled
@@ -247,14 +245,14 @@ def act(s: Record, l: int, tilt: tuple[float, float], rate: tuple[float, float])
     """Write what all devices of a lane do at a tilt and its rate."""
     if s.branched[l] > 0.0:
         act_branched(s, l, worked(s, l, tilt, rate))
-    x, n, t, p, q = polar(s, l, tilt, rate)
-    push(s, l, place_with(s, l, x, 0.0, 0.0), n, t, p, q)
+    now = polar(s, l, tilt, rate)
+    push(s, l, place_with(s, l, now.x, 0.0, 0.0), now)
 
 
 @inlined
-def add_work(s: Record, l: int, at: Place, p: float, q: float, weight: float) -> float:
+def add_work(s: Record, l: int, at: Place, tilt: Polar, weight: float) -> float:
     """Add what flows at an instant to the means of the step; |u_b'| [m/s]."""
-    _, _, speed, pace, swing = paces(s, l, at, p, q)
+    _, _, speed, pace, swing = paces(s, l, at, tilt)
     s.mean_square[l] += weight * (speed * speed)
     s.mean_pace[l] += weight * pace
     s.mean_swing[l] += weight * swing
@@ -265,9 +263,9 @@ def add_work(s: Record, l: int, at: Place, p: float, q: float, weight: float) ->
 def begin_work(s: Record, weight: float) -> None:
     """Begin the means of the step with what is worked at its start."""
     for l in range(lanes_of(s)):
-        x, _, _, p, q = polar(s, l, tilt_of(s, l), rate_of(s, l))
+        now = polar(s, l, tilt_of(s, l), rate_of(s, l))
         s.mean_square[l], s.mean_pace[l], s.mean_swing[l] = 0.0, 0.0, 0.0
-        add_work(s, l, place_with(s, l, x, 0.0, 0.0), p, q, weight)
+        add_work(s, l, place_with(s, l, now.x, 0.0, 0.0), now, weight)
     for l in range(lanes_of(s)):
         if s.branched[l] > 0.0:
             at = worked(s, l, tilt_of(s, l), rate_of(s, l))
@@ -582,7 +580,7 @@ def device_at(s: Record, l: int, i: int, at: Worked) -> tuple[float, float, floa
     """
     kind = s.device_kind[i, l]
     if kind == TENDON:
-        return tension(s, l, i, at.e), at.lever * at.p, at.e
+        return tension(s, l, i, at.e), at.lever * at.tilt.p, at.e
     speed = at.along
     if ways_of(s) == 2:
         speed = math.sqrt(at.along * at.along + at.across * at.across)

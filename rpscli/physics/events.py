@@ -13,7 +13,15 @@ import math
 from rpscli.physics.compile import compiled, inlined
 from rpscli.physics.devices import WATCHED, has_friction, may_be_watched, slowing, watched
 from rpscli.physics.friction import grip_at
-from rpscli.physics.laws import felt_at, lanes_of, ways_of
+from rpscli.physics.lane import (
+    felt_at,
+    g_up_at,
+    ground_at,
+    lanes_of,
+    pushed_by,
+    ways_of,
+    z_of,
+)
 from rpscli.physics.quintic import (
     NO_PASSAGE,
     Quintic,
@@ -96,18 +104,16 @@ def path_in_range(s: Record, l: int) -> tuple[Quintic, float, float]:
 @inlined
 def push_path(s: Record, l: int, axis: int) -> Quintic:
     """R z over the step, what pushes a storey at rest [m/s2]."""
-    R, h = 0.5 * s.diameter[l], s.h[l]
-    share, load = R * s.share[l], R * s.load[l]
-    slope = s.a_g_slope[axis, l]
-    start = s.a_g[axis, l] + s.time[l] * slope
+    R, h, slope = 0.5 * s.diameter[l], s.h[l], s.a_g_slope[axis, l]
+    start = ground_at(s, l, axis, s.time[l])
     return quintic(
         h,
-        share * s.V[axis, l] - load * start,
-        share * s.dV[axis, l] - load * slope,
-        share * s.ddV[axis, l],
-        share * s.new_V[axis, l] - load * (start + h * slope),
-        share * s.new_dV[axis, l] - load * slope,
-        share * s.new_ddV[axis, l],
+        R * z_of(s, l, s.V[axis, l], start),
+        R * z_of(s, l, s.dV[axis, l], slope),
+        R * pushed_by(s, l, s.ddV[axis, l]),
+        R * z_of(s, l, s.new_V[axis, l], start + h * slope),
+        R * z_of(s, l, s.new_dV[axis, l], slope),
+        R * pushed_by(s, l, s.new_ddV[axis, l]),
     )
 
 
@@ -131,7 +137,7 @@ def relief_path(s: Record, l: int) -> Quintic:
 @inlined
 def surely_held(s: Record, l: int) -> bool:
     """Whether the margin of a lane at rest surely stays positive over the step."""
-    start = s.g_up[l] + s.time[l] * s.g_up_slope[l]
+    start = g_up_at(s, l, s.time[l])
     end = start + s.h[l] * s.g_up_slope[l]
     x, relief = push_path(s, l, 0), relief_path(s, l)
     most_spared, least_spared = (
@@ -330,7 +336,7 @@ def nearest(s: Record, l: int) -> float:
 def let_go(s: Record, l: int) -> tuple[float, int, int]:
     """The same of a storey at rest: to the right (1), or to the left (-1)."""
     piece, h = s.piece, s.h[l]
-    start = s.g_up[l] + s.time[l] * s.g_up_slope[l]
+    start = g_up_at(s, l, s.time[l])
     rise, x, spared = h * s.g_up_slope[l], push_path(s, l, 0), relief_path(s, l)
     if ways_of(s) == 2:
         if s.phase[l] == STUCK:
@@ -371,7 +377,6 @@ def let_go(s: Record, l: int) -> tuple[float, int, int]:
 def squared_margin(s: Record, l: int) -> Quintic:
     """The limit's square less that of R z, through both ends of the step with two derivatives."""
     h, R = s.h[l], 0.5 * s.diameter[l]
-    share, load = R * s.share[l], R * s.load[l]
     ends = s.piece
     for end in range(2):
         time, factor = s.time[l] + end * h, s.limit_right[l]
@@ -384,11 +389,11 @@ def squared_margin(s: Record, l: int) -> Quintic:
             V, dV, ddV = s.V[axis, l], s.dV[axis, l], s.ddV[axis, l]
             if end > 0:
                 V, dV, ddV = s.new_V[axis, l], s.new_dV[axis, l], s.new_ddV[axis, l]
-            a_g = s.a_g[axis, l] + time * s.a_g_slope[axis, l]
-            push, rate = share * V - load * a_g, share * dV - load * s.a_g_slope[axis, l]
+            a_g = ground_at(s, l, axis, time)
+            push, rate = R * z_of(s, l, V, a_g), R * z_of(s, l, dV, s.a_g_slope[axis, l])
             value -= push * push
             slope -= 2.0 * push * rate
-            bend -= 2.0 * (rate * rate + push * (share * ddV))
+            bend -= 2.0 * (rate * rate + push * (R * pushed_by(s, l, ddV)))
         ends[3 * end], ends[3 * end + 1], ends[3 * end + 2] = value, slope, bend
     return quintic(h, ends[0], ends[1], ends[2], ends[3], ends[4], ends[5])
 
@@ -431,9 +436,9 @@ def missing(  # noqa: C901, PLR0911 -- an event each
     if which < 0:
         factor, held = s.limit_left[l], s.held_left[l]
     for axis in range(ways_of(s)):
-        a_g = s.a_g[axis, l] + (s.time[l] + h) * s.a_g_slope[axis, l]
-        push = R * (s.share[l] * s.new_V[axis, l] - s.load[l] * a_g)
-        rate = R * (s.share[l] * s.new_dV[axis, l] - s.load[l] * s.a_g_slope[axis, l])
+        a_g = ground_at(s, l, axis, s.time[l] + h)
+        push = R * z_of(s, l, s.new_V[axis, l], a_g)
+        rate = R * z_of(s, l, s.new_dV[axis, l], s.a_g_slope[axis, l])
         if ways_of(s) == 1:
             size, growth = which * push, which * rate
         else:

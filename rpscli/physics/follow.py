@@ -25,10 +25,11 @@ from rpscli.physics.devices import (
     stored_in,
     worked,
 )
+from rpscli.physics.energy import total_energy
 from rpscli.physics.events import check_steps, resolve_step
 from rpscli.physics.friction import grip_at, set_limits, sticks
 from rpscli.physics.ground import azimuth_of, log_event, set_ground, time_of
-from rpscli.physics.lanes import (
+from rpscli.physics.groups import (
     MOVING,
     STANDING,
     WAITING,
@@ -39,16 +40,8 @@ from rpscli.physics.lanes import (
     standing_is_next,
     waiting_place,
 )
-from rpscli.physics.laws import (
-    lanes_of,
-    length,
-    place_of,
-    polar,
-    rate_of,
-    tilt_of,
-    total_energy,
-    ways_of,
-)
+from rpscli.physics.lane import lanes_of, place_of, polar, rate_of, tilt_of, ways_of
+from rpscli.physics.laws.place import length
 from rpscli.physics.rest import REST_EVERY, is_over
 from rpscli.physics.run import Output
 from rpscli.physics.samples import store_sample, store_within
@@ -141,7 +134,7 @@ def follow_many(
     results: Record,
     output: Output,
 ) -> None:
-    """The same, side by side (`lanes`)."""
+    """The same, side by side (`groups`)."""
     moving, standing = state[MOVING], state[STANDING]
     for k in range(state.shape[0]):
         empty(state[k])

@@ -11,17 +11,23 @@ from typing import NamedTuple
 
 from rpscli.physics.compile import compiled
 from rpscli.physics.devices import has_friction, stop_force, tendon_elongation, tension
+from rpscli.physics.energy import path_at
 from rpscli.physics.ground import log_event
-from rpscli.physics.laws import (
+from rpscli.physics.lane import (
+    felt,
     felt_at,
-    length,
+    g_up_at,
+    ground_at,
     patch,
-    path_at,
     place_of,
     polar,
+    pushed_by,
     tilt_of,
+    turned,
     ways_of,
+    z_of,
 )
+from rpscli.physics.laws.place import length
 from rpscli.physics.state import STICKING, STOP, STUCK, Record
 
 
@@ -56,7 +62,7 @@ def set_limits(s: Record, l: int) -> None:
     R = 0.5 * s.diameter[l]
     weigh = R * s.weigh[l]
     elastic, friction = force_at_rest(s, l)
-    elastic, friction = R * s.share[l] * elastic, R * s.share[l] * friction
+    elastic, friction = R * pushed_by(s, l, elastic), R * pushed_by(s, l, friction)
     right = s.tan_a[l] * weigh
     s.limit_right[l], s.limit_left[l] = right, right
     s.held_right[l], s.held_left[l] = elastic + friction, elastic + friction
@@ -79,7 +85,7 @@ def set_limits(s: Record, l: int) -> None:
         s.held_x[l], s.held_y[l] = back * n, back * t
         if ways_of(s) == 2:  # within this circle it surely is: what (13.25) asks of dampers alone
             moment = s.friction_moment[l] / (s.diameter[l] * max(at.C, at.h))
-            s.held_right[l] = R * s.share[l] * (s.friction_force[l] + moment)
+            s.held_right[l] = R * pushed_by(s, l, s.friction_force[l] + moment)
             s.limit_right[l] = 0.0
             return
         right, elastic = side * at.Bv / at.C * weigh, side * elastic
@@ -88,9 +94,7 @@ def set_limits(s: Record, l: int) -> None:
 
 
 @compiled
-def push_at_rest(
-    s: Record, l: int, V: tuple[float, float], a_g: tuple[float, float], g_felt: float
-) -> float:
+def push_at_rest(s: Record, l: int, V: tuple[float, float], time: float, V_up: float) -> float:
     """What friction dampers push the cap beam with while a lane is at rest [N]; writes `drive`.
 
     In full contact the columns hold what they can, and friction dampers the rest: no less, or the
@@ -98,18 +102,19 @@ def push_at_rest(
     proportion to what each could. Returns the share of their friction that is asked for, against
     growing tilts, -1 to 1; of a tilt to any side against where it is pushed to, 0 to 1.
     """
-    R, side = 0.5 * s.diameter[l], s.side[l]
+    R, side, g_felt = 0.5 * s.diameter[l], s.side[l], felt(s, l, g_up_at(s, l, time), V_up)
     # Between bed and lifted ends the columns hold what they can too, up to where they let go.
     if s.friction_force[l] + s.friction_moment[l] == 0.0 or s.bed_back[l] > 0.0:
         return 0.0
-    per_N = R * s.share[l]
+    per_N, z_x, z_y = R * s.share[l], z_of(s, l, V[0], ground_at(s, l, 0, time)), 0.0
+    if ways_of(s) == 2:
+        z_y = z_of(s, l, V[1], ground_at(s, l, 1, time))
     if ways_of(s) == 2 and s.phase[l] == STUCK:
-        return push_stuck(s, l, V, a_g, g_felt)
-    x, y = R * (s.load[l] * a_g[0] - s.share[l] * V[0]), 0.0
+        return push_stuck(s, l, (z_x, z_y), g_felt)
+    x, y = -R * z_x, -R * z_y
     action = side * x
     if ways_of(s) == 2:
-        y = R * (s.load[l] * a_g[1] - s.share[l] * V[1])
-        action = math.sqrt(x * x + y * y)
+        action = length(x, y)
     _, friction = force_at_rest(s, l)
     friction *= per_N
     resists = 0.5 * (s.limit_right[l] - s.limit_left[l]) * side * g_felt
@@ -139,7 +144,7 @@ def sticks(s: Record, l: int, log: Record) -> bool:
         return False
     at = place_of(s, l, s.x[l])
     moment = at.C * s.friction_force[l] + s.friction_moment[l] / s.diameter[l]
-    held = s.share[l] * moment / at.A
+    held = pushed_by(s, l, moment) / at.A
     free = s.a[l] + s.direction[l] * held
     if abs(free) > held:
         s.direction[l] = 1.0 if free > 0.0 else -1.0
@@ -187,11 +192,11 @@ def grip_of(
     x, n, t, _, _ = polar(s, l, tilt_of(s, l), (0.0, 0.0))
     w, _ = patch(s, l, x)
     at, weigh, gravity = place_of(s, l, x), s.weigh[l], s.gravity[l]
-    P = max(s.share[l] * s.friction_force[l] - less, 0.0)
-    M = s.share[l] * s.friction_moment[l] / s.diameter[l]
+    P = max(pushed_by(s, l, s.friction_force[l]) - less, 0.0)
+    M = pushed_by(s, l, s.friction_moment[l]) / s.diameter[l]
     arm = at.Bv * weigh
     held = arm * g_felt[0] + (s.root[l] - s.sink[l]) * w * gravity * weigh + s.bed_k[l] * x
-    held = held + at.C * s.share[l] * force_at_rest(s, l)[0] if x > 0.0 else 0.0
+    held = held + at.C * pushed_by(s, l, force_at_rest(s, l)[0]) if x > 0.0 else 0.0
     Q_n, Q_t = at.C * (z[0] * n + z[1] * t) - held, at.h * (z[1] * n - z[0] * t)
     rate_n = at.C * (z_rate[0] * n + z_rate[1] * t) - arm * g_felt[1]
     rate_t = at.h * (z_rate[1] * n - z_rate[0] * t)
@@ -234,9 +239,8 @@ def grip_at(s: Record, l: int, end: int) -> Grip:
     for axis in range(2):
         V = s.new_V[axis, l] if end > 0 else s.V[axis, l]
         dV = s.new_dV[axis, l] if end > 0 else s.dV[axis, l]
-        slope = s.a_g_slope[axis, l]
-        z = s.share[l] * V - s.load[l] * (s.a_g[axis, l] + time * slope)
-        rate = s.share[l] * dV - s.load[l] * slope
+        z = z_of(s, l, V, ground_at(s, l, axis, time))
+        rate = z_of(s, l, dV, s.a_g_slope[axis, l])
         if axis == 0:
             z_x, rate_x = z, rate
         else:
@@ -246,16 +250,12 @@ def grip_at(s: Record, l: int, end: int) -> Grip:
 
 
 @compiled
-def push_stuck(
-    s: Record, l: int, V: tuple[float, float], a_g: tuple[float, float], g_felt: float
-) -> float:
+def push_stuck(s: Record, l: int, z: tuple[float, float], g_felt: float) -> float:
     """`push_at_rest` of a lane that is stuck with a tilt to any side."""
-    z_x = s.share[l] * V[0] - s.load[l] * a_g[0]
-    z_y = s.share[l] * V[1] - s.load[l] * a_g[1]
-    grip = grip_of(s, l, (z_x, z_y), (0.0, 0.0), (g_felt, 0.0), 0.0)
-    _, n, t, _, _ = polar(s, l, tilt_of(s, l), (0.0, 0.0))
+    grip = grip_of(s, l, z, (0.0, 0.0), (g_felt, 0.0), 0.0)
+    now = polar(s, l, tilt_of(s, l), (0.0, 0.0))
     used = min(grip.used, 1.0)  # a little more would be asked for just before it lets go (13.26)
     push = used * s.friction_force[l]
     out, aside = -push * grip.drag_n - push_of_stops(s, l), -push * grip.drag_t
-    s.drive[0, l], s.drive[1, l] = out * n - aside * t, out * t + aside * n
+    s.drive[0, l], s.drive[1, l] = turned(now, out, aside)
     return used

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from rpscli.physics.compile import compiled
-from rpscli.physics.laws import ways_of
+from rpscli.physics.lane import ways_of
 from rpscli.physics.state import FULL_CONTACT, NO_RECORD, Floats, Record
 
 
@@ -26,18 +26,6 @@ def set_ground(s: Record, l: int, acceleration: Floats) -> None:
         at = s.vertical[l] + i
         start, end = scale * acceleration[at], scale * acceleration[at + 1]
     s.g_up[l], s.g_up_slope[l] = s.gravity[l] + start, (end - start) * rate
-
-
-@compiled
-def ground_now(s: Record, l: int, axis: int) -> float:
-    """a_g at the start of the step [m/s2]."""
-    return float(s.a_g[axis, l] + s.time[l] * s.a_g_slope[axis, l])
-
-
-@compiled
-def g_up_now(s: Record, l: int) -> float:
-    """The sum g + a_v at the start of the step [m/s2]."""
-    return float(s.g_up[l] + s.time[l] * s.g_up_slope[l])
 
 
 @compiled

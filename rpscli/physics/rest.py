@@ -5,14 +5,9 @@ from __future__ import annotations
 import math
 
 from rpscli.physics.compile import compiled
+from rpscli.physics.energy import inertia_unit, lifted_mass, total_energy
 from rpscli.physics.friction import grip_of
-from rpscli.physics.laws import (
-    felt,
-    inertia_unit,
-    lifted_mass,
-    total_energy,
-    ways_of,
-)
+from rpscli.physics.lane import felt, pushed_by, ways_of
 from rpscli.physics.state import BEDDED, FULL_CONTACT, STUCK, Record
 
 REST_EVERY = 8
@@ -69,12 +64,12 @@ def stays_down(s: Record, l: int) -> bool:
     for axis in range(up):
         largest = largest_force(s, l, axis)
         square += largest * largest
-    most, lightest = s.share[l] * math.sqrt(square), s.gravity[l]
+    most, lightest = pushed_by(s, l, math.sqrt(square)), s.gravity[l]
     if s.axes > up:
         lightest = felt(s, l, lightest, largest_force(s, l, up))
     if up == 2 and s.phase[l] == STUCK:
         grip = grip_of(s, l, (0.0, 0.0), (0.0, 0.0), (lightest, 0.0), most)
-        return s.n == 0 or bool(most < s.share[l] * s.friction_force[l] and grip.margin > 0.0)
+        return s.n == 0 or bool(most < pushed_by(s, l, s.friction_force[l]) and grip.margin > 0.0)
     limit = lightest * s.limit_right[l] + s.held_right[l]
     if up == 1:
         limit = min(limit, lightest * s.limit_left[l] + s.held_left[l])

@@ -7,20 +7,15 @@ import math
 from rpscli.physics.compile import compiled
 from rpscli.physics.demands import mode_path, tilt_within
 from rpscli.physics.devices import act, store_devices, stored_in, worked
+from rpscli.physics.energy import RATES, beam_at, beam_lift, energy_at, look_at
 from rpscli.physics.friction import push_at_rest
-from rpscli.physics.laws import (
-    RATES,
-    beam_at,
-    beam_lift,
+from rpscli.physics.lane import (
     contact_forces,
-    energy_at,
-    felt,
-    look_at,
-    motion_at,
     patch,
     place_with,
     polar,
     rate_of,
+    respond,
     tilt_of,
     ways_of,
     without_shock,
@@ -110,35 +105,28 @@ def write_row(
     if row >= output.samples.shape[0]:
         return
     sample, ways, moves = output.samples[row], ways_of(s), s.phase[l] != FULL_CONTACT
-    x, cosine, sine, p, q = polar(s, l, tilt, rate)
-    w, dw = patch(s, l, x)
-    g_up, share, stored = s.g_up[l] + time * s.g_up_slope[l], 0.0, 0.0
+    now, share, stored = polar(s, l, tilt, rate), 0.0, 0.0
+    x, p, q = now.x, now.p, now.q
     V_x, V_y = shear_of_row(s, l, systems, 0), 0.0
     if ways == 2:
         V_y = shear_of_row(s, l, systems, ways - 1)
     V_up = shear_of_row(s, l, systems, ways) if s.axes > ways else 0.0
-    g_felt = felt(s, l, g_up, V_up)
-    a_x, a_y = s.a_g[0, l] + time * s.a_g_slope[0, l], 0.0
-    if ways == 2:
-        a_y = s.a_g[ways - 1, l] + time * s.a_g_slope[ways - 1, l]
     if s.devices[l] > 0:
         at = worked(s, l, tilt, rate)
         act(s, l, tilt, rate)
         if s.moves[l] == 0.0:
-            share = push_at_rest(s, l, (V_x, V_y), (a_x, a_y), g_felt)
+            share = push_at_rest(s, l, (V_x, V_y), time, V_up)
         store_devices(s, l, at, share, output.devices[row])
         for i in range(s.devices[l]):
             stored += stored_in(s, l, i, at)
-    drive_x, drive_y = s.drive[0, l], (s.drive[ways - 1, l] if ways == 2 else 0.0)
-    z_x = s.share[l] * (V_x + drive_x) - s.load[l] * a_x
-    z_y = s.share[l] * (V_y + drive_y) - s.load[l] * a_y
+    w, dw = patch(s, l, x)
     place = place_with(s, l, x, w, dw)
-    motion = motion_at(s, l, place, w, tilt, rate, (z_x, z_y), g_felt)
+    motion = respond(s, l, place, w, now, (V_x, V_y, V_up), time)
     sign, beam = s.side[l] if ways == 1 else 1.0, beam_at(s, l, tilt, rate)
     stays = without_shock(s, l, x, rate)
     sample.phase, sample.theta_ddot = s.phase[l], sign * motion.a
     sample.theta, sample.theta_dot = (sign * x, sign * p) if moves else (0.0, 0.0)
-    sample.azimuth = math.atan2(sine, cosine) if ways == 2 and moves and x > 0.0 else 0.0
+    sample.azimuth = math.atan2(now.t, now.n) if ways == 2 and moves and x > 0.0 else 0.0
     sample.turning = q / x if ways == 2 and moves and x > 0.0 else 0.0
     sample.height = s.diameter[l] * place.C
     sample.lift = beam_lift(s, l, systems[0], x) if moves else 0.0
@@ -149,10 +137,11 @@ def write_row(
     for axis in range(ways if s.yields[l] > 0 else 0):
         sample.energy_stored += slip_energy_of_row(s, l, systems[axis], axis)
     for axis in range(ways):
-        V, drive, a_g, n = (V_x, drive_x, a_x, cosine) if axis == 0 else (V_y, drive_y, a_y, sine)
+        V, a_g, n = (V_x, motion.a_x, now.n) if axis == 0 else (V_y, motion.a_y, now.t)
         faster = stays * (motion.beam_x if axis == 0 else motion.beam_y)
-        pushed, lift = V + drive + s.tied[l] * n, stays * motion.lift
-        F, F_bottom, N, N_bottom = contact_forces(s, l, faster, lift, pushed, a_g, (g_up, V_up))
+        pushed, lift = V + s.drive[axis, l] + s.tied[l] * n, stays * motion.lift
+        up = motion.g_up, V_up
+        F, F_bottom, N, N_bottom = contact_forces(s, l, faster, lift, pushed, a_g, up)
         sample.beam[axis], sample.base_shear[axis] = beam[axis], V
         sample.shear_top[axis], sample.shear_bottom[axis] = F, F_bottom
         sample.normal_top, sample.normal_bottom = N, N_bottom

@@ -19,7 +19,7 @@ from __future__ import annotations
 import math
 
 from rpscli.physics.compile import compiled, fma, inlined
-from rpscli.physics.laws import lanes_of, ways_of
+from rpscli.physics.lane import lanes_of, ways_of
 from rpscli.physics.state import FULL_CONTACT, Record
 from rpscli.physics.step import book_power, clear_powers, end_rates
 from rpscli.physics.storeys import base_slip

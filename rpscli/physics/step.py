@@ -12,26 +12,25 @@ import math
 from rpscli.physics.bed import set_patches
 from rpscli.physics.compile import compiled, fma, inlined
 from rpscli.physics.devices import act, act_branched_at_stage, add_work, begin_work, push
-from rpscli.physics.ground import g_up_now, ground_now
-from rpscli.physics.laws import (
-    UPRIGHT,
-    felt,
-    inertia_unit,
+from rpscli.physics.energy import inertia_unit, lifted_mass
+from rpscli.physics.lane import (
+    g_up_at,
+    ground_at,
     lanes_of,
-    length,
-    lifted_mass,
     mode_acceleration,
-    motion_at,
     new_rate_of,
     new_tilt_of,
     patch,
     place_with,
     polar,
+    pushed_by,
     rate_of,
+    respond,
     tilt_of,
     velocity_with,
     ways_of,
 )
+from rpscli.physics.laws.place import UPRIGHT, length
 from rpscli.physics.state import Record
 from rpscli.physics.storeys import free_storeys, slip_rates
 from rpscli.physics.tableau import A2, END, ERROR, USED, A, C
@@ -44,32 +43,24 @@ def find(s: Record, at: float, weight: float, equipped: bool) -> None:  # noqa: 
     Reads `new_V`; writes `new_bend`, `new_shaking` and the polar values of the tilt, and adds to
     the work of devices.
     """
+    up = ways_of(s)
     for l in range(lanes_of(s)):
-        tilt, rate = new_tilt_of(s, l), new_rate_of(s, l)
-        x, n, t, p, q = polar(s, l, tilt, rate)
-        place = place_with(s, l, x, s.w[l], s.dw[l])
+        now = polar(s, l, new_tilt_of(s, l), new_rate_of(s, l))
+        place = place_with(s, l, now.x, s.w[l], s.dw[l])
         if equipped:
-            push(s, l, place, n, t, p, q)
-            s.new_height[l], s.new_speed[l] = place.C, add_work(s, l, place, p, q, weight)
-        time = s.time[l] + at * s.h[l]
-        ground = s.a_g[0, l] + time * s.a_g_slope[0, l]
-        z_x = s.share[l] * (s.new_V[0, l] + s.drive[0, l]) - s.load[l] * ground
-        z_y, ground_y = 0.0, 0.0
-        if ways_of(s) == 2:
-            ground_y = s.a_g[1, l] + time * s.a_g_slope[1, l]
-            z_y = s.share[l] * (s.new_V[1, l] + s.drive[1, l]) - s.load[l] * ground_y
-        g_up, up = s.g_up[l] + time * s.g_up_slope[l], ways_of(s)
-        g_felt = felt(s, l, g_up, s.new_V[up, l])
-        motion = motion_at(s, l, place, s.w[l], tilt, rate, (z_x, z_y), g_felt)
-        s.new_shaking[up, l] = (g_up - s.gravity[l]) + motion.lift
-        s.new_bend[0, l], s.new_shaking[0, l] = motion.bend_x, ground + motion.beam_x
-        if ways_of(s) == 2:
-            s.new_bend[1, l], s.new_shaking[1, l] = motion.bend_y, ground_y + motion.beam_y
-        s.new_x[l], s.new_v[l], s.new_a[l], s.new_lift[l] = x, p, motion.a, motion.lift
+            push(s, l, place, now)
+            s.new_height[l], s.new_speed[l] = place.C, add_work(s, l, place, now, weight)
+        V = s.new_V[0, l], (s.new_V[1, l] if up == 2 else 0.0), s.new_V[up, l]
+        found = respond(s, l, place, s.w[l], now, V, s.time[l] + at * s.h[l])
+        s.new_shaking[up, l] = (found.g_up - s.gravity[l]) + found.lift
+        s.new_bend[0, l], s.new_shaking[0, l] = found.bend_x, found.a_x + found.beam_x
+        if up == 2:
+            s.new_bend[1, l], s.new_shaking[1, l] = found.bend_y, found.a_y + found.beam_y
+        s.new_x[l], s.new_v[l], s.new_a[l], s.new_lift[l] = now.x, now.p, found.a, found.lift
         if equipped:
-            u_x, u_y = velocity_with(s, l, place, (n, t), (p, q))
-            s.new_square_rate[l] = 2.0 * (u_x * motion.beam_x + u_y * motion.beam_y)
-            s.new_quicker[l] = length(motion.beam_x, motion.beam_y)
+            u_x, u_y = velocity_with(s, l, place, now)
+            s.new_square_rate[l] = 2.0 * (u_x * found.beam_x + u_y * found.beam_y)
+            s.new_quicker[l] = length(found.beam_x, found.beam_y)
 
 
 @compiled
@@ -213,7 +204,7 @@ def error_of(s: Record, l: int) -> float:
         fast = abs(s.tilt_rate[axis, l]) + abs(s.new_tilt_rate[axis, l]) + faster
         speed += fast * fast
     limit = s.step_error[l] * math.sqrt(speed) + s.least_error[l]
-    turned = NOISE * s.weigh[l] * s.gravity[l] * s.tan_a[l] + NOISE * s.share[l] * s.taken[l]
+    turned = NOISE * s.weigh[l] * s.gravity[l] * s.tan_a[l] + NOISE * pushed_by(s, l, s.taken[l])
     limit += s.h[l] * (turned / s.one[l])
     return s.h[l] * math.sqrt(missed) / (limit if limit > 0.0 else 1.0)  # type: ignore[no-any-return]
 
@@ -240,38 +231,28 @@ def end_rates(s: Record) -> None:
 @compiled
 def renew(s: Record, l: int) -> None:
     """Accelerations of one lane at its present state and time: what the next step begins with."""
-    tilt, rate = tilt_of(s, l), rate_of(s, l)
-    x, n, t, p, q = polar(s, l, tilt, rate)
-    s.w[l], s.dw[l] = patch(s, l, x)
+    now, up = polar(s, l, tilt_of(s, l), rate_of(s, l)), ways_of(s)
+    s.w[l], s.dw[l] = patch(s, l, now.x)
     if s.devices[l] > 0:
-        act(s, l, tilt, rate)
-    z_x, z_y, ground, ground_y = 0.0, 0.0, 0.0, 0.0
+        act(s, l, tilt_of(s, l), rate_of(s, l))
     for axis in range(s.axes):
         V = 0.0
         for r in range(axis * s.n, (axis + 1) * s.n):
             f = fma(s.omega2[r, l], s.q[r, l], s.two_xi_omega[r, l] * s.dq[r, l])
             V += s.Gamma[r, l] * (f - s.freed[r, l])
         s.V[axis, l] = V
-    for axis in range(ways_of(s)):
-        V = s.V[axis, l]
-        z = s.share[l] * (V + s.drive[axis, l]) - s.load[l] * ground_now(s, l, axis)
-        if axis == 0:
-            z_x, ground = z, ground_now(s, l, 0)
-        else:
-            z_y, ground_y = z, ground_now(s, l, 1)
-    place = place_with(s, l, x, s.w[l], s.dw[l])
-    g_up, up = g_up_now(s, l), ways_of(s)
-    g_felt = felt(s, l, g_up, s.V[up, l])
-    motion = motion_at(s, l, place, s.w[l], tilt, rate, (z_x, z_y), g_felt)
-    s.shaking[up, l] = (g_up - s.gravity[l]) + motion.lift
-    s.x[l], s.v[l], s.a[l], s.lift[l] = x, p, motion.a, motion.lift
-    u_x, u_y = velocity_with(s, l, place, (n, t), (p, q))
-    s.speed[l] = math.sqrt(u_x * u_x + u_y * u_y)
-    s.square_rate[l] = 2.0 * (u_x * motion.beam_x + u_y * motion.beam_y)
-    s.quicker[l] = length(motion.beam_x, motion.beam_y)
-    s.bend[0, l], s.shaking[0, l] = motion.bend_x, ground + motion.beam_x
-    if ways_of(s) == 2:
-        s.bend[1, l], s.shaking[1, l] = motion.bend_y, ground_y + motion.beam_y
+    place = place_with(s, l, now.x, s.w[l], s.dw[l])
+    shears = s.V[0, l], (s.V[1, l] if up == 2 else 0.0), s.V[up, l]
+    found = respond(s, l, place, s.w[l], now, shears, s.time[l])
+    s.shaking[up, l] = (found.g_up - s.gravity[l]) + found.lift
+    s.x[l], s.v[l], s.a[l], s.lift[l] = now.x, now.p, found.a, found.lift
+    u_x, u_y = velocity_with(s, l, place, now)
+    s.speed[l] = length(u_x, u_y)
+    s.square_rate[l] = 2.0 * (u_x * found.beam_x + u_y * found.beam_y)
+    s.quicker[l] = length(found.beam_x, found.beam_y)
+    s.bend[0, l], s.shaking[0, l] = found.bend_x, found.a_x + found.beam_x
+    if up == 2:
+        s.bend[1, l], s.shaking[1, l] = found.bend_y, found.a_y + found.beam_y
     for axis in range(s.axes):
         s.dV[axis, l], s.ddV[axis, l] = 0.0, 0.0
         for r in range(axis * s.n, (axis + 1) * s.n):
@@ -298,29 +279,29 @@ def book_power(
 ) -> None:
     """Add the power of ground, dampers and bed in the only lane, its velocities in `new_dq`."""
     supplied, damped, upwards, moving = 0.0, 0.0, 0.0, s.moves[0] > 0.0
-    out, aside, x, n, t, p, q, lift = 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0
+    u_x, u_y, lift, bed = 0.0, 0.0, 0.0, 0.0
     if moving:
-        x, n, t, p, q = polar(s, 0, tilt, rate)
-        w, dw = patch(s, 0, x)
-        at = place_with(s, 0, x, w, dw)
-        out, aside = s.diameter[0] * at.C * p, s.diameter[0] * at.h * q
-        lift = s.diameter[0] * at.Bv * p
+        now = polar(s, 0, tilt, rate)
+        w, dw = patch(s, 0, now.x)
+        at = place_with(s, 0, now.x, w, dw)
+        u_x, u_y = velocity_with(s, 0, at, now)
+        lift = s.diameter[0] * at.Bv * now.p
+        bed = s.bed_c[0] * (now.p * now.p + now.q * now.q)
+        if ways_of(s) == 2:
+            bed += s.rim[0] / max(now.x, UPRIGHT) * (now.q * now.q)
     for axis in range(ways_of(s)):
-        velocity = out * n - aside * t if axis == 0 else out * t + aside * n
+        velocity = u_x if axis == 0 else u_y
         momentum = lifted_mass(s, 0) * velocity
         for r in range(axis * s.n, (axis + 1) * s.n):
             momentum += s.Gamma[r, 0] * s.new_dq[r, 0]
             damped += s.two_xi_omega[r, 0] * (s.new_dq[r, 0] * s.new_dq[r, 0])
-        supplied += (s.a_g[axis, 0] + time * s.a_g_slope[axis, 0]) * momentum
-    a_v = s.g_up[0] + time * s.g_up_slope[0] - s.gravity[0]
+        supplied += ground_at(s, 0, axis, time) * momentum
+    a_v = g_up_at(s, 0, time) - s.gravity[0]
     rising, up = lifted_mass(s, 0) * lift, ways_of(s) * s.n
     for r in range(up, s.axes * s.n):
         rising += s.Gamma[r, 0] * s.new_dq[r, 0]
         upwards += s.two_xi_omega[r, 0] * (s.new_dq[r, 0] * s.new_dq[r, 0])
     supplied += a_v * rising
-    bed = s.bed_c[0] * (p * p + q * q)
-    if ways_of(s) == 2 and moving:
-        bed += s.rim[0] / max(x, UPRIGHT) * (q * q)
     s.power_input[0] -= weight * supplied
     s.power_damped[0] += weight * damped
     s.power_upwards[0] += weight * upwards

@@ -10,8 +10,9 @@ from __future__ import annotations
 import math
 
 from rpscli.physics.compile import compiled
+from rpscli.physics.energy import slip_energy
 from rpscli.physics.ground import time_of
-from rpscli.physics.laws import lanes_of, slip_energy, ways_of
+from rpscli.physics.lane import lanes_of, ways_of
 from rpscli.physics.state import Floats, Record
 from rpscli.physics.tableau import A2, C
 

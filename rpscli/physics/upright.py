@@ -14,25 +14,30 @@ import math
 from rpscli.physics.bed import enter_on_bed, first_phase, impact_number
 from rpscli.physics.compile import compiled, own_law
 from rpscli.physics.devices import begin_excursion, has_friction, take_up_stops
-from rpscli.physics.friction import force_at_rest, set_limits
-from rpscli.physics.ground import ground_now, log_event
-from rpscli.physics.laws import (
+from rpscli.physics.energy import (
     RATES,
     Beam,
     beam_now,
-    felt_at,
     lift_at,
     lifted_mass,
-    place_of,
-    polar,
     potential,
-    rate_of,
     relative_momentum,
     strain_energy,
-    tilt_of,
     tilting_energy,
     total_energy,
+)
+from rpscli.physics.friction import force_at_rest, set_limits
+from rpscli.physics.ground import log_event
+from rpscli.physics.lane import (
+    felt_at,
+    ground_at,
+    place_of,
+    polar,
+    pushed_by,
+    rate_of,
+    tilt_of,
     ways_of,
+    z_of,
 )
 from rpscli.physics.state import (
     BEDDED,
@@ -231,11 +236,12 @@ def impact(s: Record, l: int, system: Record, log: Record) -> None:
 @compiled
 def pushes(s: Record, l: int) -> tuple[float, float, float, float]:
     """z in x and y, its size, and its limit of a lane that would stand [1/s2]."""
-    z_x = s.share[l] * s.V[0, l] - s.load[l] * ground_now(s, l, 0)
+    z_x = z_of(s, l, s.V[0, l], ground_at(s, l, 0, s.time[l]))
     z_y = 0.0
     if ways_of(s) == 2:
-        z_y = s.share[l] * s.V[1, l] - s.load[l] * ground_now(s, l, 1)
-    limit = s.tan_a[l] * felt_at(s, l, 0)[0] * s.weigh[l] + s.share[l] * force_at_rest(s, l)[0]
+        z_y = z_of(s, l, s.V[1, l], ground_at(s, l, 1, s.time[l]))
+    limit = s.tan_a[l] * felt_at(s, l, 0)[0] * s.weigh[l]
+    limit += pushed_by(s, l, force_at_rest(s, l)[0])
     return z_x, z_y, math.sqrt(z_x * z_x + z_y * z_y), limit
 
 
@@ -279,7 +285,7 @@ def bounces_left_out(s: Record, l: int, system: Record) -> float:
     if friction > 0.0:
         at = place_of(s, l, 0.0)
         moment = at.C * s.friction_force[l] + s.friction_moment[l] / s.diameter[l]
-        slowed = s.share[l] * moment / at.A
+        slowed = pushed_by(s, l, moment) / at.A
         k = math.sqrt(max(0.0, 1.0 + 2.0 * slowed / s.a[l]))
     return float((1.0 + k) / (1.0 + system.restitution * k))
 

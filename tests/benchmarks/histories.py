@@ -33,7 +33,7 @@ from rpscli.model.bearing import Bearing
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import RayleighDamping, Superstructure, profile_stiffnesses
-from rpscli.physics.geometry import Phase
+from rpscli.physics.laws.geometry import Phase
 from rpscli.physics.state import IMPACT, LANES
 from rpscli.records.ground_motion import GroundMotion, MotionComponents
 from rpscli.records.loading import load_record

@@ -15,7 +15,7 @@ from shown_commands import VERIFICATION, table
 
 from rpscli.model.bearing import Bearing
 from rpscli.model.podium import PodiumStructure
-from rpscli.physics import geometry
+from rpscli.physics.laws import geometry
 
 GEOMETRIES = [
     # tan(alpha), rho; printed digits of beta, theta_cr, and of u_b and the lift v_b there

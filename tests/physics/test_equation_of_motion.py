@@ -20,7 +20,7 @@ from rpscli.model.bearing import Bearing, uplifted_state
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import ModalDamping, RayleighDamping, Superstructure
-from rpscli.physics import geometry
+from rpscli.physics.laws import geometry
 from rpscli.physics.state import FULL_CONTACT, ROLLING
 from rpscli.records.ground_motion import MotionComponents
 

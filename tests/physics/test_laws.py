@@ -20,7 +20,8 @@ from rpscli.physics.bed import first_phase, load_bed
 from rpscli.physics.devices import load_devices
 from rpscli.physics.follow import load_modes, load_system
 from rpscli.physics.friction import grip_of
-from rpscli.physics.laws import place_of, slip_energy
+from rpscli.physics.energy import slip_energy
+from rpscli.physics.lane import place_of
 from rpscli.physics.state import STATE, Record, records
 from rpscli.physics.storeys import base_slip, keep_slips, turn_storey
 from rpscli.physics.upright import enter_phase, set_polar

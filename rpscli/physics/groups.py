@@ -9,7 +9,7 @@ There are always more places than histories, so that none waits for another one 
 from __future__ import annotations
 
 from rpscli.physics.compile import compiled, inlined
-from rpscli.physics.laws import lanes_of
+from rpscli.physics.lane import lanes_of
 from rpscli.physics.state import NO_HISTORY, Record
 
 MOVING, STANDING, WAITING = range(3)

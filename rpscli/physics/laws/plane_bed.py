@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rpscli.physics.geometry import Value
+from rpscli.physics.laws.geometry import Value
 
 
 def patch(x: Value, uplift: float, fade: float) -> tuple[Value, Value]:

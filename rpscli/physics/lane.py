@@ -1,0 +1,342 @@
+"""A lane: its numbers by the names that laws know, and what the laws say of it (`laws`)."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from rpscli.physics.compile import compiled, fma, inlined
+from rpscli.physics.laws import geometry, plane_bed
+from rpscli.physics.laws.contacts import Masses, normal_forces, shears
+from rpscli.physics.laws.motion import (
+    beam_across,
+    beam_along,
+    bed_across,
+    bed_along,
+    bend_across,
+    bend_along,
+    felt_gravity,
+    lift_of,
+    push,
+    weight_arms,
+)
+from rpscli.physics.laws.place import (
+    UPRIGHT,
+    Column,
+    Ends,
+    Place,
+    place_in_plane,
+    place_in_space,
+    sines,
+)
+from rpscli.physics.state import FULL_CONTACT, PADDING, STUCK, Record
+
+patch_at = inlined(plane_bed.patch)
+
+
+@inlined
+def ways_of(s: Record) -> int:
+    """Horizontal directions in which the ground moves; known to the compiler."""
+    return s.tilt.shape[0]  # type: ignore[no-any-return]
+
+
+@inlined
+def lanes_of(s: Record) -> int:
+    """Lanes of a state; known to the compiler."""
+    return s.x.shape[0] - PADDING  # type: ignore[no-any-return]
+
+
+@compiled
+def stands(s: Record, l: int) -> bool:
+    """Whether the tilt of a lane is held: on rigid ends upright, or by friction."""
+    return bool(s.phase[l] == FULL_CONTACT or s.phase[l] == STUCK)
+
+
+# Tilt and rate.
+
+
+@inlined
+def tilt_of(s: Record, l: int) -> tuple[float, float]:
+    """The tilt vector at the start of the step."""
+    return s.tilt[0, l], (s.tilt[1, l] if ways_of(s) == 2 else 0.0)
+
+
+@inlined
+def rate_of(s: Record, l: int) -> tuple[float, float]:
+    """Its rate."""
+    return s.tilt_rate[0, l], (s.tilt_rate[1, l] if ways_of(s) == 2 else 0.0)
+
+
+@inlined
+def new_tilt_of(s: Record, l: int) -> tuple[float, float]:
+    """The tilt vector at a stage of the step, and at its end."""
+    return s.new_tilt[0, l], (s.new_tilt[1, l] if ways_of(s) == 2 else 0.0)
+
+
+@inlined
+def new_rate_of(s: Record, l: int) -> tuple[float, float]:
+    """Its rate."""
+    return s.new_tilt_rate[0, l], (s.new_tilt_rate[1, l] if ways_of(s) == 2 else 0.0)
+
+
+class Polar(NamedTuple):
+    """A tilt and its rate along it and across; upright the azimuth is 0."""
+
+    x: float  # along its side in one plane
+    n: float  # cosine and sine of the azimuth
+    t: float
+    p: float  # rate along the tilt, and across it
+    q: float
+
+
+@inlined
+def polar(s: Record, l: int, tilt: tuple[float, float], rate: tuple[float, float]) -> Polar:
+    """A tilt vector and its rate along it and across."""
+    if ways_of(s) == 1:
+        side = s.side[l]
+        return Polar(side * tilt[0], side, 0.0, side * rate[0], 0.0)
+    x = math.sqrt(tilt[0] * tilt[0] + tilt[1] * tilt[1])
+    n, t = (tilt[0] / x, tilt[1] / x) if x > 0.0 else (1.0, 0.0)
+    return Polar(x, n, t, rate[0] * n + rate[1] * t, rate[1] * n - rate[0] * t)
+
+
+@inlined
+def along(at: Polar, x: float, y: float) -> float:
+    """The part of a vector along the tilt."""
+    return x * at.n + y * at.t
+
+
+@inlined
+def across(at: Polar, x: float, y: float) -> float:
+    """And across it."""
+    return y * at.n - x * at.t
+
+
+@inlined
+def turned(at: Polar, out: float, aside: float) -> tuple[float, float]:
+    """A vector in x and y, of its parts along the tilt and across it."""
+    return out * at.n - aside * at.t, out * at.t + aside * at.n
+
+
+# Geometry and inertia.
+
+
+@inlined
+def phase_of(s: Record, l: int) -> geometry.Phase:
+    """Constants of a lane's phase of motion."""
+    return geometry.Phase(s.p[l], s.q0[l], s.c[l], s.u0[l], s.v0[l])
+
+
+@inlined
+def column_of(s: Record, l: int) -> Column:
+    """Inertia and spin of a lane's columns."""
+    return Column(
+        s.io_1[l],
+        s.i_3[l],
+        s.one[l],
+        s.one[l] + s.four[l],
+        s.sin_a[l],
+        s.spin[l],
+        s.rolls[l] > 0.0,
+        s.sin_beta[l],
+        s.excess_beta[l],
+        s.turned[l],
+    )
+
+
+@inlined
+def ends_of(s: Record, l: int) -> Ends:
+    """What a lane stands on."""
+    return Ends(s.bed_k[l], s.bed_c[l], s.rim[l], s.sink[l], s.root[l])
+
+
+@inlined
+def patch(s: Record, l: int, x: float) -> tuple[float, float]:
+    """w and its slope, while a plane end lifts (12.6); else 0."""
+    lifts = (s.root[l] > 0.0) & (x > 0.0)
+    w, slope = patch_at(x if lifts else 1.0, s.bed_u[l], s.fade[l])
+    return (w if lifts else 0.0), (slope if lifts else 0.0)
+
+
+@inlined
+def place_with(s: Record, l: int, x: float, w: float, dw: float) -> Place:
+    """Geometry and inertia of a lane at a tilt, where the patch is known."""
+    if ways_of(s) == 1:
+        sine, less, _ = sines(x)
+        return place_in_plane(column_of(s, l), phase_of(s, l), s.root[l], sine, less, w, dw)
+    return place_in_space(column_of(s, l), phase_of(s, l), ends_of(s, l), max(x, UPRIGHT), w, dw)
+
+
+@compiled
+def place_of(s: Record, l: int, x: float) -> Place:
+    """Geometry and inertia of a lane at a tilt."""
+    w, dw = patch(s, l, x)
+    return place_with(s, l, x, w, dw)
+
+
+# What acts.
+
+
+@inlined
+def ground_at(s: Record, l: int, axis: int, time: float) -> float:
+    """a_g at a time of the interval [m/s2]."""
+    return s.a_g[axis, l] + time * s.a_g_slope[axis, l]  # type: ignore[no-any-return]
+
+
+@inlined
+def g_up_at(s: Record, l: int, time: float) -> float:
+    """The sum g + a_v at a time of the interval [m/s2]."""
+    return s.g_up[l] + time * s.g_up_slope[l]  # type: ignore[no-any-return]
+
+
+@inlined
+def pushed_by(s: Record, l: int, force: float) -> float:
+    """The z of a horizontal force at the cap beam [1/s2]."""
+    return s.share[l] * force  # type: ignore[no-any-return]
+
+
+@inlined
+def z_of(s: Record, l: int, force: float, a_g: float) -> float:
+    """The z of a horizontal force at the cap beam and of the ground's acceleration [1/s2]."""
+    return push(s.share[l], force, s.load[l], a_g)
+
+
+@inlined
+def felt(s: Record, l: int, g_up: float, V_up: float) -> float:
+    """g_f, what contacts feel of g + a_v [m/s2], under forces V_up of the floors' springs [N]."""
+    return felt_gravity(s.gravity[l], g_up, s.spared[l], s.floors_mass[l], V_up)
+
+
+@compiled
+def felt_at(s: Record, l: int, end: int) -> tuple[float, float, float]:
+    """g_f with two derivatives, at the start of the step (0) or at its end (1)."""
+    up, time, spared = ways_of(s), s.time[l] + end * s.h[l], s.spared[l]
+    slope = s.g_up_slope[l]
+    V, dV, ddV = s.V[up, l], s.dV[up, l], s.ddV[up, l]
+    if end > 0:
+        V, dV, ddV = s.new_V[up, l], s.new_dV[up, l], s.new_ddV[up, l]
+    g_felt = felt(s, l, g_up_at(s, l, time), V)
+    return g_felt, slope - spared * (s.floors_mass[l] * slope + dV), -spared * ddV
+
+
+@inlined
+def mode_acceleration(s: Record, r: int, l: int, axis: int) -> float:
+    """Acceleration of a mode at the start of the step."""
+    force = fma(s.omega2[r, l], s.q[r, l], s.two_xi_omega[r, l] * s.dq[r, l]) - s.freed[r, l]
+    return fma(-s.Gamma[r, l], s.shaking[axis, l], -force)
+
+
+# How it responds.
+
+
+class Response(NamedTuple):
+    """What a lane's storey does under base shears at a time, and the ground then."""
+
+    a_x: float  # a_g [m/s2]
+    a_y: float
+    g_up: float  # g + a_v [m/s2]
+    bend_x: float  # of the tilt vector [rad/s2]
+    bend_y: float
+    beam_x: float  # u_b'' [m/s2]
+    beam_y: float
+    lift: float  # v_b'' [m/s2]
+    a: float  # x'' [rad/s2]
+
+
+@inlined
+def respond(
+    s: Record, l: int, at: Place, w: float, tilt: Polar, V: tuple[float, float, float], time: float
+) -> Response:
+    """The equation of motion of a lane under base shears in x, in y and upwards [N].
+
+    At a place and a rate of the tilt, a time of the interval [s], and what devices now do.
+    """
+    a_x, a_y = ground_at(s, l, 0, time), 0.0
+    z_x, z_y = z_of(s, l, V[0] + s.drive[0, l], a_x), 0.0
+    if ways_of(s) == 2:
+        a_y = ground_at(s, l, 1, time)
+        z_y = z_of(s, l, V[1] + s.drive[1, l], a_y)
+    gravity, g_up, ends = s.gravity[l], g_up_at(s, l, time), ends_of(s, l)
+    arms = weight_arms(at, ends, s.weigh[l], w, gravity, felt(s, l, g_up, V[2]))
+    p, q, moves, diameter = tilt.p, tilt.q, s.moves[l] > 0.0, s.diameter[l]
+    if ways_of(s) == 2:  # upright no square depends on the direction, which is any
+        leans = tilt.x > 0.0
+        arms, p, q = (arms if leans else 0.0), (p if leans else 0.0), (q if leans else 0.0)
+    held = arms + bed_along(ends, tilt.x, tilt.p) - s.turning[l]
+    out = bend_along(at, held, p, q, along(tilt, z_x, z_y))
+    if ways_of(s) == 1:
+        beam = tilt.n * beam_along(at, diameter, out, p, q)
+        lift = lift_of(at, diameter, out, p)
+        return Response(
+            a_x,
+            0.0,
+            g_up,
+            tilt.n * out if moves else 0.0,
+            0.0,
+            beam if moves else 0.0,
+            0.0,
+            lift if moves else 0.0,
+            out if moves else 0.0,
+        )
+    per_x = 1.0 / (tilt.x if tilt.x > 0.0 else 1.0)
+    held = bed_across(ends, per_x, tilt.q) - s.turning_across[l]
+    aside = bend_across(at, held, p, q, across(tilt, z_x, z_y))
+    bend_x, bend_y = turned(tilt, out, aside)
+    beam_out, beam_aside = (
+        beam_along(at, diameter, out, p, q),
+        beam_across(at, diameter, aside, p, q),
+    )
+    beam_x, beam_y = turned(tilt, beam_out, beam_aside)
+    a = out + tilt.q * tilt.q * per_x
+    return Response(
+        a_x,
+        a_y,
+        g_up,
+        bend_x if moves else 0.0,
+        bend_y if moves else 0.0,
+        beam_x if moves else 0.0,
+        beam_y if moves else 0.0,
+        lift_of(at, diameter, a, tilt.p) if moves else 0.0,
+        a if moves else 0.0,
+    )
+
+
+@inlined
+def velocity_with(s: Record, l: int, at: Place, tilt: Polar) -> tuple[float, float]:
+    """u_b' in x and in y at a place and a rate of the tilt [m/s]."""
+    out, aside = s.diameter[l] * at.C * tilt.p, s.diameter[l] * at.h * tilt.q
+    if ways_of(s) == 1:
+        return out * tilt.n, 0.0
+    return turned(tilt, out, aside)
+
+
+@inlined
+def masses_of(s: Record, l: int) -> Masses:
+    """Masses of a lane's storey."""
+    return Masses(s.columns_mass[l], s.cap_beam_mass[l], s.floors_mass[l], s.riding[l])
+
+
+@inlined
+def contact_forces(
+    s: Record, l: int, beam: float, lift: float, V: float, a_g: float, up: tuple[float, float]
+) -> tuple[float, float, float, float]:
+    """F and N of all columns together at their upper and lower ends, in one direction [N] (8.4).
+
+    Of u_b'', v_b'', what pushes the beam and the ground; `up` are g + a_v and V_up.
+    """
+    F, F_bottom = shears(masses_of(s, l), beam, a_g, V)
+    N, N_bottom = normal_forces(masses_of(s, l), s.gravity[l], up[0], lift, up[1], s.pull[l])
+    return F, F_bottom, N, N_bottom
+
+
+@inlined
+def without_shock(s: Record, l: int, x: float, rate: tuple[float, float]) -> float:
+    """0 where a motion is part of a pass that takes less than `shock_time`: an impact's impulse.
+
+    Beam and columns are turned over within it; forces of contacts are then those of a beam that
+    keeps its velocity, and what turns it is added afterwards, if it is known (13.19).
+    """
+    if ways_of(s) == 1:
+        return 1.0
+    own = s.shock_time[l] * s.cone[l]
+    return 0.0 if own * own * (rate[0] * rate[0] + rate[1] * rate[1]) > x * x else 1.0
