@@ -75,9 +75,14 @@ def copy_lane(to: Record, k: int, of: Record, l: int) -> None:
     """Copy all that a lane knows between two steps; stages are scratch."""
     for i in range(of.words.shape[0]):
         to.words[i, k] = of.words[i, l]
+    for i in range(of.device_words.shape[0] if of.equipped > 0 else 0):
+        to.device_words[i, k] = of.device_words[i, l]
     for i in range(of.mode_words.shape[0]):
         for r in range(of.axes * of.n):
             to.mode_words[i, r, k] = of.mode_words[i, r, l]
+    for i in range(of.storey_words.shape[0] if of.yielding > 0 else 0):
+        for r in range(of.axes * of.n):
+            to.storey_words[i, r, k] = of.storey_words[i, r, l]
     for i in range(of.largest.shape[0]):
         for storey in range(of.n):
             to.largest[i, k, storey] = of.largest[i, l, storey]

@@ -579,20 +579,28 @@ EVENT = (
 )
 
 
-WORDS, MODE_WORDS = "words", "mode_words"
-"""Fields that overlay others of a state, see `record_type`."""
+STOREYS_THAT_YIELD = frozenset(
+    "strength stiffness mark middle middle_most middle_least drift_most yielded first_yield"
+    " new_freed slipping".split()
+)
+"""Fields of modes that say something where storeys may yield."""
+
+OVERLAYS = "words", "device_words", "mode_words", "storey_words"
+"""Fields that overlay others of a state: by them a lane is copied, see `record_type`."""
 
 
 def kind_of_field(field: Field) -> int:
-    """0 of numbers of all lanes, 1 of a lane, 2 of its modes, 3 of all else."""
+    """0 of numbers of all lanes; from 1 on of a lane, as `OVERLAYS`; behind them what is scratch."""
     if not field.sizes:
         return 0
     *sizes, last = field.sizes.split()
-    if last != "lanes" or "stages" in sizes:
-        return 3
+    if field.name in STOREYS_THAT_YIELD:
+        return 4
+    if last != "lanes" or "stages" in sizes or field.name.startswith("new_"):
+        return 1 + len(OVERLAYS)
     if "rows" in sizes:
-        return 2 if len(sizes) == 1 else 3
-    return 1
+        return 3 if len(sizes) == 1 else 1 + len(OVERLAYS)
+    return 2 if f"{SLOTS}" in sizes else 1
 
 
 @cache
@@ -600,9 +608,9 @@ def record_type(fields: tuple[Field, ...], ways: int = 1, lanes: int = 1) -> np.
     """The type of a record of such fields, for so many directions and lanes.
 
     Fields of one shape stand together, and single numbers before all: a loop over lanes then writes
-    before or behind what it reads, which the compiler can tell. Then come those of lanes, and those
-    of their modes. A lane is copied by `words` (number, lane) and `mode_words` (field, mode, lane),
-    which are all of these.
+    before or behind what it reads, which the compiler can tell. Then come those that a lane keeps
+    from step to step: of itself and of its devices (`words`, `device_words`: number, lane), of its
+    modes and of storeys that yield (`mode_words`, `storey_words`: field, mode, lane).
     """
     sizes = {
         "ways": ways,
@@ -613,16 +621,17 @@ def record_type(fields: tuple[Field, ...], ways: int = 1, lanes: int = 1) -> np.
         "stages": END + 1,
         "demands": 2 * (2 * ways - 1),
     }
+    kinds = {field: kind_of_field(field) if fields is STATE else 0 for field in fields}
     ordered = sorted(
-        fields, key=lambda field: (kind_of_field(field), len(field.sizes.split()), field.sizes)
+        fields, key=lambda field: (kinds[field], len(field.sizes.split()), field.sizes)
     )
     of, end, before = dict[str, tuple[np.dtype[Any], int]](), 0, 0
     for field in ordered:
         number = np.int64 if field.unit == WHOLE else np.float64
         kind = np.dtype((number, tuple(int(sizes.get(z, z)) for z in field.sizes.split())))
-        if fields is STATE and kind_of_field(field) != before:  # and then all do, of many lanes
+        if kinds[field] != before:  # and then all do, of many lanes
             end = -(-end // LINE) * LINE
-        before, begin = kind_of_field(field), end
+        before, begin = kinds[field], end
         of[field.name] = kind, begin
         end = begin + kind.itemsize
     return record_of(of | (overlays(of) if fields is STATE else {}))
@@ -641,11 +650,11 @@ def record_of(fields: dict[str, tuple[np.dtype[Any], int]]) -> np.dtype[Any]:
 def overlays(of: dict[str, tuple[np.dtype[Any], int]]) -> dict[str, tuple[np.dtype[Any], int]]:
     """The fields by which a lane is copied."""
     found = {}
-    for kind, name in enumerate((WORDS, MODE_WORDS), 1):
+    for kind, name in enumerate(OVERLAYS, 1):
         members = [of[field.name] for field in STATE if kind_of_field(field) == kind]
         words = sum(member.itemsize for member, _ in members) // 8
         shape = members[0][0].shape
-        shape = (words // shape[-1], shape[-1]) if kind == 1 else (len(members), *shape)
+        shape = (words // shape[-1], shape[-1]) if kind < 3 else (len(members), *shape)
         found[name] = np.dtype((np.int64, shape)), min(offset for _, offset in members)
     return found
 
