@@ -158,6 +158,10 @@ def _sound(value: Any, kind: Any, name: str, what: str) -> Any:
     return replace(value, **{n: _sound(getattr(value, n), k, n, what) for n, k in hints.items()})
 
 
+GUARD = "guards"
+"""Attribute of functions that check what another package's function gives."""
+
+
 def _guarded(function: Callable[..., Any], kind: Any, what: str) -> Callable[..., Any]:
     name = f"what {getattr(function, '__name__', 'it')} gives"
 
@@ -173,6 +177,7 @@ def _guarded(function: Callable[..., Any], kind: Any, what: str) -> Callable[...
                     raise ValueError(f"{name} must be finite, a number for each that it gets")
             return made
 
+    setattr(guarded, GUARD, True)
     return guarded
 
 

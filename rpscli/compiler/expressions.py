@@ -75,6 +75,8 @@ class Scope:
     file: str
     names: dict[str, Value | Slot]
     module: dict[str, Any]
+    own: frozenset[str] = frozenset()
+    """Names that are assigned to somewhere in the function: none of the module."""
 
 
 class Writer(Protocol):
@@ -134,6 +136,8 @@ def read_name(body: Body, node: ast.Name) -> Value:
         return rebuilt(found.kind, loaded)
     if found is not None:
         return found
+    if name in body.scope.own:
+        refuse(f"`{name}` has no value yet: assign it before, of one kind")
     if name in body.scope.module:
         return Known(body.scope.module[name])
     if hasattr(builtins, name):
@@ -198,7 +202,11 @@ def row(body: Body, rows: Rows, i: str) -> str:
 
 def element(body: Body, array: Value, indices: list[Value]) -> Places | Matrix | Record:
     """A place in an array, or an array of what fewer indices leave open."""
-    names = [body.number(i, INT) for i in indices]
+    names = [body.index(i) for i in indices]
+    sizes = array.shape if isinstance(array, Places) else (math.inf,) * len(indices)
+    for i, most in zip(indices, sizes, strict=False):
+        if isinstance(i, Known) and not 0 <= i.value < most:
+            refuse(f"the index {i.value}: indices are from 0 to one below the size")
     if isinstance(array, Rows) and len(names) == 1:
         return Record(array.dtype, row(body, array, names[0]))
     if isinstance(array, Places) and 0 < len(names) <= len(array.shape):
@@ -228,11 +236,14 @@ def read_element(body: Body, node: ast.Subscript) -> Value:
     known = [i.value for i in indices if isinstance(i, Known)]
     elements = elements_of(value)
     if len(known) == len(indices):
-        if isinstance(value, Known):
-            return Known(value.value[tuple(known) if len(known) > 1 else known[0]])
-        if elements is not None:
-            place: int = known[0]
-            return elements[place]
+        try:
+            if isinstance(value, Known):
+                return Known(value.value[tuple(known) if len(known) > 1 else known[0]])
+            if elements is not None:
+                place: int = known[0]
+                return elements[place]
+        except (IndexError, TypeError, KeyError) as error:
+            refuse(f"the index {known[0]}: {error}")
     if elements is not None:
         return one_of(body, elements, indices[0])
     of_bools = isinstance(value, Known) and getattr(value.value, "dtype", None) == np.bool_
@@ -249,8 +260,8 @@ def part_of_rows(body: Body, value: Value, part: ast.Slice) -> Value:
     """Rows from one up to another."""
     if not isinstance(value, Rows) or not part.lower or not part.upper or part.step:
         refuse("slices are of rows of records, `rows[first : end]`: use indices elsewhere")
-    first = body.number(expression(body, part.lower), INT)
-    end = body.number(expression(body, part.upper), INT)
+    first = body.index(expression(body, part.lower))
+    end = body.index(expression(body, part.upper))
     return Rows(value.dtype, row(body, value, first), body.get(f"sub i64 {end}, {first}"))
 
 
@@ -305,6 +316,8 @@ def binary(body: Body, of: type, one: Value, other: Value) -> Value:
     kinds = {kind_of(one), kind_of(other)}
     if of is ast.Pow:
         return external(body, "pow", [one, other])
+    if kinds == {BOOL} and of not in {ast.BitAnd, ast.BitOr}:
+        refuse("arithmetic of two bools, which numpy has otherwise: write `1 if test else 0`")
     if of in {ast.BitAnd, ast.BitOr}:
         if DOUBLE in kinds:
             refuse("& and | are of bools or of ints")
@@ -338,9 +351,13 @@ def known(function: Callable[..., Any], *arguments: Value) -> Known | None:
 
 
 def whole_division(body: Body, of: type, x: str, y: str) -> Number:
-    """Division of ints towards minus infinity, or its rest; by zero it is one by 1."""
+    """Division of ints towards minus infinity, or its rest; by zero as by 1."""
+    turns = body.get(f"icmp eq i64 {y}, -1")
     none = body.get(f"icmp eq i64 {y}, 0")
-    y = body.get(f"select i1 {none}, i64 1, i64 {y}")  # else the process would end
+    either = body.get(f"or i1 {turns}, {none}")
+    sign = body.get(f"select i1 {turns}, i64 -1, i64 1")
+    x = body.get(f"mul i64 {x}, {sign}")
+    y = body.get(f"select i1 {either}, i64 1, i64 {y}")  # else the process might end
     rest = body.get(f"srem i64 {x}, {y}")
     signs = body.get(f"xor i64 {rest}, {y}")
     differ = body.get(f"icmp slt i64 {signs}, 0")
@@ -359,19 +376,44 @@ def unary(body: Body, node: ast.UnaryOp) -> Value:
     value = expression(body, node.operand)
     if isinstance(node.op, ast.Not):
         if isinstance(value, Known):
-            return Known(not value.value)
+            return Known(not is_true(value))
         return Number(BOOL, body.get(f"xor i1 {body.number(value, BOOL)}, true"))
+    if isinstance(node.op, ast.UAdd):
+        return Number(DOUBLE, body.number(value, DOUBLE)) if kind_of(value) == DOUBLE else value
+    if kind_of(value) == BOOL:
+        refuse("a sign before a bool: write `-1 if test else 0`")
     if (found := known(operator.neg, value)) is not None and isinstance(node.op, ast.USub):
         return found
     if not isinstance(node.op, ast.USub):
-        refuse("`~` and a plus sign before a number: leave them out")
+        refuse("`~`: write it in another way")
     if kind_of(value) == DOUBLE:
         return Number(DOUBLE, body.get(f"fneg double {body.number(value, DOUBLE)}"))
     return Number(INT, body.get(f"sub nsw i64 0, {body.number(value, INT)}"))
 
 
+OF_KNOWN: dict[type, Callable[[Any, Any], Any]] = {
+    ast.Is: operator.is_,
+    ast.IsNot: operator.is_not,
+    ast.Eq: operator.eq,
+    ast.NotEq: operator.ne,
+    ast.In: lambda one, others: one in others,
+    ast.NotIn: lambda one, others: one not in others,
+}
+"""Comparisons of what is known, such as words."""
+
+
+def is_true(value: Known) -> bool:
+    """Whether something known counts as true."""
+    try:
+        return bool(value.value)
+    except ValueError as error:
+        refuse(f"{described(value)} as a test: {error}")
+
+
 def compared(body: Body, of: ast.cmpop, one: Value, other: Value) -> Value:
     """Whether a comparison holds."""
+    if isinstance(one, Known) and isinstance(other, Known) and type(of) in OF_KNOWN:
+        return Known(bool(OF_KNOWN[type(of)](one.value, other.value)))
     if isinstance(of, (ast.In, ast.NotIn)):
         return contained(body, of, one, elements_of(other))
     if type(of) not in COMPARISONS:
@@ -467,7 +509,7 @@ def conditional(body: Body, node: ast.IfExp) -> Value:
     """One value or the other; both are computed where that is as quick as to choose."""
     test = expression(body, node.test)
     if isinstance(test, Known):
-        return expression(body, node.body if test.value else node.orelse)
+        return expression(body, node.body if is_true(test) else node.orelse)
     name = body.number(test, BOOL)
     if is_simple(node.body) and is_simple(node.orelse):
         one, other = expression(body, node.body), expression(body, node.orelse)
@@ -506,10 +548,10 @@ def common(one: Kind, other: Kind) -> Kind:
 # Calls.
 
 INTRINSICS = {
-    "sqrt": "sqrt", "fabs": "fabs", "absolute": "fabs", "ceil": "ceil", "floor": "floor",
-    "copysign": "copysign", "fma": "fma",
+    "sqrt": ("sqrt", 1), "fabs": ("fabs", 1), "absolute": ("fabs", 1), "ceil": ("ceil", 1),
+    "floor": ("floor", 1), "copysign": ("copysign", 2), "fma": ("fma", 3),
 }  # fmt: skip
-"""Functions of `math` and numpy that processors or LLVM have, by their names there."""
+"""Functions of `math` and numpy that processors have: their names in LLVM, how many numbers."""
 
 EXTERNALS = {
     "sin": 1, "cos": 1, "tan": 1, "asin": 1, "acos": 1, "atan": 1, "atan2": 2, "sinh": 1, "cosh": 1,
@@ -595,6 +637,10 @@ BUILT_IN: dict[Any, Callable[[Body, Any, list[Value]], Value]] = {
 }
 
 
+TAKEN: dict[Any, Any] = {min: range(2, 99), max: range(2, 99), call_at: {2}}
+"""How many arguments functions take that do not take one."""
+
+
 def call(body: Body, node: ast.Call) -> Value:
     """The call of a function of the language, of `math`, or of one that is compiled with it."""
     called = expression(body, node.func)
@@ -604,23 +650,35 @@ def call(body: Body, node: ast.Call) -> Value:
     given = [expression(body, each) for each in node.args]
     by_name = {each.arg or "": expression(body, each.value) for each in node.keywords}
     if hasattr(function, "_fields"):
+        if function.__mro__[1] is not tuple:
+            refuse(f"`{function.__name__}` is derived from a NamedTuple: use that itself")
         return Tuple(tuple(body.program.arguments(function, given, by_name)), function)
-    name = getattr(function, "__name__", "")
     of_math = function is fma or isinstance(function, np.ufunc)
     of_math = of_math or getattr(function, "__module__", "") == "math"
     if not of_math and function not in BUILT_IN:
         arguments = body.program.arguments(function, given, by_name)
         return body.program.call(body, function, arguments)
+    return call_of_numbers(body, function, given, by_name)
+
+
+def call_of_numbers(
+    body: Body, function: Any, given: list[Value], by_name: dict[str, Value]
+) -> Value:
+    """The call of a function that processors, LLVM or C's library have."""
+    name = getattr(function, "__name__", "")
     if by_name or not given:
         refuse(f"`{name}` is given numbers, without names")
     if (found := known(function, *given)) is not None:
         return found
     if function in BUILT_IN:
+        if len(given) not in TAKEN.get(function, {1}):
+            refuse(f"`{name}` of {len(given)} numbers")
         return BUILT_IN[function](body, function, given)
-    if INTRINSICS.get(name):
-        return intrinsic(body, INTRINSICS[name], given)
-    if EXTERNALS.get(name) == len(given):
-        return external(body, name, given)
+    inside, takes = INTRINSICS.get(name, ("", 0))
+    if takes == len(given):
+        return intrinsic(body, inside, given)
+    if EXTERNALS.get(name) == len(given) and not isinstance(function, np.ufunc):
+        return external(body, name, given)  # numpy rounds these in its own way
     refuse(f"`{name}` of {len(given)} numbers: write it with functions that LANGUAGE.md lists")
 
 

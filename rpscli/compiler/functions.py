@@ -14,8 +14,16 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from rpscli.compiler.expressions import EXTERNALS, INTRINSICS, Body, Scope, expression, placed
-from rpscli.compiler.statements import Statements, assign_name, statements
+from rpscli.compiler.expressions import (
+    EXTERNALS,
+    INTRINSICS,
+    Body,
+    Scope,
+    expression,
+    is_true,
+    placed,
+)
+from rpscli.compiler.statements import Statements, assign_name, assignments, statements
 from rpscli.compiler.values import (
     DOUBLE,
     INT,
@@ -71,10 +79,26 @@ class Program:
         self._loops: list[str] = []
         self._constants: dict[int, tuple[str, Places, Any]] = {}
 
-    def add(self, function: Callable[..., Any], kinds: Sequence[Kind], name: str) -> None:
-        """Add a function that can be called from outside, by a name, with arguments of kinds."""
+    def add(
+        self,
+        function: Callable[..., Any],
+        kinds: Sequence[Kind],
+        name: str,
+        result: str | None = None,
+    ) -> None:
+        """Add a function that can be called from outside, by a name, with arguments of kinds.
+
+        It returns a double (`result`) or nothing. Raises NotInLanguage.
+        """
         arguments = [rebuilt(kind, iter(types_of(kind))) for kind in kinds]
-        self._texts.append(written(self, function, arguments, name, "")[0])
+        try:
+            if len(tree_of(function).args.args) != len(kinds):
+                refuse(f"`{function.__name__}` takes another number of arguments than {len(kinds)}")
+            self._texts.append(written(self, function, arguments, name, "", result)[0])
+        except RecursionError:
+            raise NotInLanguage(
+                "too much stands within each other: write several statements", function.__name__
+            ) from None
 
     def add_watched(self, function: Callable[..., Any], taken: int, given: int, name: str) -> None:
         """Add a function of doubles that is given more than it takes.
@@ -82,7 +106,7 @@ class Program:
         Where it returns no finite number of finite ones, the array ``<name>.refused`` is left with
         1.0 and what it was given: the last such call. What follows from it is not its fault.
         """
-        self.add(function, [DOUBLE] * taken, f"@{name}.plain")
+        self.add(function, [DOUBLE] * taken, f"@{name}.plain", DOUBLE)
         names = [f"%a.{k}" for k in range(given)]
         outer = ", ".join(f"double {each}" for each in names)
         inner = ", ".join(f"double {each}" for each in names[:taken])
@@ -112,10 +136,9 @@ class Program:
     def text(self) -> str:
         """All of the program."""
         constants = [line for line, _, _ in self._constants.values()]
-        numbers = {"copysign": 2, "fma": 3}
         known = [
-            declaration(f"llvm.{name}.f64", numbers.get(name, 1))
-            for name in dict.fromkeys(INTRINSICS.values())
+            declaration(f"llvm.{name}.f64", taken)
+            for name, taken in dict.fromkeys(INTRINSICS.values())
         ]
         known += [declaration(name, taken) for name, taken in EXTERNALS.items()]
         loops = [
@@ -128,7 +151,6 @@ class Program:
 
     def call(self, body: Body, function: Any, arguments: list[Value]) -> Value:
         """Write the call of a function, or in its place what it returns."""
-        function = inspect.unwrap(function)
         node = tree_of(function)
         given = [
             as_float(body, value) if takes_float(parameter) else value
@@ -174,8 +196,8 @@ class Program:
         """Keep a known array or tuple of numbers; each once."""
         if id(array) not in self._constants:
             numbers = np.asarray(array)
-            if numbers.dtype.kind not in "bif":
-                refuse("an array that is known must be of numbers")
+            if numbers.dtype not in (np.bool_, np.int64, np.float64):
+                refuse(f"a known array of {numbers.dtype}: make it float64 or int64")
             kind = DOUBLE if numbers.dtype.kind == "f" else INT
             name = f"@constant.{len(self._constants)}"
             line = f"{name} = private unnamed_addr constant {initial(numbers, kind)}"
@@ -194,7 +216,6 @@ class Program:
         if hasattr(function, "_fields"):
             names, defaults = list(function._fields), dict(function._field_defaults)
         else:
-            function = inspect.unwrap(function)
             names = [parameter.arg for parameter in tree_of(function).args.args]
             values = function.__defaults__ or ()
             defaults = dict(zip(names[len(names) - len(values) :], values, strict=True))
@@ -274,6 +295,18 @@ def tree_of(function: Any) -> ast.FunctionDef:
     code = getattr(function, "__code__", None)
     if code is None:
         refuse(f"`{getattr(function, '__name__', function)}` is not written in Python")
+    if hasattr(function, "__wrapped__"):
+        refuse(f"`{function.__name__}` is decorated: call what it wraps")
+    node = found_in_file(function, code)
+    given = node.args
+    if given.vararg or given.kwarg or given.kwonlyargs or given.posonlyargs:
+        refuse(f"`{function.__name__}` has `*` or `/` among its parameters: write plain ones")
+    return node
+
+
+def found_in_file(function: Any, code: Any) -> ast.FunctionDef:
+    """A function in the syntax tree of its module."""
+    lambdas = []
     for node in ast.walk(tree_of_module(function.__module__)):
         if isinstance(node, ast.FunctionDef) and node.name == function.__name__:
             lines = [node.lineno, *(each.lineno for each in node.decorator_list)]
@@ -281,7 +314,9 @@ def tree_of(function: Any) -> ast.FunctionDef:
                 return node
         if isinstance(node, ast.Lambda) and is_lambda(function, node):
             returned = ast.copy_location(ast.Return(node.body), node)
-            return ast.FunctionDef("lambda", node.args, [returned], [], lineno=node.lineno)
+            lambdas.append(ast.FunctionDef("lambda", node.args, [returned], [], lineno=node.lineno))
+    if len(lambdas) == 1:
+        return lambdas[0]
     refuse(f"`{function.__name__}` is not found in its file: give it a name, at the file's top")
 
 
@@ -298,7 +333,8 @@ def scope_of(function: Any, names: dict[str, Value]) -> Scope:
     inner = function.__code__.co_freevars
     cells = [cell.cell_contents for cell in function.__closure__ or ()]
     module = {**function.__globals__, **dict(zip(inner, cells, strict=True))}
-    return Scope(Path(function.__code__.co_filename).name, dict(names), module)
+    own = frozenset(assignments(tree_of(function)))
+    return Scope(Path(function.__code__.co_filename).name, dict(names), module, own)
 
 
 # How a function is written.
@@ -319,7 +355,8 @@ def in_place(body: Body, function: Any, node: ast.FunctionDef, given: list[Value
             if isinstance(statement, ast.If) and not has_effects(statement.test):
                 test = expression(body, statement.test)
                 if isinstance(test, Known):
-                    following = list(statement.body if test.value else statement.orelse) + following
+                    chosen = statement.body if is_true(test) else statement.orelse
+                    following = list(chosen) + following
                     continue
             if not is_text(statement):
                 break
@@ -346,13 +383,18 @@ def is_text(node: ast.stmt) -> bool:
 
 
 def written(
-    program: Program, function: Any, arguments: list[Value], name: str, linkage: str
+    program: Program,
+    function: Any,
+    arguments: list[Value],
+    name: str,
+    linkage: str,
+    result: str | None = None,
 ) -> tuple[str, Kind]:
     """The text of a version of a function, and what it returns."""
     widened: dict[str, Kind] = {}
     while True:
         try:
-            return written_with(program, function, arguments, name, linkage, widened)
+            return written_with(program, function, arguments, name, linkage, widened, result)
         except Widened as found:
             widened[found.name] = found.kind
 
@@ -364,6 +406,7 @@ def written_with(
     name: str,
     linkage: str,
     widened: dict[str, Kind],
+    result: str | None,
 ) -> tuple[str, Kind]:
     """The same, where some variables are known to be of wider kinds."""
     node = tree_of(function)
@@ -385,7 +428,7 @@ def written_with(
         body.returns.append((len(body.lines), Known(None)))
         body.lines.append("")
     try:
-        kind = returned(body)
+        kind = returned(body, result)
     except NotInLanguage as error:
         raise placed(error, body, node) from None
     head = f"define {linkage}{structure(types_of(kind)) if types_of(kind) else 'void'} {name}"
@@ -394,16 +437,16 @@ def written_with(
     return "\n".join([*lines, *body.allocas, *body.lines, "}"]), kind
 
 
-def returned(body: Statements) -> Kind:
-    """Write all returns, now that it is known what they have in common."""
-    kind: Kind = None
+def returned(body: Statements, result: str | None) -> Kind:
+    """Write all returns, now that it is known what they have in common, or `result`."""
+    kind: Kind = result
     for _, value in body.returns:
         mine = kind_of(value)
         both = mine if kind is None else joined(kind, mine)
         if both is None:
             refuse(f"`{body.name}` returns values of two kinds: return the same everywhere")
         kind = both
-        if mine[0] == "known" and value != Known(None):
+        if mine[0] == "known" and mine[1].value.value is not None:
             refuse(f"`{body.name}` returns {described(value)}: return numbers, or tuples")
     kinds = types_of(kind)
     lines = body.lines

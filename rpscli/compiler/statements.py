@@ -18,6 +18,7 @@ from rpscli.compiler.expressions import (
     element,
     expression,
     field,
+    is_true,
     load,
     placed,
     read_name,
@@ -76,14 +77,18 @@ class Statements(Body):
             del self.scope.names[name]
 
 
-def assignments(node: ast.FunctionDef) -> Counter[str]:
+def assignments(node: ast.FunctionDef | ast.For) -> Counter[str]:
     """How often each name of a function is assigned to; twice, if at once read."""
     found: Counter[str] = Counter()
     for each in ast.walk(node):
+        if each is node and isinstance(node, ast.For):
+            continue
         if isinstance(each, ast.Name) and isinstance(each.ctx, ast.Store):
             found[each.id] += 1
         if isinstance(each, ast.AugAssign) and isinstance(each.target, ast.Name):
             found[each.target.id] += 1
+        if isinstance(each, ast.For) and not isinstance(each.iter, ast.Call):
+            found.update(assignments(each))  # once for each element of a tuple
     return found
 
 
@@ -217,7 +222,7 @@ def branch(body: Statements, node: ast.If) -> None:
     """`if`; a test that is known leaves one branch, and the other is not looked at."""
     test = expression(body, node.test)
     if isinstance(test, Known):
-        statements(body, node.body if test.value else node.orelse)
+        statements(body, node.body if is_true(test) else node.orelse)
         return
     yes, no, end = body.new("then"), body.new("else"), body.new("endif")
     body.branch(body.number(test, "i1"), yes, no if node.orelse else end)
@@ -263,11 +268,13 @@ def loop(body: Statements, node: ast.For) -> None:
 
 def loop_over_range(body: Statements, node: ast.For, limits: list[Value]) -> None:
     """`for i in range(first, end, step)`, the step known."""
-    step = limits[2] if len(limits) > 2 else Known(1)
-    if not isinstance(step, Known) or step.value == 0:
+    step = limits[2] if len(limits) == 3 else Known(1)
+    if not isinstance(step, Known) or type(step.value) is not int or step.value == 0:
         refuse("the step of a range must be a known number")
+    if not 0 < len(limits) < 4 or getattr(node.iter, "keywords", None):
+        refuse("a range has one to three limits, without names")
     first, limit = (Known(0), limits[0]) if len(limits) == 1 else limits[:2]
-    begin, end = body.number(first, INT), body.number(limit, INT)
+    begin, end = body.index(first), body.index(limit)
     name = body.new(f"{body.name}.{node.lineno}.loop")
     before, inside, following, out = body.block, f"{name}.in", f"{name}.next", f"{name}.out"
     body.jump(name)
@@ -293,13 +300,15 @@ def repeat(body: Statements, node: ast.While) -> None:
     """`while`."""
     if node.orelse:
         refuse("`else` of a loop: write a variable that tells")
+    if expression_is_false(body, node.test):
+        return
     name = body.new(f"{body.name}.{node.lineno}.while")
     inside, out = f"{name}.in", f"{name}.out"
     body.jump(name)
     body.label(name)
     written = len(body.lines)
     test = expression(body, node.test)
-    if isinstance(test, Known) and test.value:
+    if isinstance(test, Known) and is_true(test):
         body.jump(inside)
     else:
         body.branch(body.number(test, "i1"), inside, out)
@@ -312,6 +321,16 @@ def repeat(body: Statements, node: ast.While) -> None:
     if not any(f"%{out}" in line for line in body.lines[written:]):
         body.put("unreachable")
         body.ended = True
+
+
+def expression_is_false(body: Statements, node: ast.expr) -> bool:
+    """Whether a test without variables is known to fail: then its statements are not looked at."""
+    if any(isinstance(each, (ast.Call, ast.Subscript, ast.BoolOp)) for each in ast.walk(node)):
+        return False
+    written = len(body.lines)
+    test = expression(body, node)
+    del body.lines[written:]
+    return isinstance(test, Known) and not is_true(test)
 
 
 def leave(body: Statements, node: ast.Return) -> None:

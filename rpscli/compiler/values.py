@@ -82,14 +82,30 @@ class Matrix:
     sizes: tuple[str, ...]
 
 
+class Itself:
+    """Something known in a kind: equal to itself alone, whatever it is."""
+
+    def __init__(self, value: Known) -> None:
+        self.value = value
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Itself) and self.value.value is other.value.value
+
+    def __hash__(self) -> int:
+        return id(self.value.value)
+
+
 Value: TypeAlias = Known | Number | Tuple | Record | Rows | Places | Matrix
 Kind: TypeAlias = Any
 """A number's LLVM type, or a tuple that begins with what it is; it can be compared and hashed."""
 
 
+NUMBERS = bool, int, float, np.bool_, np.int64, np.float64
+
+
 def is_number(value: object) -> bool:
-    """Whether something known is a number."""
-    return isinstance(value, (bool, int, float, np.bool_, np.integer, np.floating))
+    """Whether something known is a number of the language: no narrower one, nothing derived."""
+    return type(value) in NUMBERS
 
 
 def number_kind(value: object) -> str:
@@ -101,11 +117,17 @@ def number_kind(value: object) -> str:
 
 def literal(value: Any, kind: str) -> str:
     """A known number in LLVM's text; doubles by their bits."""
-    if kind == DOUBLE:
-        return f"0x{struct.unpack('<Q', struct.pack('<d', float(value)))[0]:016X}"
+    try:
+        if kind == DOUBLE:
+            return f"0x{struct.unpack('<Q', struct.pack('<d', float(value)))[0]:016X}"
+        whole = int(value)
+    except (OverflowError, ValueError) as error:
+        refuse(f"{value}: {error}")
     if kind == BOOL:
         return "true" if value else "false"
-    return str(int(value))
+    if not -(2**63) <= whole < 2**63:
+        refuse(f"{whole} is no int of 64 bits: write a float")
+    return str(whole)
 
 
 def elements_of(value: Value) -> tuple[Value, ...] | None:
@@ -127,7 +149,7 @@ def kind_of(value: Value) -> Kind:
         of = value.of if isinstance(value, Tuple) else named(value.value)  # type: ignore[union-attr]
         return "tuple", tuple(map(kind_of, elements)), of
     if isinstance(value, Known):
-        return "known", id(value.value), value
+        return "known", Itself(value)
     if isinstance(value, (Record, Rows)):
         return type(value).__name__, value.dtype
     if isinstance(value, Places):
@@ -182,7 +204,7 @@ def rebuilt(kind: Kind, names: Iterator[str]) -> Value:
     if of == "tuple":
         return Tuple(tuple(rebuilt(element, names) for element in kind[1]), kind[2])
     if of == "known":
-        return kind[2]  # type: ignore[no-any-return]
+        return kind[1].value  # type: ignore[no-any-return]
     if of == "Record":
         return Record(kind[1], next(names))
     if of == "Rows":
@@ -198,9 +220,12 @@ def joined(one: Kind, other: Kind) -> Kind:
         return one
     if isinstance(one, str) and isinstance(other, str):
         return DOUBLE if DOUBLE in {one, other} else INT
+    if isinstance(one, str) or isinstance(other, str) or one is None or other is None:
+        return None
     if one[0] == other[0] == "tuple" and len(one[1]) == len(other[1]):
         elements = tuple(map(joined, one[1], other[1]))
-        return None if None in elements else ("tuple", elements, one[2] or other[2])
+        same = one[2] is other[2] or None in {one[2], other[2]}  # fields of two classes differ
+        return ("tuple", elements, one[2] or other[2]) if same and None not in elements else None
     return None
 
 
@@ -237,9 +262,10 @@ class Code:
         return name
 
     def room(self, kind: str) -> str:
-        """A place on the stack, made once where the function begins."""
+        """A place on the stack, made once where the function begins, of zeros."""
         name = "%" + self.new("v")
         self.allocas.append(f"  {name} = alloca {kind}")
+        self.allocas.append(f"  store {kind} zeroinitializer, ptr {name}")
         return name
 
     def label(self, name: str) -> None:
@@ -276,6 +302,12 @@ class Code:
         if value.kind == DOUBLE:
             return self.get(f"fcmp une double {value.name}, 0.0")
         return self.get(f"icmp ne i64 {value.name}, 0")
+
+    def index(self, value: Value) -> str:
+        """The name of an int: no float is one."""
+        if kind_of(value) not in {INT, BOOL}:
+            refuse(f"{described(value)} is no int: write int(...)")
+        return self.number(value, INT)
 
     def as_kind(self, value: Value, kind: Kind) -> Value:
         """A value as one of a wider kind."""

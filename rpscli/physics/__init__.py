@@ -1,8 +1,8 @@
 """The compiled kernel on records with named fields; no strings, no exceptions, no files.
 
 `state` names every number once. `laws` are the physics, each law once, of plain named numbers;
-`lane` asks them with the numbers of a lane, and `energy`, `devices`, `friction`, `storeys` and `bed`
-say what else it has. `step` takes a Runge-Kutta step of all lanes together (`tableau`), `standing`
+`lane` asks them with the numbers of a lane, and `energy`, `devices`, `friction`, `storeys`, `bed`
+are what else it has. `step` takes a Runge-Kutta step of all lanes together (`tableau`), `standing`
 the exact one, `events` finds where a step is to end, `upright` has uplift, impact and pass,
 `demands` what is largest, `rest` when nothing more can come, `samples` and `ground` what is kept.
 `follow` strings them together, in `groups` of those that stand and that move. `kernels` has machine

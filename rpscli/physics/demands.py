@@ -150,7 +150,7 @@ def raise_floors(s: Record, l: int, systems: Record) -> None:
 
     By those at its end; and by those within, where they bulge enough above both ends.
     """
-    n, ways, rows, within = s.n, ways_of(s), s.looked_at, False
+    n, ways, rows, within = s.n, ways_of(s), s.seen, False
     for axis in range(ways):
         system, shears, accelerations = systems[axis], rows[2 * axis], rows[2 * axis + 1]
         for i in range(n):
@@ -163,7 +163,7 @@ def raise_floors(s: Record, l: int, systems: Record) -> None:
                 shears[i] += system.storey_shear_of[of, i] * q
                 accelerations[i] += system.phi[of, i] * force
         if s.yields[l] > 0:
-            free_rows(s, l, system, axis, shears, rows[6])
+            free_rows(s, l, system, axis, shears, s.freeing[0])
     for kind in range(2):
         for j in range(rows_of(s)):
             within |= raise_row(s, l, systems, kind, j)
@@ -189,11 +189,11 @@ def raise_row(s: Record, l: int, systems: Record, kind: int, j: int) -> bool:
     within, room = False, math.inf
     for i in range(s.n):
         if ways_of(s) == 1 or j == 1:
-            here, share = abs(s.looked_at[kind, i]), bounds_of(systems, 0, kind)[i]
+            here, share = abs(s.seen[kind, i]), bounds_of(systems, 0, kind)[i]
         elif j == 2:
-            here, share = abs(s.looked_at[2 + kind, i]), bounds_of(systems, 1, kind)[i]
+            here, share = abs(s.seen[2 + kind, i]), bounds_of(systems, 1, kind)[i]
         else:
-            x, y = s.looked_at[kind, i], s.looked_at[2 + kind, i]
+            x, y = s.seen[kind, i], s.seen[2 + kind, i]
             here = math.sqrt(x * x + y * y)
             share = min(bounds_of(systems, 0, kind)[i], bounds_of(systems, 1, kind)[i])
         most = s.largest[k, l, i]
@@ -255,7 +255,7 @@ def raise_floors_within(s: Record, l: int, systems: Record) -> None:
 @compiled
 def raise_floors_between(s: Record, l: int, systems: Record, begin: float, end: float) -> None:
     """The same between fractions of the step."""
-    n, rows = s.n, s.looked_at
+    n, rows = s.n, s.between
     for axis in range(ways_of(s)):
         write_between(s, l, systems[axis], axis, begin, end)
     for kind in range(2):
@@ -274,7 +274,7 @@ def raise_floors_between(s: Record, l: int, systems: Record, begin: float, end: 
 @compiled
 def write_between(s: Record, l: int, system: Record, axis: int, begin: float, end: float) -> None:
     """Write shears and accelerations at three instants of the step, of a direction."""
-    n, rows, first = s.n, s.looked_at, 6 * axis
+    n, rows, first = s.n, s.between, 6 * axis
     for k in range(first, first + 6):
         for i in range(n):
             rows[k, i] = 0.0
@@ -460,10 +460,10 @@ def force_within(s: Record, l: int, axis: int, t: float) -> float:
         V += s.Gamma[i, l] * (s.omega2[i, l] * q + s.two_xi_omega[i, l] * dq)
         slip += s.slipping[i, l] * q
     if s.yields[l] > 0 and axis < ways_of(s):
-        r, free = axis * s.n, 1.0 - s.hardening[l]
-        if s.mark[r, l] == 0:
-            slip = free * s.stiffness[r, l] * s.middle[r, l]
-        V -= slip - free * s.mark[r, l] * s.strength[r, l]
+        lowest, free = axis * s.n, 1.0 - s.hardening[l]
+        if s.mark[lowest, l] == 0:
+            slip = free * s.stiffness[lowest, l] * s.middle[lowest, l]
+        V -= slip - free * s.mark[lowest, l] * s.strength[lowest, l]
     return V  # type: ignore[no-any-return]
 
 
@@ -611,7 +611,7 @@ def observe_tilt(s: Record, log: Record) -> None:
     for l in range(lanes_of(s)):
         x, end = s.new_x[l], s.interval[l] * s.dt[l] + (s.time[l] + s.h[l])
         higher = (s.accepted[l] > 0.0) & (x > s.max_theta[l])
-        s.attention[l] = 1.0 if higher & (ways_of(s) == 2) else 0.0
+        s.tilt_rises[l] = 1.0 if higher & (ways_of(s) == 2) else 0.0
         passing = (x > s.theta_cr[l]) & (s.critical_time[l] < 0.0)
         turning = (s.v[l] > 0.0) & (s.new_v[l] < 0.0)
         path = path_of(s, l)
@@ -619,13 +619,13 @@ def observe_tilt(s: Record, log: Record) -> None:
         below = (s.bed_k[l] > 0.0) & (-min(lower_hull(path), path[0]) > s.max_theta[l])
         below &= ways_of(s) == 1
         closer = (s.accepted[l] > 0.0) & (passing | inside | below)
-        s.attention[l] = 2.0 if closer else s.attention[l]
+        s.tilt_rises[l] = 2.0 if closer else s.tilt_rises[l]
         s.max_theta_time[l] = (end if higher & (not closer) else s.max_theta_time[l]) + 0.0
         s.max_theta[l] = (x if higher & (not closer) else s.max_theta[l]) + 0.0
     for l in range(lanes_of(s)):
-        if s.attention[l] > 1.0:
+        if s.tilt_rises[l] > 1.0:
             raise_tilt(s, l, log)
-        elif ways_of(s) == 2 and s.attention[l] > 0.0:
+        elif ways_of(s) == 2 and s.tilt_rises[l] > 0.0:
             s.max_azimuth[l] = math.atan2(s.new_tilt[ways_of(s) - 1, l], s.new_tilt[0, l])
 
 
@@ -729,7 +729,7 @@ def observe_devices(s: Record) -> None:
         low = s.new_height[l]
         rises |= (s.branched[l] > 0.0) | ((s.friction_moment[l] > 0.0) & (low < s.least_height[l]))
         counts = (s.accepted[l] > 0.0) & (s.moves[l] > 0.0) & (s.devices[l] > 0)
-        s.attention[l] = 1.0 if counts & rises else 0.0
+        s.devices_rise[l] = 1.0 if counts & rises else 0.0
         s.least_height[l] = low if counts & (low < s.least_height[l]) else s.least_height[l]
     for i in range(s.equipped):
         for l in range(lanes):
@@ -737,7 +737,7 @@ def observe_devices(s: Record) -> None:
             work = s.h[l] * power_in_step(s, l, i)
             s.device_energy[i, l] += work if counts else 0.0
     for l in range(lanes):
-        if s.attention[l] > 0.0:
+        if s.devices_rise[l] > 0.0:
             tilt, rate = tilt_within(s, l, 0.5)
             middle = worked(s, l, tilt, rate)
             tilt, rate = tilt_within(s, l, 1.0)

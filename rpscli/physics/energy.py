@@ -144,24 +144,24 @@ def relative_momentum(s: Record, l: int, axis: int) -> float:
 
 @compiled
 def look_at(s: Record, l: int) -> None:
-    """Write the modes at the start of the step to `looked_at`, a row of q and one of q' a way."""
+    """Write the modes at the start of the step to `seen_modes`, a row of q and one of q' a way."""
     for axis in range(s.axes):
         for i in range(s.n):
             r = axis * s.n + i
-            s.looked_at[2 * axis, i], s.looked_at[2 * axis + 1, i] = s.q[r, l], s.dq[r, l]
+            s.seen_modes[2 * axis, i], s.seen_modes[2 * axis + 1, i] = s.q[r, l], s.dq[r, l]
 
 
 @compiled
 def energy_at(
     s: Record, l: int, system: Record, tilt: tuple[float, float], rate: tuple[float, float]
 ) -> float:
-    """Kinetic, potential and elastic energy without devices [J], of modes as `looked_at`."""
+    """Kinetic, potential and elastic energy without devices [J], of modes as `seen_modes`."""
     beam, energy = beam_at(s, l, tilt, rate), 0.0
     for axis in range(s.axes):
         u = beam[RATES + axis]
         energy += 0.5 * s.floors_mass[l] * (u * u)
         for i in range(s.n):
-            r, q, dq = axis * s.n + i, s.looked_at[2 * axis, i], s.looked_at[2 * axis + 1, i]
+            r, q, dq = axis * s.n + i, s.seen_modes[2 * axis, i], s.seen_modes[2 * axis + 1, i]
             energy += 0.5 * (dq * dq + s.omega2[r, l] * (q * q)) + u * (s.Gamma[r, l] * dq)
     if s.phase[l] == FULL_CONTACT:
         return float(energy)

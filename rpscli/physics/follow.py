@@ -118,7 +118,7 @@ def follow(
             else:
                 advance(s, systems, output, False)  # noqa: FBT003
             next_intervals(s, acceleration)
-            if s.attention[0] > 0.0:
+            if s.due[0] > 0.0:
                 first = s.system[0]
                 over = look_after(s, 0, systems[first : first + s.axes], output)
         if over:
@@ -189,7 +189,7 @@ def look_after_all(state: Record, k: int, systems: Record, results: Record, outp
     """What lanes alone are to do; those whose histories are over, or go on otherwise, leave."""
     s = state[k]
     for l in range(lanes_of(s)):
-        if s.attention[l] == 0.0 or s.history[l] == NO_HISTORY:
+        if s.due[l] == 0.0 or s.history[l] == NO_HISTORY:
             continue
         first = s.system[l]
         if look_after(s, l, systems[first : first + s.axes], output):
@@ -351,7 +351,7 @@ def plan(s: Record, l: int) -> float:
 def next_intervals(s: Record, acceleration: Floats) -> None:
     """Lanes that have come to a sample enter the next interval; plan the steps of all.
 
-    `attention` to those at an event, at a jump of the ground's acceleration, or whose end may be
+    `due` to those at an event, at a jump of the ground's acceleration, or whose end may be
     near.
     """
     lanes = lanes_of(s)
@@ -363,14 +363,14 @@ def next_intervals(s: Record, acceleration: Floats) -> None:
         at_end = (interval >= s.intervals[l]) | ((free >= 0) & (free % REST_EVERY == 0))
         looks = (there & at_end) | (s.kind[l] != NOTHING) | (s.outcome[l] >= 0)
         looks |= (s.audited > 0) & there
-        s.attention[l] = 1.0 if looks else (0.5 if there else 0.0)
+        s.due[l] = 1.0 if looks else (0.5 if there else 0.0)
         s.interval[l] = interval
     for l in range(lanes):
-        if s.attention[l] > 0.0 and s.kind[l] == NOTHING and s.history[l] != NO_HISTORY:
+        if s.due[l] > 0.0 and s.kind[l] == NOTHING and s.history[l] != NO_HISTORY:
             set_ground(s, l, acceleration)
-        s.attention[l] = 1.0 if s.attention[l] == 1.0 else 0.0
+        s.due[l] = 1.0 if s.due[l] == 1.0 else 0.0
     for l in range(lanes):
-        goes_on, limit = (s.accepted[l] > 0.0) & (s.attention[l] == 0.0), s.h_limit[l]
+        goes_on, limit = (s.accepted[l] > 0.0) & (s.due[l] == 0.0), s.h_limit[l]
         factor = 2.0 if s.error[l] < CALM else (1.2 if s.error[l] < EASY else 1.0)
         limit = factor * limit
         limit = limit if limit < s.h_most[l] else math.inf
@@ -715,24 +715,19 @@ def load_request(s: Record, l: int, request: Record, system: Record) -> None:
 @compiled
 def clear_results(s: Record, l: int) -> None:
     """Nothing has happened yet."""
-    s.max_theta[l], s.max_theta_time[l], s.critical_time[l] = 0.0, 0.0, -1.0
-    s.max_azimuth[l], s.critical_azimuth[l] = 0.0, 0.0
-    s.friction_top[l], s.friction_bottom[l] = 0.0, 0.0
+    for i in range(s.kept.shape[0]):
+        s.kept[i, l] = 0
+    s.critical_time[l] = -1.0
     s.normal_top[l], s.normal_bottom[l] = math.inf, math.inf
-    s.heavy_top[l], s.heavy_bottom[l] = 0.0, 0.0
-    s.shear_top[l], s.shear_bottom[l], s.contacts_near[l] = 0.0, 0.0, 1.0
+    s.closest_pass[l], s.shortest_pass[l] = math.inf, math.inf
+    s.contacts_near[l] = 1.0
     for k in range(s.room.shape[0]):
         s.room[k, l] = 0.0
         for i in range(s.n):
             s.largest[k, l, i], s.last[k, l, i] = 0.0, 0.0
     for axis in range(ways_of(s)):
         s.max_beam[axis, l] = 0.0
-    s.torsion_lever[l], s.passes_as_impacts[l] = 0.0, 0.0
-    s.closest_pass[l], s.shortest_pass[l] = math.inf, math.inf
-    s.energy_input[l], s.energy_damped[l], s.energy_passes[l] = 0.0, 0.0, 0.0
-    s.energy_upwards[l] = 0.0
-    s.energy_lost[l], s.energy_created[l] = 0.0, 0.0
-    s.steps[l], s.creating_impacts[l] = 0.0, 0
+    s.steps[l] = 0.0
     for i in range(EVENT_KINDS):
         s.events[i, l] = 0
 
@@ -788,24 +783,12 @@ def finish_history(s: Record, l: int, system: Record, results: Record) -> None:
     result.ways = ways
     if s.phase[l] == STUCK and s.bed_k[l] > 0.0:
         result.phase = BEDDED
-    result.steps, result.creating_impacts = int(s.steps[l]), s.creating_impacts[l]
+    for i in range(s.kept.shape[0]):
+        result.kept[i] = s.kept[i, l]
+    result.steps = int(s.steps[l])
     result.time = time_of(s, l)
     result.rotation = s.tilt[0, l] if ways == 1 else s.x[l]
-    result.azimuth, result.max_azimuth = azimuth_of(s, l), s.max_azimuth[l]
-    result.max_theta, result.max_theta_time = s.max_theta[l], s.max_theta_time[l]
-    result.critical_time, result.critical_azimuth = s.critical_time[l], s.critical_azimuth[l]
-    result.friction_top, result.friction_bottom = s.friction_top[l], s.friction_bottom[l]
-    result.normal_top, result.normal_bottom = s.normal_top[l], s.normal_bottom[l]
-    result.heavy_top, result.heavy_bottom = s.heavy_top[l], s.heavy_bottom[l]
-    result.shear_top, result.shear_bottom = s.shear_top[l], s.shear_bottom[l]
-    result.energy_input, result.energy_damped = s.energy_input[l], s.energy_damped[l]
-    result.energy_upwards, result.energy_yielded = s.energy_upwards[l], s.energy_yielded[l]
-    result.energy_lost, result.energy_created = s.energy_lost[l], s.energy_created[l]
-    result.energy_passes, result.torsion_lever = s.energy_passes[l], s.torsion_lever[l]
-    result.passes_as_impacts = int(s.passes_as_impacts[l])
-    result.closest_pass, result.shortest_pass = s.closest_pass[l], s.shortest_pass[l]
-    result.bed_energy, result.bedded_time = s.bed_energy[l], s.bedded_time[l]
-    result.impact_number = s.impact_number[l]
+    result.azimuth = azimuth_of(s, l)
     for i in range(EVENT_KINDS):
         result.events[i] = s.events[i, l]
     half = 2 * ways - 1

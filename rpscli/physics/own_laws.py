@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import inspect
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -14,6 +13,7 @@ from rpscli.compiler.values import DOUBLE, NotInLanguage
 from rpscli.errors import PluginError
 from rpscli.physics.compile import LAW_NUMBERS
 from rpscli.physics.kernels import are_interpreted
+from rpscli.registry import GUARD
 
 Law = Callable[..., float]
 
@@ -43,6 +43,13 @@ class InterpretedLaw:
         return self.refused or [0.0]
 
 
+def plain(function: Law) -> Law:
+    """A law as its package wrote it: without the guard that calls from Python go through."""
+    while getattr(function, GUARD, False):
+        function = function.__wrapped__
+    return getattr(function, "py_func", function)  # of another compiler
+
+
 @cache
 def loaded(function: Law, taken: int) -> Any:
     """A law of so many numbers as machine code, or as Python; raises PluginError."""
@@ -64,7 +71,7 @@ def loaded(function: Law, taken: int) -> Any:
 @cache
 def address_of(function: Law, taken: int) -> int:
     """Where a law of so many numbers stands while this process lasts."""
-    law = loaded(inspect.unwrap(function), taken)
+    law = loaded(plain(function), taken)
     address = law.address if hasattr(law, "address") else 1 + len(AT)
     AT[address] = law
     return int(address)
@@ -75,7 +82,7 @@ def said_of(function: Law, taken: int) -> str:
 
     It is asked once more, in Python, by what it was given then.
     """
-    refused, *given = loaded(inspect.unwrap(function), taken).numbers_at(REFUSED, 1 + taken)
+    refused, *given = loaded(plain(function), taken).numbers_at(REFUSED, 1 + taken)
     if not refused:
         return ""
     try:

@@ -51,8 +51,8 @@ def store_within(s: Record, l: int, systems: Record, output: Output) -> None:
             for i in range(s.n):
                 r = axis * s.n + i
                 q = mode_path(s, r, l, axis)
-                s.looked_at[2 * axis, i] = value(q, t)
-                s.looked_at[2 * axis + 1, i] = slope(q, t) / h
+                s.seen_modes[2 * axis, i] = value(q, t)
+                s.seen_modes[2 * axis + 1, i] = slope(q, t) / h
         tilt, rate = tilt_within(s, l, t)
         row = s.interval[l] * output.finer + j
         write_row(s, l, systems, output, row, tilt, rate, s.time[l] + t * h)
@@ -60,11 +60,11 @@ def store_within(s: Record, l: int, systems: Record, output: Output) -> None:
 
 @compiled
 def shear_of_row(s: Record, l: int, systems: Record, axis: int) -> float:
-    """Base shear of the modes that stand in `looked_at` [N]."""
+    """Base shear of the modes that stand in `seen_modes` [N]."""
     V, elastic = 0.0, 0.0
     for i in range(s.n):
         r = axis * s.n + i
-        q, dq = s.looked_at[2 * axis, i], s.looked_at[2 * axis + 1, i]
+        q, dq = s.seen_modes[2 * axis, i], s.seen_modes[2 * axis + 1, i]
         V += s.Gamma[r, l] * (s.omega2[r, l] * q + s.two_xi_omega[r, l] * dq)
         elastic += systems[axis].storey_shear_of[i, 0] * q
     return V - base_slip(s, l, axis, elastic) if axis < ways_of(s) else V
@@ -72,10 +72,10 @@ def shear_of_row(s: Record, l: int, systems: Record, axis: int) -> float:
 
 @compiled
 def elastic_of_row(s: Record, system: Record, axis: int, i: int) -> float:
-    """A storey's drift times k of the modes that stand in `looked_at` [N]."""
+    """A storey's drift times k of the modes that stand in `seen_modes` [N]."""
     elastic = 0.0
     for of in range(s.n):
-        elastic += system.storey_shear_of[of, i] * s.looked_at[2 * axis, of]
+        elastic += system.storey_shear_of[of, i] * s.seen_modes[2 * axis, of]
     return elastic
 
 
@@ -101,7 +101,7 @@ def write_row(
     rate: tuple[float, float],
     time: float,
 ) -> None:
-    """Keep a motion of a lane, whose modes stand in `looked_at`."""
+    """Keep a motion of a lane, whose modes stand in `seen_modes`."""
     if row >= output.samples.shape[0]:
         return
     sample, ways, moves = output.samples[row], ways_of(s), s.phase[l] != FULL_CONTACT
@@ -162,7 +162,7 @@ def write_floors(
 ) -> None:
     """Keep ways, velocities and absolute accelerations of the floors along an axis."""
     n, yields = s.n, s.yields[l] > 0 and axis < ways_of(s)
-    shears, forces = s.looked_at[6], s.looked_at[7]
+    shears, forces = s.freeing[0], s.freeing[1]
     for i in range(n):
         shears[i], forces[i] = elastic_of_row(s, system, axis, i) if yields else 0.0, 0.0
         slip = 0.0
@@ -175,7 +175,7 @@ def write_floors(
         u, du, ddu = beam, velocity, 0.0 - forces[i]
         for of in range(n):
             r, shape = axis * n + of, system.phi[of, i]
-            q, dq = s.looked_at[2 * axis, of], s.looked_at[2 * axis + 1, of]
+            q, dq = s.seen_modes[2 * axis, of], s.seen_modes[2 * axis + 1, of]
             u, du = u + shape * q, du + shape * dq
             ddu -= shape * (s.omega2[r, l] * q + s.two_xi_omega[r, l] * dq)
         at = n * axis + i

@@ -230,6 +230,38 @@ REQUEST = (
     Field("dt", "", "s", "sampling interval"),
 )
 
+KEPT = (
+    Field("max_theta", "", "rad", "largest |theta|"),
+    Field("max_theta_time", "", "s", "when"),
+    Field("max_azimuth", "", "rad", "of the largest tilt"),
+    Field("critical_time", "", "s", "first passage of theta_cr; negative if never"),
+    Field("critical_azimuth", "", "rad", "of that passage"),
+    Field("friction_top", "", "-", "largest |F|/N at the upper ends"),
+    Field("friction_bottom", "", "-", "at the lower ends"),
+    Field("normal_top", "", "-", "least N over the weight on it, upper ends"),
+    Field("normal_bottom", "", "-", "lower ends"),
+    Field("heavy_top", "", "-", "largest N over it"),
+    Field("heavy_bottom", "", "-", "lower ends"),
+    Field("shear_top", "", "N", "largest |F| of all columns"),
+    Field("shear_bottom", "", "N", "lower ends"),
+    Field("energy_input", "", "J", "by the ground, if audited"),
+    Field("energy_damped", "", "J", "in the building, if audited"),
+    Field("energy_upwards", "", "J", "in its dampers upwards, if audited"),
+    Field("energy_yielded", "", "J", "by storeys that yield"),
+    Field("energy_lost", "", "J", "at impacts, passes and re-contacts, net"),
+    Field("energy_created", "", "J", "at impacts that create it"),
+    Field("energy_passes", "", "J", "lost in passes, part of energy_lost"),
+    Field("bed_energy", "", "J", "dissipated in the bed, if audited"),
+    Field("closest_pass", "", "-", "least theta_min/alpha of a pass; infinite without passes"),
+    Field("shortest_pass", "", "s", "least theta_min/|theta phi'| of a pass; over t_c it is s"),
+    Field("torsion_lever", "", "m", "largest torsion in a contact over the weight on it"),
+    Field("bedded_time", "", "s", "in full contact with a bed"),
+    Field("impact_number", "", "-", "largest chi"),
+    Field("passes_as_impacts", "", WHOLE, "passes that lost more than half of an impact's share"),
+    Field("creating_impacts", "", WHOLE, "impacts that created energy"),
+)
+"""What a lane keeps of its history as it goes, and leaves behind at its end: all is `kept`."""
+
 STATE = (
     # The structure, folded as the laws want it.
     *_fields("lanes", "m", diameter="2 R", half_width="B of the flat part", arc_radius="r, or 0"),
@@ -276,7 +308,6 @@ STATE = (
     *_fields("rows lanes", "m sqrt(kg)/s2", freed="sum g_ri delta_i, load of plastic drifts"),
     *_fields("rows lanes", "m sqrt(kg)/s2", new_freed="at a stage"),
     *_fields("rows lanes", "N/(m sqrt(kg))", slipping="(1 - h) g_r1 while storey 1 yields, else 0"),
-    *_fields("lanes", "J", energy_yielded="of all storeys"),
     # The history and its records.
     *_fields(
         "lanes",
@@ -294,7 +325,6 @@ STATE = (
         which="what of it: device, side",
         tries="to end there",
         stalled="events in a row at one instant",
-        creating_impacts="impacts that created energy",
     ),
     Field("record", "ways lanes", WHOLE, "offsets of its records"),
     Field("events", f"{EVENT_KINDS} lanes", WHOLE, "of each kind"),
@@ -367,7 +397,9 @@ STATE = (
         "-",
         error="of the step over what it may be",
         accepted="1: no event, not too long",
-        attention="1: must be looked at alone",
+        due="1: must be looked at alone; .5: has come to a sample",
+        tilt_rises="1: the largest tilt is raised, 2: perhaps within the step",
+        devices_rise="1: what devices see may be raised",
         demands_rise="1: a floor's may be raised",
         contacts_rise="1: forces of the columns may be, within",
         contacts_near="1: at its start they were near the largest",
@@ -414,25 +446,16 @@ STATE = (
     Field("device_energy", f"{SLOTS} lanes", "J", "dissipated"),
     Field("device_force", f"{SLOTS} lanes", "N", "largest |force|"),
     Field("device_velocity", f"{SLOTS} lanes", "m/s", "largest |rate|"),
-    # Maxima so far; times that never came are negative.
-    *_fields("lanes", "rad", max_theta="largest x", max_azimuth="its azimuth"),
-    *_fields("lanes", "s", max_theta_time="when", critical_time="when theta_cr was first passed"),
-    *_fields("lanes", "rad", critical_azimuth="of that passage"),
-    *_fields(
-        "lanes",
-        "-",
-        friction_top="largest |F|/N, upper ends",
-        friction_bottom="lower ends",
-        normal_top="least N over the weight on it, upper ends",
-        normal_bottom="lower ends",
-        heavy_top="largest N over it",
-        heavy_bottom="lower ends",
-    ),
-    *_fields("lanes", "N", shear_top="largest |F|", shear_bottom="lower ends"),
+    # What has come of it so far, and largest demands.
+    *(field._replace(sizes="lanes") for field in KEPT),
     Field("largest", "demands lanes modes", "mixed", "shears, then accelerations, see `demands`"),
     Field("last", "demands lanes modes", "mixed", "when last looked at"),
     Field("room", "demands lanes", "mixed", "no demand rises with a sum to this"),
-    Field("looked_at", "12 modes", "mixed", "scratch: shears, accelerations"),
+    Field("seen_modes", "6 modes", "mixed", "scratch: q and q' in x, perhaps in y, and upwards"),
+    Field("seen", "4 modes", "mixed", "scratch: shears and accelerations in x, perhaps in y"),
+    Field("between", "12 modes", "mixed", "scratch: three shears, three accelerations of each"),
+    Field("elastic", "2 modes", "N", "scratch: drifts times k in x, perhaps in y"),
+    Field("freeing", "2 modes", "mixed", "scratch: what plastic drifts are taken out of"),
     *_fields("rows lanes", "m sqrt(kg)", seen_q="modes when floors were last looked at"),
     *_fields("rows lanes", "m sqrt(kg)/s2", seen_force="their forces"),
     *_fields("ways lanes", "mixed", shear_sum="sum g (q - seen_q)^2 at the end"),
@@ -440,26 +463,8 @@ STATE = (
     *_fields("ways lanes", "mixed", acceleration_sum="over modal forces", acceleration_before="so"),
     *_fields("lanes", "mixed", bend_ratio="see `system`"),
     Field("max_beam", "ways lanes", "m", "largest |u_b| in either direction"),
-    *_fields("lanes", "m", torsion_lever="largest so far"),
-    Field("passes_as_impacts", "lanes", "-", "passes with l > .5"),
-    Field("closest_pass", "lanes", "-", "least x/alpha"),
-    Field("shortest_pass", "lanes", "s", "least x/|q| of a pass"),
-    # Energy.
-    *_fields(
-        "lanes",
-        "J",
-        energy_input="of the ground, audited",
-        energy_damped="in the building, if audited",
-        energy_upwards="in its dampers upwards, so",
-        energy_lost="at impacts, passes and re-contacts",
-        energy_created="at impacts that create it",
-        energy_passes="lost in passes",
-        bed_energy="dissipated in the bed, audited",
-    ),
     *_fields("lanes", "W", power_input="mean of the step", power_damped="so", power_bed="so"),
     *_fields("lanes", "W", power_upwards="of the dampers between floors upwards, so"),
-    *_fields("lanes", "s", bedded_time="in full contact on a bed"),
-    *_fields("lanes", "-", impact_number="largest chi"),
     Field("factors", "6 rows lanes", "mixed", "of the exact step, see `standing`"),
     *_fields("lanes", "s", factors_h="step that they are of"),
     Field("within", "16 rows", "mixed", "factors of velocities within the step of the only lane"),
@@ -483,38 +488,14 @@ RESULT = (
     Field("ways", "", WHOLE, "horizontal components: of one, what asks for two is not known"),
     Field("intervals", "", WHOLE, "sampling intervals that it lasted"),
     Field("steps", "", WHOLE, "steps taken"),
-    Field("creating_impacts", "", WHOLE, "impacts that created energy"),
     Field("events", f"{EVENT_KINDS}", WHOLE, "of each kind"),
     Field("time", "", "s", "of its end"),
+    *KEPT,
     Field("rotation", "", "rad", "theta at its end"),
     Field("azimuth", "", "rad", "of the tilt at the end, from x towards y"),
-    Field("max_theta", "", "rad", "largest |theta|"),
-    Field("max_theta_time", "", "s", "when"),
-    Field("max_azimuth", "", "rad", "of the largest tilt"),
-    Field("critical_time", "", "s", "first passage of theta_cr; negative if never"),
-    Field("critical_azimuth", "", "rad", "of that passage"),
     Field("max_x", "", "m", "largest |u_b| in x"),
     Field("max_y", "", "m", "in y"),
-    Field("friction_top", "", "-", "largest |F|/N at the upper ends"),
-    Field("friction_bottom", "", "-", "at the lower ends"),
-    Field("normal_top", "", "-", "least N over the weight on it, upper ends"),
-    Field("normal_bottom", "", "-", "lower ends"),
-    Field("heavy_top", "", "-", "largest N over it"),
-    Field("heavy_bottom", "", "-", "lower ends"),
-    Field("shear_top", "", "N", "largest |F| of all columns"),
-    Field("shear_bottom", "", "N", "lower ends"),
-    Field("energy_input", "", "J", "by the ground, if audited"),
-    Field("energy_damped", "", "J", "in the building, if audited"),
-    Field("energy_upwards", "", "J", "in its dampers upwards, if audited"),
-    Field("energy_yielded", "", "J", "by storeys that yield"),
-    Field("energy_lost", "", "J", "at impacts and re-contacts, net"),
-    Field("energy_created", "", "J", "at impacts that create it"),
     Field("energy_stored", "", "J", "at the end"),
-    Field("energy_passes", "", "J", "lost in passes, part of energy_lost"),
-    Field("passes_as_impacts", "", WHOLE, "passes that lost more than half of an impact's share"),
-    Field("closest_pass", "", "-", "least theta_min/alpha of a pass; infinite without passes"),
-    Field("shortest_pass", "", "s", "least theta_min/|theta phi'| of a pass; over t_c it is s"),
-    Field("torsion_lever", "", "m", "largest torsion in a contact over the weight on it"),
     Field("storey_shear", "modes", "N", "largest |k_i d_i|"),
     Field("floor_acceleration", "modes", "m/s2", "largest absolute one"),
     *(
@@ -533,9 +514,6 @@ RESULT = (
     Field("device_energy", f"{SLOTS}", "J", "dissipated"),
     Field("device_stored", f"{SLOTS}", "J", "at the end, over the start"),
     Field("permanent", f"{SLOTS}", "m", "plastic elongation of a tendon"),
-    Field("bed_energy", "", "J", "dissipated in the bed, if audited"),
-    Field("bedded_time", "", "s", "in full contact with a bed"),
-    Field("impact_number", "", "-", "largest chi"),
 )
 """Of both components demands are resultants."""
 
@@ -579,10 +557,10 @@ EVENT = (
 )
 
 
-STOREYS_THAT_YIELD = frozenset(
-    "strength stiffness mark middle middle_most middle_least drift_most yielded first_yield"
-    " new_freed slipping".split()
-)
+STOREYS_THAT_YIELD = {
+    *("strength", "stiffness", "mark", "middle", "middle_most", "middle_least", "drift_most"),
+    *("yielded", "first_yield", "new_freed", "slipping"),
+}
 """Fields of modes that say something where storeys may yield."""
 
 OVERLAYS = "words", "device_words", "mode_words", "storey_words"
@@ -590,7 +568,7 @@ OVERLAYS = "words", "device_words", "mode_words", "storey_words"
 
 
 def kind_of_field(field: Field) -> int:
-    """0 of numbers of all lanes; from 1 on of a lane, as `OVERLAYS`; behind them what is scratch."""
+    """0 of numbers of all lanes; from 1 on of one, as `OVERLAYS`; behind them what is scratch."""
     if not field.sizes:
         return 0
     *sizes, last = field.sizes.split()
@@ -625,7 +603,7 @@ def record_type(fields: tuple[Field, ...], ways: int = 1, lanes: int = 1) -> np.
     ordered = sorted(
         fields, key=lambda field: (kinds[field], len(field.sizes.split()), field.sizes)
     )
-    of, end, before = dict[str, tuple[np.dtype[Any], int]](), 0, 0
+    of, end, before = dict[str, Place](), 0, 0
     for field in ordered:
         number = np.int64 if field.unit == WHOLE else np.float64
         kind = np.dtype((number, tuple(int(sizes.get(z, z)) for z in field.sizes.split())))
@@ -634,29 +612,43 @@ def record_type(fields: tuple[Field, ...], ways: int = 1, lanes: int = 1) -> np.
         before, begin = kinds[field], end
         of[field.name] = kind, begin
         end = begin + kind.itemsize
-    return record_of(of | (overlays(of) if fields is STATE else {}))
+    if fields is STATE:
+        of |= overlays(of)
+    if fields in (STATE, RESULT):
+        of["kept"] = overlay([of[field.name] for field in KEPT])
+    return record_of(of)
 
 
 LINE = 64
 """Bytes of a line of the processor's cache, with which the fields of all lanes begin."""
 
 
-def record_of(fields: dict[str, tuple[np.dtype[Any], int]]) -> np.dtype[Any]:
+def record_of(fields: dict[str, Place]) -> np.dtype[Any]:
     """The type of a record with fields of kinds at offsets."""
     kinds, offsets = zip(*fields.values(), strict=True)
     return np.dtype({"names": [*fields], "formats": [*kinds], "offsets": [*offsets]})
 
 
-def overlays(of: dict[str, tuple[np.dtype[Any], int]]) -> dict[str, tuple[np.dtype[Any], int]]:
+Place: TypeAlias = tuple[np.dtype[Any], int]
+"""A field's type and where it begins."""
+
+
+def overlays(of: dict[str, Place]) -> dict[str, Place]:
     """The fields by which a lane is copied."""
     found = {}
     for kind, name in enumerate(OVERLAYS, 1):
         members = [of[field.name] for field in STATE if kind_of_field(field) == kind]
-        words = sum(member.itemsize for member, _ in members) // 8
-        shape = members[0][0].shape
-        shape = (words // shape[-1], shape[-1]) if kind < 3 else (len(members), *shape)
-        found[name] = np.dtype((np.int64, shape)), min(offset for _, offset in members)
+        found[name] = overlay(members, each=kind > 2)
     return found
+
+
+def overlay(members: list[Place], *, each: bool = False) -> Place:
+    """Words of fields that stand together: as rows of lanes, or `each` as a table of its own."""
+    shape = members[0][0].shape
+    words = sum(member.itemsize for member, _ in members) // 8
+    rows = (words // shape[-1], shape[-1]) if shape else (words,)
+    kind = np.dtype((np.int64, (len(members), *shape) if each else rows))
+    return kind, min(offset for _, offset in members)
 
 
 PAGE = 4096

@@ -33,7 +33,7 @@ from rpscli.physics.lane import (
 from rpscli.physics.laws.place import UPRIGHT, length
 from rpscli.physics.state import Record
 from rpscli.physics.storeys import free_storeys, slip_rates
-from rpscli.physics.tableau import A2, END, ERROR, USED, A, C
+from rpscli.physics.tableau import END, ERROR, SQUARED, STAGES, TIMES, USED
 
 
 @inlined
@@ -93,8 +93,8 @@ def advance_mode(s: Record, r: int, l: int, axis: int, k: int) -> float:
     for j in range(terms(s, k)):
         if USED[k, j]:
             term = ddq if j == k - 1 else s.ddq[j, r, l]
-            far, fast = fma(A2[k, j], term, far), fma(A[k, j], term, fast)
-    q, dq = fma(h, fma(h, far, C[k] * dq), q), fma(h, fast, dq)
+            far, fast = fma(SQUARED[k, j], term, far), fma(STAGES[k, j], term, fast)
+    q, dq = fma(h, fma(h, far, TIMES[k] * dq), q), fma(h, fast, dq)
     force = fma(omega2, q, damping * dq)
     s.force[r, l] = force
     if k == END:
@@ -110,9 +110,9 @@ def advance_tilt(s: Record, l: int, axis: int, k: int) -> None:
     far, fast, h, rate = 0.0, 0.0, s.h[l], s.tilt_rate[axis, l]
     for j in range(terms(s, k)):
         if USED[k, j]:
-            far = fma(A2[k, j], s.bends[j, axis, l], far)
-            fast = fma(A[k, j], s.bends[j, axis, l], fast)
-    s.new_tilt[axis, l] = fma(h, fma(h, far, C[k] * rate), s.tilt[axis, l])
+            far = fma(SQUARED[k, j], s.bends[j, axis, l], far)
+            fast = fma(STAGES[k, j], s.bends[j, axis, l], fast)
+    s.new_tilt[axis, l] = fma(h, fma(h, far, TIMES[k] * rate), s.tilt[axis, l])
     s.new_tilt_rate[axis, l] = fma(h, fast, rate)
 
 
@@ -137,19 +137,19 @@ def advance_to(s: Record, systems: Record, k: int) -> None:
 @compiled
 def find_accelerations(s: Record, k: int) -> None:
     """Accelerations of all lanes at stage k, and what flows there."""
-    weight = A[END, k] if k < END else 0.0
+    weight = STAGES[END, k] if k < END else 0.0
     if s.gives_way > 0:
         set_patches(s)
     if s.equipped > 0:
         act_branched_at_stage(s, weight)
-        accelerate_equipped(s, C[k], weight)
+        accelerate_equipped(s, TIMES[k], weight)
     else:
-        accelerate(s, C[k])
+        accelerate(s, TIMES[k])
     for axis in range(ways_of(s)):
         for l in range(lanes_of(s)):
             s.bends[k, axis, l] = s.new_bend[axis, l]
     if lanes_of(s) == 1 and s.audited > 0:
-        book_powers(s, C[k], weight)
+        book_powers(s, TIMES[k], weight)
 
 
 @compiled
@@ -177,7 +177,7 @@ def take_steps(s: Record, systems: Record) -> None:
         for l in range(lanes):
             s.bends[0, axis, l] = s.bend[axis, l]
     if s.equipped > 0:
-        begin_work(s, A[END, 0])
+        begin_work(s, STAGES[END, 0])
     if lanes == 1 and s.audited > 0:
         begin_powers(s)
     all_stages(s, systems)
@@ -323,7 +323,7 @@ def begin_powers(s: Record) -> None:
     clear_powers(s)
     for r in range(s.axes * s.n):
         s.new_dq[r, 0] = s.dq[r, 0]
-    book_power(s, s.time[0], A[END, 0], tilt_of(s, 0), rate_of(s, 0))
+    book_power(s, s.time[0], STAGES[END, 0], tilt_of(s, 0), rate_of(s, 0))
 
 
 @compiled

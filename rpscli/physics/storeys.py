@@ -14,7 +14,7 @@ from rpscli.physics.energy import slip_energy
 from rpscli.physics.ground import time_of
 from rpscli.physics.lane import lanes_of, ways_of
 from rpscli.physics.state import Floats, Record
-from rpscli.physics.tableau import A2, C
+from rpscli.physics.tableau import SQUARED, TIMES
 
 
 @compiled
@@ -73,8 +73,8 @@ def mode_at_stage(s: Record, l: int, r: int, k: int) -> float:
     """Displacement of a mode at stage k."""
     far = 0.0
     for j in range(k):
-        far += A2[k, j] * s.ddq[j, r, l]
-    return s.q[r, l] + s.h[l] * (C[k] * s.dq[r, l] + s.h[l] * far)  # type: ignore[no-any-return]
+        far += SQUARED[k, j] * s.ddq[j, r, l]
+    return s.q[r, l] + s.h[l] * (TIMES[k] * s.dq[r, l] + s.h[l] * far)  # type: ignore[no-any-return]
 
 
 @compiled
@@ -85,7 +85,7 @@ def free_storeys(s: Record, systems: Record, k: int) -> None:
         if s.yields[l] == 0:
             continue
         for axis in range(ways_of(s)):
-            system, elastic = systems[s.system[l] + axis], s.looked_at[axis]
+            system, elastic = systems[s.system[l] + axis], s.elastic[axis]
             for i in range(n if s.marked[l] > 0 else 1):
                 elastic[i] = 0.0
                 for of in range(n if s.mark[axis * n + i, l] != 0 else 0):
@@ -148,7 +148,7 @@ def keep_slips(s: Record, l: int, systems: Record) -> None:
     """Have yielding storeys follow the step just accepted, and book what that took."""
     n, free = s.n, 1.0 - s.hardening[l]
     for axis in range(ways_of(s)):
-        system, elastic = systems[axis], s.looked_at[axis]
+        system, elastic = systems[axis], s.elastic[axis]
         for i in range(n):
             r = axis * n + i
             elastic[i], _, _ = drift_of(s, l, system, axis, i, 0)

@@ -1,8 +1,8 @@
 """J. H. Verner's efficient pair of Runge-Kutta rules of orders 6 and 5, as numbers.
 
 Numerical Algorithms 53 (2010) 383-396. Eight stages and the end, whose acceleration is the next
-step's first: y_k = y_0 + h sum_j A[k, j] y'_j. Of what has a second derivative, positions follow by
-the squared tableau, y_k = y_0 + h C[k] y'_0 + h^2 sum_j (A A)[k, j] y''_j.
+step's first: y_k = y_0 + h sum_j A[k, j] y'_j, A being `STAGES`. Of what has a second derivative,
+positions follow by the squared tableau, y_k = y_0 + h C[k] y'_0 + h^2 sum_j (A A)[k, j] y''_j.
 """
 
 from __future__ import annotations
@@ -39,13 +39,13 @@ _FIFTH = (
 )  # fmt: skip
 """Weights of order 5 of the stages and the end."""
 
-A = np.zeros((END + 1, END + 1))
+STAGES = np.zeros((END + 1, END + 1))
 for _k, _row in enumerate(_ROWS):
-    A[_k, : len(_row)] = _row
-A2 = A @ A
-USED = np.abs(A) + np.abs(A2) > 1e-11
+    STAGES[_k, : len(_row)] = _row
+SQUARED = STAGES @ STAGES
+USED = np.abs(STAGES) + np.abs(SQUARED) > 1e-11
 """Where a stage asks for one before it."""
 
-C = A.sum(axis=1)
-ERROR = A[END] - np.array(_FIFTH)
+TIMES = STAGES.sum(axis=1)
+ERROR = STAGES[END] - np.array(_FIFTH)
 """Weights of the difference of both rules, over h."""

@@ -188,7 +188,7 @@ def pass_upright(s: Record, l: int, system: Record, log: Record, near: bool) -> 
         log[row].least_tilt, log[row].nearness, log[row].loss_share = least, nearness, share
     s.closest_pass[l] = min(s.closest_pass[l], least / system.alpha)
     s.shortest_pass[l] = min(s.shortest_pass[l], least / max(speed, 1e-300))
-    s.passes_as_impacts[l] += 1.0 if share > 0.5 else 0.0
+    s.passes_as_impacts[l] += 1 if share > 0.5 else 0
     take_up_stops(s, l, log)
 
 

@@ -37,7 +37,7 @@ def compiled(function: Callable[..., Any], *given: Any, result: str | None = DOU
     """A function for arguments like these; `result` is what it returns."""
     kinds = [kind_of_argument(each) for each in given]
     program = Program()
-    program.add(function, kinds, "@f")
+    program.add(function, kinds, "@f", result)
     return Entry(machine_code(program.text()), "f", kinds, result)
 
 

@@ -146,7 +146,7 @@ def test_what_physics_imports_decides_about_no_number_but_for_the_constants() ->
         and (name := str(node.module)).startswith("rpscli.")
         and not name.startswith(("rpscli.physics", "rpscli.compiler"))
     }
-    assert imported <= {"rpscli.constants", "rpscli.errors", "rpscli.user_cache"}
+    assert imported <= {"rpscli.constants", "rpscli.errors", "rpscli.registry", "rpscli.user_cache"}
 
 
 def run_of_kernels(cache: Path, **more: str) -> str:

@@ -27,7 +27,9 @@ from rpscli.model.bearing import Bearing
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import RayleighDamping
-from rpscli.physics.tableau import A2, END, ERROR, USED, A, C
+from rpscli.physics.tableau import END, ERROR, SQUARED, USED
+from rpscli.physics.tableau import STAGES as A
+from rpscli.physics.tableau import TIMES as C
 from rpscli.records.ground_motion import GroundMotion
 
 SIXTH, FIFTH = A[END], A[END] - ERROR
@@ -58,7 +60,7 @@ def test_one_rule_is_of_order_six_and_the_other_is_not() -> None:
 
 
 def test_positions_follow_by_the_squared_tableau() -> None:
-    assert np.array_equal(A2, A @ A)
+    assert np.array_equal(SQUARED, A @ A)
     assert pytest.approx(0.5, abs=1e-10) == SIXTH @ C
     assert not np.any(np.where(USED, 0.0, A))
 
