@@ -721,6 +721,7 @@ def clear_results(s: Record, l: int) -> None:
     s.normal_top[l], s.normal_bottom[l] = math.inf, math.inf
     s.closest_pass[l], s.shortest_pass[l] = math.inf, math.inf
     s.contacts_near[l] = 1.0
+    s.directionless[l] = 0
     for k in range(s.room.shape[0]):
         s.room[k, l] = 0.0
         for i in range(s.n):

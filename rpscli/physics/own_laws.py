@@ -46,7 +46,7 @@ class InterpretedLaw:
 def plain(function: Law) -> Law:
     """A law as its package wrote it: without the guard that calls from Python go through."""
     while getattr(function, GUARD, False):
-        function = function.__wrapped__
+        function = vars(function)["__wrapped__"]
     return getattr(function, "py_func", function)  # of another compiler
 
 

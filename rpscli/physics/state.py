@@ -259,6 +259,7 @@ KEPT = (
     Field("impact_number", "", "-", "largest chi"),
     Field("passes_as_impacts", "", WHOLE, "passes that lost more than half of an impact's share"),
     Field("creating_impacts", "", WHOLE, "impacts that created energy"),
+    Field("accumulations", "", WHOLE, "of passes upright, begun anew as uplifts"),
 )
 """What a lane keeps of its history as it goes, and leaves behind at its end: all is `kept`."""
 
@@ -325,6 +326,7 @@ STATE = (
         which="what of it: device, side",
         tries="to end there",
         stalled="events in a row at one instant",
+        directionless="passes in a row that no program resolves",
     ),
     Field("record", "ways lanes", WHOLE, "offsets of its records"),
     Field("events", f"{EVENT_KINDS} lanes", WHOLE, "of each kind"),

@@ -63,6 +63,10 @@ UPLIFT_TILT = 1e-9
 FIRST_STEP = 3e-5
 """Longest step at the start of such an uplift [s]."""
 
+DIRECTIONLESS, KEEP_COMING = 1e-12, 8
+"""Passes nearer to upright [rad] leave in a direction that no program resolves: so many of them in
+a row are an accumulation, and become an uplift begun anew along what pushes."""
+
 SLOW = 20.0
 """A pass whose v^2 is below this times (|z| + limit) theta_c/A does not leave upright."""
 
@@ -189,6 +193,7 @@ def pass_upright(s: Record, l: int, system: Record, log: Record, near: bool) -> 
     s.closest_pass[l] = min(s.closest_pass[l], least / system.alpha)
     s.shortest_pass[l] = min(s.shortest_pass[l], least / max(speed, 1e-300))
     s.passes_as_impacts[l] += 1 if share > 0.5 else 0
+    s.directionless[l] = s.directionless[l] + 1 if least < DIRECTIONLESS else 0
     take_up_stops(s, l, log)
 
 
@@ -261,7 +266,11 @@ def settle(s: Record, l: int, system: Record, log: Record, near: bool) -> None: 
         return
     z_x, z_y, push, limit = pushes(s, l)
     v2 = p * p + (s.kappa[l] * q) * (s.kappa[l] * q)
-    if near and push >= limit and v2 < SLOW * (push + limit) * UPRIGHT_TILT / at.A:
+    slow = v2 < SLOW * (push + limit) * UPRIGHT_TILT / at.A
+    accumulates = s.directionless[l] >= KEEP_COMING
+    if near and push >= limit and (slow or accumulates):
+        s.accumulations[l] += 1
+        s.directionless[l] = 0
         begin_tilt(s, l, system, z_x, z_y)
         renew(s, l)
         return
