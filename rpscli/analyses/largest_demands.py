@@ -387,6 +387,7 @@ class Demand(Shown):
     )
     passes = _Optional(lambda h: h.of_passes("events")[:, state.PASS])
     passes_as_impacts = _Optional(lambda h: h.of_passes("passes_as_impacts"))
+    accumulations = _Optional(lambda h: h.of_passes("accumulations"))
     closest_pass = _Optional(lambda h: h.known("closest_pass"))
     shortest_pass = _Optional(lambda h: h.known("shortest_pass"))
     energy_passes = _Optional(lambda h: h.known("energy_passes"))

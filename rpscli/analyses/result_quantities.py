@@ -209,6 +209,8 @@ PAIR = (
     _Q("passes", "-", "passes near upright", whole=True),
     _Q("passes_as_impacts", "-", "passes that lose like an impact", whole=True,
         kernel="passes_as_impacts", meaning="more than half of what an impact would lose"),
+    _Q("accumulations", "-", "accumulations of passes", whole=True, kernel="accumulations",
+        meaning="begun anew as uplifts, in a direction that no program resolves"),
     _Q("closest_pass", "-", "closest pass", meaning="least theta_min over alpha"),
     _Q("shortest_pass", "s", "shortest pass", meaning="least theta_min/|theta phi'|"),
     _Q("energy_passes", "J", "energy lost in passes", kernel="energy_passes"),

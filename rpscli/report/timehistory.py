@@ -334,7 +334,17 @@ def passes_text(result: TimeHistoryResult) -> str | None:
         f"{result.passes:.0f} passes near upright, however wide; {lost:.0f} of them lose like an"
         " impact (l > 0.5);"
         f" contact time {1e3 * result.structure.impact_law.contact_time:g} ms assumed: it decides"
-        f" how the motion dies out, but hardly its maxima; {ROUND}"
+        f" how the motion dies out, but hardly its maxima; {accumulated(result)}{ROUND}"
+    )
+
+
+def accumulated(result: TimeHistoryResult) -> str:
+    """What is said of passes that follow each other ever nearer to upright; empty without."""
+    if not (count := result.accumulations):
+        return ""
+    return (
+        f"{count:.0f} times passes followed each other ever nearer to upright, and were begun anew"
+        " as an uplift in a direction that no program resolves; "
     )
 
 
