@@ -35,8 +35,10 @@ from rpscli.compiler.values import (
     Widened,
     described,
     elements_of,
+    is_number,
     joined,
     kind_of,
+    named,
     parts,
     refuse,
     types_of,
@@ -257,13 +259,24 @@ def loop(body: Statements, node: ast.For) -> None:
         for each in elements:
             following = body.new("tuple.next")
             body.loops.append((following, end))
-            assign(body, node.target, each)
+            name_in_pass(body, node.target, each)
             statements(body, node.body)
             body.jump(following)
             body.loops.pop()
             body.label(following)
     body.jump(end)
     body.label(end)
+
+
+def name_in_pass(body: Statements, target: ast.expr, value: Value) -> None:
+    """Name an element of a tuple; one that is no number has its name within the loop alone."""
+    whole = value.value if isinstance(value, Known) and not is_number(value.value) else None
+    of_function = whole is not None and (not isinstance(whole, tuple) or named(whole) is not None)
+    if isinstance(target, ast.Name) and of_function:
+        body.scope.names[target.id] = value
+        body.shadowed.setdefault(body.regions[-1], set()).add(target.id)
+    else:
+        assign(body, target, value)
 
 
 def loop_over_range(body: Statements, node: ast.For, limits: list[Value]) -> None:

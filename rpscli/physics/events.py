@@ -33,32 +33,14 @@ from rpscli.physics.quintic import (
     upper_hull,
 )
 from rpscli.physics.state import (
-    CHANGE,
-    FAILED_NOT_FINITE,
-    HIGH,
-    LET_GO,
-    LOW,
-    NEAREST,
-    NO_HISTORY,
     NOTHING,
     STUCK,
-    YIELD,
     Record,
 )
 from rpscli.physics.storeys import drift_of
 
 LEAST_STEP = 1e-13
 """Of the sampling interval: a step is not made shorter."""
-
-CLOSE = 1e-7
-"""Of the step: what is missing to an event is so short that rates lead there. What flows in it is
-taken for the mean of the step, a part of what flows at its end where a tilt has only begun."""
-
-AT_LIMIT = 1e-9
-"""The same of an uplift, over the sampling interval: a margin that is not yet zero would have the
-storey land at once."""
-
-MOST_TRIES = 8
 
 ROUNDING = 1e-13
 """Share of the limit within which the margin at rest is zero. Were it the last bit that decides, a
@@ -282,38 +264,50 @@ def may_change(s: Record, l: int) -> bool:
 
 
 @compiled
-def first_event(s: Record, l: int, systems: Record) -> tuple[float, int, int]:
-    """Fraction of the step at which its first event happens, its kind, and which of it."""
-    first, kind, which = of_storey(s, l) if s.moves[l] > 0.0 else let_go(s, l)
-    if s.yields[l] > 0:
-        t, storey = first_yield(s, l, systems)
-        if t < first:
-            first, kind, which = t, YIELD, storey
-    return first, kind, which
+def falls_low(s: Record, l: int, systems: Record) -> tuple[float, int]:  # noqa: ARG001
+    """Fraction of the step at which a free tilt leaves its range downwards, if it does."""
+    if s.moves[l] == 0.0:
+        return NO_PASSAGE, 0
+    path, low, _ = path_in_range(s, l)
+    return first_descent(offset(path, 1.0, low), s.piece), 0
 
 
 @compiled
-def of_storey(s: Record, l: int) -> tuple[float, int, int]:
-    """The same of a tilt that is free, and of its devices."""
-    first, kind, which, piece = NO_PASSAGE, NOTHING, 0, s.piece
-    path, low, high = path_in_range(s, l)
-    t = first_descent(offset(path, 1.0, low), piece)
-    if t < first:
-        first, kind = t, LOW
-    t = first_descent(offset(path, -1.0, high), piece)
-    if t < first:
-        first, kind = t, HIGH
-    if ways_of(s) == 2 and falls(s, l) and s.new_v[l] >= 0.0:
-        t = nearest(s, l)
-        if t < first:
-            first, kind = t, NEAREST
-    for number in range(WATCHED if s.devices[l] > 0 else 0):
+def rises_high(s: Record, l: int, systems: Record) -> tuple[float, int]:  # noqa: ARG001
+    """And upwards."""
+    if s.moves[l] == 0.0:
+        return NO_PASSAGE, 0
+    path, _, high = path_in_range(s, l)
+    return first_descent(offset(path, -1.0, high), s.piece), 0
+
+
+@compiled
+def is_nearest(s: Record, l: int, systems: Record) -> tuple[float, int]:  # noqa: ARG001
+    """Where a tilt to any side is nearest to upright."""
+    if s.moves[l] > 0.0 and ways_of(s) == 2 and falls(s, l) and s.new_v[l] >= 0.0:
+        return nearest(s, l), 0
+    return NO_PASSAGE, 0
+
+
+@compiled
+def changes(s: Record, l: int, systems: Record) -> tuple[float, int]:  # noqa: ARG001
+    """Where a device changes its law, and which watched value says so."""
+    first, which = NO_PASSAGE, 0
+    for number in range(WATCHED if s.devices[l] > 0 and s.moves[l] > 0.0 else 0):
         there, path = watched_path(s, l, number)
         if there:
-            t = first_descent(path, piece)
+            t = first_descent(path, s.piece)
             if t < first:
-                first, kind, which = t, CHANGE, number
-    return first, kind, which
+                first, which = t, number
+    return first, which
+
+
+@compiled
+def yields_first(s: Record, l: int, systems: Record) -> tuple[float, int]:
+    """Where a storey begins to yield or ends to, and which to which side."""
+    if s.yields[l] == 0:
+        return NO_PASSAGE, 0
+    return first_yield(s, l, systems)
 
 
 @compiled
@@ -333,8 +327,10 @@ def nearest(s: Record, l: int) -> float:
 
 
 @compiled
-def let_go(s: Record, l: int) -> tuple[float, int, int]:
-    """The same of a storey at rest: to the right (1), or to the left (-1)."""
+def let_go(s: Record, l: int, systems: Record) -> tuple[float, int]:  # noqa: ARG001
+    """Where a storey at rest is no longer held: to the right (1), or to the left (-1)."""
+    if s.moves[l] > 0.0:
+        return NO_PASSAGE, 0
     piece, h = s.piece, s.h[l]
     start = g_up_at(s, l, s.time[l])
     rise, x, spared = h * s.g_up_slope[l], push_path(s, l, 0), relief_path(s, l)
@@ -346,7 +342,7 @@ def let_go(s: Record, l: int) -> tuple[float, int, int]:
             t = first_descent(path, piece)
         else:
             t = first_descent(squared_margin(s, l), piece)
-        return t, (LET_GO if t <= 1.0 else NOTHING), 1
+        return t, 1
     # Where gravity is lost both margins are negative at once: then the push decides.
     push = 0.0
     for i in range(6):
@@ -370,7 +366,7 @@ def let_go(s: Record, l: int) -> tuple[float, int, int]:
         t = first_descent(path, piece)
         if t < first:
             first, side = t, sign
-    return first, (LET_GO if side != 0 else NOTHING), side
+    return first, side
 
 
 @compiled
@@ -399,8 +395,34 @@ def squared_margin(s: Record, l: int) -> Quintic:
 
 
 @compiled
-def missing_in_storey(s: Record, l: int, systems: Record, which: int) -> tuple[float, float]:
-    """The same of a storey that is to yield to a side, or no longer."""
+def missing_low(s: Record, l: int, systems: Record) -> tuple[float, float]:  # noqa: ARG001
+    """What the end of the step still is above the event, and its rate: of a tilt that falls."""
+    return s.new_x[l] - s.x_low[l], s.new_v[l]
+
+
+@compiled
+def missing_high(s: Record, l: int, systems: Record) -> tuple[float, float]:  # noqa: ARG001
+    """Of one that rises."""
+    return s.x_high[l] - s.new_x[l], -s.new_v[l]
+
+
+@compiled
+def missing_nearest(s: Record, l: int, systems: Record) -> tuple[float, float]:  # noqa: ARG001
+    """Of one that comes nearest to upright."""
+    return -s.new_v[l], -s.new_a[l]
+
+
+@compiled
+def missing_change(s: Record, l: int, systems: Record) -> tuple[float, float]:  # noqa: ARG001
+    """Of a device's watched value."""
+    _, value, slope = watched(s, l, s.which[l], 1)
+    return value, slope
+
+
+@compiled
+def missing_yield(s: Record, l: int, systems: Record) -> tuple[float, float]:
+    """Of a storey that is to yield to a side, or no longer."""
+    which = s.which[l]
     r = which // 2
     d, rate, bend = drift_of(s, l, systems[s.system[l] + r // s.n], r // s.n, r % s.n, 1)
     if s.mark[r, l] != 0:
@@ -411,106 +433,26 @@ def missing_in_storey(s: Record, l: int, systems: Record, which: int) -> tuple[f
 
 
 @compiled
-def missing(  # noqa: C901, PLR0911 -- an event each
-    s: Record, l: int, systems: Record
-) -> tuple[float, float]:
-    """What the end of the step still is above the event on which it is to end, and its rate."""
-    kind, which = s.wanted[l], s.which[l]
-    if kind == YIELD:
-        return missing_in_storey(s, l, systems, which)
-    if kind == LOW:
-        return s.new_x[l] - s.x_low[l], s.new_v[l]
-    if kind == HIGH:
-        return s.x_high[l] - s.new_x[l], -s.new_v[l]
-    if kind == NEAREST:
-        return -s.new_v[l], -s.new_a[l]
-    if kind == CHANGE:
-        _, value, slope = watched(s, l, which, 1)
-        return value, slope
+def missing_let_go(s: Record, l: int, systems: Record) -> tuple[float, float]:  # noqa: ARG001
+    """Of a storey at rest, to its side."""
+    side = s.which[l]
     if ways_of(s) == 2 and s.phase[l] == STUCK:
         grip = grip_at(s, l, 1)
         return grip.margin + grip.late, grip.slope
     R, h = 0.5 * s.diameter[l], s.h[l]
     g_felt, g_rate, _ = felt_at(s, l, 1)
     factor, held, size, growth = s.limit_right[l], s.held_right[l], 0.0, 0.0
-    if which < 0:
+    if side < 0:
         factor, held = s.limit_left[l], s.held_left[l]
     for axis in range(ways_of(s)):
         a_g = ground_at(s, l, axis, s.time[l] + h)
         push = R * z_of(s, l, s.new_V[axis, l], a_g)
         rate = R * z_of(s, l, s.new_dV[axis, l], s.a_g_slope[axis, l])
         if ways_of(s) == 1:
-            size, growth = which * push, which * rate
+            size, growth = side * push, side * rate
         else:
             size, growth = size + push * push, growth + push * rate
     if ways_of(s) == 2:
         size = math.sqrt(size)
         growth /= max(size, 1e-300)
     return factor * g_felt + held - size, factor * g_rate - growth
-
-
-@compiled
-def resolve_step(s: Record, l: int, systems: Record) -> bool:
-    """A step that was not accepted: accept it, or have it taken again; False if it is no number."""
-    if s.history[l] == NO_HISTORY:
-        s.accepted[l] = 1.0
-        return True
-    total = s.new_x[l] + s.new_v[l] + s.new_a[l]
-    for axis in range(ways_of(s)):
-        total += s.new_V[axis, l] + s.new_dV[axis, l]
-    if not math.isfinite(total):
-        s.outcome[l] = FAILED_NOT_FINITE
-        return False
-    if s.error[l] > 1.0 and s.h[l] > LEAST_STEP * s.dt[l]:
-        # also of a step that is to end on an event: there a bed may be steeper than beyond it
-        s.h[l] *= 0.5 if s.error[l] < 64.0 else 0.25
-        s.h_limit[l], s.wanted[l] = s.h[l], NOTHING
-        return True
-    if s.wanted[l] != NOTHING:
-        land(s, l, systems)
-        return True
-    fraction, kind, which = first_event(s, l, systems)
-    if kind == NOTHING:
-        s.accepted[l] = 1.0
-        return True
-    s.wanted[l], s.which[l], s.tries[l], s.h_now[l] = kind, which, 0, s.h[l]
-    s.h[l] *= fraction
-    return True
-
-
-@compiled
-def land(s: Record, l: int, systems: Record) -> None:
-    """A step that was to end on an event: near enough, or once more."""
-    value, slope = missing(s, l, systems)
-    change = -value / slope if slope < 0.0 else 0.0
-    change = min(max(change, -0.5 * s.h[l]), s.h_now[l] - s.h[l])
-    s.tries[l] += 1
-    close = max(CLOSE * s.h[l], LEAST_STEP * s.dt[l])
-    if s.wanted[l] == LET_GO:
-        close = AT_LIMIT * s.dt[l]
-    if abs(change) > close and s.tries[l] < MOST_TRIES:
-        s.h[l] += change
-        return
-    if abs(change) <= close:  # else it only grazes, and stays where it is
-        go_on_by(s, l, change)
-    # a cubic from zero without slope may dip where the value grows with the third power of time
-    dips = s.wanted[l] in (CHANGE, YIELD) and value > 0.0 and slope >= 0.0
-    kind = NOTHING if dips else s.wanted[l]
-    s.accepted[l], s.kind[l], s.wanted[l] = 1.0, kind, NOTHING
-
-
-@compiled
-def go_on_by(s: Record, l: int, time: float) -> None:
-    """Lead the end of the step on by rates: so short a time that its square is rounding."""
-    for axis in range(ways_of(s)):
-        bend = s.new_bend[axis, l]
-        s.new_tilt[axis, l] += time * (s.new_tilt_rate[axis, l] + 0.5 * time * bend)
-        s.new_tilt_rate[axis, l] += time * bend
-    for axis in range(s.axes):
-        for r in range(axis * s.n, (axis + 1) * s.n):
-            ddq = -(s.Gamma[r, l] * s.new_shaking[axis, l]) - s.force[r, l]
-            s.new_q[r, l] += time * (s.new_dq[r, l] + 0.5 * time * ddq)
-            s.new_dq[r, l] += time * ddq
-    s.new_x[l] += time * (s.new_v[l] + 0.5 * time * s.new_a[l])
-    s.new_v[l] += time * s.new_a[l]
-    s.h[l] += time

@@ -15,8 +15,6 @@ from rpscli.physics.bed import first_phase, load_bed
 from rpscli.physics.compile import compiled, inlined
 from rpscli.physics.demands import observe, observe_start
 from rpscli.physics.devices import (
-    SLOWING,
-    change_law,
     find_branches,
     has_friction,
     kink_limit,
@@ -26,9 +24,9 @@ from rpscli.physics.devices import (
     worked,
 )
 from rpscli.physics.energy import total_energy
-from rpscli.physics.events import check_steps, resolve_step
-from rpscli.physics.friction import grip_at, set_limits, sticks
-from rpscli.physics.ground import azimuth_of, log_event, set_ground, time_of
+from rpscli.physics.event_table import EVENTS
+from rpscli.physics.events import check_steps
+from rpscli.physics.ground import azimuth_of, set_ground, time_of
 from rpscli.physics.groups import (
     MOVING,
     STANDING,
@@ -40,8 +38,8 @@ from rpscli.physics.groups import (
     standing_is_next,
     waiting_place,
 )
-from rpscli.physics.lane import lanes_of, place_of, polar, rate_of, tilt_of, ways_of
-from rpscli.physics.laws.place import length
+from rpscli.physics.landing import resolve_step
+from rpscli.physics.lane import lanes_of, place_of, tilt_of, ways_of
 from rpscli.physics.rest import REST_EVERY, is_over
 from rpscli.physics.run import Output
 from rpscli.physics.samples import store_sample, store_within
@@ -54,25 +52,12 @@ from rpscli.physics.state import (
     FAILED_STEP_TOO_SMALL,
     FAILED_TOO_MANY_EVENTS,
     FAILED_TOO_MANY_STEPS,
-    FRICTION,
     FULL_CONTACT,
-    HIGH,
-    LET_GO,
-    LOW,
-    NEAREST,
     NO_HISTORY,
     NOTHING,
-    OVERTURNED_ROCKING,
-    OVERTURNED_ROLLING,
-    OVERTURNING,
     ROCKING,
-    ROCKING_TO_ROLLING,
     ROLLING,
-    ROLLING_RESISTANCE,
-    ROLLING_TO_ROCKING,
     RUNNING,
-    SLIDING,
-    STICKING,
     STUCK,
     SURVIVED,
     UPLIFT,
@@ -81,16 +66,10 @@ from rpscli.physics.state import (
     Record,
 )
 from rpscli.physics.step import renew, take_steps
-from rpscli.physics.storeys import keep_slips, load_storeys, review_storeys, turn_storey
+from rpscli.physics.storeys import keep_slips, load_storeys, review_storeys
+from rpscli.physics.switches import reverse, stop_or_turn
 from rpscli.physics.upright import (
-    change_rate,
     enter_phase,
-    keep_growing,
-    pass_on_bed,
-    pass_upright,
-    set_polar,
-    settle,
-    uplift,
 )
 
 
@@ -396,7 +375,7 @@ def look_after(s: Record, l: int, systems: Record, output: Output) -> bool:
         s.kind[l] = NOTHING
         stands_still = s.time[l] - s.h[l] == s.time[l]
         s.stalled[l] = s.stalled[l] + 1 if stands_still else 0
-        switch(s, l, systems, output, kind)
+        switch(s, l, systems, output.log, kind)
         review_laws(s, l, systems, kind)
         stay_inside(s, l)
         if s.outcome[l] != RUNNING or too_many(s, l, system):
@@ -418,6 +397,14 @@ def look_after(s: Record, l: int, systems: Record, output: Output) -> bool:
     if s.kinks[l] > 0.0 and s.moves[l] > 0.0:
         s.h[l] = min(s.h[l], kink_limit(s, l))
     return False
+
+
+@compiled
+def switch(s: Record, l: int, systems: Record, log: Record, kind: int) -> None:
+    """What the event on which the step ended does."""
+    for event in EVENTS:
+        if kind == event.kind:
+            event.happens(s, l, systems, log)
 
 
 @compiled
@@ -445,143 +432,11 @@ def too_many(s: Record, l: int, system: Record) -> bool:
 
 
 @compiled
-def switch(s: Record, l: int, systems: Record, output: Output, kind: int) -> None:
-    """What an event does; the lane is where it happens."""
-    system, log, phase = systems[0], output.log, s.phase[l]
-    if kind == YIELD:
-        turn_storey(s, l, systems, s.which[l])
-        renew(s, l)
-        return
-    if kind == LET_GO:
-        if phase == STUCK:
-            slide(s, l, system, log, s.which[l])
-        else:
-            uplift(s, l, system, log, s.which[l])
-        return
-    if kind == CHANGE:
-        change(s, l, system, log)
-        return
-    if kind == NEAREST or (kind == LOW and is_upright(s, l, system)):
-        pass_upright(s, l, system, log, kind == LOW)
-        renew(s, l)
-        settle(s, l, system, log, kind == LOW)
-        return
-    if phase == BEDDED or (kind == LOW and s.x_low[l] == system.bed_uplift):
-        pass_on_bed(s, l, system, log, phase != BEDDED)
-    elif kind == HIGH and s.x_high[l] == system.theta_limit:
-        log_event(s, l, log, OVERTURNING, s.v[l], s.v[l], 0.0)
-        rolls = s.theta_cr[l] < system.beta
-        s.outcome[l] = OVERTURNED_ROLLING if rolls else OVERTURNED_ROCKING
-        return
-    elif system.beta > 0.0 and (s.x_high[l] if kind == HIGH else s.x_low[l]) == system.beta:
-        rises = kind == HIGH
-        event = ROLLING_TO_ROCKING if rises else ROCKING_TO_ROLLING
-        _, n, t, p, q = polar(s, l, tilt_of(s, l), rate_of(s, l))
-        set_polar(s, l, system.beta, n, t, p, q)
-        log_event(s, l, log, event, p, p, 0.0)
-        enter_phase(s, l, system, ROCKING if rises else ROLLING)
-    else:  # curved ends leave their flat part, or come back to it
-        enter_phase(s, l, system, phase)
-    renew(s, l)
-
-
-@compiled
-def change(s: Record, l: int, system: Record, log: Record) -> None:
-    """A watched value fell below zero: of friction at a standstill, or of a device."""
-    if s.which[l] == SLOWING:
-        stop_or_turn(s, l, system, log)
-        return
-    stands_still = change_law(s, l, log, s.which[l])
-    renew(s, l)
-    if ways_of(s) == 1 and s.x[l] == 0.0 and s.v[l] == 0.0:
-        keep_growing(s, l, 1.0)  # a stop without a gap is met as columns are let go
-    if stands_still:
-        reverse(s, l, system, log)
-
-
-@compiled
 def stay_inside(s: Record, l: int) -> None:
     """Have the next step begin within its range: of a tilt to any side x is a root, and rounded."""
     # after all that renews it: one that is below its range by rounding would pass upright at once
     if s.phase[l] != FULL_CONTACT:
         s.x[l] = min(max(s.x[l], s.x_low[l]), s.x_high[l])
-
-
-@compiled
-def is_upright(s: Record, l: int, system: Record) -> bool:
-    """Whether the range of the present phase ends upright."""
-    if s.phase[l] == BEDDED or system.compliant > 0:
-        return False
-    return bool(s.phase[l] == ROLLING or system.beta == 0.0)
-
-
-@compiled
-def reverse(s: Record, l: int, system: Record, log: Record) -> None:
-    """At a standstill of the tilt: go on, or be held by friction."""
-    if ways_of(s) == 1 and sticks(s, l, log):
-        hold(s, l, system)
-    else:
-        renew(s, l)
-
-
-@compiled
-def hold(s: Record, l: int, system: Record) -> None:
-    """Be held where the tilt stands."""
-    enter_phase(s, l, system, STUCK)
-    s.h_limit[l] = math.inf  # that of a standstill was short
-    set_limits(s, l)
-    renew(s, l)
-
-
-@compiled
-def stop_or_turn(s: Record, l: int, system: Record, log: Record) -> None:
-    """What slides too slowly to any side: be held, or go on along what is not held (13.25)."""
-    grip = grip_at(s, l, 0)
-    if grip.margin >= 0.0:
-        set_sliding(s, l, system, 0.0, 0.0, 0.0)
-        log_event(s, l, log, STICKING, 0.0, 0.0, 0.0)
-        hold(s, l, system)
-    else:
-        set_sliding(s, l, system, grip.d_n, grip.d_t, 2.0 * s.stop_speed[l])
-        renew(s, l)
-
-
-@compiled
-def set_sliding(s: Record, l: int, system: Record, d_n: float, d_t: float, speed: float) -> None:
-    """Set the rate of a tilt that hardly slides along a unit vector [speed m/s of the beam].
-
-    The first device with friction books the difference.
-    """
-    x, _, _, _, _ = polar(s, l, tilt_of(s, l), (0.0, 0.0))
-    at = place_of(s, l, x)
-    rate = speed / (s.diameter[l] * length(at.C * d_n, at.h * d_t) + 1e-300)
-    lost = change_rate(s, l, system, rate * d_n, rate * d_t)
-    for i in range(s.devices[l]):
-        if s.device_kind[i, l] in (FRICTION, ROLLING_RESISTANCE):
-            s.device_energy[i, l] += lost
-            break
-
-
-@compiled
-def slide(s: Record, l: int, system: Record, log: Record, side: int) -> None:
-    """Leave a tilt that friction held, or the end of the bed, to the right or to the left."""
-    phase = ROLLING if s.rolls[l] > 0.0 else ROCKING
-    if s.x[l] == 0.0 and system.compliant == 0 and ways_of(s) == 1:
-        s.side[l] = float(side)  # upright, a tilt grows to either side
-    out = side * s.side[l]
-    s.direction[l] = out if ways_of(s) == 1 and has_friction(s, l) else 1.0
-    log_event(s, l, log, SLIDING, 0.0, 0.0, 0.0)
-    s.phase[l], s.moves[l] = (BEDDED if s.bed_k[l] > 0.0 else phase), 1.0
-    if ways_of(s) == 2:
-        grip = grip_at(s, l, 0)
-        set_sliding(s, l, system, grip.d_n, grip.d_t, s.start_speed[l])
-        renew(s, l)
-        return
-    if s.bed_back[l] > 0.0:
-        s.bed_back[l] = 0.0
-        enter_phase(s, l, system, first_phase(system) if out > 0.0 else BEDDED)
-    renew(s, l)
-    keep_growing(s, l, out)
 
 
 # Histories begin and end.

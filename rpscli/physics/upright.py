@@ -193,7 +193,8 @@ def pass_upright(s: Record, l: int, system: Record, log: Record, near: bool) -> 
     s.closest_pass[l] = min(s.closest_pass[l], least / system.alpha)
     s.shortest_pass[l] = min(s.shortest_pass[l], least / max(speed, 1e-300))
     s.passes_as_impacts[l] += 1 if share > 0.5 else 0
-    s.directionless[l] = s.directionless[l] + 1 if least < DIRECTIONLESS else 0
+    lost_direction = 0.0 < least < DIRECTIONLESS  # in a plane it is known
+    s.directionless[l] = s.directionless[l] + 1 if lost_direction else 0
     take_up_stops(s, l, log)
 
 
