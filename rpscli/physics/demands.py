@@ -26,7 +26,9 @@ import math
 from typing import TypeAlias
 
 from rpscli.physics.compile import compiled, inlined
-from rpscli.physics.devices import act, power_in_step, raise_devices, worked
+from rpscli.physics.devices.acting import act, power_in_step
+from rpscli.physics.devices.seen import raise_devices
+from rpscli.physics.devices.worked import worked
 from rpscli.physics.energy import path_at
 from rpscli.physics.events import path_of
 from rpscli.physics.friction import grip_at, push_at_rest
@@ -696,7 +698,7 @@ def observe_ways(s: Record) -> None:
 
 
 @inlined
-def observe(s: Record, systems: Record, log: Record, stands: bool) -> None:  # noqa: FBT001 -- known
+def observe(s: Record, systems: Record, log: Record, stands: bool) -> None:
     """Raise all demands by those of accepted steps; those of the tilt unless all lanes stand."""
     ways = ways_of(s)
     observe_floors(s)

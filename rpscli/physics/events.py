@@ -11,7 +11,8 @@ from __future__ import annotations
 import math
 
 from rpscli.physics.compile import compiled, inlined
-from rpscli.physics.devices import WATCHED, has_friction, may_be_watched, slowing, watched
+from rpscli.physics.devices.acting import has_friction
+from rpscli.physics.devices.branches import WATCHED, may_be_watched, slowing, watched
 from rpscli.physics.friction import grip_at
 from rpscli.physics.lane import (
     felt_at,
@@ -159,7 +160,7 @@ def falls(s: Record, l: int) -> bool:
 
 
 @inlined
-def check_steps(s: Record, systems: Record, stands: bool) -> None:  # noqa: FBT001 -- known
+def check_steps(s: Record, systems: Record, stands: bool) -> None:
     """Accept the steps that are short enough and surely hold no event; of lanes that all stand."""
     if stands:
         for l in range(lanes_of(s)):
@@ -264,7 +265,7 @@ def may_change(s: Record, l: int) -> bool:
 
 
 @compiled
-def falls_low(s: Record, l: int, systems: Record) -> tuple[float, int]:  # noqa: ARG001
+def falls_low(s: Record, l: int, systems: Record) -> tuple[float, int]:
     """Fraction of the step at which a free tilt leaves its range downwards, if it does."""
     if s.moves[l] == 0.0:
         return NO_PASSAGE, 0
@@ -273,7 +274,7 @@ def falls_low(s: Record, l: int, systems: Record) -> tuple[float, int]:  # noqa:
 
 
 @compiled
-def rises_high(s: Record, l: int, systems: Record) -> tuple[float, int]:  # noqa: ARG001
+def rises_high(s: Record, l: int, systems: Record) -> tuple[float, int]:
     """And upwards."""
     if s.moves[l] == 0.0:
         return NO_PASSAGE, 0
@@ -282,7 +283,7 @@ def rises_high(s: Record, l: int, systems: Record) -> tuple[float, int]:  # noqa
 
 
 @compiled
-def is_nearest(s: Record, l: int, systems: Record) -> tuple[float, int]:  # noqa: ARG001
+def is_nearest(s: Record, l: int, systems: Record) -> tuple[float, int]:
     """Where a tilt to any side is nearest to upright."""
     if s.moves[l] > 0.0 and ways_of(s) == 2 and falls(s, l) and s.new_v[l] >= 0.0:
         return nearest(s, l), 0
@@ -290,7 +291,7 @@ def is_nearest(s: Record, l: int, systems: Record) -> tuple[float, int]:  # noqa
 
 
 @compiled
-def changes(s: Record, l: int, systems: Record) -> tuple[float, int]:  # noqa: ARG001
+def changes(s: Record, l: int, systems: Record) -> tuple[float, int]:
     """Where a device changes its law, and which watched value says so."""
     first, which = NO_PASSAGE, 0
     for number in range(WATCHED if s.devices[l] > 0 and s.moves[l] > 0.0 else 0):
@@ -327,7 +328,7 @@ def nearest(s: Record, l: int) -> float:
 
 
 @compiled
-def let_go(s: Record, l: int, systems: Record) -> tuple[float, int]:  # noqa: ARG001
+def let_go(s: Record, l: int, systems: Record) -> tuple[float, int]:
     """Where a storey at rest is no longer held: to the right (1), or to the left (-1)."""
     if s.moves[l] > 0.0:
         return NO_PASSAGE, 0
@@ -395,25 +396,25 @@ def squared_margin(s: Record, l: int) -> Quintic:
 
 
 @compiled
-def missing_low(s: Record, l: int, systems: Record) -> tuple[float, float]:  # noqa: ARG001
+def missing_low(s: Record, l: int, systems: Record) -> tuple[float, float]:
     """What the end of the step still is above the event, and its rate: of a tilt that falls."""
     return s.new_x[l] - s.x_low[l], s.new_v[l]
 
 
 @compiled
-def missing_high(s: Record, l: int, systems: Record) -> tuple[float, float]:  # noqa: ARG001
+def missing_high(s: Record, l: int, systems: Record) -> tuple[float, float]:
     """Of one that rises."""
     return s.x_high[l] - s.new_x[l], -s.new_v[l]
 
 
 @compiled
-def missing_nearest(s: Record, l: int, systems: Record) -> tuple[float, float]:  # noqa: ARG001
+def missing_nearest(s: Record, l: int, systems: Record) -> tuple[float, float]:
     """Of one that comes nearest to upright."""
     return -s.new_v[l], -s.new_a[l]
 
 
 @compiled
-def missing_change(s: Record, l: int, systems: Record) -> tuple[float, float]:  # noqa: ARG001
+def missing_change(s: Record, l: int, systems: Record) -> tuple[float, float]:
     """Of a device's watched value."""
     _, value, slope = watched(s, l, s.which[l], 1)
     return value, slope
@@ -433,7 +434,7 @@ def missing_yield(s: Record, l: int, systems: Record) -> tuple[float, float]:
 
 
 @compiled
-def missing_let_go(s: Record, l: int, systems: Record) -> tuple[float, float]:  # noqa: ARG001
+def missing_let_go(s: Record, l: int, systems: Record) -> tuple[float, float]:
     """Of a storey at rest, to its side."""
     side = s.which[l]
     if ways_of(s) == 2 and s.phase[l] == STUCK:

@@ -14,15 +14,11 @@ import numpy as np
 from rpscli.physics.bed import first_phase, load_bed
 from rpscli.physics.compile import compiled, inlined
 from rpscli.physics.demands import observe, observe_start
-from rpscli.physics.devices import (
-    find_branches,
-    has_friction,
-    kink_limit,
-    load_devices,
-    release_devices,
-    stored_in,
-    worked,
-)
+from rpscli.physics.devices.acting import has_friction, load_devices
+from rpscli.physics.devices.branches import kink_limit, release_devices
+from rpscli.physics.devices.own import find_branches
+from rpscli.physics.devices.table import stored_in
+from rpscli.physics.devices.worked import worked
 from rpscli.physics.energy import total_energy
 from rpscli.physics.event_table import EVENTS
 from rpscli.physics.events import check_steps
@@ -93,9 +89,9 @@ def follow(
         over = False
         while not over and s.stop == 0:
             if stands_exactly(s, 0):
-                advance(s, systems, output, True)  # noqa: FBT003
+                advance(s, systems, output, True)
             else:
-                advance(s, systems, output, False)  # noqa: FBT003
+                advance(s, systems, output, False)
             next_intervals(s, acceleration)
             if s.due[0] > 0.0:
                 first = s.system[0]
@@ -120,11 +116,11 @@ def follow_many(
     begin_histories(state, systems, requests, acceleration, output)
     while moving.present + standing.present > 0 and moving.stop == 0:
         if standing_is_next(moving, standing):
-            advance(standing, systems, output, True)  # noqa: FBT003
+            advance(standing, systems, output, True)
             next_intervals(standing, acceleration)
             look_after_all(state, STANDING, systems, results, output)
         else:
-            advance(moving, systems, output, False)  # noqa: FBT003
+            advance(moving, systems, output, False)
             next_intervals(moving, acceleration)
             look_after_all(state, MOVING, systems, results, output)
         call_in(state)
@@ -200,7 +196,7 @@ def call_in(state: Record) -> None:
 
 
 @inlined
-def advance(s: Record, systems: Record, output: Output, stands: bool) -> None:  # noqa: FBT001 -- known
+def advance(s: Record, systems: Record, output: Output, stands: bool) -> None:
     """A step of all lanes together: of those that stand, or of others."""
     if stands:
         stand(s)

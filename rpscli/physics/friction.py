@@ -10,7 +10,9 @@ import math
 from typing import NamedTuple
 
 from rpscli.physics.compile import compiled
-from rpscli.physics.devices import has_friction, stop_force, tendon_elongation, tension
+from rpscli.physics.devices.acting import has_friction
+from rpscli.physics.devices.table import resistance_of, tension_of
+from rpscli.physics.devices.worked import tendon_elongation
 from rpscli.physics.energy import path_at
 from rpscli.physics.ground import log_event
 from rpscli.physics.lane import (
@@ -28,7 +30,7 @@ from rpscli.physics.lane import (
     z_of,
 )
 from rpscli.physics.laws.place import length
-from rpscli.physics.state import STICKING, STOP, STUCK, Record
+from rpscli.physics.state import STICKING, STUCK, Record
 
 
 @compiled
@@ -36,8 +38,7 @@ def push_of_stops(s: Record, l: int) -> float:
     """Force of all stops against a tilt at rest [N]."""
     path, push = s.diameter[l] * path_at(s, l, s.x[l]), 0.0
     for i in range(s.devices[l]):
-        if s.device_kind[i, l] == STOP:
-            push += stop_force(s, l, i, path, 0.0)
+        push += resistance_of(s, l, i, path, 0.0)
     return push
 
 
@@ -52,7 +53,7 @@ def force_at_rest(s: Record, l: int) -> tuple[float, float]:
     e, lever, _, _ = tendon_elongation(s, l, s.x[l])
     arm, elastic = s.diameter[l] * place_of(s, l, s.x[l]).C, push_of_stops(s, l)
     for i in range(s.devices[l]):
-        elastic += s.columns[l] * tension(s, l, i, e) * lever / arm
+        elastic += s.columns[l] * tension_of(s, l, i, e) * lever / arm
     return elastic, s.friction_force[l] + s.friction_moment[l] / arm
 
 

@@ -6,7 +6,10 @@ import math
 
 from rpscli.physics.compile import compiled
 from rpscli.physics.demands import mode_path, tilt_within
-from rpscli.physics.devices import act, store_devices, stored_in, worked
+from rpscli.physics.devices.acting import act
+from rpscli.physics.devices.seen import store_devices
+from rpscli.physics.devices.table import stored_in
+from rpscli.physics.devices.worked import worked
 from rpscli.physics.energy import RATES, beam_at, beam_lift, energy_at, look_at
 from rpscli.physics.friction import push_at_rest
 from rpscli.physics.lane import (

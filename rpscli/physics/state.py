@@ -444,6 +444,10 @@ STATE = (
     *_fields("lanes", "m2/s2", mean_square="of |u_b'|"),
     *_fields("lanes", "m/s", mean_pace="of u_b' against which friction acts"),
     *_fields("lanes", "rad/s", mean_swing="of the rate against which rolling resistance acts"),
+    Field("apart", f"{SLOTS} lanes", "-", "1: a device is looked at by itself"),
+    Field("square_constant", f"{SLOTS} lanes", "N s/m", "of a linear damper: power over u_b'^2"),
+    Field("pace_constant", f"{SLOTS} lanes", "N", "of a friction damper"),
+    Field("swing_constant", f"{SLOTS} lanes", "N m", "of rolling resistance"),
     Field("device_work", f"{SLOTS} lanes", "W", "mean power in the step, of those"),
     Field("device_energy", f"{SLOTS} lanes", "J", "dissipated"),
     Field("device_force", f"{SLOTS} lanes", "N", "largest |force|"),
@@ -605,7 +609,7 @@ def record_type(fields: tuple[Field, ...], ways: int = 1, lanes: int = 1) -> np.
     ordered = sorted(
         fields, key=lambda field: (kinds[field], len(field.sizes.split()), field.sizes)
     )
-    of, end, before = dict[str, Place](), 0, 0
+    of, end, before = dict[str, Location](), 0, 0
     for field in ordered:
         number = np.int64 if field.unit == WHOLE else np.float64
         kind = np.dtype((number, tuple(int(sizes.get(z, z)) for z in field.sizes.split())))
@@ -625,17 +629,17 @@ LINE = 64
 """Bytes of a line of the processor's cache, with which the fields of all lanes begin."""
 
 
-def record_of(fields: dict[str, Place]) -> np.dtype[Any]:
+def record_of(fields: dict[str, Location]) -> np.dtype[Any]:
     """The type of a record with fields of kinds at offsets."""
     kinds, offsets = zip(*fields.values(), strict=True)
     return np.dtype({"names": [*fields], "formats": [*kinds], "offsets": [*offsets]})
 
 
-Place: TypeAlias = tuple[np.dtype[Any], int]
+Location: TypeAlias = tuple[np.dtype[Any], int]
 """A field's type and where it begins."""
 
 
-def overlays(of: dict[str, Place]) -> dict[str, Place]:
+def overlays(of: dict[str, Location]) -> dict[str, Location]:
     """The fields by which a lane is copied."""
     found = {}
     for kind, name in enumerate(OVERLAYS, 1):
@@ -644,7 +648,7 @@ def overlays(of: dict[str, Place]) -> dict[str, Place]:
     return found
 
 
-def overlay(members: list[Place], *, each: bool = False) -> Place:
+def overlay(members: list[Location], *, each: bool = False) -> Location:
     """Words of fields that stand together: as rows of lanes, or `each` as a table of its own."""
     shape = members[0][0].shape
     words = sum(member.itemsize for member, _ in members) // 8

@@ -11,7 +11,13 @@ import math
 
 from rpscli.physics.bed import set_patches
 from rpscli.physics.compile import compiled, fma, inlined
-from rpscli.physics.devices import act, act_branched_at_stage, add_work, begin_work, push
+from rpscli.physics.devices.acting import (
+    act,
+    act_branched_at_stage,
+    add_work,
+    begin_work,
+    push_by_devices,
+)
 from rpscli.physics.energy import inertia_unit, lifted_mass
 from rpscli.physics.lane import (
     g_up_at,
@@ -37,7 +43,7 @@ from rpscli.physics.tableau import END, ERROR, SQUARED, STAGES, TIMES, USED
 
 
 @inlined
-def find(s: Record, at: float, weight: float, equipped: bool) -> None:  # noqa: FBT001 -- a constant
+def find(s: Record, at: float, weight: float, equipped: bool) -> None:
     """Accelerations of all lanes a part of the step behind its start, from `new_tilt` and the like.
 
     Reads `new_V`; writes `new_bend`, `new_shaking` and the polar values of the tilt, and adds to
@@ -48,7 +54,7 @@ def find(s: Record, at: float, weight: float, equipped: bool) -> None:  # noqa: 
         now = polar(s, l, new_tilt_of(s, l), new_rate_of(s, l))
         place = place_with(s, l, now.x, s.w[l], s.dw[l])
         if equipped:
-            push(s, l, place, now)
+            push_by_devices(s, l, place, now)
             s.new_height[l], s.new_speed[l] = place.C, add_work(s, l, place, now, weight)
         V = s.new_V[0, l], (s.new_V[1, l] if up == 2 else 0.0), s.new_V[up, l]
         found = respond(s, l, place, s.w[l], now, V, s.time[l] + at * s.h[l])
@@ -66,13 +72,13 @@ def find(s: Record, at: float, weight: float, equipped: bool) -> None:  # noqa: 
 @compiled
 def accelerate(s: Record, at: float) -> None:
     """The same without devices."""
-    find(s, at, 0.0, False)  # noqa: FBT003
+    find(s, at, 0.0, False)
 
 
 @compiled
 def accelerate_equipped(s: Record, at: float, weight: float) -> None:
     """The same with devices."""
-    find(s, at, weight, True)  # noqa: FBT003
+    find(s, at, weight, True)
 
 
 @inlined

@@ -9,7 +9,8 @@ import math
 
 from rpscli.physics.bed import first_phase
 from rpscli.physics.compile import compiled
-from rpscli.physics.devices import SLOWING, change_law, has_friction
+from rpscli.physics.devices.acting import has_friction
+from rpscli.physics.devices.branches import SLOWING, change_law
 from rpscli.physics.friction import grip_at, set_limits, sticks
 from rpscli.physics.ground import log_event
 from rpscli.physics.lane import place_of, polar, rate_of, tilt_of, ways_of
@@ -45,7 +46,7 @@ from rpscli.physics.upright import (
 
 
 @compiled
-def leave_range(s: Record, l: int, systems: Record, log: Record, rises: bool) -> None:  # noqa: FBT001
+def leave_range(s: Record, l: int, systems: Record, log: Record, rises: bool) -> None:
     """A tilt comes to an end of its range: of a bed, of an arc, of standing."""
     system, phase = systems[0], s.phase[l]
     if phase == BEDDED or (not rises and s.x_low[l] == system.bed_uplift):
@@ -67,7 +68,7 @@ def leave_range(s: Record, l: int, systems: Record, log: Record, rises: bool) ->
 
 
 @compiled
-def go_upright(s: Record, l: int, systems: Record, log: Record, near: bool) -> None:  # noqa: FBT001
+def go_upright(s: Record, l: int, systems: Record, log: Record, near: bool) -> None:
     """A tilt passes upright: an impact, or a pass, after which it may be at rest."""
     pass_upright(s, l, systems[0], log, near)
     renew(s, l)
@@ -78,21 +79,21 @@ def go_upright(s: Record, l: int, systems: Record, log: Record, near: bool) -> N
 def leave_low(s: Record, l: int, systems: Record, log: Record) -> None:
     """A tilt falls out of its range."""
     if is_upright(s, l, systems[0]):
-        go_upright(s, l, systems, log, True)  # noqa: FBT003
+        go_upright(s, l, systems, log, True)
     else:
-        leave_range(s, l, systems, log, False)  # noqa: FBT003
+        leave_range(s, l, systems, log, False)
 
 
 @compiled
 def leave_high(s: Record, l: int, systems: Record, log: Record) -> None:
     """A tilt rises out of its range."""
-    leave_range(s, l, systems, log, True)  # noqa: FBT003
+    leave_range(s, l, systems, log, True)
 
 
 @compiled
 def pass_nearest(s: Record, l: int, systems: Record, log: Record) -> None:
     """A tilt to any side is nearest to upright."""
-    go_upright(s, l, systems, log, False)  # noqa: FBT003
+    go_upright(s, l, systems, log, False)
 
 
 @compiled
@@ -105,7 +106,7 @@ def lose_hold(s: Record, l: int, systems: Record, log: Record) -> None:
 
 
 @compiled
-def yield_or_end(s: Record, l: int, systems: Record, log: Record) -> None:  # noqa: ARG001
+def yield_or_end(s: Record, l: int, systems: Record, log: Record) -> None:
     """A storey begins to yield, or no longer does."""
     turn_storey(s, l, systems, s.which[l])
     renew(s, l)

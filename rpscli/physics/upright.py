@@ -13,7 +13,8 @@ import math
 
 from rpscli.physics.bed import enter_on_bed, first_phase, impact_number
 from rpscli.physics.compile import compiled, own_law
-from rpscli.physics.devices import begin_excursion, has_friction, take_up_stops
+from rpscli.physics.devices.acting import has_friction
+from rpscli.physics.devices.stop import begin_excursion, take_up_stops
 from rpscli.physics.energy import (
     RATES,
     Beam,
@@ -153,7 +154,7 @@ def loss_share(nearness: float) -> float:
 
 
 @compiled
-def pass_upright(s: Record, l: int, system: Record, log: Record, near: bool) -> None:  # noqa: FBT001
+def pass_upright(s: Record, l: int, system: Record, log: Record, near: bool) -> None:
     """An impact of one plane, or a pass of free columns; `near`: by the map from theta_c."""
     if ways_of(s) == 1:
         impact(s, l, system, log)
@@ -252,7 +253,7 @@ def pushes(s: Record, l: int) -> tuple[float, float, float, float]:
 
 
 @compiled
-def settle(s: Record, l: int, system: Record, log: Record, near: bool) -> None:  # noqa: FBT001
+def settle(s: Record, l: int, system: Record, log: Record, near: bool) -> None:
     """After it: come to rest if it is that slow; what is too slow to get away starts anew.
 
     Impacts accumulate: each excursion is e^2 times as high as the last. At constant deceleration
@@ -383,7 +384,7 @@ def uplift(s: Record, l: int, system: Record, log: Record, side: int) -> None:
 
 
 @compiled
-def pass_on_bed(s: Record, l: int, system: Record, log: Record, enters: bool) -> None:  # noqa: FBT001
+def pass_on_bed(s: Record, l: int, system: Record, log: Record, enters: bool) -> None:
     """Uplift from a bed, or contact with it again; floors keep their velocities.
 
     Going outwards x' changes by j, inwards by e/j, and what goes round by e (13.21), (13.22).
