@@ -117,7 +117,8 @@ def test_a_temporary_folder_that_somebody_else_made_is_not_used(
 
 
 @pytest.mark.parametrize(
-    "source", ["physics/laws/motion.py", "physics/devices/stop.py", "constants.py", "compiler/values.py"]
+    "source",
+    ["physics/laws/motion.py", "physics/devices/stop.py", "constants.py", "compiler/values.py"],
 )
 def test_the_folder_is_named_after_the_sources(
     fresh_folder: pytest.MonkeyPatch, tmp_path: Path, source: str
