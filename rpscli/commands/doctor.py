@@ -66,10 +66,21 @@ def _surroundings() -> list[tuple[str, str, str]]:
         ("Python", f"{platform.python_version()}, {sys.executable}", ""),
         ("system", f"{platform.platform()}, text in {locale.getencoding()}", ""),
         ("cores", str(available_cores()), ""),
+        *_processor(),
         ("cache", f"{place}, {_size(place)}, may be deleted" if place else "-", mine),
         ("font of figures", font_file() if place and installed("matplotlib") else "-", ""),
         (ENCODER, encoder or "-", "" if encoder else "animations as MP4"),
     ]
+
+
+def _processor() -> list[tuple[str, str, str]]:
+    """What kernels are compiled for."""
+    if not installed("llvmlite"):
+        return []
+    from rpscli.compiler.objects import can_fuse, processor
+
+    slow = "" if can_fuse() else "it has no FMA: studies take some ten times as long"
+    return [("processor", processor().split(" ")[1], slow)]
 
 
 def _packages(extra: str | None) -> list[tuple[str, str, str]]:

@@ -35,6 +35,11 @@ def processor() -> str:
     return f"{triple} {llvm.get_host_cpu_name()} {features} {version} {llvmlite.__version__}"
 
 
+def can_fuse() -> bool:
+    """Whether the processor has an instruction for `fma`; else a function does it, slowly."""
+    return bool(llvm.get_host_cpu_features().get("fma", True))
+
+
 @cache
 def target_machine() -> Any:
     """LLVM's description of this processor."""

@@ -15,6 +15,7 @@ from pathlib import Path
 from threading import Lock
 from typing import Any
 
+from rpscli.errors import OutputError
 from rpscli.physics.run import Output
 from rpscli.physics.state import EVENT, REQUEST, RESULT, SAMPLE, STATE, SYSTEM, record_type
 from rpscli.user_cache import VARIABLE, alone_in, is_private, user_cache
@@ -110,10 +111,17 @@ def kinds_of_arguments(ways: int, lanes: int) -> tuple[Any, ...]:
 def program_text(ways: int, lanes: int) -> str:
     """The kernel for so many directions and lanes, as LLVM's text."""
     from rpscli.compiler.functions import Program
+    from rpscli.compiler.values import NotInLanguage
     from rpscli.physics.follow import follow
 
     program = Program()
-    program.add(follow, kinds_of_arguments(ways, lanes), "@follow")
+    try:
+        program.add(follow, kinds_of_arguments(ways, lanes), "@follow")
+    except NotInLanguage as error:
+        said = ": ".join(reversed(error.args))
+        raise OutputError(
+            f"the kernel cannot be compiled: {said}; install rps with its sources, in a folder"
+        ) from None
     return program.text()
 
 

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import ast
 import errno
+import inspect
 import os
 import shutil
 import signal
 import sqlite3
 import stat
 import tempfile
+import threading
 import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
@@ -20,11 +22,13 @@ import numpy as np
 import pytest
 from paper_structures import known, needs_compiled_kernels, printed_by
 
+from rpscli.compiler import functions
 from rpscli.compiler.functions import Program
 from rpscli.compiler.objects import DIGEST, Entry, Kept
 from rpscli.compiler.values import DOUBLE
+from rpscli.errors import OutputError
 from rpscli.physics import kernels
-from rpscli.physics.integrate import hear
+from rpscli.physics.integrate import hear, in_background
 from rpscli.physics.kernels import OTHERS, SOURCES, cache_folder, not_kept, sources_digest
 from rpscli.physics.state import Field, records
 from rpscli.user_cache import alone_in, user_cache
@@ -46,7 +50,7 @@ def fresh_folder(monkeypatch: pytest.MonkeyPatch) -> Iterator[pytest.MonkeyPatch
 def test_one_process_keeps_machine_code_at_a_time(tmp_path: Path) -> None:
     with (
         alone_in(tmp_path),
-        closing(sqlite3.connect(tmp_path / "saving", 0)) as other,
+        closing(sqlite3.connect(tmp_path / "saving", timeout=0)) as other,
         pytest.raises(sqlite3.OperationalError, match="locked"),
     ):
         other.execute("BEGIN EXCLUSIVE")
@@ -255,6 +259,40 @@ def test_a_full_disk_keeps_nothing_and_stops_nothing(
         code = Kept(tmp_path, not_kept=not_kept).get("f.o", lambda: program_of(twice))
     assert Entry(code, "f", [DOUBLE], DOUBLE)(2.0) == 4.0
     assert [*tmp_path.iterdir()] == []
+
+
+@pytest.mark.posix
+def test_an_interruption_does_not_wait_for_a_compilation() -> None:
+    def interrupt(number: int, frame: object) -> None:
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGALRM, interrupt)
+    signal.setitimer(signal.ITIMER_REAL, 0.15)
+    ended = threading.Event()
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            in_background(ended.wait, 60.0)
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, before)
+        ended.set()
+
+
+def test_what_fails_in_the_background_is_raised() -> None:
+    with pytest.raises(ZeroDivisionError):
+        in_background(divmod, 1, 0)
+
+
+@needs_compiled_kernels
+def test_a_kernel_without_sources_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    def unreadable(*_: object) -> str:
+        raise OSError("could not get source code")
+
+    functions.tree_of_module.cache_clear()
+    functions.tree_of.cache_clear()
+    monkeypatch.setattr(inspect, "getsource", unreadable)
+    with pytest.raises(OutputError, match="install rps with its sources"):
+        kernels.program_text(1, 1)
 
 
 @pytest.mark.posix
