@@ -18,7 +18,7 @@ from rpscli.errors import CaseError, UsageError
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import ModalDamping, RayleighDamping
-from rpscli.physics.state import LANES
+from rpscli.physics.state import LANES, STATES, UPLIFT
 from rpscli.records.ground_motion import MotionComponents
 
 ALONE = 10**9
@@ -185,3 +185,20 @@ def test_a_sequence_of_motions_gives_a_sequence_of_demands() -> None:
         demand(structure, RECORDS, vertical=UPWARDS[0])  # type: ignore[call-overload]
     with pytest.raises(UsageError, match="given as str"):
         demand(structure, ["a.at2"])  # type: ignore[list-item]
+
+
+@needs_compiled_kernels
+@pytest.mark.parametrize("pairs", [False, True])
+def test_who_waits_for_a_lane_keeps_its_bits(pairs: bool) -> None:
+    """More histories than all groups have places, of which many move at once and some never do."""
+    system = replace(structures(2, modal=False)[2], impact_law=ImpactLaw("flexible"))
+    scales = np.linspace(0.05, 1.2, (STATES + 1) * LANES)
+    motion = MotionComponents(RECORDS[0], y=waves(2.5, 0.02, 3.0, seed=45) if pairs else None)
+    settings = TimeHistorySettings(free_vibration=0.2)
+    requests = [Request(system, motion, settings, float(scale)) for scale in scales]
+    together = [each.history.tobytes() for each in demands(requests, worth_lanes=SIDE_BY_SIDE)]
+    some = slice(None, None, 13)
+    alone = [each.history.tobytes() for each in demands(requests[some], worth_lanes=ALONE)]
+    assert alone == together[some]
+    moved = [each.history["events"][UPLIFT] > 0 for each in demands(requests, worth_lanes=1)]
+    assert 2 * LANES < sum(moved) < len(moved)
