@@ -196,8 +196,8 @@ def test_contact_times_of_passes(mine: PodiumStructure) -> None:
     ends = replace(mine.bearing, wedge_slenderness=mine.bearing.slenderness, curvature_ratio=0.0)
     kinds = mine, replace(mine, bearing=ends)
     (arcs, more), (flat, most) = (np.maximum(moved(of), moved(of, 0.6)) for of in kinds)
-    told(GUIDE, "`my_building.yaml` by up to", arcs[0], flat[0], flat[1])
-    assert arcs[1] == 0
+    told(GUIDE, "`my_building.yaml` by up to", arcs[0], flat[0])
+    told(GUIDE, "and the number that overturns by up to", arcs[1], flat[1])
     told(GUIDE, "moves these medians by up to", max(more[0], most[0]), more[1], most[1])
     buildings = [podium(n, law=ImpactLaw()) for n in (3, 6, 9)]
     three, six, nine = (moved(of)[0, 0] for of in buildings)
