@@ -74,7 +74,7 @@ def _in_direction(
     building: Superstructure, record: GroundMotion, intervals: int
 ) -> tuple[FixedBaseResponse, list[Moving]]:
     """Response in one direction; drifts, shears, accelerations and velocities with their rates."""
-    shears, accelerations, floors = _follow(building, record, intervals)
+    shears, accelerations, floors = _followed(building, record, intervals)
     histories = _accelerations(building, floors)
     response = FixedBaseResponse(
         storey_shears=shears,
@@ -118,40 +118,76 @@ def reference_shears(structure: PodiumStructure, motion: MotionComponents) -> Ar
     intervals = max(shaken) - 1 + after
     if motion.y is not None:
         return fixed_base_response(structure, motion, intervals).storey_shears
-    return _follow(building, motion.horizontal, intervals)[0]
+    return _largest_shears(_moved(building, motion.horizontal, intervals))
 
 
 STEP_ANGLE = 0.5
 """Largest step times the highest frequency: cubics between its ends then keep 2e-4 of that mode."""
 
 
-def _follow(
-    building: Superstructure, record: GroundMotion, intervals: int
-) -> tuple[Array, Array, Array]:
-    """Largest shears and accelerations (n,); displacements, velocities (samples, 2, n)."""
+@dataclass(frozen=True, eq=False)
+class _Moved:
+    """Modes of a building in steps that are fine enough for cubics between their ends."""
+
+    building: Superstructure
+    modes: Array  # (n, 2, steps + 1) displacements [m] and velocities [m/s] of unit participation
+    ground: Array  # (steps + 1,) acceleration [m/s2]
+    dt: float  # step [s]
+    parts: int  # steps in a sampling interval
+
+    @property
+    def floors(self) -> Array:
+        """Displacements [m] and velocities [m/s] to the ground, (n, 2, steps + 1)."""
+        return np.tensordot(self._shapes, self.modes, axes=1)
+
+    @property
+    def shears(self) -> Array:
+        """Of the storeys [N] and their rates [N/s], (n, 2, steps + 1)."""
+        of_modes = np.diff(self._shapes, axis=0, prepend=0.0)
+        return np.tensordot(self.building.stiffnesses[:, None] * of_modes, self.modes, axes=1)
+
+    @property
+    def _shapes(self) -> Array:
+        return self.building.shapes * self.building.participation
+
+
+def _moved(building: Superstructure, record: GroundMotion, intervals: int) -> _Moved:
     parts = max(math.ceil(record.dt * float(building.frequencies[-1]) / STEP_ANGLE), 1)
     dt = record.dt / parts
     times = np.arange((record.npts - 1) * parts + 1) / parts
     fine = np.interp(times, np.arange(record.npts), record.acceleration)
     ground = prolonged(fine, intervals * parts + 1)
-    n, states = building.storeys, np.zeros((len(ground), 2, building.storeys))
-    for r in range(n):
-        shape = building.participation[r] * building.shapes[:, r]
-        for into, mode in enumerate(
-            oscillator(ground, dt, building.frequencies[r], building.damping_ratios[r])
-        ):
-            states[:, into] += mode[:, None] * shape
-    floors, k = states[::parts].copy(), building.stiffnesses
-    below, shears = np.zeros((len(ground), 2)), np.empty(n)
-    for i in range(n):
-        shear = k[i] * (states[:, :, i] - below)
-        shears[i] = largest_of_cubics(shear[:, 0], shear[:, 1], dt)
-        below = states[:, :, i]
-    values = _accelerations(building, states)
-    states[:, 0], states[:, 1] = states[:, 1], values - ground[:, None]
-    slopes = _accelerations(building, states)
-    largest = [largest_of_cubics(*each, dt) for each in zip(values.T, slopes.T, strict=True)]
-    return shears, np.array(largest), floors
+    modes = np.empty((building.storeys, 2, len(ground)))
+    for r, mode in enumerate(modes):
+        mode[:] = oscillator(ground, dt, building.frequencies[r], building.damping_ratios[r])
+    return _Moved(building, modes, ground, dt, parts)
+
+
+def _followed(
+    building: Superstructure, record: GroundMotion, intervals: int
+) -> tuple[Array, Array, Array]:
+    """Largest shears and accelerations (n,); displacements, velocities (samples, 2, n)."""
+    moved = _moved(building, record, intervals)
+    shears, fine = _largest_shears(moved), moved.floors.T
+    ground, dt, parts = moved.ground, moved.dt, moved.parts
+    del moved  # of a long record its modes are much memory
+    return shears, _largest_accelerations(building, fine, ground, dt), fine[::parts].copy()
+
+
+def _largest_shears(moved: _Moved) -> Array:
+    """Of the storeys (n,) [N], from the bottom."""
+    return np.array([largest_of_cubics(shear, rate, moved.dt) for shear, rate in moved.shears])
+
+
+def _largest_accelerations(
+    building: Superstructure, floors: Array, ground: Array, dt: float
+) -> Array:
+    """Absolute ones of the floors (n,) [m/s2], which move by `floors` (samples, 2, n)."""
+    values = _accelerations(building, floors)
+    rates = np.stack((floors[:, 1], values - ground[:, None]), axis=1)
+    slopes = _accelerations(building, rates)
+    both = zip(values.T, slopes.T, strict=True)
+    return np.array([largest_of_cubics(*each, dt) for each in both])
 
 
 @lru_cache(maxsize=4096)  # records of a study share their time step
@@ -207,13 +243,22 @@ def floor_speeds(relative: Array, record: GroundMotion) -> Array:
     return relative + np.pad(ground, (0, len(relative) - len(ground)), mode="edge")[:, None]
 
 
+BEYOND = 4.0 / 27.0 * (1.0 + 1e-9)
+"""Of h |x'|: what a cubic passes the ends of its step by at most, and a margin for rounding."""
+
+
 def largest_of_cubics(values: Array, rates: Array, dt: float) -> float:
     """Largest absolute value of cubics through values (samples,) with these rates."""
-    first, last = dt * rates[:-1], dt * rates[1:]
-    change = values[1:] - values[:-1]
+    at, slopes = np.abs(values), np.abs(rates)
+    largest = np.max(at)
+    # The polynomials that take up the rates reach 4/27: most steps cannot pass the largest end.
+    reach = np.maximum(at[1:], at[:-1]) + BEYOND * dt * (slopes[1:] + slopes[:-1])
+    passing = np.flatnonzero(reach >= largest)
+    values, after = values[passing], values[passing + 1]
+    first, last = dt * rates[passing], dt * rates[passing + 1]
+    change = after - values
     square, cube = 3.0 * change - 2.0 * first - last, first + last - 2.0 * change
     root = np.sqrt(np.maximum(square * square - 3.0 * cube * first, 0.0))
-    largest = np.max(np.abs(values))
     for divisor in (-square - root, root - square):  # where the slope is zero, if within
         within = np.flatnonzero(np.abs(first) < np.abs(divisor))
         t = first[within] / divisor[within]
