@@ -139,7 +139,7 @@ def _leaves(value: Any, path: str = "") -> Iterator[tuple[str, Any]]:
         yield from _leaves(inner, f"{path}.{key}" if path else str(key))
 
 
-LARGEST_BATCH = 480
+LARGEST_BATCH = 1000
 """Points; a batch takes about a second at most with common buildings, and keeps all lanes of the
 kernel busy but at its end."""
 
