@@ -1,23 +1,7 @@
-"""What a step demands of floors and contacts, at its ends and within.
+"""What a step demands of contacts, devices and floors, and how far it tilts.
 
-A storey shear is a sum over modes, sum_r s_ir q_r, so that all of them cost n^2 products a step,
-more than the motion itself. By Cauchy and Schwarz's inequality what it changes by is bounded:
-
-    (sum_r s_ir dq_r)^2 <= (sum_r s_ir^2/g_r) (sum_r g_r dq_r^2)
-
-whatever the weights g_r > 0. With dq what has changed since all storeys were last looked at, no
-shear is raised while the last sum, which costs n, stays below the least
-
-    (largest shear so far of storey i - its shear when last looked at)^2/(sum_r s_ir^2/g_r).
-
-The same holds for floor accelerations, sums over the modal forces. Within a step of length h a
-motion leaves the chord between its ends by h/8 of what its velocity changes by, if it is a cubic;
-with a margin for what it is more, the same sum over that change bounds the whole step. Only where
-that bound is passed the step is looked at. The forces of contacts are compared with the largest so
-far at the ends of all steps, and looked at within where they come near.
-
-Rows of demands are those of shears, then those of accelerations: in one plane one each; of both
-components resultants, then x, then y, whose sums are added for resultants.
+The forces of contacts are compared with the largest so far at the ends of all steps, and looked at
+within where they come near.
 """
 
 from __future__ import annotations
@@ -29,17 +13,14 @@ from rpscli.physics.compile import compiled, inlined
 from rpscli.physics.devices.acting import act, power_in_step
 from rpscli.physics.devices.seen import raise_devices
 from rpscli.physics.devices.worked import worked
-from rpscli.physics.energy import path_at
-from rpscli.physics.events import path_of
+from rpscli.physics.floors import observe_floors, raise_floors, sums_at_start
 from rpscli.physics.friction import grip_at, push_at_rest
-from rpscli.physics.ground import log_row
 from rpscli.physics.lane import (
     contact_forces,
     felt_at,
     g_up_at,
     ground_at,
     lanes_of,
-    mode_acceleration,
     new_rate_of,
     new_tilt_of,
     patch,
@@ -54,33 +35,18 @@ from rpscli.physics.lane import (
     without_shock,
     z_of,
 )
-from rpscli.physics.peaks import middle_of, peak, turning_value
+from rpscli.physics.largest_tilt import observe_tilt, observe_ways
+from rpscli.physics.peaks import turning_value
 from rpscli.physics.quintic import (
-    Quintic,
     cubic,
-    first_descent,
-    lower_hull,
-    offset,
-    peak_in_step,
-    quintic,
-    slope,
     upper_hull,
-    value,
 )
 from rpscli.physics.state import (
-    CRITICAL_PASSAGE,
     NO_HISTORY,
     STUCK,
-    Floats,
     Record,
 )
-from rpscli.physics.storeys import free_rows
-
-WITHIN = 1.5
-"""Room for what a motion within a step is more than a cubic."""
-
-SURELY = 1.0 - 1e-9
-"""Room for the rounding of either side."""
+from rpscli.physics.within import bulge, mode_within, parts_of, tilt_within
 
 UNSEEN = 1e-6
 """Of the weight: smaller changes of the floors' force on springs are ignored."""
@@ -89,229 +55,6 @@ NEARLY = 0.999
 """Steps that may pass this part of the largest force so far, with what the base shear may be within
 them above their ends, are looked at within. As long as columns rock |F|/N hardly leaves
 tan(alpha)."""
-
-
-@inlined
-def rows_of(s: Record) -> int:
-    """Rows of demands of a kind."""
-    return 2 * ways_of(s) - 1
-
-
-@inlined
-def reach(one: float, other: float) -> float:
-    """The square of a sum, from the squares."""
-    return one + other + 2.0 * math.sqrt(one * other)
-
-
-@inlined
-def floors_may_rise(s: Record, l: int) -> bool:
-    """Whether the sums, and what they may be within the step, leave room for a larger demand."""
-    rises, part = s.marked[l] > 0, WITHIN / 8.0 * s.h[l]
-    part *= part
-    for j in range(rows_of(s)):
-        shear, acceleration, bent = 0.0, 0.0, 0.0
-        for axis in range(ways_of(s)):
-            if j in (0, 1 + axis):
-                shear += max(s.shear_before[axis, l], s.shear_sum[axis, l])
-                acceleration += max(s.acceleration_before[axis, l], s.acceleration_sum[axis, l])
-                bent += s.bent[axis, l]
-        bent *= part
-        rises |= reach(shear, bent) > s.room[j, l]
-        rises |= reach(acceleration, bent * s.bend_ratio[l]) > s.room[rows_of(s) + j, l]
-    return rises  # type: ignore[no-any-return]
-
-
-@compiled
-def observe_floors(s: Record) -> None:
-    """Say in `demands_rise` where the demands of floors may be raised."""
-    n, lanes = s.n, lanes_of(s)
-    for axis in range(ways_of(s)):
-        for l in range(lanes):
-            s.shear_sum[axis, l], s.acceleration_sum[axis, l], s.bent[axis, l] = 0.0, 0.0, 0.0
-        for r in range(axis * n, (axis + 1) * n):
-            for l in range(lanes):
-                q, force = s.new_q[r, l] - s.seen_q[r, l], s.force[r, l] - s.seen_force[r, l]
-                lost = s.dq[r, l] - s.new_dq[r, l]
-                s.shear_sum[axis, l] += s.shear_weight[r, l] * (q * q)
-                s.acceleration_sum[axis, l] += s.acceleration_weight[r, l] * (force * force)
-                s.bent[axis, l] += s.shear_weight[r, l] * (lost * lost)
-    for l in range(lanes):
-        s.demands_rise[l] = 1.0 if floors_may_rise(s, l) else 0.0
-
-
-@compiled
-def bounds_of(systems: Record, axis: int, kind: int) -> Floats:
-    """Of all storeys or floors what times their demand sums do not pass, in a direction."""
-    system = systems[axis]
-    return system.shear_bound_of if kind == 0 else system.acceleration_bound_of  # type: ignore[no-any-return]
-
-
-@compiled
-def raise_floors(s: Record, l: int, systems: Record) -> None:
-    """Raise the demands of a lane's storeys and floors by those of the step just taken.
-
-    By those at its end; and by those within, where they bulge enough above both ends.
-    """
-    n, ways, rows, within = s.n, ways_of(s), s.seen, False
-    for axis in range(ways):
-        system, shears, accelerations = systems[axis], rows[2 * axis], rows[2 * axis + 1]
-        for i in range(n):
-            shears[i], accelerations[i] = 0.0, 0.0
-        for of in range(n):
-            r = axis * n + of
-            q, force = s.new_q[r, l], s.force[r, l]
-            s.seen_q[r, l], s.seen_force[r, l] = q, force
-            for i in range(n):
-                shears[i] += system.storey_shear_of[of, i] * q
-                accelerations[i] += system.phi[of, i] * force
-        if s.yields[l] > 0:
-            free_rows(s, l, system, axis, shears, s.freeing[0])
-    for kind in range(2):
-        for j in range(rows_of(s)):
-            within |= raise_row(s, l, systems, kind, j)
-    for axis in range(ways):
-        s.shear_sum[axis, l], s.acceleration_sum[axis, l] = 0.0, 0.0
-    if within and s.h[l] > 0.0:
-        raise_floors_within(s, l, systems)
-
-
-@compiled
-def raise_row(s: Record, l: int, systems: Record, kind: int, j: int) -> bool:
-    """Raise a row of demands by what they are now, and note it as the last that was seen.
-
-    True if more may have been between; leaves the sum with which none rises from now on.
-    """
-    moved, bent, k = 0.0, 0.0, kind * rows_of(s) + j
-    for axis in range(ways_of(s)):
-        if j in (0, 1 + axis):
-            moved += s.acceleration_before[axis, l] if kind > 0 else s.shear_before[axis, l]
-            bent += s.bent[axis, l]
-    bent *= s.bend_ratio[l] if kind > 0 else 1.0
-    moved, bulge = math.sqrt(moved), WITHIN / 8.0 * s.h[l] * math.sqrt(bent)
-    within, room = False, math.inf
-    for i in range(s.n):
-        if ways_of(s) == 1 or j == 1:
-            here, share = abs(s.seen[kind, i]), bounds_of(systems, 0, kind)[i]
-        elif j == 2:
-            here, share = abs(s.seen[2 + kind, i]), bounds_of(systems, 1, kind)[i]
-        else:
-            x, y = s.seen[kind, i], s.seen[2 + kind, i]
-            here = math.sqrt(x * x + y * y)
-            share = min(bounds_of(systems, 0, kind)[i], bounds_of(systems, 1, kind)[i])
-        most = s.largest[k, l, i]
-        left, before = share * (most - here), share * (most - s.last[k, l, i]) - moved
-        within |= min(left, before) < bulge
-        s.largest[k, l, i], s.last[k, l, i] = max(most, here), here
-        room = min(room, max(left, 0.0))
-    s.room[k, l] = SURELY * (room * room)
-    return within
-
-
-PARTS = 8
-"""Of steps that are made for vertical springs, in which the motions of floors turn: a parabola
-through both ends of a part and its middle leaves 4e-6 of a vibration."""
-
-
-STRAIGHT = 1e-5
-"""Of the floors' weight: forces of springs that leave the chord by less need no parts."""
-
-
-@inlined
-def parts_of(s: Record, l: int) -> int:
-    """Parts of a step that are looked at, each by its ends and its middle."""
-    springs = s.axes > ways_of(s)
-    turns = bulge(s, l, 0, s.axes) > STRAIGHT * s.floors_mass[l] * s.gravity[l]
-    return PARTS if springs and turns else 1
-
-
-@compiled
-def mode_path(s: Record, r: int, l: int, axis: int) -> Quintic:
-    """A mode's displacement over the step just taken."""
-    start = mode_acceleration(s, r, l, axis)
-    end = -(s.Gamma[r, l] * s.new_shaking[axis, l]) - s.force[r, l]
-    return quintic(s.h[l], s.q[r, l], s.dq[r, l], start, s.new_q[r, l], s.new_dq[r, l], end)
-
-
-@compiled
-def mode_within(s: Record, r: int, l: int, axis: int, t: float) -> tuple[float, float]:
-    """Displacement and velocity of a mode a fraction t into the step."""
-    h, q0, v0, q1, v1 = s.h[l], s.q[r, l], s.dq[r, l], s.new_q[r, l], s.new_dq[r, l]
-    if t == 0.0:
-        return q0, v0
-    if t == 1.0:
-        return q1, v1
-    if s.axes == ways_of(s):
-        return middle_of(q0, q1, h * v0, h * v1), 1.5 / h * (q1 - q0) - 0.25 * (v0 + v1)
-    path = mode_path(s, r, l, axis)
-    return value(path, t), slope(path, t) / h
-
-
-@compiled
-def raise_floors_within(s: Record, l: int, systems: Record) -> None:
-    """The same by those at start, middle and end, and of a parabola through them."""
-    parts = parts_of(s, l)
-    for part in range(parts):
-        raise_floors_between(s, l, systems, part / parts, (part + 1) / parts)
-
-
-@compiled
-def raise_floors_between(s: Record, l: int, systems: Record, begin: float, end: float) -> None:
-    """The same between fractions of the step."""
-    n, rows = s.n, s.between
-    for axis in range(ways_of(s)):
-        write_between(s, l, systems[axis], axis, begin, end)
-    for kind in range(2):
-        for j in range(rows_of(s)):
-            k, x = kind * rows_of(s) + j, 3 * kind + (6 if j == 2 else 0)
-            for i in range(n):
-                a, b, c = rows[x, i], rows[x + 1, i], rows[x + 2, i]
-                if ways_of(s) == 2 and j == 0:
-                    y = x + 6
-                    a = math.sqrt(a * a + rows[y, i] * rows[y, i])
-                    b = math.sqrt(b * b + rows[y + 1, i] * rows[y + 1, i])
-                    c = math.sqrt(c * c + rows[y + 2, i] * rows[y + 2, i])
-                s.largest[k, l, i] = max(s.largest[k, l, i], peak(a, b, c))
-
-
-@compiled
-def write_between(s: Record, l: int, system: Record, axis: int, begin: float, end: float) -> None:
-    """Write shears and accelerations at three instants of the step, of a direction."""
-    n, rows, first = s.n, s.between, 6 * axis
-    for k in range(first, first + 6):
-        for i in range(n):
-            rows[k, i] = 0.0
-    for of in range(n):
-        r = axis * n + of
-        q0, v0 = mode_within(s, r, l, axis, begin)
-        q, v = mode_within(s, r, l, axis, 0.5 * (begin + end))
-        q1, v1 = mode_within(s, r, l, axis, end)
-        omega2, damping = s.omega2[r, l], s.two_xi_omega[r, l]
-        f0, f1 = omega2 * q0 + damping * v0, omega2 * q1 + damping * v1
-        f = omega2 * q + damping * v
-        for i in range(n):
-            shear, phi = system.storey_shear_of[of, i], system.phi[of, i]
-            rows[first, i] += shear * q0
-            rows[first + 1, i] += shear * q
-            rows[first + 2, i] += shear * q1
-            rows[first + 3, i] += phi * f0
-            rows[first + 4, i] += phi * f
-            rows[first + 5, i] += phi * f1
-    for k in range(first, first + 3 if s.yields[l] > 0 else first):
-        free_rows(s, l, system, axis, rows[k], rows[k + 3])
-
-
-@compiled
-def sums_at_start(s: Record, l: int) -> None:
-    """What the modes have changed by since the last look, where a step begins anew."""
-    for axis in range(ways_of(s)):
-        shear, acceleration = 0.0, 0.0
-        for r in range(axis * s.n, (axis + 1) * s.n):
-            force = s.omega2[r, l] * s.q[r, l] + s.two_xi_omega[r, l] * s.dq[r, l]
-            force -= s.freed[r, l]
-            q, force = s.q[r, l] - s.seen_q[r, l], force - s.seen_force[r, l]
-            shear += s.shear_weight[r, l] * (q * q)
-            acceleration += s.acceleration_weight[r, l] * (force * force)
-        s.shear_before[axis, l], s.acceleration_before[axis, l] = shear, acceleration
 
 
 # Contacts.
@@ -356,16 +99,6 @@ def measures_of(
         top,
         bottom,
     )
-
-
-@inlined
-def bulge(s: Record, l: int, first: int, end: int) -> float:
-    """What the forces of springs in some axes may be within the step above both ends [N]."""
-    square = 0.0
-    for axis in range(first, end):
-        change = s.new_dV[axis, l] - s.dV[axis, l]
-        square += change * change
-    return WITHIN / 8.0 * s.h[l] * math.sqrt(square)  # type: ignore[no-any-return]
 
 
 @compiled
@@ -497,31 +230,6 @@ def measures_within(s: Record, l: int, t: float) -> tuple[float, Measures]:
     return stays, measures_of(s, l, stays, beam, found.lift, V, ground, (found.g_up, V_up))
 
 
-@inlined
-def tilt_within(s: Record, l: int, t: float) -> tuple[tuple[float, float], tuple[float, float]]:
-    """The tilt and its rate a fraction t into the step, by quintics through both ends."""
-    x = axis_path(s, l, 0)
-    per_h = 1.0 / s.h[l] if s.h[l] > 0.0 else 0.0
-    if ways_of(s) == 1:
-        return (value(x, t), 0.0), (slope(x, t) * per_h, 0.0)
-    y = axis_path(s, l, ways_of(s) - 1)
-    return (value(x, t), value(y, t)), (slope(x, t) * per_h, slope(y, t) * per_h)
-
-
-@inlined
-def axis_path(s: Record, l: int, axis: int) -> tuple[float, float, float, float, float, float]:
-    """The quintic of a component of the tilt over the step."""
-    return quintic(
-        s.h[l],
-        s.tilt[axis, l],
-        s.tilt_rate[axis, l],
-        s.bend[axis, l],
-        s.new_tilt[axis, l],
-        s.new_tilt_rate[axis, l],
-        s.new_bend[axis, l],
-    )
-
-
 @compiled
 def raise_contacts(s: Record, l: int) -> None:
     """Raise the demands of contacts by those of the step just taken."""
@@ -602,96 +310,6 @@ def observe_start(s: Record, l: int) -> None:
         raise_devices(s, l, at, at, at)
     sums_at_start(s, l)
     s.h[l] = h
-
-
-# The largest tilt, turning points between samples included, and the passage of theta_cr.
-
-
-@compiled
-def observe_tilt(s: Record, log: Record) -> None:
-    """Raise the largest tilt and way of the beam by those of accepted steps."""
-    for l in range(lanes_of(s)):
-        x, end = s.new_x[l], s.interval[l] * s.dt[l] + (s.time[l] + s.h[l])
-        higher = (s.accepted[l] > 0.0) & (x > s.max_theta[l])
-        s.tilt_rises[l] = 1.0 if higher & (ways_of(s) == 2) else 0.0
-        passing = (x > s.theta_cr[l]) & (s.critical_time[l] < 0.0)
-        turning = (s.v[l] > 0.0) & (s.new_v[l] < 0.0)
-        path = path_of(s, l)
-        inside = turning & (max(upper_hull(path), path[0]) > s.max_theta[l])
-        below = (s.bed_k[l] > 0.0) & (-min(lower_hull(path), path[0]) > s.max_theta[l])
-        below &= ways_of(s) == 1
-        closer = (s.accepted[l] > 0.0) & (passing | inside | below)
-        s.tilt_rises[l] = 2.0 if closer else s.tilt_rises[l]
-        s.max_theta_time[l] = (end if higher & (not closer) else s.max_theta_time[l]) + 0.0
-        s.max_theta[l] = (x if higher & (not closer) else s.max_theta[l]) + 0.0
-    for l in range(lanes_of(s)):
-        if s.tilt_rises[l] > 1.0:
-            raise_tilt(s, l, log)
-        elif ways_of(s) == 2 and s.tilt_rises[l] > 0.0:
-            s.max_azimuth[l] = math.atan2(s.new_tilt[ways_of(s) - 1, l], s.new_tilt[0, l])
-
-
-@compiled
-def raise_tilt(s: Record, l: int, log: Record) -> None:
-    """Raise the largest tilt by that of the step just taken, to either side."""
-    path = path_of(s, l)
-    height, fraction = s.new_x[l], 1.0
-    if s.v[l] > 0.0 and s.new_v[l] < 0.0 and upper_hull(path) > s.max_theta[l]:
-        fraction, height = peak_in_step(path)
-    bedded = ways_of(s) == 1 and s.bed_k[l] > 0.0
-    if bedded and -min(lower_hull(path), path[0]) > s.max_theta[l]:
-        over = (-path[0], -path[1], -path[2], -path[3], -path[4], -path[5])
-        t, most = 1.0, -s.new_x[l]
-        if s.v[l] < 0.0 < s.new_v[l]:
-            t, most = peak_in_step(over)
-        if most > height:
-            fraction, height = t, most
-    if height > s.max_theta[l]:
-        s.max_theta[l] = height
-        s.max_theta_time[l] = s.interval[l] * s.dt[l] + (s.time[l] + fraction * s.h[l])
-        s.max_azimuth[l] = azimuth_within(s, l, fraction)
-        if height > s.theta_cr[l] and s.critical_time[l] < 0.0:
-            log_critical_passage(s, l, log, path)
-
-
-@compiled
-def azimuth_within(s: Record, l: int, t: float) -> float:
-    """Azimuth of the tilt a fraction t into the step [rad]."""
-    if ways_of(s) == 1:
-        return 0.0
-    tilt, _ = tilt_within(s, l, t)
-    return math.atan2(tilt[1], tilt[0])
-
-
-@compiled
-def log_critical_passage(
-    s: Record, l: int, log: Record, path: tuple[float, float, float, float, float, float]
-) -> None:
-    """Note when theta_cr was passed for the first time, within the step just taken."""
-    level, h = s.theta_cr[l], s.h[l]
-    t = min(first_descent(offset(path, -1.0, level), s.piece), 1.0)
-    sign = s.side[l] if ways_of(s) == 1 else 1.0
-    rate = sign * slope(path, t) / h if h > 0.0 else 0.0
-    s.critical_time[l] = s.interval[l] * s.dt[l] + s.time[l] + t * h
-    s.critical_azimuth[l] = azimuth_within(s, l, t)
-    row = log_row(s, l, log, CRITICAL_PASSAGE)
-    if row >= 0:
-        entry = log[row]
-        entry.time, entry.kind, entry.theta = s.critical_time[l], CRITICAL_PASSAGE, sign * level
-        entry.theta_dot_before, entry.theta_dot_after, entry.energy_lost = rate, rate, 0.0
-        entry.azimuth, entry.least_tilt = s.critical_azimuth[l], 0.0
-        entry.nearness, entry.loss_share = 0.0, 0.0
-
-
-@compiled
-def observe_ways(s: Record) -> None:
-    """Raise the beam's way in x and in y by those at the ends of accepted steps, and between."""
-    for axis in range(ways_of(s)):
-        for l in range(lanes_of(s)):
-            u = path_at(s, l, s.new_x[l]) * s.diameter[l]
-            way = abs(u * s.new_tilt[axis, l] / (s.new_x[l] if s.new_x[l] > 0.0 else 1.0))
-            counts = (s.accepted[l] > 0.0) & (s.moves[l] > 0.0)
-            s.max_beam[axis, l] = max(s.max_beam[axis, l], way if counts else 0.0)
 
 
 # All of it.

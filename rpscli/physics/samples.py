@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 from rpscli.physics.compile import compiled
-from rpscli.physics.demands import mode_path, tilt_within
 from rpscli.physics.devices.acting import act
 from rpscli.physics.devices.seen import store_devices
 from rpscli.physics.devices.table import stored_in
@@ -27,6 +26,7 @@ from rpscli.physics.quintic import slope, value
 from rpscli.physics.run import Output
 from rpscli.physics.state import FULL_CONTACT, Record
 from rpscli.physics.storeys import base_slip, free_rows, middle_with, slip_force
+from rpscli.physics.within import mode_path, tilt_within
 
 PASSED = 1e-9
 """Of a part of the interval: what is passed by less is met."""

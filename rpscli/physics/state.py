@@ -183,7 +183,7 @@ SYSTEM = (
     *_fields(
         "modes",
         "mixed",
-        shear_weight="g_r of `demands`, for storey shears",
+        shear_weight="g_r of `floors`, for storey shears",
         acceleration_weight="g_r for floor accelerations",
         shear_bound_of="of a storey: shear times this <= sqrt(sum g q^2)",
         acceleration_bound_of="of a floor: likewise",
@@ -454,7 +454,7 @@ STATE = (
     Field("device_velocity", f"{SLOTS} lanes", "m/s", "largest |rate|"),
     # What has come of it so far, and largest demands.
     *(field._replace(sizes="lanes") for field in KEPT),
-    Field("largest", "demands lanes modes", "mixed", "shears, then accelerations, see `demands`"),
+    Field("largest", "demands lanes modes", "mixed", "shears, then accelerations, see `floors`"),
     Field("last", "demands lanes modes", "mixed", "when last looked at"),
     Field("room", "demands lanes", "mixed", "no demand rises with a sum to this"),
     Field("seen_modes", "6 modes", "mixed", "scratch: q and q' in x, perhaps in y, and upwards"),

@@ -176,7 +176,7 @@ def fill_settings(
 
 def fill_building(record: Record, building: Superstructure) -> None:
     """The modes of the fixed base, mass-normalised, with the storey shears of each."""
-    # Any weights would do for `physics.demands`; these let the fewest steps pass the bound.
+    # Any weights would do for `physics.floors`; these let the fewest steps pass the bound.
     n = record["n"] = building.storeys
     omega, xi, shapes = building.frequencies, building.damping_ratios, building.shapes.T
     omega2, shaken = omega * omega, np.abs(building.participation)
