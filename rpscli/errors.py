@@ -120,7 +120,8 @@ def all_made(
     make: Callable[[Item], Made], items: Iterable[Item], fault: type[RpsError]
 ) -> list[Made]:
     """Results of `make` for all items; its faults are raised together, a line for each."""
-    made, complaints = [], []
+    made = []
+    complaints = []
     for item in items:
         try:
             made.append(make(item))
@@ -172,7 +173,8 @@ def is_number(value: object) -> TypeGuard[float]:
     return False
 
 
-SMALLEST, LARGEST = 1e-15, 1e15
+SMALLEST = 1e-15
+LARGEST = 1e15
 """Magnitudes outside are slips: no building has them in SI units, and squares would overflow."""
 
 
@@ -206,7 +208,8 @@ def origin_of(kind: Any) -> Any:
 
 
 def _fits(value: object, kind: Any) -> bool:
-    origin, parts = origin_of(kind), get_args(kind)
+    origin = origin_of(kind)
+    parts = get_args(kind)
     if origin is UnionType:
         return any(_fits(value, part) for part in parts)
     if origin is tuple:

@@ -51,7 +51,9 @@ class Registry(dict[str, Item]):
         self, kind: str, ours: dict[str, Item], item: Any, taken: Collection[str] = ()
     ) -> None:
         super().__init__(ours)
-        self.kind, self._item, self._taken = kind, item, taken
+        self.kind = kind
+        self._item = item
+        self._taken = taken
 
     def __missing__(self, name: str) -> Item:
         point = _points(self.kind).get(name)
@@ -93,7 +95,8 @@ class Registry(dict[str, Item]):
     def offers(self) -> Iterator[Offer]:
         """Items of other packages, usable or not."""
         for name, point in _points(self.kind).items():
-            meaning, fault = "", self._fault(name)
+            meaning = ""
+            fault = self._fault(name)
             if not fault:
                 try:
                     with self.blaming(name):
@@ -136,7 +139,8 @@ def _blaming(what: str) -> Iterator[None]:
 
 def _sound(value: Any, kind: Any, name: str, what: str) -> Any:
     """A value of the kind that an annotation names; its functions give what theirs say."""
-    origin, kinds = origin_of(kind), get_args(kind)
+    origin = origin_of(kind)
+    kinds = get_args(kind)
     if origin is Callable and callable(value):
         return _guarded(value, kinds[-1], what)
     if type(None) in kinds:

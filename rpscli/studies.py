@@ -203,7 +203,8 @@ class Study(Shown):
         """
         # After a kill there may be files there that no `run.json` speaks of.
         require_writable(place)
-        study, plan = self.layout.study, self.layout.plan
+        study = self.layout.study
+        plan = self.layout.plan
         inputs = {
             "study": study.document.content,
             "base": plan.base,
@@ -272,7 +273,8 @@ def run_in(
     """
     if jobs is not None and not 0 < jobs <= MOST_JOBS:
         raise UsageError(f"jobs = {jobs} must be a number of threads from 1 to {MOST_JOBS}")
-    layout, jobs = study.layout, jobs or available_cores()
+    layout = study.layout
+    jobs = jobs or available_cores()
     with store:
         begin = start(layout, store, retry_failed=retry_failed)
         done = Progress(len(study), begin.kept, 0, 0, 0.0)

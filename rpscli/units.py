@@ -34,7 +34,8 @@ KINDS = {
 
 OTHER_KINDS = {"Hz": "a frequency"}
 
-FOOT, INCH = 0.3048, 0.0254
+FOOT = 0.3048
+INCH = 0.0254
 """In metres, by definition."""
 POUND = 0.45359237
 """In kilogrammes, by definition."""
@@ -43,9 +44,17 @@ POUND_FORCE = 4.4482216152605
 DEGREE = math.pi / 180.0
 PSI = POUND_FORCE / INCH**2
 
-LENGTH, MASS, TIME, ANGLE = (1, 0, 0), (0, 1, 0), (0, 0, 1), (0, 0, 0)
-VELOCITY, ACCELERATION, FREQUENCY = (1, 0, -1), (1, 0, -2), (0, 0, -1)
-FORCE, PRESSURE, ENERGY, POWER = (1, 1, -2), (-1, 1, -2), (2, 1, -2), (2, 1, -3)
+LENGTH = (1, 0, 0)
+MASS = (0, 1, 0)
+TIME = (0, 0, 1)
+ANGLE = (0, 0, 0)
+VELOCITY = (1, 0, -1)
+ACCELERATION = (1, 0, -2)
+FREQUENCY = (0, 0, -1)
+FORCE = (1, 1, -2)
+PRESSURE = (-1, 1, -2)
+ENERGY = (2, 1, -2)
+POWER = (2, 1, -3)
 
 
 class Written(float):
@@ -134,7 +143,8 @@ def unit_of_text(written: str) -> Unit | None:
     """The unit that a text such as ``kN s/m`` names, or None."""
     if not UNIT_TEXT.match(written):
         return None
-    mantissa, tens = 1.0, 0
+    mantissa = 1.0
+    tens = 0
     dimension: tuple[int, ...] = ANGLE
     for sign, word, exponent in _FACTOR.findall(written):
         if (unit := _WORDS.get(word)) is None:
@@ -183,7 +193,8 @@ def si_factor(written: str, unit: str) -> float:
             f"has the unit {written!r}, which is 1000 kg to some and 907 kg or 1016 kg to others;"
             " write t for 1000 kg, or use lb"
         )
-    found, wanted = unit_of_text(written), unit_of_text(unit)
+    found = unit_of_text(written)
+    wanted = unit_of_text(unit)
     if found is None or wanted is None:
         meant = hint(written, units, f"use {listed(units)}")
         raise ValueError(f"has the unknown unit {written!r}; it must be {kind}: {meant}")

@@ -39,7 +39,8 @@ def is_private(folder: Path) -> bool:
     """True if only this user may write to a folder, from which code is run; else a warning."""
     if os.name == "nt":
         return True
-    state, amiss = folder.stat(), ""
+    state = folder.stat()
+    amiss = ""
     if state.st_uid != os.getuid():
         amiss = f"{folder} belongs to somebody else"
     elif state.st_mode & (stat.S_IWGRP | stat.S_IWOTH):

@@ -77,8 +77,11 @@ class _Loads(NamedTuple):
 
 
 def _loads(structure: PodiumStructure, trace: Trace, heaviest: dict[str, Array]) -> _Loads:
-    b, x = structure.bearing, np.abs(trace.rotation)
-    B, r, y = b.half_width, 0.0 if b.is_flat else b.radius, np.minimum(x, b.beta)
+    b = structure.bearing
+    x = np.abs(trace.rotation)
+    B = b.half_width
+    r = 0.0 if b.is_flat else b.radius
+    y = np.minimum(x, b.beta)
     down = (trace.phase == state.FULL_CONTACT) | (trace.phase == state.BEDDED)
     F = _along_tilt(trace, down) / structure.columns
     N = np.array([heaviest[end] for end in ENDS])
@@ -93,7 +96,8 @@ def _loads(structure: PodiumStructure, trace: Trace, heaviest: dict[str, Array])
     rigid = arm if structure.bed is None else path_along(b.rolling, b.rocking, b.beta, x)[0]
     lever = np.where(down, upright, B + r * np.sin(y) - b.semi_diagonal * (rigid - arm))
     rise = np.where(down, 0.0, r * (1.0 - np.cos(y)))
-    P, Q = N * np.cos(x) + side * F * np.sin(x), side * F * np.cos(x) - N * np.sin(x)
+    P = N * np.cos(x) + side * F * np.sin(x)
+    Q = side * F * np.cos(x) - N * np.sin(x)
     return _Loads(down, side, lever, rise, F, N, lever * P - rise * Q)
 
 
@@ -105,14 +109,20 @@ def column_demand(
     moments: list[tuple[Array, float]],
 ) -> ColumnDemand:
     """Worst instants, from axial forces of the most loaded column at the times of a trace."""
-    b, t, x = structure.bearing, trace, np.abs(trace.rotation)
-    of, known = _loads(structure, trace, heaviest), not no_line(structure, both=t.y is not None)
-    N, up = of.N, ~of.down & known
-    rolls, edges = up & (x > 0.0) & (x < b.beta), up & (x >= b.beta)
+    b = structure.bearing
+    t = trace
+    x = np.abs(trace.rotation)
+    of = _loads(structure, trace, heaviest)
+    known = not no_line(structure, both=t.y is not None)
+    N = of.N
+    up = ~of.down & known
+    rolls = up & (x > 0.0) & (x < b.beta)
+    edges = up & (x >= b.beta)
 
     def worst(largest: str, values: Array) -> ColumnInstant:
         end, i = np.unravel_index(int(np.argmax(values)), values.shape)
-        force, moment = float(N[end, i]), float(of.M[end, i])
+        force = float(N[end, i])
+        moment = float(of.M[end, i])
         return ColumnInstant(
             largest,
             ENDS[end],
@@ -128,7 +138,8 @@ def column_demand(
         )
 
     found = [worst("column_moment", np.abs(of.M)), worst("max_column_force", N)]
-    ratio, crushed = 0.0 if known and not b.is_flat else None, 0.0 if known else None
+    ratio = 0.0 if known and not b.is_flat else None
+    crushed = 0.0 if known else None
     if rolls.any():
         # It grows with N and with the tilt: the others lie below one that has more of both.
         order = np.argsort(-x)

@@ -72,8 +72,12 @@ def no_bound(name: str, structure: PodiumStructure) -> str:
 def axial_forces(structure: PodiumStructure, trace: Trace) -> AxialForces:
     """Axial forces of single columns from a trace that is dense beside the vertical period."""
     normal = {"top": trace.normal_top, "bottom": trace.normal_bottom}
-    uneven, ratio, lift_off = np.zeros_like(trace.time), None, None
-    inertia, moments, directions = uneven.copy(), [], _directions(trace)
+    uneven = np.zeros_like(trace.time)
+    ratio = None
+    lift_off = None
+    inertia = uneven.copy()
+    moments = []
+    directions = _directions(trace)
     if all((rows := (structure.rows, structure.rows_y))[: len(directions)]):
         for places, (of, towards) in zip(rows, directions, strict=False):
             from_middle = np.array(places) - np.mean(places)
@@ -82,7 +86,8 @@ def axial_forces(structure: PodiumStructure, trace: Trace) -> AxialForces:
             inertia += np.abs(moment) / lever
             moments.append((moment + thrust_moment(structure, trace, of, towards), lever))
             uneven += np.abs(moments[-1][0]) / lever
-        stands, least = trace.normal_top > 0.0, np.maximum(trace.normal_top, 1.0)
+        stands = trace.normal_top > 0.0
+        least = np.maximum(trace.normal_top, 1.0)
         ratio = float(np.max(np.where(stands, inertia / least, np.inf)))
         lifts = np.flatnonzero(uneven > trace.normal_top)
         lift_off = float(trace.time[lifts[0]]) if len(lifts) else None
@@ -101,7 +106,8 @@ def axial_forces(structure: PodiumStructure, trace: Trace) -> AxialForces:
 
 def sliding_time(structure: PodiumStructure, trace: Trace) -> float:
     """Time during which the friction demand is above `AMPLE` tan(alpha), shocks left out [s]."""
-    limit, slides = AMPLE * structure.bearing.slenderness, np.zeros(len(trace.time), dtype=bool)
+    limit = AMPLE * structure.bearing.slenderness
+    slides = np.zeros(len(trace.time), dtype=bool)
     for end, normal in (("top", trace.normal_top), ("bottom", trace.normal_bottom)):
         slides |= trace.size(f"shear_{end}") > limit * np.maximum(normal, 0.0)
     share = np.count_nonzero(slides & ~in_shocks(structure, trace)) / max(len(slides) - 1, 1)

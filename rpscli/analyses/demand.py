@@ -44,7 +44,8 @@ def histories(
     # From `worth_lanes` on they run side by side; no result depends on the others, or on the order.
     groups: dict[tuple[int, bool, bool, bool], list[int]] = {}
     for i, request in enumerate(requests):
-        pair, gives_way = request.motion.y is not None, request.structure.bed is not None
+        pair = request.motion.y is not None
+        gives_way = request.structure.bed is not None
         springs = request.structure.upwards is not None
         alike = request.structure.storeys, pair, gives_way, springs
         groups.setdefault(alike, []).append(i)

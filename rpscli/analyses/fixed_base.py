@@ -168,8 +168,11 @@ def _followed(
 ) -> tuple[Array, Array, Array]:
     """Largest shears and accelerations (n,); displacements, velocities (samples, 2, n)."""
     moved = _moved(building, record, intervals)
-    shears, fine = _largest_shears(moved), moved.floors.T
-    ground, dt, parts = moved.ground, moved.dt, moved.parts
+    shears = _largest_shears(moved)
+    fine = moved.floors.T
+    ground = moved.ground
+    dt = moved.dt
+    parts = moved.parts
     del moved  # of a long record its modes are much memory
     return shears, _largest_accelerations(building, fine, ground, dt), fine[::parts].copy()
 
@@ -211,7 +214,9 @@ def oscillator(ground: Array, dt: float, omega: float, xi: float) -> tuple[Array
     from scipy.signal import lfilter
 
     grown = _grown(float(omega * dt), float(xi))
-    a, start, slope = grown[:2, :2], grown[:2, 2] - grown[:2, 3], grown[:2, 3]
+    a = grown[:2, :2]
+    start = grown[:2, 2] - grown[:2, 3]
+    slope = grown[:2, 3]
     recursion = np.array([1.0, -np.trace(a), a[0, 0] * a[1, 1] - a[0, 1] * a[1, 0]])
     other = np.array([[-a[1, 1], a[0, 1]], [a[1, 0], -a[0, 0]]])
     weights = np.array([slope, start + other @ slope, other @ start])
@@ -249,15 +254,18 @@ BEYOND = 4.0 / 27.0 * (1.0 + 1e-9)
 
 def largest_of_cubics(values: Array, rates: Array, dt: float) -> float:
     """Largest absolute value of cubics through values (samples,) with these rates."""
-    at, slopes = np.abs(values), np.abs(rates)
+    at = np.abs(values)
+    slopes = np.abs(rates)
     largest = np.max(at)
     # The polynomials that take up the rates reach 4/27: most steps cannot pass the largest end.
     reach = np.maximum(at[1:], at[:-1]) + BEYOND * dt * (slopes[1:] + slopes[:-1])
     passing = np.flatnonzero(reach >= largest)
     values, after = values[passing], values[passing + 1]
-    first, last = dt * rates[passing], dt * rates[passing + 1]
+    first = dt * rates[passing]
+    last = dt * rates[passing + 1]
     change = after - values
-    square, cube = 3.0 * change - 2.0 * first - last, first + last - 2.0 * change
+    square = 3.0 * change - 2.0 * first - last
+    cube = first + last - 2.0 * change
     root = np.sqrt(np.maximum(square * square - 3.0 * cube * first, 0.0))
     for divisor in (-square - root, root - square):  # where the slope is zero, if within
         within = np.flatnonzero(np.abs(first) < np.abs(divisor))

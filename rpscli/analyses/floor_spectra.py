@@ -84,11 +84,13 @@ def _ringing(result: TimeHistoryResult) -> float:
 
 def jumps_left_out(result: TimeHistoryResult, trace: Trace) -> Array:
     """Ramps with the impulse of each jump of the accelerations, at the instants beside it (n,)."""
-    structure, building = result.structure, result.structure.superstructure
+    structure = result.structure
+    building = result.structure.superstructure
     ramps = np.zeros_like(trace.floor_accelerations)
     if building is None or structure.impact_law.floors_jump or len(ramps) < 2:
         return ramps
-    b, step = structure.bearing, _step(result)
+    b = structure.bearing
+    step = _step(result)
     height = 2.0 * b.semi_diagonal * math.cos(b.alpha)
     each = height * building.damping_matrix.sum(axis=1) / building.masses
     for event in result.events:

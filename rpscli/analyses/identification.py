@@ -67,7 +67,8 @@ LOOKED_FOR = (0.85, 3.0)
 """Periods that are looked for, over the one on a fixed base."""
 DAMPED = (1e-4, 0.5)
 """Damping ratios of structures."""
-LEFT, SCATTER = (0.0, 0.7), (0.3, 3.0)
+LEFT = (0.0, 0.7)
+SCATTER = (0.3, 3.0)
 """Misfits of a model that holds: of what is fitted, and of an ambient spectrum."""
 UNKNOWN = 3.0
 """Standard error of a logarithm that says nothing."""
@@ -109,7 +110,8 @@ def vibration(
     looked = (f > 1.0 / (LOOKED_FOR[1] * expected)) & (f < 1.0 / (LOOKED_FOR[0] * expected))
     peak = float(f[looked][np.argmax(smooth[looked])])
     inside = (f > BAND[0] * peak) & (f < BAND[1] * peak)
-    f, Y = f[inside], Y[inside]
+    f = f[inside]
+    Y = Y[inside]
     if len(f) < 12:
         raise AnalysisError(f"{len(f)} frequencies about {peak:.3g} Hz; a longer record is needed")
     if X is None and not free:
@@ -165,7 +167,11 @@ def _ambient(f: NDArray[Any], power: NDArray[Any], peak: float, expected: float)
     """From the periodogram, whose values are exponential about the spectrum."""
 
     def spectrum(p: Array) -> Array:
-        first, zeta, a, b, c = np.exp(p[0]), np.exp(p[1]), np.exp(p[2]), np.exp(p[3]), p[4]
+        first = np.exp(p[0])
+        zeta = np.exp(p[1])
+        a = np.exp(p[2])
+        b = np.exp(p[3])
+        c = p[4]
         x = f / first
         return np.asarray(a * x**c / ((x**2 - 1.0) ** 2 + (2.0 * zeta * x) ** 2) + b)
 
@@ -180,9 +186,11 @@ def _ambient(f: NDArray[Any], power: NDArray[Any], peak: float, expected: float)
     options: Any = {"maxiter": 4000, "xatol": 1e-6, "fatol": 1e-6}
     start = np.array([*map(math.log, sizes), 0.0])
     p = np.asarray(minimize(unlikely, start, method="Nelder-Mead", options=options).x)
-    S, h = spectrum(p), 1e-5
+    S = spectrum(p)
+    h = 1e-5
     J = np.array([(spectrum(p + h * d) - spectrum(p - h * d)) / (2.0 * h * S) for d in np.eye(5)])
-    covariance, misfit = _inverse(J @ J.T), float((power / S).std())
+    covariance = _inverse(J @ J.T)
+    misfit = float((power / S).std())
     q = np.array([p[0] + math.log(2.0 * math.pi), p[1]])
     return _of_logarithms(q, covariance, len(f) - 5, misfit, expected, SCATTER)
 
@@ -210,8 +218,10 @@ def _of_logarithms(
     usual: tuple[float, float],
 ) -> Vibration:
     """Period and damping from logarithms of circular frequency and damping; refuse a bad fit."""
-    T, zeta = 2.0 * math.pi * np.exp(-q[0]), np.exp(q[1])
-    errors, why = np.sqrt(np.diag(covariance)[:2]), ""
+    T = 2.0 * math.pi * np.exp(-q[0])
+    zeta = np.exp(q[1])
+    errors = np.sqrt(np.diag(covariance)[:2])
+    why = ""
     if not (LOOKED_FOR[0] * expected < T < LOOKED_FOR[1] * expected):
         reach = f"from {LOOKED_FOR[0]:g} to {LOOKED_FOR[1]:g} times that of the case"
         why = f"its period of {T:.4g} s is not {reach}, {expected:.4g} s"
@@ -330,7 +340,8 @@ def rocking(structure: PodiumStructure, time: Array, rotation: Array) -> Identif
     if structure.bearing.is_spherical:
         raise AnalysisError("columns without a flat part roll without impacts; use another test")
     first, *swings = every[: MOST_SWINGS + 1]
-    dt, side = float(time[1] - time[0]), math.copysign(1.0, rotation[np.argmax(time >= first.time)])
+    dt = float(time[1] - time[0])
+    side = math.copysign(1.0, rotation[np.argmax(time >= first.time)])
     # Half a swing more than is looked at, which are ever shorter ones.
     span = swings[-1].time + 0.5 * (swings[-1].time - swings[-2].time)
     of = _Release(structure, dt, span, noise, side, swings)
@@ -411,7 +422,8 @@ def _refuse_bad_fit(q: Array, bounds: Array, model: Array, misfit: float) -> Non
     """What least squares end at is no answer if the model does not rock like the structure."""
     away = f"{misfit:.3g} times the noise from those measured"
     if not misfit <= WORST_MISFIT:
-        seen, count = int((model[:, 1] > 0.0).sum()), len(model)
+        seen = int((model[:, 1] > 0.0).sum())
+        count = len(model)
         short = f", and only {seen} of {count}" * (seen < count)
         why = f"the swings of the model that fits best are {away}{short}"
     elif (at_ends := (q == bounds)[:, (0, 2)].any(axis=0)).any():
@@ -427,7 +439,9 @@ def _refuse_bad_fit(q: Array, bounds: Array, model: Array, misfit: float) -> Non
 
 def _starts(of: _Release, first: Swing) -> tuple[list[Array], Array, Array]:
     """First values, steps of differences, and least and largest values."""
-    law, b, s = of.structure.impact_law, of.structure.bearing, of.structure
+    law = of.structure.impact_law
+    b = of.structure.bearing
+    s = of.structure
     lifts = s.path(np.array([swing.amplitude for swing in of.swings]))[2]
     lost = 1.0 - min(float(np.median(np.sqrt(lifts[1:] / lifts[:-1]))), 0.999)
     if law.kind == "value":
@@ -462,7 +476,8 @@ def swings_of(time: Array, rotation: Array, noise: float, least: float) -> list[
         # The record ends before the top has passed.
         if len(top) < 5 or top[-1] == len(rotation) - 1:
             break
-        middle, half = 0.5 * (time[top[0]] + time[top[-1]]), 0.5 * (time[top[-1]] - time[top[0]])
+        middle = 0.5 * (time[top[0]] + time[top[-1]])
+        half = 0.5 * (time[top[-1]] - time[top[0]])
         powers = np.vander((time[top] - middle) / half, 3, increasing=True)
         c = np.linalg.lstsq(powers, np.abs(rotation[top]), rcond=None)[0]
         at = -0.5 * c[1] / c[2]
@@ -500,7 +515,8 @@ def _fitted(
 
 
 _ROTATION = (("rotation", "rad"), ("cap_beam_displacement", "m"))
-_FLOOR, _GROUND = (("floor_acceleration", "m/s2"),), (("ground_acceleration", "m/s2"),)
+_FLOOR = (("floor_acceleration", "m/s2"),)
+_GROUND = (("ground_acceleration", "m/s2"),)
 TESTS = {
     "rocking": (_ROTATION,),
     "ambient": (_FLOOR,),
@@ -531,7 +547,8 @@ def _vibration(structure: PodiumStructure, test: str, columns: Mapping[str, Arra
     building = structure.superstructure
     if building is None:
         raise UsageError(f"{test}: without storeys there is no period before uplift; use rocking")
-    time, fixed = columns["time"], float(building.periods[0])
+    time = columns["time"]
+    fixed = float(building.periods[0])
     step = float(time[-1] - time[0]) / (len(time) - 1)
     ground = columns.get("ground_acceleration")
     found = vibration(fixed, step, columns["floor_acceleration"], ground, free=test == "release")

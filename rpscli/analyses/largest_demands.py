@@ -47,7 +47,8 @@ class Demands:
     ) -> None:
         # Fields by attribute, which records of the kernels have, take numpy ten times as long.
         self.left = left.view(_PLAIN, np.ndarray)
-        self.structures, self.number = structures, np.array(number)
+        self.structures = structures
+        self.number = np.array(number)
         self.storeys = structures[0].storeys
 
     @classmethod
@@ -103,7 +104,8 @@ class Demands:
         rotations = np.array([largest, highest, self.column("residual_rotation")])
         _, _, u, v = geometry.path_along(rolling, rocking, beta, rotations)
         diameter = 2.0 * np.array([b.semi_diagonal for b in bearings])[self.number]
-        u, v = diameter * u, diameter * v
+        u = diameter * u
+        v = diameter * v
         for number, structure in enumerate(self.structures):
             if structure.bed is not None:
                 rows = self.number == number
@@ -185,7 +187,9 @@ class _Result(Generic[T]):
         doc: str = "",
         kept: Callable[[Any], Any] = lambda _: True,
     ) -> None:
-        self.__doc__, self.made, self._kept = doc, made, kept
+        self.__doc__ = doc
+        self.made = made
+        self._kept = kept
 
     def __set_name__(self, owner: type, name: str) -> None:
         self._name = name
@@ -225,7 +229,8 @@ def _drifts(h: Demands) -> Array:
 
 def _elastic_drifts(h: Demands) -> Array:
     """Resultants over the stiffness; where that differs in y, the lesser of two upper bounds."""
-    shears, k = h.column("storey_shears"), h.of_building(lambda b: b.stiffnesses)
+    shears = h.column("storey_shears")
+    k = h.of_building(lambda b: b.stiffnesses)
     in_y = [structure.superstructure_y for structure in h.structures]
     if h.ways == 1 or not any(in_y):
         return shears / k
@@ -401,7 +406,8 @@ class Demand(Shown):
     @property
     def devices(self) -> tuple[DeviceDemand, ...]:
         """Demands of each device, in the order of the structure's."""
-        structure, history = self.structure, self.history
+        structure = self.structure
+        history = self.history
         rotation = np.array([history["max_theta"]])
         return tuple(
             DeviceDemand(
@@ -516,5 +522,6 @@ def failure_text(history: Record, structure: PodiumStructure) -> str | None:
     if own := own_laws(structure):
         reason = f"{reason}; with laws of other packages: {', '.join(own)}"
         reason += "".join(f"; {text}" for law in own.values() for text in refusals(law))
-    phase, theta = PHASE_NAMES[int(history["phase"])], history["rotation"] + 0.0
+    phase = PHASE_NAMES[int(history["phase"])]
+    theta = history["rotation"] + 0.0
     return f"at t = {history['time']:.6g} s, {phase}, theta = {theta:.6g} rad: {reason}"

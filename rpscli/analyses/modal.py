@@ -154,7 +154,8 @@ class ModalResult(Shown):
 
         Storeys count from 1, shears are in N. Empty of elastic buildings.
         """
-        building, fixed = self.structure.superstructure, self.fixed_base
+        building = self.structure.superstructure
+        fixed = self.fixed_base
         if building is None or building.strengths is None or fixed is None:
             return {}
         found = {}
@@ -182,7 +183,8 @@ class ModalResult(Shown):
             orders = exact.frequencies, exact.damping, *ratios, first.frequencies, first.damping
             yield name, np.transpose(orders)
             if (upright := self.vertical) is not None:
-                w, xi = exact.vertical_frequencies, exact.vertical_damping
+                w = exact.vertical_frequencies
+                xi = exact.vertical_damping
                 ratios = w / upright.frequencies, _over(xi, upright.damping)
                 paper = first.vertical_frequencies, first.vertical_damping
                 yield f"{name}_vertical", np.transpose((w, xi, *ratios, *paper))
@@ -197,7 +199,8 @@ class ModalResult(Shown):
 
     def results(self) -> dict[str, Any]:
         """Lists by mode and the parameters of each state; None for one that does not exist."""
-        fixed, full = self.fixed_base, self.full_contact
+        fixed = self.fixed_base
+        full = self.full_contact
         vertical = VERTICAL_MODES if self.structure.upwards else ()
         states = {
             name: values_of(exact, (*UPLIFTED, *vertical))
@@ -243,7 +246,8 @@ def _full_contact(structure: PodiumStructure) -> FixedBaseModes | None:
     """Modes of compliant full contact, in [u_b, u_t] (Theory, section 12)."""
     if (bed := structure.bed) is None:
         return None
-    C_u, diameter = bed.height, 2.0 * structure.bearing.semi_diagonal
+    C_u = bed.height
+    diameter = 2.0 * structure.bearing.semi_diagonal
     kappa = bed.stiffness * C_u**2 * diameter / structure.weight
     state = UpliftedState(0.0, 0.0, C_u, kappa, C_u**2, (0.0, 0.0, 0.0))
     M, C, K = linearised_matrices(structure, state)
@@ -256,11 +260,13 @@ def _full_contact(structure: PodiumStructure) -> FixedBaseModes | None:
 
 def _eigen(M: Array, C: Array, K: Array, height: float) -> tuple[Complex, Complex]:
     """Eigenvalues (2 n + 2,) and their vectors [u_b, u_t] (n + 1, 2 n + 2); `height` is C."""
-    size, mass = len(M), np.diag(M)[:, None]  # dividing rows is exact where a solver would round
+    size = len(M)  # dividing rows is exact where a solver would round
+    mass = np.diag(M)[:, None]
     values, vectors = np.linalg.eig(
         np.block([[np.zeros((size, size)), np.eye(size)], [-K / mass, -C / mass]])
     )
-    values, vectors = values.astype(complex), vectors[:size].astype(complex)
+    values = values.astype(complex)
+    vectors = vectors[:size].astype(complex)
     # Rounding, as large as that of K/M, would be a damping of either sign.
     rounding = 4.0 * np.finfo(float).eps * np.abs(values).max() ** 2
     values.real[(values.imag != 0.0) & (np.abs(values.real) < rounding)] = 0.0
@@ -286,7 +292,8 @@ def linearised_matrices(
     """
     # Paper, Table 2, where the sign of the (2 rho - 1) term must be +: as printed, a larger radius
     # would soften the podium (Theory (6.3)). Dampers, elastic tendons: Theory, section 11.
-    vibrating, riding = _vibrating(structure, state), structure.superstructure_mass * state.arm**2
+    vibrating = _vibrating(structure, state)
+    riding = structure.superstructure_mass * state.arm**2
     size = 1 + structure.storeys * len(vibrating)
     M, C, K = (np.zeros((size, size)) for _ in range(3))
     M[0, 0] = _base_mass(structure, state) + (riding if len(vibrating) < 2 else 0.0)
@@ -308,14 +315,16 @@ def _vibrating(
     if (building := structure.superstructure) is None:
         return []
     upwards = building.upwards if structure.bed is None or state.arm else None  # not on a bed
-    n, across = structure.storeys, (building, state.height)
+    n = structure.storeys
+    across = (building, state.height)
     both = [across, (upwards, state.arm)] if upwards else [across]
     return [(slice(1 + i * n, 1 + i * n + n), *each) for i, each in enumerate(both)]
 
 
 def _base_mass(structure: PodiumStructure, state: UpliftedState) -> float:
     """Inertia of columns and cap beam against 2 R theta [kg]."""
-    columns, beam = structure.bearing.inertia_ratio - 1.0, 1.0 + 4.0 * structure.gamma
+    columns = structure.bearing.inertia_ratio - 1.0
+    beam = 1.0 + 4.0 * structure.gamma
     A = geometry.inertia(columns, beam, beam, state.squared_distance, 0.0)
     return 0.25 * structure.columns_mass * A
 
@@ -337,7 +346,8 @@ def _uplifted(structure: PodiumStructure, state: UpliftedState) -> UpliftedModes
     parameter = math.sqrt(abs(kappa) * structure.weight / (diameter * rigid))
     own = _own_pair(values, kappa, coefficient / rigid, parameter)
     order = np.concatenate([own, np.setdiff1d(np.arange(len(values)), own)])
-    values, vectors = values[order], vectors[:, order]
+    values = values[order]
+    vectors = vectors[:, order]
     if kappa == 0.0:
         # Zero, twice without dampers: rounding makes it a rate, and splits two into +-sqrt(eps).
         values[:2] = 0.0, (values[0] + values[1]).real if coefficient else 0.0
@@ -376,7 +386,8 @@ def _across_and_up(
     structure: PodiumStructure, state: UpliftedState, vectors: Complex
 ) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     """Vibration modes that strain columns most, and those that strain vertical springs."""
-    n, strains = structure.storeys, []
+    n = structure.storeys
+    strains = []
     for rows, part, lever in _vibrating(structure, state):
         drift = vectors[rows] - lever / state.height * vectors[0]
         strains.append(np.sum(drift.conj() * (part.stiffness_matrix @ drift), axis=0).real)

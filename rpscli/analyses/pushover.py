@@ -156,13 +156,16 @@ def pushover(
     plastic drifts (Theory, section 15).
     """
     require_structure(structure)
-    end, beta = structure.critical_rotation, structure.bearing.beta
+    end = structure.critical_rotation
+    beta = structure.bearing.beta
     rotation = np.linspace(0.0, end, points)
     if 0.0 < beta < end:
         rotation = np.sort(np.append(rotation, beta))
-    uplift, stiffness = 0.0, structure.initial_stiffness
+    uplift = 0.0
+    stiffness = structure.initial_stiffness
     if (bed := structure.bed) is not None:
-        uplift, stiffness = bed.uplift_rotation, bed.stiffness
+        uplift = bed.uplift_rotation
+        stiffness = bed.stiffness
         gradual = np.geomspace(uplift, min(100.0 * uplift, end), 40)
         rotation = np.unique(np.concatenate([rotation, gradual]))
     _, displacement, lift = structure.path(rotation)
@@ -197,7 +200,8 @@ def _capacity(
     sway = np.linalg.solve(building.stiffness_matrix, forces)
     path = np.stack((curve.rotation, curve.displacement, curve.force))
     path = np.concatenate((np.zeros((3, 1)), path), axis=1)
-    yield_forces, shears = None, np.cumsum(forces[::-1])[::-1]
+    yield_forces = None
+    shears = np.cumsum(forces[::-1])[::-1]
     if building.strengths is not None:
         with np.errstate(divide="ignore"):  # storeys without a shear never yield
             yield_forces = building.strengths / np.abs(shears)
@@ -228,7 +232,8 @@ def _with_kinks(path: Array, yield_forces: Array, *, hardens: bool) -> Array:
     for force in np.unique(yield_forces):
         below = path[2] < force
         for i in np.flatnonzero(below[:-1] & ~below[1:])[:1]:
-            before, after = path[:, i], path[:, i + 1]
+            before = path[:, i]
+            after = path[:, i + 1]
             point = before + (force - before[2]) / (after[2] - before[2]) * (after - before)
             point[2] = force
             path = np.insert(path, i + 1, point, axis=1)
@@ -239,7 +244,8 @@ def _with_kinks(path: Array, yield_forces: Array, *, hardens: bool) -> Array:
 
 def _plastic_drifts(building: Superstructure, shears: Array) -> Array:
     """Of storeys under shears one after the other (points, n), from rest [m] (Theory (15.1))."""
-    back, F = np.zeros_like(shears), building.strengths
+    back = np.zeros_like(shears)
+    F = building.strengths
     for point, shear in enumerate(shears[1:], 1):
         back[point] = np.clip(back[point - 1], shear - F, shear + F)
     return np.asarray(back / building.back_stiffness)

@@ -128,11 +128,13 @@ class TimeHistoryResult(Demand):
     @property
     def energy(self) -> Energy:
         """The energy audit."""
-        history, devices = self.history, self.energy_devices
+        history = self.history
+        devices = self.energy_devices
         supplied, damped, lost, stored = (
             float(history[f"energy_{name}"]) for name in ("input", "damped", "lost", "stored")
         )
-        stored, bed = stored + float(history["device_stored"].sum()), float(history["bed_energy"])
+        stored = stored + float(history["device_stored"].sum())
+        bed = float(history["bed_energy"])
         yielded = float(history["energy_yielded"])
         available = supplied + float(self.trace.energy_stored[0])
         vertical = float(history["energy_upwards"])
@@ -155,7 +157,8 @@ class TimeHistoryResult(Demand):
         What `Trace.driving_moment` equals in slow motion; positive where the weight restores a
         positive rotation.
         """
-        st, theta = self.structure, np.asarray(rotation)
+        st = self.structure
+        theta = np.asarray(rotation)
         arm = st.weight_arm(np.abs(theta))
         return 2.0 * st.bearing.semi_diagonal * st.weight * np.sign(theta) * arm
 
@@ -167,7 +170,8 @@ class TimeHistoryResult(Demand):
         floors jump with the cap beam, dt up to 0.02 s and periods from 0.1 s.
         """
         t = self.trace
-        x, ground = self.motion.horizontal, self.motion.y
+        x = self.motion.horizontal
+        ground = self.motion.y
         if t.y is None or ground is None:
             return frozen(largest_velocities(t.floor_velocities, t.floor_accelerations, x))
         both = (t, x), (t.y, ground)
@@ -187,7 +191,8 @@ class TimeHistoryResult(Demand):
         """
         if self.structure.superstructure is None:
             return None
-        t, dt = self.trace, self.record.dt
+        t = self.trace
+        dt = self.record.dt
         roofs = [
             (of.floor_displacements[:, -1:], of.floor_velocities[:, -1:])
             for of in (t, t.y)
@@ -222,7 +227,9 @@ class TimeHistoryResult(Demand):
         the case does not give their number, these are the forces of all columns together. What
         axial forces do not hold: `left_out_of_columns`.
         """
-        st, history, axial = self.structure, self.history, self.axial
+        st = self.structure
+        history = self.history
+        axial = self.axial
         upper = st.cap_beam_mass + st.superstructure_mass
         envelopes = {}
         for end, mass in (("top", upper), ("bottom", upper + st.columns_mass)):
@@ -230,7 +237,8 @@ class TimeHistoryResult(Demand):
             forces = (float(history[f"{of}_{end}"]) * weight for of in ("heavy", "normal"))
             largest, least = (force / st.columns for force in forces)
             if axial is not None:
-                largest, least = axial.largest[end], axial.least[end]
+                largest = axial.largest[end]
+                least = axial.least[end]
             shear = float(history[f"shear_{end}"]) / st.columns
             envelopes[end] = ColumnForces(shear, largest, least)
         return envelopes if upper > 0.0 else envelopes | {"top": ColumnForces(0.0, 0.0, 0.0)}
@@ -292,7 +300,8 @@ class TimeHistoryResult(Demand):
 
         `slides` tells what lies between samples too.
         """
-        coefficient, trace = self.structure.friction, self.trace
+        coefficient = self.structure.friction
+        trace = self.trace
         if coefficient is None:
             return None
         bottom = trace.size("shear_bottom") > coefficient * trace.normal_bottom
@@ -366,7 +375,8 @@ class TimeHistoryResult(Demand):
                 " so that less than the residual drift remains; a longer"
                 " `analysis.free_vibration` shows how much"
             )
-        chi, pressure = self.max_impact_number, self.edge_pressure_ratio
+        chi = self.max_impact_number
+        pressure = self.edge_pressure_ratio
         if chi is not None and chi > LARGEST_TRIED and self.structure.contact.kind == "plane":
             yield (
                 f"the strongest re-contact has chi = {chi:.3g}, records with more than"
@@ -381,7 +391,8 @@ class TimeHistoryResult(Demand):
 
     def _of_column(self) -> Iterator[str]:
         """Ends of columns for which the model, or a code, does not hold."""
-        design, crushed = self.structure.column, self.crushed_width_ratio or 0.0
+        design = self.structure.column
+        crushed = self.crushed_width_ratio or 0.0
         if crushed > LARGEST_EDGE:
             yield (
                 f"an edge crushes over {crushed:.3g} of the width of a column, above a third: it is"
@@ -396,7 +407,8 @@ class TimeHistoryResult(Demand):
 
     def _near_the_limit(self) -> Iterator[str]:
         """Nearness to overturning of a structure that survived, and sliding of columns."""
-        ratio, passed = self.rotation_ratio, self.critical_passage_time
+        ratio = self.rotation_ratio
+        passed = self.critical_passage_time
         if self.is_near_critical and passed is not None:
             yield (
                 f"the critical rotation was passed at t = {passed:.4g} s (largest {ratio:.3g}"

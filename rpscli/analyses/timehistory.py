@@ -132,7 +132,8 @@ def neighbours(result: TimeHistoryResult) -> list[Neighbour]:
     """Histories beside one; none if they take too long, or if it failed."""
     if result.outcome == "failed" or result.history["steps"] > MOST_STEPS_BESIDE:
         return []
-    structure, settings = result.structure, result.settings
+    structure = result.structure
+    settings = result.settings
     law = structure.impact_law
     beside = [(structure, factor, 0.0) for factor in FACTORS]
     if result.both_components and structure.superstructure_y is not None:

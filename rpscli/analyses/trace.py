@@ -231,7 +231,8 @@ def sampled(structure: PodiumStructure, t: Trace) -> Iterator[Sampled]:
 
 def trace_of(structure: PodiumStructure, run: SampledHistory) -> Trace:
     """Histories from what the kernel stored, at samples or between them as well."""
-    samples, motion = run.samples, run.motion
+    samples = run.samples
+    motion = run.motion
     pairs = motion.y is not None
     return Trace(
         time=np.arange(len(samples), dtype=np.float64) * motion.dt,
@@ -261,12 +262,15 @@ def trace_of(structure: PodiumStructure, run: SampledHistory) -> Trace:
 
 def _in_direction(structure: PodiumStructure, run: SampledHistory, axis: int) -> dict[str, Array]:
     """By the names of `Direction`, in x or in y."""
-    n, samples, building = structure.storeys, run.samples, structure.superstructure
+    n = structure.storeys
+    samples = run.samples
+    building = structure.superstructure
     if axis == 1:
         building = structure.superstructure_y or building
     floors = run.floors[:, :, axis * n : (axis + 1) * n]
     row = run.motion.row("y" if axis else "horizontal")
-    a_g, beam = prolonged(run.motion.samples[row], len(samples)), samples.beam[:, axis]
+    a_g = prolonged(run.motion.samples[row], len(samples))
+    beam = samples.beam[:, axis]
     drifts = np.diff(floors[:, 0], axis=1, prepend=beam[:, None])
     plastic = floors[:, 3] if structure.yields else None
     elastic = drifts if plastic is None else drifts - plastic

@@ -105,7 +105,8 @@ def problem_files() -> dict[str, bytes]:
 
 def answers_of_file(text: str, source: str) -> dict[Key, list[float]]:
     """Answers of a CSV file; quantities without one are left out."""
-    known, given = certified(), dict[Key, list[float]]()
+    known = certified()
+    given = dict[Key, list[float]]()
     for line, key, row in _rows(text, source):
         place = f"{source}: line {line}"
         if key not in known:
@@ -126,7 +127,8 @@ def scored(
     given: Mapping[Key, Sequence[float]], digits: float
 ) -> tuple[list[Comparison], list[str]]:
     """Answers of which so many digits should be right; and the problems that have none."""
-    known, begun = certified(), {problem for problem, _ in given}
+    known = certified()
+    begun = {problem for problem, _ in given}
     compared = [
         _compared(key, *answer, given.get(key, ()), digits)
         for key, answer in known.items()
@@ -139,7 +141,8 @@ def _compared(
     key: Key, unit: str, certain: int, values: list[float], given: Sequence[float], digits: float
 ) -> Comparison:
     if certain:
-        value, computed = values[0], given[-1] if given else math.nan
+        value = values[0]
+        computed = given[-1] if given else math.nan
         tolerance = abs(value) * 10.0 ** -min(digits, certain)
         return Comparison(*key, unit, value, computed, tolerance, certain)
     from scipy.stats import ks_2samp  # slow
@@ -193,7 +196,8 @@ def _least_peak(
     structure: PodiumStructure, motion: MotionComponents, settings: TimeHistorySettings
 ) -> float:
     """Peak of the least motion of this shape that overturns [m/s2], by bisection."""
-    low, high = 5.0, 12.0
+    low = 5.0
+    high = 12.0
     while high - low > 1e-14 * high:
         middle = 0.5 * (low + high)
         shaken = motion.horizontal.scaled(middle / motion.horizontal.pga)
@@ -222,7 +226,8 @@ def of_history(result: TimeHistoryResult, quantity: str) -> float:
     """A quantity of a history, by its name, as in ``tilt at 2 s`` or ``time of impact 3``."""
     what, _, when = quantity.removesuffix(" s").partition(" at ")
     if when:
-        samples, row = SAMPLED[what](result.trace), round(float(when) / result.record.dt)
+        samples = SAMPLED[what](result.trace)
+        row = round(float(when) / result.record.dt)
         return float(samples[row]) if row < len(samples) else math.nan
     if quantity == "largest tilt":
         return result.max_rotation

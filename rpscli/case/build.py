@@ -79,7 +79,8 @@ def too_weak(structure: PodiumStructure) -> Iterator[Fault]:
     """Storeys without strength to speak of."""
     above = structure.superstructure
     if above is not None and above.strengths is not None:
-        least, weight = float(above.strengths.min()), above.mass * structure.gravity
+        least = float(above.strengths.min())
+        weight = above.mass * structure.gravity
         if least < LEAST_STRENGTH * weight:
             text = f": a strength of {least:.3g} N is less than a ten-thousandth of the weight of"
             yield _at_key(YIELD, f"{text} the floors, {weight:.3g} N; check its unit")
@@ -90,11 +91,14 @@ def bearing_of(section: BearingSection) -> Bearing:
     kept = {"inertia_ratio", "inertia_ratio_axial"}
     given = section.model_dump(include=kept, exclude_none=True)
     if (sizes := section.dimensions) is not None:
-        h, width = sizes.height, sizes.width
+        h = sizes.height
+        width = sizes.width
         wedge = width if sizes.wedge_width is None else sizes.wedge_width
         shape = 0.5 * math.hypot(h, width), width / h, wedge / h, sizes.radius / h
         return Bearing(*shape, **given)
-    R, slenderness, rho = section.semi_diagonal, section.slenderness, section.curvature_ratio
+    R = section.semi_diagonal
+    slenderness = section.slenderness
+    rho = section.curvature_ratio
     assert R is not None and slenderness is not None and rho is not None, COMPLETE  # noqa: PT018
     wedge = slenderness if section.wedge_slenderness is None else section.wedge_slenderness
     if isinstance(rho, str):
@@ -105,7 +109,9 @@ def bearing_of(section: BearingSection) -> Bearing:
 def _impact_law(section: PodiumSection) -> ImpactLaw:
     """The impact law; how much it loses goes by the contact unless the case says it."""
     given = section.impact.model_dump(exclude={"law", "loss"})
-    name, loss, own = section.impact.law, section.impact.loss, IMPACT_LAWS[section.impact.law]
+    name = section.impact.law
+    loss = section.impact.loss
+    own = IMPACT_LAWS[section.impact.law]
     if own is not None:
         given |= {"own": own, "constants": tuple(given.pop(each) for each in own.constants)}
         loss = 1.0 if loss is None else loss
@@ -115,10 +121,13 @@ def _impact_law(section: PodiumSection) -> ImpactLaw:
 
 def _masses(file: CaseFile) -> tuple[float, float, float]:
     """N m_c, m_b and M_tot [kg], from those and the ratios that are given (Theory, section 2)."""
-    podium, floors = file.podium, file.superstructure
+    podium = file.podium
+    floors = file.superstructure
     building = sum(each_storey(floors.storey_mass, floors.storeys)) if floors.storeys else 0.0
-    gamma, eta = podium.cap_beam_mass_ratio, podium.superstructure_mass_ratio
-    columns, beam = None, podium.cap_beam_mass
+    gamma = podium.cap_beam_mass_ratio
+    eta = podium.superstructure_mass_ratio
+    columns = None
+    beam = podium.cap_beam_mass
     if podium.column_mass is not None:
         columns = podium.column_mass * (podium.columns or 1)
     if podium.without_cap_beam:
@@ -136,10 +145,13 @@ def _masses(file: CaseFile) -> tuple[float, float, float]:
 
 def _built(bearing: Bearing, file: CaseFile) -> PodiumStructure:
     """The whole structure: columns and cap beam with the building on them."""
-    podium, floors, plan = file.podium, file.superstructure, file.podium.plan
+    podium = file.podium
+    floors = file.superstructure
+    plan = file.podium.plan
     column = None
     if (of := podium.column) is not None:
-        own, plate = of.model_dump(exclude={"on"}), of.on
+        own = of.model_dump(exclude={"on"})
+        plate = of.on
         column = ColumnDesign(**own, plate_modulus=plate.modulus, plate_poisson=plate.poisson)
     across = None if floors.y is None else floors.model_copy(update=floors.y.model_dump())
     columns, beam, floors_mass = _masses(file)
@@ -168,7 +180,8 @@ def _rows(plan: RowsSection | None) -> tuple[float, ...]:
 
 def _device(section: DeviceSection) -> Device:
     """A device, of ours or of another package."""
-    law, given = DAMPERS[section.kind], section.model_dump(exclude={"kind"}, exclude_none=True)
+    law = DAMPERS[section.kind]
+    given = section.model_dump(exclude={"kind"}, exclude_none=True)
     if not isinstance(law, DamperLaw):
         return law(**given)
     return OwnDamper(section.kind, law, tuple(given[name] for name in law.constants))
@@ -176,7 +189,9 @@ def _device(section: DeviceSection) -> Device:
 
 def _building(section: SuperstructureSection, at_uplift: float) -> Superstructure | None:
     """The shear building; None for no storeys. V_st is what ratios of strengths refer to."""
-    n, given, height = section.storeys, section.damping, section.storey_height
+    n = section.storeys
+    given = section.damping
+    height = section.storey_height
     if n == 0:
         return None
     assert given is not None, COMPLETE
@@ -189,7 +204,8 @@ def _building(section: SuperstructureSection, at_uplift: float) -> Superstructur
     damping: RayleighDamping | ModalDamping = ModalDamping(given.ratio)
     if given.modes is not None:
         damping = RayleighDamping(given.ratio, given.modes)
-    strengths, hardening = None, 0.0
+    strengths = None
+    hardening = 0.0
     if (yields := section.yields) is not None:
         hardening = yields.hardening
         if yields.ratio is None:
@@ -231,9 +247,14 @@ def time_history_settings(section: AnalysisSection, bearing: Bearing) -> TimeHis
 
 
 STOREYS, HEIGHT, YIELD = (f"superstructure.{key}" for key in ("storeys", "storey_height", "yield"))
-BEARING, DIMENSIONS, COLUMN = "podium.bearing", "podium.bearing.dimensions", "podium.column"
-GAMMA, ETA = "podium.cap_beam_mass_ratio", "podium.superstructure_mass_ratio"
-BEAM, COLUMN_MASS, COLUMNS = "podium.cap_beam_mass", "podium.column_mass", "podium.columns"
+BEARING = "podium.bearing"
+DIMENSIONS = "podium.bearing.dimensions"
+COLUMN = "podium.column"
+GAMMA = "podium.cap_beam_mass_ratio"
+ETA = "podium.superstructure_mass_ratio"
+BEAM = "podium.cap_beam_mass"
+COLUMN_MASS = "podium.column_mass"
+COLUMNS = "podium.columns"
 COLUMN_LIMITS = tuple(q.name for q in LIMITED if q.needs in {"designed columns", "columns on arcs"})
 RATIOS = {
     "semi_diagonal": "R = sqrt(H^2 + B^2), as in '1.5 m'",
@@ -358,7 +379,8 @@ class Rules:
 
     def _masses_of_frame(self) -> Iterator[Fault]:
         """Without a building two of three: beam mass, column mass, and their ratio."""
-        podium, keys = self.file.podium, (BEAM, GAMMA, COLUMN_MASS)
+        podium = self.file.podium
+        keys = (BEAM, GAMMA, COLUMN_MASS)
         given = _given(podium, *keys)
         if podium.superstructure_mass_ratio is not None:
             text = f" has no meaning with {STOREYS} = 0{self._where(STOREYS)}; give {BEAM} instead"
@@ -395,7 +417,8 @@ class Rules:
 
     def _bearing(self) -> Iterator[Fault]:
         """One description of the column, and a complete one."""
-        bearing, sizes = self.file.podium.bearing, self.file.podium.bearing.dimensions
+        bearing = self.file.podium.bearing
+        sizes = self.file.podium.bearing.dimensions
         ratios = _given(bearing, *RATIOS)
         if sizes is None and not ratios:
             names = listed(RATIOS, "and")
@@ -414,7 +437,8 @@ class Rules:
 
     def _without_effect(self) -> Iterator[Fault]:
         """A measured restitution has no loss; ends without impacts have nothing to say of them."""
-        podium, ends = self.file.podium, ""
+        podium = self.file.podium
+        ends = ""
         if podium.impact.law == "value" and podium.impact.loss not in (None, 1.0):
             yield _at_key(
                 "podium.impact.loss",
@@ -438,7 +462,8 @@ class Rules:
     def _devices(self) -> Iterator[Fault]:
         """Each device has the keys that its kind needs, and none of another kind."""
         for index, device in enumerate(self.file.podium.devices):
-            owner, keys = f"podium.devices.{index}", type(device).model_fields
+            owner = f"podium.devices.{index}"
+            keys = type(device).model_fields
             own = tuple(key for key, field in keys.items() if field.is_required())
             needed, optional = DEVICE_KEYS.get(device.kind, (own, ()))
             given = _given(device, *keys)
@@ -488,7 +513,8 @@ class Rules:
 
     def _limits(self) -> Iterator[Fault]:
         """A limit on something that the case cannot give would never be exceeded."""
-        podium, building = self.file.podium, self.file.superstructure
+        podium = self.file.podium
+        building = self.file.superstructure
         if podium.column is None:
             yield from self._limited(f" needs {COLUMN}, which is missing", *COLUMN_LIMITS)
         if building.storeys == 0:
@@ -515,14 +541,16 @@ class Rules:
 
     def _columns(self) -> Iterator[Fault]:
         """Rows have heights for the moment of the building; the force of one column a number."""
-        podium, building = self.file.podium, self.file.superstructure
+        podium = self.file.podium
+        building = self.file.superstructure
         if podium.column is not None and podium.columns is None:
             yield _at_key(COLUMNS, f" is missing: {COLUMN} asks for the force of one")
         text = "length, between two rows of columns, or the places of all rows"
         yield from _one_of("podium.plan", podium.plan, text, "length", "rows")
         yield from _one_of("podium.plan.y", podium.plan and podium.plan.y, text, "length", "rows")
         if podium.plan is not None and (number := podium.columns) is not None:
-            x, y = len(_rows(podium.plan)), len(_rows(podium.plan.y))
+            x = len(_rows(podium.plan))
+            y = len(_rows(podium.plan.y))
             if y and number != x * y:
                 of_rows = f"must be {x} x {y}: one stands wherever two rows of podium.plan cross"
                 yield _of_value(COLUMNS, f" = {number} {of_rows}")
@@ -534,7 +562,9 @@ class Rules:
 
     def faults_of_bearing(self, bearing: Bearing) -> Iterator[Fault]:
         """Limits and strengths that its ends do not have, and rotations beyond the model."""
-        file, analysis, critical = self.file, self.file.analysis, bearing.critical_rotation
+        file = self.file
+        analysis = self.file.analysis
+        critical = bearing.critical_rotation
         if bearing.is_flat:
             text = " needs curved ends: flat ones stand on edges; limit crushed_width_ratio"
             yield from self._limited(text, "contact_pressure_ratio")

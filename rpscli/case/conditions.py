@@ -97,7 +97,8 @@ def conditions_of(limits: LimitsSection, source: str) -> tuple[Condition, ...]:
         elif name == "probability_in_50_years":  # of a Poisson process
             conditions.append(Condition(RATE, -math.log1p(-given) / 50.0, source))
         elif isinstance(given, dict):
-            share, fractile = given.get("share", 0.0), given.get("fractile")
+            share = given.get("share", 0.0)
+            fractile = given.get("fractile")
             limit = given["at_least" if LIMITS[name].from_below else "at_most"]
             conditions.append(Condition(name, limit, source, share, fractile))
         else:

@@ -306,7 +306,8 @@ def _used_and_unseen(
 ) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Records of the search, and those that the answer is validated on: others, or a part."""
     numbers = clusters((*study.sources, *unseen), study.folder, file.independent)
-    own, section = dict(zip(study.sources, numbers, strict=False)), file.validation
+    own = dict(zip(study.sources, numbers, strict=False))
+    section = file.validation
     others = zip(unseen, numbers[len(own) :], strict=True)
     if both := [source for source, number in others if number in own.values()]:
         text = (
@@ -333,7 +334,8 @@ def _name_faults(document: Document, file: DesignFile) -> Iterator[Fault]:
         if key.split(".")[0] in {"limits", "analysis", "rps", "title", "record"}:
             text = f"{key} must not change in a design; it is not a property of the structure"
             yield Fault(place, text, at_key=True)
-    known, keys = [*file.variables, PLUS], [*file.variables, *file.linked]
+    known = [*file.variables, PLUS]
+    keys = [*file.variables, *file.linked]
     for key, sums in file.linked.items():
         for name in (name for name in sums if name not in known):
             text = f"linked.{key} needs {name}, which is not under variables"

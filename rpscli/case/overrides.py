@@ -96,7 +96,8 @@ def _unknown(path: Path, model: type[BaseModel]) -> str:
 def _put(document: Document, path: Path, override: Override) -> str:
     """Put one value in place; the reason if it cannot be put there."""
     owner: Any = document.content
-    value, (*parents, key) = override.value, path
+    value = override.value
+    (*parents, key) = path
     for depth, part in enumerate(parents):
         if text := _obstacle(owner, path[:depth], part):
             return text

@@ -60,7 +60,8 @@ WALKS = 0.25
 NEIGHBOURS = 20.0
 """No storey is so many times as heavy, or as stiff, as the next one."""
 
-STIFFEST, SOFTEST = 1.02, 0.02
+STIFFEST = 1.02
+SOFTEST = 0.02
 """Least period ratio and largest phi_u/alpha of compliant ends for which that is meant."""
 
 STRONGEST = 0.4
@@ -74,7 +75,8 @@ def doubts_of_structure(structure: PodiumStructure) -> Iterator[Doubt]:
     """Sizes, masses, period, restitution, friction, pressure; storey shears at uplift."""
     yield from _unusual_sizes(structure)
     yield from _pressed_arcs(structure)
-    bearing, building = structure.bearing, structure.superstructure
+    bearing = structure.bearing
+    building = structure.superstructure
     if structure.friction is not None and structure.friction < HOLDS * bearing.slenderness:
         yield Doubt(
             f"podium.friction = {{0}} is below {HOLDS:g} tan(alpha): columns may slide in any"
@@ -125,7 +127,8 @@ def doubts_of_structure(structure: PodiumStructure) -> Iterator[Doubt]:
 
 def _unusual_sizes(structure: PodiumStructure) -> Iterator[Doubt]:
     """Quantities outside the range in which buildings have them."""
-    bearing, building = structure.bearing, structure.superstructure
+    bearing = structure.bearing
+    building = structure.superstructure
     ranges: list[tuple[str, float | None, str, float, float]] = [
         ("the height of the columns 2H", 2.0 * bearing.half_height, "m", 0.3, 10.0),
         ("the semi-diagonal of the columns R", bearing.semi_diagonal, "m", 0.15, 6.0),
@@ -152,7 +155,9 @@ def _unusual_sizes(structure: PodiumStructure) -> Iterator[Doubt]:
 
 def _pressed_arcs(structure: PodiumStructure) -> Iterator[Doubt]:
     """Columns whose arcs bear more than they can before anything moves."""
-    bearing, column, tilt = structure.bearing, structure.column, 0.1 * structure.bearing.alpha
+    bearing = structure.bearing
+    column = structure.column
+    tilt = 0.1 * structure.bearing.alpha
     if column is None or tilt >= bearing.beta:
         return
     pressure, *_ = column.pressed(bearing, np.array(tilt), np.array(structure.rest_force))

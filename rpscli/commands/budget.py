@@ -87,7 +87,8 @@ def _row(
         return Row(cause, "", "", "", {}, "", motion)
     words = [*options.set_words((*given.request.overrides, *sets)), *motion.words]
     change = re.sub(r"^[\w.]*\.|contact=|kind: |[{}]", "", sets[0]) if sets else " ".join(words)
-    row, case = Row(cause, change, shlex.join(words), "", {}, "", ""), given.case
+    row = Row(cause, change, shlex.join(words), "", {}, "", "")
+    case = given.case
     try:
         if sets:
             written = case.written or case.document
@@ -139,7 +140,8 @@ def _with_own_vertical(case: Case, motion: inputs.MotionRequest) -> inputs.Motio
 
 def _values(case: Case) -> Iterator[tuple[str, ...]]:
     """Causes, and changes of values of the case."""
-    file, bearing = case.file, case.file.podium.bearing
+    file = case.file
+    bearing = case.file.podium.bearing
     for factor in (2.0, 4.0):
         yield "numerics", f"analysis.accuracy={factor * file.analysis.accuracy:g}"
     for factor in (10.0, 0.1):
@@ -170,7 +172,8 @@ def _values(case: Case) -> Iterator[tuple[str, ...]]:
 
 def _of_building_and_devices(case: Case) -> Iterator[tuple[str, ...]]:
     """Changes of its periods and strengths, and of what devices do."""
-    building, fifth = case.file.superstructure, (0.8, 1.2)
+    building = case.file.superstructure
+    fifth = (0.8, 1.2)
     of_both = {"superstructure": building, "superstructure.y": building.y}
     periods = {key: of.period for key, of in of_both.items() if of is not None and of.period}
     for factor in (0.9, 1.1) if periods else ():
@@ -209,13 +212,15 @@ def _direction(case: Case, motion: inputs.MotionRequest, ground: MotionComponent
         return "first component alone", alone, alike
     if of.components is None:
         return "other component", (), "not known: the source names no second component"
-    cause, other = "first component alone", str(of.components[0])
+    cause = "first component alone"
+    other = str(of.components[0])
     if ground.y is None:
         angle = 90.0 if of.place.endswith("/b") else of.angle or 0.0
         both = of.without("angle").plus(both=None)
         if of.scheme:
             both = both.at(re.sub("/[ab]$", "", of.place))
-        cause, other = "both components", str(both.turned(-angle))
+        cause = "both components"
+        other = str(both.turned(-angle))
     if motion.record is not None:
         return cause, (), replace(alike, record=other, pair=None)
     return cause, (f"record.source={other}", *unturned), alike

@@ -112,11 +112,13 @@ def _record(case: Case) -> tuple[dict[str, Any] | None, RpsError | None]:
         motion = inputs.load_motion(case, inputs.MotionRequest())
     except (RecordError, CaseError) as error:
         return None, error
-    found, both = motion.horizontal, motion.y is not None
+    found = motion.horizontal
+    both = motion.y is not None
     warnings = [*found.warnings, *motion.warnings]
     doubts = [str(doubt) for doubt in doubts_of_directions(case.structure, both=both)]
     doubts += unknown_of_pairs(conditions_of(case.limits, ""), case.structure) if both else []
-    known, y = {name: getattr(found, name) for name in RECORD}, motion.y
+    known = {name: getattr(found, name) for name in RECORD}
+    y = motion.y
     across = y and {name: getattr(y, name) for name in RECORD}
     return {**known, "y": across, "scale": motion.scale, "warnings": [*warnings, *doubts]}, None
 

@@ -79,7 +79,8 @@ class Design(NamedTuple):
     @property
     def document(self) -> dict[str, Any]:
         """The answer in JSON."""
-        layout, unseen = self.run.layout, self.validated
+        layout = self.run.layout
+        unseen = self.validated
         notes = [*answer_notes(self.answer, self.search.faults)]
         if self.keeps_limits is False:
             notes.append("the best design does not keep its limits under the records of `validate`")
@@ -100,7 +101,8 @@ class Design(NamedTuple):
     @property
     def tables(self) -> Iterator[Part]:
         """The answer for readers, then its validation."""
-        layout, judgements = self.run.layout, self.judged.judgements
+        layout = self.run.layout
+        judgements = self.judged.judgements
         yield Heading(layout.study.title)
         counts = answer_document(self.answer, judgements)["designs"]
         listing = [(name.replace("_", " "), str(number)) for name, number in counts.items()]
@@ -126,7 +128,9 @@ def designed(request: CaseRequest, choices: RunChoices, out: Output) -> Design |
     """Search, judge what is best, and collect the files; None after a dry run."""
     terminal = out.terminal
     task = parse_design(**opened(request.source), overrides=request.overrides)
-    search, rounds, validated = Search(task), 0, None
+    search = Search(task)
+    rounds = 0
+    validated = None
     first = Study(search.layout, request.overrides)
     first.require_results()
     terminal.warn(task.study.notes)  # doubts about systems come with those of all rounds

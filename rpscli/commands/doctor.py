@@ -58,7 +58,8 @@ def command(terminal: Terminal) -> None:
 
 def _surroundings() -> list[tuple[str, str, str]]:
     anew = "" if installed("rpscli") == VERSION else "pip install rpscli: this runs from a folder"
-    place, encoder = user_cache(), shutil.which(ENCODER)
+    place = user_cache()
+    encoder = shutil.which(ENCODER)
     mine = "" if place in cache_places()[:1] else f"set {VARIABLE} to a folder that is yours alone"
     return [
         ("rps", f"{VERSION}, cases in {shipped_cases()}", anew),

@@ -117,7 +117,8 @@ def _comparable(result: TimeHistoryResult) -> float:
 
     from rpscli.analyses.timehistory import time_history
 
-    own, first = result.trace.cap_beam_displacement, math.inf
+    own = result.trace.cap_beam_displacement
+    first = math.inf
     for factor in (0.9999, 1.0001):
         motion = result.motion.scaled(factor)
         beside = time_history(result.structure, motion, result.settings, with_fixed_base=False)

@@ -95,7 +95,8 @@ def _tables(found: Identified) -> Iterator[Part]:
     yield Table.of_texts(("", "value", "from", "to", "unit"), rows)
     swings = []
     for each in found.residuals:
-        top, model = each["amplitude"], each["model_amplitude"]
+        top = each["amplitude"]
+        model = each["model_amplitude"]
         numbers = (each["time"], each["model_time"], 1e3 * top, 1e3 * model)
         off = shown((top - model) / each["amplitude_error"], 2)
         swings.append((*(shown(number, 5) for number in numbers), off))
@@ -124,7 +125,8 @@ def measured(source: str, test: str, first: float | None, last: float | None) ->
         if column is None:
             missing = listed(f"`{name} [{unit}]`" for name, unit in wanted)
             raise RecordError(f"{source}:1: no column {missing}; {test} needs one: name it so")
-        place, (name, unit) = names.index(column[0]), column
+        place = names.index(column[0])
+        (name, unit) = column
         rule = f"write numbers, in {unit} or another such unit"
         try:
             written = heads[place].partition("[")[2].strip(" ]")

@@ -260,10 +260,12 @@ def load_motion(case: Case, request: MotionRequest) -> MotionComponents:
             motion = replace(motion, vertical=load_record(request.vertical))
     if motion.y is not None and (why := case.structure.planar_only):
         raise CaseError(f"{case.source}: both components of {motion.horizontal.source}: {why}")
-    scale, asker = request.scale, f"{case.source}: record.scale_to"
+    scale = request.scale
+    asker = f"{case.source}: record.scale_to"
     aim = given.scale_to if given is not None else None
     if request.scale_to is not None:
-        aim, asker = parsed_target(request.scale_to), f"--scale-to {request.scale_to}"
+        aim = parsed_target(request.scale_to)
+        asker = f"--scale-to {request.scale_to}"
     if scale is None and aim is not None:
         pair = request.pair if given is None else case.record_pair(aim.of)
         of = [load_record(each, **how) for each in pair or ()] or [motion.horizontal]
@@ -283,7 +285,8 @@ def _scaled_to(
     """A motion by the factor that brings a measure of one component or a pair to a value."""
     from rpscli.records import measures
 
-    measure, period = target.measure, target.period
+    measure = target.measure
+    period = target.period
     at_period = measures.needs_period(measure)
     if at_period and period is None:
         building = case.structure.superstructure

@@ -59,7 +59,8 @@ FIRST_ORDER = "first order"
 
 
 def _tables(result: ModalResult, title: str, left_out: Collection[str]) -> Iterator[Part]:
-    storey, vibrations = [], []
+    storey = []
+    vibrations = []
     for name, (modes, paper) in result.both_orders.items():
         numbers = modes.frequency_parameter, paper.frequency_parameter
         rigid = modes.frequency_parameter_rigid

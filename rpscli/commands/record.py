@@ -64,7 +64,8 @@ class SourceRequest:
 
         read = load_components(self.source, dt=self.dt, units=self.units)
         read = read if self.scale == 1.0 else read.scaled(self.scale)
-        motions, stem = [read.horizontal], read.horizontal.name.replace("_both", "", 1)
+        motions = [read.horizontal]
+        stem = read.horizontal.name.replace("_both", "", 1)
         if read.y is not None:
             named = zip("xy", (read.horizontal, read.y), strict=True)
             motions = [replace(each, name=f"{stem}_{way}") for way, each in named]
@@ -278,7 +279,8 @@ def select(
     wanted_pgv = _pgv(scale_by, pgv, spectrum)
     if overrides and case_source is None:
         raise UsageError("--set: overrides a value of a case; name it by --case")
-    structure, limit = None, ""
+    structure = None
+    limit = ""
     if case_source is not None:
         structure, limit = _structure(CaseRequest(case_source, overrides), out.terminal)
     if spectrum.deviation is not None and rules not in {None, "none"}:
@@ -301,7 +303,8 @@ def select(
         raise UsageError(f"--where: leaves no motion of {len(every)}; out go by {counts}")
     looking = partial(watched, "candidates", out.terminal, many=100)
     selection = search.select(motions, spectrum, request, looking)
-    place, file = out.place or RESULTS / "selection" / "record_select", Path(target)
+    place = out.place or RESULTS / "selection" / "record_select"
+    file = Path(target)
     digest = hashlib.sha256("".join(motion.digest for motion in motions).encode()).hexdigest()
     inputs = {
         "sources": list(sources), "target": target, "request": asdict(request), "where": where
@@ -331,7 +334,8 @@ def _structure(request: CaseRequest, terminal: Terminal) -> tuple[Periods, str]:
     from rpscli.records.target import Periods
 
     case = read_case(request, terminal).case
-    structure, critical = case.structure, case.structure.critical_rotation
+    structure = case.structure
+    critical = case.structure.critical_rotation
     scales = {"rotation_ratio": critical, "max_rotation": 1.0}
     limits = [
         (scales[limit.name] * limit.limit, f"the limit {limit.name} {limit.limit:g}")
@@ -357,11 +361,16 @@ def _range(
         fixed, secant = structure
         why = f"the secant period {secant:.3g} s on bearings at {limit}"
         if asked is not None and asked.isolated:
-            low, high, why = 0.75 * secant, 1.25 * secant, f"0.75 and 1.25 T_M, {why}"
+            low = 0.75 * secant
+            high = 1.25 * secant
+            why = f"0.75 and 1.25 T_M, {why}"
         elif fixed is None:
-            low, high, why = 0.2 * secant, secant, f"0.2 of it to {why}"
+            low = 0.2 * secant
+            high = secant
+            why = f"0.2 of it to {why}"
         else:
-            low, high = 0.2 * fixed, max(2.0 * fixed, secant)
+            low = 0.2 * fixed
+            high = max(2.0 * fixed, secant)
             why = f"0.2 T1, T1 = {fixed:.3g} s on a fixed base, to the longer of 2 T1 and {why}"
     cut = max(low, target.span[0]), min(high, target.span[1])
     return cut, why if cut == (low, high) else f"{why}; cut where the target ends"

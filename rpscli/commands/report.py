@@ -106,7 +106,8 @@ def command(
         make = partial(pages.design_page, request, earlier, out)
     elif kind == pages.SWEEP:
         study = read(earlier.subject if earlier else request, conditions, terminal)
-        name, make = study.layout.study.name, partial(pages.study_page, study, out)
+        name = study.layout.study.name
+        make = partial(pages.study_page, study, out)
     else:
         if earlier is None:
             given = inputs.read_case(request, terminal)

@@ -46,8 +46,11 @@ from rpscli.report.table import Heading, Table
 from rpscli.studies import Study, StudyResult
 from rpscli.sweep.evaluation import resolved
 
-SUMMARY, STORE = "summary.json", "study.sqlite"
-HISTORY, SWEEP, DESIGN = "timehistory", "sweep", "design"
+SUMMARY = "summary.json"
+STORE = "study.sqlite"
+HISTORY = "timehistory"
+SWEEP = "sweep"
+DESIGN = "design"
 _COMPONENT = {"source": str, "sha256": str}
 _MOTION = {"scale": float, "horizontal": _COMPONENT, "vertical": (_COMPONENT,), "y": (_COMPONENT,)}
 HISTORY_INPUTS = {
@@ -79,7 +82,8 @@ class Earlier:
         """The case or the study, as seen from the working folder if it is inside."""
         if self.run["file"] is None:
             return None
-        absolute, here = self.folder.joinpath(self.run["file"]).resolve(), Path.cwd()
+        absolute = self.folder.joinpath(self.run["file"]).resolve()
+        here = Path.cwd()
         return absolute.relative_to(here) if absolute.is_relative_to(here) else absolute
 
     @property
@@ -99,26 +103,30 @@ class Earlier:
 
     def case(self) -> tuple[CaseInput, list[MotionRequest]]:
         """The case and the motions, as they were then."""
-        file, inputs = self.file, self.run["inputs"]
+        file = self.file
+        inputs = self.run["inputs"]
         folder = self.folder if file is None else file.parent
         name = str(file or f"{self.run['name']}.yaml")
         # JSON is YAML too.
         case = parse_case(json.dumps(inputs["case"]), name=name, folder=folder)
         case = replace(case, digest=self.run["sha256"], written={})
-        own, motions = case.record, []
+        own = case.record
+        motions = []
         for given in self.records:
             horizontal, vertical = (
                 given[name] and str(given[name]["source"]) for name in ("horizontal", "vertical")
             )
             if own and own.source == horizontal and (own.y is None or given["y"]):
-                horizontal, vertical = None, None if vertical == own.vertical else vertical
+                horizontal = None
+                vertical = None if vertical == own.vertical else vertical
             motions.append(MotionRequest(horizontal, vertical, given["scale"]))
         return CaseInput(case, CaseRequest(name, tuple(inputs["overrides"]))), motions
 
 
 def earlier_results(folder: Path) -> Earlier:
     """Results that a folder holds."""
-    place, what = folder / RUN_FILE, f"has no {RUN_FILE} of rps"
+    place = folder / RUN_FILE
+    what = f"has no {RUN_FILE} of rps"
     try:
         command = read_json(place, RUN_KINDS)["command"]
         if command in {HISTORY, SWEEP, DESIGN}:
@@ -193,8 +201,10 @@ def history_page(
     with_budget: bool = False,
 ) -> PageDone:
     """Compute what belongs to a case, and put it in order."""
-    case, terminal = given.case, out.terminal
-    stored, histories = list[Block](), list[run.History]()
+    case = given.case
+    terminal = out.terminal
+    stored = list[Block]()
+    histories = list[run.History]()
     if case.record is not None or motions[0].record is not None:
         # A place for the files, which are not written there.
         histories = run.histories_of([given], motions, Output(terminal, Path(), force=True))
@@ -226,7 +236,8 @@ def history_page(
         stored=stored,
         both=any(history.ground.y is not None for history in histories),
     )
-    title, signed = f"{made.title}{ends(case)}", case.file.document
+    title = f"{made.title}{ends(case)}"
+    signed = case.file.document
     return PageDone(case.title, title, sections, made.document, made.error, signed)
 
 
@@ -279,7 +290,8 @@ def _names(folder: OutputFolder) -> list[tuple[str, object]]:
 
 def typed_together(case: Case, motions: Sequence[MotionRequest]) -> list[Asked]:
     """Motions as they may be typed, those that differ in their record alone together."""
-    own, alike = case.record, dict[MotionRequest, list[str]]()
+    own = case.record
+    alike = dict[MotionRequest, list[str]]()
     plain = own and Source.parse(own.source).scheme and not (own.y or own.rotation or own.vertical)
     for motion in motions:
         record = motion.record or (own.source if own and plain and len(motions) > 1 else None)
@@ -319,7 +331,8 @@ def _compared(
         if digest != earlier.run["sha256"]:
             state = "has changed since" if digest else "is not there any more"
             yield Notice(f"{file} {state}; this page keeps to the case in run.json.")
-    folder, summary = earlier.folder, earlier.folder / SUMMARY
+    folder = earlier.folder
+    summary = earlier.folder / SUMMARY
     if not summary.exists():
         return
     try:
@@ -353,7 +366,8 @@ def study_page(study: Study, out: Output) -> PageDone:
     choices = RunChoices(report_only=out.place is not None)
     done = swept("report", study, folder, choices, out)
     out.terminal.warn(done.notes)
-    result, found = done.result, done.found
+    result = done.result
+    found = done.found
     varied = any(key.startswith("podium.contact") for key in layout.plan.keys)
     first = resolved(layout.plan, layout[0].values)
     contact = ", contact varied" if varied else ends(first)
@@ -406,7 +420,9 @@ def _in_short(run: StudyResult) -> Iterator[Block]:
 
 def _motions_of(study: Study) -> tuple[list[GroundMotion], list[str]]:
     """The records before they are scaled, and why some cannot be read."""
-    layout, motions, reasons = study.layout, [], []
+    layout = study.layout
+    motions = []
+    reasons = []
     own = [properties.record for properties in layout.properties if None in layout.records]
     for request in filter(None, dict.fromkeys((*layout.records, *own))):
         try:
@@ -429,7 +445,8 @@ def _figures(files: Mapping[str, object], study: Study) -> Section:
 
 def _study_input(study: Study, first: Case, which: str) -> Iterator[Block]:
     """The file as it is written, and a case of it."""
-    checked, plan = study.layout.study, study.layout.plan
+    checked = study.layout.study
+    plan = study.layout.plan
     yield parts.listing([
         ("file", checked.source),
         ("SHA-256 of its text", checked.digest),
@@ -448,7 +465,9 @@ def design_page(asked: CaseRequest, earlier: Earlier | None, out: Output) -> Pag
     request = asked if earlier is None else earlier.subject
     done = designed(request, RunChoices(), replace(out, force=earlier is not None))
     assert done is not None, "it is no dry run"
-    document, study, at = done.document, done.run.study, done.judged.layout
+    document = done.document
+    study = done.run.study
+    at = done.judged.layout
     out.terminal.warn(notes := document["warnings"])
     case = resolved(at.plan, at[0].values)
     named = {path.name: content for path, content in done.folder.contents.items()}

@@ -60,7 +60,8 @@ def computed(
     def watch(begin: Start) -> Iterator[Callable[[Progress], None]]:
         for note in begin.notes if command != "design" else ():  # which is many studies
             terminal.note(note)
-        pending, total = len(begin.pending), len(begin.keys)
+        pending = len(begin.pending)
+        total = len(begin.keys)
         if choices.report_only and pending:
             raise Refused(
                 f"{store.path} lacks {pending} of {total} points, which `rps sweep` computes"
@@ -119,7 +120,9 @@ class Swept(NamedTuple):
 
     def document(self, command: str) -> dict[str, Any]:
         """All of it in JSON."""
-        result, found, layout = self.result, self.found, self.result.layout
+        result = self.result
+        found = self.found
+        layout = self.result.layout
         statistics: dict[str, Any] = {}
         if (rows := result.summary) is not None:
             statistics = {
@@ -150,7 +153,9 @@ class Swept(NamedTuple):
 
     def tables(self, most: int = 0) -> list[Part]:
         """All, or as many rows of each as fit into some lines: statistics are cut first."""
-        result, judged, told = self.result, self.result.judgements, list(self._told())
+        result = self.result
+        judged = self.result.judgements
+        told = list(self._told())
         counts = {"points": len(result), **result.outcomes}
         listing = [(name, str(count)) for name, count in counts.items()]
         listing.append(("records scaled to", result.layout.scaled_to))
@@ -159,7 +164,8 @@ class Swept(NamedTuple):
             every = {of.name for of in result.summary.quantities} if result.summary else None
             return [*head, *of_study.summary_tables(result.summary, every), *told]
         statistics = list(of_study.summary_tables(result.summary, asked(result.layout)))
-        elsewhere, few = f"statistics are in statistics.csv{ALL}", head
+        elsewhere = f"statistics are in statistics.csv{ALL}"
+        few = head
         for rows, of_reports in [(n, FEWER[0]) for n in FEWER] + [(0, n) for n in FEWER]:
             some = of_study.cut(statistics, rows, ALL) if rows else [elsewhere]
             limits = [counts_of_limits(judged)] if len(judged) > of_reports else []
@@ -236,8 +242,10 @@ def sweep(
 def show_dry_run(command: str, study: Study, choices: RunChoices, terminal: Terminal) -> None:
     """Count, first and last points, and an estimate of the time."""
     terminal.warn(study.warnings)  # first: trying points may take long where the case is at fault
-    layout, count = study.layout, len(study)
-    jobs, histories = choices.jobs or available_cores(), layout.plan.analysis == "timehistory"
+    layout = study.layout
+    count = len(study)
+    jobs = choices.jobs or available_cores()
+    histories = layout.plan.analysis == "timehistory"
     points: dict[int, dict[str, Any]] = {}
     for number in sorted({*range(count)[:POINTS_SHOWN], *range(count)[-POINTS_SHOWN:]}):
         point = layout[number]

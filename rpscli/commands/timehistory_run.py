@@ -139,7 +139,9 @@ def unique(names: Sequence[str]) -> list[str]:
 
 def compute(history: History, conditions: Sequence[Condition], out: Output) -> TimeHistoryResult:
     """Run a history, judge it, and collect its files; the caller writes them."""
-    case, ground, folder = history.given.case, history.ground, history.folder
+    case = history.given.case
+    ground = history.ground
+    folder = history.folder
     limits = [*case_conditions(case.limits, case.structure), *conditions]
     if ground.y is not None and (lines := unknown_of_pairs(limits, case.structure)):
         raise UsageError("\n".join(lines))  # known before minutes are spent
@@ -178,7 +180,9 @@ def _refuse_unknown(limit: Condition, result: TimeHistoryResult) -> None:
 
 
 def _document(history: History, result: TimeHistoryResult) -> dict[str, Any]:
-    case, ground, both = history.given.case, history.ground, history.ground.y is not None
+    case = history.given.case
+    ground = history.ground
+    both = history.ground.y is not None
     document = {
         **heading(COMMAND),
         "note": direction_note([both], result.structure.planar_only) or None,
@@ -211,9 +215,11 @@ def run_one(
     history: History, conditions: Sequence[Condition], film: FilmRequest | None, out: Output
 ) -> None:
     """Compute a single history, look beside it, and write and show all of it."""
-    title, terminal = history.given.case.title, out.terminal
+    title = history.given.case.title
+    terminal = out.terminal
     result = compute(history, conditions, out)
-    beside, document = look_beside(history, result), history.document
+    beside = look_beside(history, result)
+    document = history.document
     if film is not None:
         plan = frame_plan(result, film)  # refused before anything is written
         draw = partial(history_film, result, title, film, plan, out.look)
@@ -413,7 +419,8 @@ def _note(computed: Sequence[Computed]) -> str:
 def _records_table(case: Computed, quantities: dict[ResultQuantity, Spread]) -> Table:
     rows = []
     for label, history in zip(case.labels, case.histories, strict=True):
-        document, outcome = history.document, str(history.document["outcome"])
+        document = history.document
+        outcome = str(history.document["outcome"])
         word = "overturned" if outcome.startswith("overturned") else outcome.replace("_", " ")
         values = [large(document[q.name], q.unit)[0] for q in quantities]
         rows.append([label, word, *(shown(value, DIGITS) for value in values)])

@@ -492,7 +492,8 @@ def choose(body: Body, node: ast.BoolOp) -> Value:
             both = f"{other}, i1 false" if is_and else f"true, i1 {other}"
             value = Number(BOOL, body.get(f"select i1 {name}, i1 {both}"))
             continue
-        on, end = body.new("and"), body.new("decided")
+        on = body.new("and")
+        end = body.new("decided")
         before = body.block
         body.branch(name, *((on, end) if is_and else (end, on)))
         body.label(on)
@@ -512,19 +513,25 @@ def conditional(body: Body, node: ast.IfExp) -> Value:
         return expression(body, node.body if is_true(test) else node.orelse)
     name = body.number(test, BOOL)
     if is_simple(node.body) and is_simple(node.orelse):
-        one, other = expression(body, node.body), expression(body, node.orelse)
+        one = expression(body, node.body)
+        other = expression(body, node.orelse)
         kind = common(kind_of(one), kind_of(other))
         pairs = zip(parts(body.as_kind(one, kind)), parts(body.as_kind(other, kind)), strict=True)
         chosen = (body.get(f"select i1 {name}, {of} {x}, {of} {y}") for (of, x), (_, y) in pairs)
         return rebuilt(kind, chosen)
-    yes, no, end = body.new("yes"), body.new("no"), body.new("chosen")
+    yes = body.new("yes")
+    no = body.new("no")
+    end = body.new("chosen")
     body.branch(name, yes, no)
     body.label(yes)
-    one, first, written = expression(body, node.body), body.block, len(body.lines)
+    one = expression(body, node.body)
+    first = body.block
+    written = len(body.lines)
     body.label(no)
     other = expression(body, node.orelse)
     kind = common(kind_of(one), kind_of(other))
-    other, second = body.as_kind(other, kind), body.block
+    other = body.as_kind(other, kind)
+    second = body.block
     body.jump(end)
     later = body.lines[written:]
     del body.lines[written:]

@@ -214,7 +214,8 @@ class Program:
     ) -> list[Value]:
         """Arguments in the order of parameters, with those that have defaults."""
         if hasattr(function, "_fields"):
-            names, defaults = list(function._fields), dict(function._field_defaults)
+            names = list(function._fields)
+            defaults = dict(function._field_defaults)
         else:
             names = [parameter.arg for parameter in tree_of(function).args.args]
             values = function.__defaults__ or ()
@@ -343,7 +344,9 @@ def scope_of(function: Any, names: dict[str, Value]) -> Scope:
 def in_place(body: Body, function: Any, node: ast.FunctionDef, given: list[Value]) -> Value | None:
     """What a function returns whose known tests leave one short expression; else None."""
     names = {of.arg: value for of, value in zip(node.args.args, given, strict=True)}
-    outside, written_so_far, allocated = body.scope, len(body.lines), len(body.allocas)
+    outside = body.scope
+    written_so_far = len(body.lines)
+    allocated = len(body.allocas)
     body.scope = scope_of(function, names)
     try:
         following = list(node.body)

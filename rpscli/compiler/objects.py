@@ -18,7 +18,8 @@ import numpy as np
 
 from rpscli.compiler.values import DOUBLE, INT, POINTER, Kind, types_of
 
-OPTIMISATION, SELECTION = 2, 2
+OPTIMISATION = 2
+SELECTION = 2
 """Levels of LLVM's passes and of its choice of instructions: higher ones take longer to compile and
 no less to run."""
 
@@ -106,7 +107,8 @@ class Kept:
             content = self.folder.joinpath(name).read_bytes()
         except OSError:
             return None
-        code, digest = content[:-DIGEST], content[-DIGEST:]
+        code = content[:-DIGEST]
+        digest = content[-DIGEST:]
         return code if hashlib.sha256(code).digest() == digest else None
 
     def get(self, name: str, make: Callable[[], str]) -> bytes:

@@ -226,7 +226,9 @@ def branch(body: Statements, node: ast.If) -> None:
     if isinstance(test, Known):
         statements(body, node.body if is_true(test) else node.orelse)
         return
-    yes, no, end = body.new("then"), body.new("else"), body.new("endif")
+    yes = body.new("then")
+    no = body.new("else")
+    end = body.new("endif")
     body.branch(body.number(test, "i1"), yes, no if node.orelse else end)
     body.label(yes)
     block(body, node.body)
@@ -287,12 +289,17 @@ def loop_over_range(body: Statements, node: ast.For, limits: list[Value]) -> Non
     if not 0 < len(limits) < 4 or getattr(node.iter, "keywords", None):
         refuse("a range has one to three limits, without names")
     first, limit = (Known(0), limits[0]) if len(limits) == 1 else limits[:2]
-    begin, end = body.index(first), body.index(limit)
+    begin = body.index(first)
+    end = body.index(limit)
     name = body.new(f"{body.name}.{node.lineno}.loop")
-    before, inside, following, out = body.block, f"{name}.in", f"{name}.next", f"{name}.out"
+    before = body.block
+    inside = f"{name}.in"
+    following = f"{name}.next"
+    out = f"{name}.out"
     body.jump(name)
     body.label(name)
-    i, more = f"%{name}.i", f"%{name}.i.next"
+    i = f"%{name}.i"
+    more = f"%{name}.i.next"
     body.put(f"{i} = phi i64 [{begin}, %{before}], [{more}, %{following}]")
     test = "slt" if step.value > 0 else "sgt"
     body.branch(body.get(f"icmp {test} i64 {i}, {end}"), inside, out)
@@ -316,7 +323,8 @@ def repeat(body: Statements, node: ast.While) -> None:
     if expression_is_false(body, node.test):
         return
     name = body.new(f"{body.name}.{node.lineno}.while")
-    inside, out = f"{name}.in", f"{name}.out"
+    inside = f"{name}.in"
+    out = f"{name}.out"
     body.jump(name)
     body.label(name)
     written = len(body.lines)

@@ -9,7 +9,10 @@ from typing import Any, NoReturn, TypeAlias
 
 import numpy as np
 
-DOUBLE, INT, BOOL, POINTER = "double", "i64", "i1", "ptr"
+DOUBLE = "double"
+INT = "i64"
+BOOL = "i1"
+POINTER = "ptr"
 
 
 class NotInLanguage(Exception):

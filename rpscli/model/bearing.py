@@ -290,7 +290,8 @@ def uplifted_state(bearing: Bearing, *, rolling: bool, exact: bool = True) -> Up
         # e = 2 R (a x + (kappa + 1) x^2/2)
         return UpliftedState(0.0, a, 1.0, kappa, 1.0, (0.0, diameter * a, diameter * (kappa + 1.0)))
     phase, x = (bearing.rolling, 0.0) if rolling else (bearing.rocking, bearing.beta)
-    cosine, sine = math.cos(x), math.sin(x)
+    cosine = math.cos(x)
+    sine = math.sin(x)
     B = geometry.contact_arm(phase, cosine, sine)
     C = geometry.contact_height(phase, cosine, sine)
     kappa = phase.q * cosine - phase.p * sine
@@ -299,7 +300,8 @@ def uplifted_state(bearing: Bearing, *, rolling: bool, exact: bool = True) -> Up
 
 def _elongation(bearing: Bearing, x: float) -> tuple[float, float, float]:
     """At theta = 0, or where the contact has arrived at the arc's end and stays there."""
-    B, r = bearing.half_width, 0.0 if bearing.is_flat else bearing.radius
+    B = bearing.half_width
+    r = 0.0 if bearing.is_flat else bearing.radius
     if x == 0.0:
         return 0.0, 2.0 * B, 2.0 * r
     # The middle of an end moves by z = reach - edge exp(-i x); e = 2 |z|.

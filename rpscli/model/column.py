@@ -41,12 +41,20 @@ class ColumnState(NamedTuple):
 
         Accelerations are those that the forces at both ends give it: (16.1), (16.2).
         """
-        H, xi, s = bearing.half_height, np.asarray(along), self.side
-        F, N, mu = self.shear_bottom, self.normal_bottom, mass / (2.0 * H)
-        cos, sin = math.cos(self.rotation), math.sin(self.rotation)
-        across, up = (F - self.shear_top) / mass, (N - self.normal_top) / mass
-        a_n, a_t = s * across * sin + up * cos, s * across * cos - up * sin
-        P_b, Q_b = N * cos + s * F * sin, s * F * cos - N * sin
+        H = bearing.half_height
+        xi = np.asarray(along)
+        s = self.side
+        F = self.shear_bottom
+        N = self.normal_bottom
+        mu = mass / (2.0 * H)
+        cos = math.cos(self.rotation)
+        sin = math.sin(self.rotation)
+        across = (F - self.shear_top) / mass
+        up = (N - self.normal_top) / mass
+        a_n = s * across * sin + up * cos
+        a_t = s * across * cos - up * sin
+        P_b = N * cos + s * F * sin
+        Q_b = s * F * cos - N * sin
         # Of the contacts about the centre.
         beside = self.lever * cos - (H - self.rise) * sin
         above = self.lever * sin + (H - self.rise) * cos
@@ -96,7 +104,9 @@ class ColumnDesign:
 
         The first of these lies in the plane of tilt; that of a line across is infinite.
         """
-        r, E, N = bearing.radius, self.contact_modulus, np.maximum(force, 0.0)
+        r = bearing.radius
+        E = self.contact_modulus
+        N = np.maximum(force, 0.0)
         if (L := self.edge_length) is not None:  # (16.4)
             half = np.sqrt(4.0 * N * r / (math.pi * L * E))
             return np.sqrt(N * E / (math.pi * L * r)), half, np.full_like(half, np.inf)
@@ -106,7 +116,8 @@ class ColumnDesign:
         # [E/k^2 - K]/m = R_D(0, 1, k^2)/3, without the differences that vanish with m.
         width = bearing.half_width
         ratio = 1.0 + (width / (r * np.sin(rotation)) if width else np.zeros_like(rotation))
-        k, one = ratio ** (-2.0 / 3.0), np.ones_like(ratio)
+        k = ratio ** (-2.0 / 3.0)
+        one = np.ones_like(ratio)
         for _ in range(16):  # each leaves a fifth of the error at most
             short = elliprd(0.0, k * k, one)
             k = k * (elliprd(0.0, one, k * k) / short / ratio) ** 0.6
@@ -118,7 +129,8 @@ class ColumnDesign:
     def doubt(self, bearing: Bearing, rotation: float, force: float) -> str:
         """The reason why the pressure is another one; empty where its law is valid."""
         _, along, across = self.pressed(bearing, np.array(rotation), np.array(force))
-        r, line = bearing.radius, self.edge_length is not None
+        r = bearing.radius
+        line = self.edge_length is not None
         if r * math.sin(rotation) <= along and not bearing.is_spherical:
             return "an upper bound, since the flat part still bears"
         if bearing.is_spherical:
@@ -131,7 +143,8 @@ class ColumnDesign:
 
         Of a round end that crushes whole, the depth goes on with the force.
         """
-        area, radius = max(force, 0.0) / self.contact_strength, bearing.end_half_width
+        area = max(force, 0.0) / self.contact_strength
+        radius = bearing.end_half_width
         if self.edge_length is not None:
             return area / self.edge_length, 0.5 * area / self.edge_length
         area /= radius**2

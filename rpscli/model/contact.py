@@ -118,7 +118,8 @@ class Bed(NamedTuple):
     @property
     def period(self) -> float | None:
         """First period in full contact [s]."""
-        building, ratio = self.structure.superstructure, self.period_ratio
+        building = self.structure.superstructure
+        ratio = self.period_ratio
         return None if ratio is None else ratio * float(building.periods[0])
 
     @property
@@ -147,8 +148,11 @@ class Bed(NamedTuple):
 
     def path(self, x: Array) -> BedPath:
         """Arms, displacements and potential at |theta| [rad]."""
-        u, fade, b = self.uplift_rotation, self.fade, self.structure.bearing
-        below, up = x < u, np.maximum(x, u)
+        u = self.uplift_rotation
+        fade = self.fade
+        b = self.structure.bearing
+        below = x < u
+        up = np.maximum(x, u)
         B, C, displacement, lift = geometry.path_along(b.rolling, b.rocking, b.beta, up)
         c = np.where(up < b.beta, b.rolling.c, b.rocking.c)
         start = float(geometry.path_along(b.rolling, b.rocking, b.beta, np.array(u))[3])
@@ -170,16 +174,22 @@ class Bed(NamedTuple):
 
 def _make_bed(structure: Standing, u: float) -> Bed:
     """The bed whose edges lift at phi_u [rad]."""
-    b, contact, gamma = structure.bearing, structure.contact, structure.gamma
-    phase, gradual = b.rocking if b.is_flat else b.rolling, contact.kind == "plane"
-    sine, cosine, columns = math.sin(u), math.cos(u), structure.columns_mass
+    b = structure.bearing
+    contact = structure.contact
+    gamma = structure.gamma
+    phase = b.rocking if b.is_flat else b.rolling
+    gradual = contact.kind == "plane"
+    sine = math.sin(u)
+    cosine = math.cos(u)
+    columns = structure.columns_mass
     B, C = (f(phase, cosine, sine) for f in (geometry.contact_arm, geometry.contact_height))
     masses = (
         b.inertia_ratio - 1.0,
         1.0 + 4.0 * gamma,
         1.0 + 4.0 * gamma * (1.0 + structure.eta_riding),
     )
-    inertia, lifted = geometry.inertia(*masses, C * C, 0.0), geometry.inertia(*masses, C * C, B * B)
+    inertia = geometry.inertia(*masses, C * C, 0.0)
+    lifted = geometry.inertia(*masses, C * C, B * B)
     sink = 2.0 / 3.0 * math.sin(b.alpha) * math.sqrt(u) if gradual else 0.0
     arm = (B - sink / math.sqrt(u)) / u
     spring = 2.0 * structure.weight * arm / (columns * b.semi_diagonal)
@@ -215,18 +225,21 @@ def _storey_stiffness(structure: Standing, mass: float, omega: float) -> float:
 
 def bed_of(structure: Standing) -> Bed | None:
     """Compliance of full contact of a structure; None on rigid ends."""
-    contact, b = structure.contact, structure.bearing
+    contact = structure.contact
+    b = structure.bearing
     if contact.kind == "rigid":
         return None
     _refuse_combinations(structure)
-    softest, bed = b.slenderness * SHAPE[contact.kind], None
+    softest = b.slenderness * SHAPE[contact.kind]
+    bed = None
     if contact.settlement is not None:
         bed = _make_bed(structure, contact.settlement / b.half_width)
     else:
         from scipy.optimize import brentq
 
         def misses(u: float) -> float:
-            bed, wanted = _make_bed(structure, u), contact.stiffness
+            bed = _make_bed(structure, u)
+            wanted = contact.stiffness
             if contact.period_ratio is not None:
                 omega = float(structure.superstructure.frequencies[0]) / contact.period_ratio
                 wanted = _storey_stiffness(structure, bed.mass, omega)
@@ -260,9 +273,12 @@ def bed_of(structure: Standing) -> Bed | None:
 
 def _refuse_combinations(structure: Standing) -> None:
     """Refuse what is not followed with compliant ends: raises ValueError."""
-    contact, b = structure.contact, structure.bearing
-    devices, law = {device.kind for device in structure.devices}, structure.impact_law
-    without, curved = structure.superstructure is None, not b.is_flat
+    contact = structure.contact
+    b = structure.bearing
+    devices = {device.kind for device in structure.devices}
+    law = structure.impact_law
+    without = structure.superstructure is None
+    curved = not b.is_flat
     reasons = {
         "spherical ends have no flat part to bear on; use `rigid`": b.is_spherical,
         "floors would jump at re-contact, use the impact law `flexible`": law.floors_jump,

@@ -137,7 +137,8 @@ class Tendon(Device):
     def at_rest(self, structure: PodiumStructure, rotation: Array, farthest: float) -> AtRest:
         stretch = self.stroke(structure, rotation) - self.permanent(structure, farthest)
         tension = np.clip(self.prestress + self.stiffness * stretch, 0.0, self.yield_force)
-        lever, arm = structure.bearing.tendon_lever(rotation), structure.lever_arm(rotation)
+        lever = structure.bearing.tendon_lever(rotation)
+        arm = structure.lever_arm(rotation)
         return AtRest(structure.columns * tension * lever / arm)
 
     def permanent(self, structure: PodiumStructure, farthest: float) -> float:
@@ -147,8 +148,10 @@ class Tendon(Device):
         return max(0.0, float(drawn[0]) - elastic)
 
     def stiffness_after_uplift(self, structure: PodiumStructure) -> float:
-        bearing, N = structure.bearing, structure.columns
-        B, r = bearing.half_width, 0.0 if bearing.is_flat else bearing.radius
+        bearing = structure.bearing
+        N = structure.columns
+        B = bearing.half_width
+        r = 0.0 if bearing.is_flat else bearing.radius
         growth = N * (self.stiffness * 4.0 * B**2 + self.prestress * 2.0 * r)
         return _force_growth(bearing, N * self.prestress * 2.0 * B, growth)
 

@@ -122,12 +122,16 @@ class ImpactLaw:
 
 def rigid_restitution(bearing: Bearing, gamma: float, eta: float) -> float:
     """e if the floors move with the cap beam (Theory (4.6); paper, Eq. 6, c = e^2)."""
-    Io, carried = bearing.inertia_ratio, 4.0 * gamma * (1.0 + eta)
+    Io = bearing.inertia_ratio
+    carried = 4.0 * gamma * (1.0 + eta)
     return 1.0 - 2.0 * math.sin(bearing.alpha) ** 2 * (1.0 + carried) / (Io + carried)
 
 
 def flexible_restitution(bearing: Bearing, gamma: float, eta: float) -> float:
     """e if only the vertical momentum of the floors takes part (Theory (4.8))."""
-    Io, a = bearing.inertia_ratio, bearing.alpha
-    sin2, beam, floors = math.sin(a) ** 2, 4.0 * gamma, 4.0 * gamma * eta * math.sin(a) ** 2
+    Io = bearing.inertia_ratio
+    a = bearing.alpha
+    sin2 = math.sin(a) ** 2
+    beam = 4.0 * gamma
+    floors = 4.0 * gamma * eta * math.sin(a) ** 2
     return (Io - 2.0 * sin2 + beam * math.cos(2.0 * a) - floors) / (Io + beam + floors)

@@ -135,7 +135,8 @@ class PodiumStructure(Shown):
         object.__setattr__(self, "bed", bed_of(self))  # raises what it does not have
 
     def _refuse_buildings(self) -> None:
-        x, y = self.superstructure, self.superstructure_y
+        x = self.superstructure
+        y = self.superstructure_y
         if x is not None and self.cap_beam_mass == 0.0:
             raise ValueError("cap_beam_mass must be > 0: the superstructure stands on it")
         if x is not None and x.vertical_period is not None and self.impact_law.floors_jump:
@@ -210,7 +211,8 @@ class PodiumStructure(Shown):
         axial
             Of axial forces; else of shears.
         """
-        building, parts = self.superstructure, []
+        building = self.superstructure
+        parts = []
         passes = both and not self.passes_smoothly
         if not (axial or passes):
             return ()
@@ -335,7 +337,8 @@ class PodiumStructure(Shown):
         round does not, so the turn exceeds pi however near the pass is. Floors on vertical springs
         have no part in it.
         """
-        sine, K = math.sin(self.bearing.alpha), self.turning_inertia
+        sine = math.sin(self.bearing.alpha)
+        K = self.turning_inertia
         lifted = 1.0 + 4.0 * self.gamma * (1.0 + self.eta_riding)
         return math.pi * math.sqrt(1.0 + lifted * sine**2 / K)
 
@@ -361,12 +364,14 @@ class PodiumStructure(Shown):
 
     def path(self, rotation: Array) -> tuple[Array, ...]:
         """F = W B/C [N] (on a bed the weight's arm for B), u_b and v_b [m] at |theta| [rad]."""
-        (arm, C, u, v), diameter = self._along(rotation), 2.0 * self.bearing.semi_diagonal
+        (arm, C, u, v) = self._along(rotation)
+        diameter = 2.0 * self.bearing.semi_diagonal
         return self.weight * arm / C, diameter * u, diameter * v
 
     def _along(self, rotation: Array) -> tuple[Array, ...]:
         """Arm of the weight and C over R, u_b and v_b over 2 R at |theta| [rad]."""
-        b, x = self.bearing, np.asarray(rotation)
+        b = self.bearing
+        x = np.asarray(rotation)
         if self.bed is None:
             return geometry.path_along(b.rolling, b.rocking, b.beta, x)
         on_bed = self.bed.path(x)

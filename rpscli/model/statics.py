@@ -43,7 +43,8 @@ class StoreyStrength(NamedTuple):
 
 def storey_strengths(structure: PodiumStructure) -> list[StoreyStrength]:
     """Strengths of the storeys from the bottom; empty where they stay elastic."""
-    building, static = structure.superstructure, structure.static_base_shear
+    building = structure.superstructure
+    static = structure.static_base_shear
     if building is None or building.strengths is None:
         return []
     at_uplift = building.carried * max(

@@ -28,9 +28,14 @@ def set_patches(s: Record) -> None:
 @compiled
 def load_bed(s: Record, l: int, system: Record) -> None:
     """Begin a history on its bed, or on rigid ends."""
-    s.bed_u[l], s.fade[l] = system.bed_uplift, 0.0
-    s.bed_energy[l], s.bedded_time[l], s.impact_number[l] = 0.0, 0.0, 0.0
-    s.bed_back[l], s.turned[l], s.bed_k[l] = 0.0, 0.0, 0.0
+    s.bed_u[l] = system.bed_uplift
+    s.fade[l] = 0.0
+    s.bed_energy[l] = 0.0
+    s.bedded_time[l] = 0.0
+    s.impact_number[l] = 0.0
+    s.bed_back[l] = 0.0
+    s.turned[l] = 0.0
+    s.bed_k[l] = 0.0
     smooth = system.compliant > 0 or system.alpha == 0.0
     s.cone[l] = 0.0 if smooth or ways_of(s) == 1 else 1.0
     if system.bed_full > 0.0:
@@ -46,14 +51,25 @@ def first_phase(system: Record) -> int:
 @compiled
 def enter_on_bed(s: Record, l: int, system: Record, phase: int) -> None:
     """What a bed changes in a phase of motion that is entered: constants, range, steps."""
-    s.bed_k[l], s.bed_c[l], s.sink[l], s.root[l], s.rim[l] = 0.0, 0.0, 0.0, 0.0, 0.0
+    s.bed_k[l] = 0.0
+    s.bed_c[l] = 0.0
+    s.sink[l] = 0.0
+    s.root[l] = 0.0
+    s.rim[l] = 0.0
     if system.compliant == 0:
         return
-    uplift, full = system.bed_uplift, system.bed_full
+    uplift = system.bed_uplift
+    full = system.bed_full
     if phase == BEDDED:
-        s.p[l], s.q0[l], s.c[l], s.u0[l], s.v0[l] = 0.0, 0.0, system.bed_height, 0.0, 0.0
-        s.x_low[l], s.x_high[l] = -uplift, uplift
-        s.bed_k[l], s.bed_c[l] = system.bed_k, system.bed_c
+        s.p[l] = 0.0
+        s.q0[l] = 0.0
+        s.c[l] = system.bed_height
+        s.u0[l] = 0.0
+        s.v0[l] = 0.0
+        s.x_low[l] = -uplift
+        s.x_high[l] = uplift
+        s.bed_k[l] = system.bed_k
+        s.bed_c[l] = system.bed_c
         s.h_most[l] = 1.0 / system.bedded_rate
         return
     s.rim[l] = system.bed_c * uplift
@@ -61,7 +77,8 @@ def enter_on_bed(s: Record, l: int, system: Record, phase: int) -> None:
         s.x_low[l] = uplift
         lifts = s.x[l] < full or (s.x[l] == full and s.v[l] < 0.0)
         if full == 0.0 or lifts:
-            s.sink[l], s.root[l] = system.sink, system.root
+            s.sink[l] = system.sink
+            s.root[l] = system.root
         if full > 0.0 and lifts:
             s.x_high[l] = min(s.x_high[l], full)
         elif full > 0.0:

@@ -81,12 +81,15 @@ def measures_of(
     """
     lift *= stays
     top, bottom, N_top, N_bottom = contact_forces(s, l, stays * beam[0], lift, V[0], ground[0], up)
-    top, bottom = abs(top), abs(bottom)
+    top = abs(top)
+    bottom = abs(bottom)
     if ways_of(s) == 2:
         y, low, _, _ = contact_forces(s, l, stays * beam[1], lift, V[1], ground[1], up)
-        top, bottom = math.sqrt(top * top + y * y), math.sqrt(bottom * bottom + low * low)
+        top = math.sqrt(top * top + y * y)
+        bottom = math.sqrt(bottom * bottom + low * low)
     upper = s.cap_beam_mass[l] + s.floors_mass[l]
-    lower, loaded = upper + s.columns_mass[l], upper > 0.0
+    lower = upper + s.columns_mass[l]
+    loaded = upper > 0.0
     demand = top / (N_top if N_top > 0.0 else 1.0)
     demand = demand if N_top > 0.0 else math.inf
     demand_bottom = bottom / (N_bottom if N_bottom > 0.0 else 1.0)
@@ -110,28 +113,34 @@ def observe_contacts(s: Record) -> None:
     for l in range(lanes_of(s)):
         time = s.time[l] + s.h[l]
         ground = ground_at(s, l, 0, time)
-        ground_y, beam_y, V_y = 0.0, 0.0, 0.0
+        ground_y = 0.0
+        beam_y = 0.0
+        V_y = 0.0
         if ways_of(s) == 2:
             ground_y = ground_at(s, l, 1, time)
-            beam_y, V_y = s.new_shaking[1, l] - ground_y, s.new_V[1, l] + s.drive[1, l]
+            beam_y = s.new_shaking[1, l] - ground_y
+            V_y = s.new_V[1, l] + s.drive[1, l]
         stuck = s.phase[l] == STUCK
         rate = new_rate_of(s, l)
         now = polar(s, l, new_tilt_of(s, l), rate)
-        beam, g_up = s.new_shaking[0, l] - ground, g_up_at(s, l, time)
-        stays, V = without_shock(s, l, now.x, rate), s.new_V[0, l] + s.drive[0, l]
+        beam = s.new_shaking[0, l] - ground
+        g_up = g_up_at(s, l, time)
+        stays = without_shock(s, l, now.x, rate)
+        V = s.new_V[0, l] + s.drive[0, l]
         if s.equipped > 0:  # friction dampers push until all is what the columns hold
-            per_share, load = 2.0 / (s.diameter[l] * s.share[l]), s.load[l] / s.share[l]
+            per_share = 2.0 / (s.diameter[l] * s.share[l])
+            load = s.load[l] / s.share[l]
             V = s.held_x[l] * per_share + load * ground if stuck else V
             V_y = s.held_y[l] * per_share + load * ground_y if stuck else V_y
-        V, V_y = V + s.tied[l] * now.n, V_y + s.tied[l] * now.t
-        pressed, V_up = (g_up, s.new_V[ways_of(s), l]), bulge(s, l, ways_of(s), ways_of(s) + 1)
+        V = V + s.tied[l] * now.n
+        V_y = V_y + s.tied[l] * now.t
+        pressed = (g_up, s.new_V[ways_of(s), l])
+        V_up = bulge(s, l, ways_of(s), ways_of(s) + 1)
         found = measures_of(
             s, l, stays, (beam, beam_y), s.new_lift[l], (V, V_y), (ground, ground_y), pressed
         )
-        more, heavier = (
-            bulge(s, l, 0, ways_of(s)),
-            pushed_by(s, l, s.diameter[l]) / s.one[l] * s.tan_a[l],
-        )
+        more = bulge(s, l, 0, ways_of(s))
+        heavier = pushed_by(s, l, s.diameter[l]) / s.one[l] * s.tan_a[l]
         springs = s.axes > ways_of(s)
         heavier *= more / s.gravity[l] * s.moves[l]
         heavier += V_up / ((s.cap_beam_mass[l] + s.floors_mass[l] + 1e-300) * s.gravity[l])
@@ -159,20 +168,27 @@ def observe_contacts(s: Record) -> None:
 @inlined
 def torsion(s: Record, l: int) -> float:
     """Torsion that prevents roll-out at the end of the step, over the weight: a length [m]."""
-    tilt, rate = new_tilt_of(s, l), new_rate_of(s, l)
+    tilt = new_tilt_of(s, l)
+    rate = new_rate_of(s, l)
     x, n, t, p, q = polar(s, l, tilt, rate)
     at = place_with(s, l, x, s.w[l], s.dw[l])
     per_x = 1.0 / (x if x > 0.0 else 1.0)
-    w, i_1, i_3 = q * per_x, s.io_1[l], s.i_3[l]
+    w = q * per_x
+    i_1 = s.io_1[l]
+    i_3 = s.i_3[l]
     faster = (s.new_bend[1, l] * n - s.new_bend[0, l] * t - 2.0 * p * w) * per_x
-    c, p0, q0 = s.c[l], s.p[l], s.q0[l]
+    c = s.c[l]
+    p0 = s.p[l]
+    q0 = s.q0[l]
     # From B = p cos + q sin and C - c = p sin - q cos.
     size = p0 * p0 + q0 * q0 if s.bed_k[l] == 0.0 else 1.0
-    sine, cosine = (q0 * at.B + p0 * (at.C - c)) / size, (p0 * at.B - q0 * (at.C - c)) / size
+    sine = (q0 * at.B + p0 * (at.C - c)) / size
+    cosine = (p0 * at.B - q0 * (at.C - c)) / size
     turns = w * p
     l_1 = -i_1 * (faster * sine + 2.0 * turns * cosine) - turns * (i_3 * at.G)
     l_3 = -i_3 * (faster * at.G + turns * at.G_slope)
-    tall, wide = c * cosine - q0, p0 + c * sine
+    tall = c * cosine - q0
+    wide = p0 + c * sine
     weight = s.cap_beam_mass[l] + s.floors_mass[l] + s.columns_mass[l]
     arm = 0.25 * s.diameter[l] * s.diameter[l] * s.columns_mass[l]
     lever = arm * abs(tall * l_3 - wide * l_1) / (at.C * weight * s.gravity[l])
@@ -185,17 +201,20 @@ def torsion(s: Record, l: int) -> float:
 @compiled
 def force_within(s: Record, l: int, axis: int, t: float) -> float:
     """Force of springs and dampers under the floors a fraction t into the step [N]."""
-    r, h = 1.0 - t, s.h[l]
+    r = 1.0 - t
+    h = s.h[l]
     if s.axes == ways_of(s):
         V = r * r * (1.0 + 2.0 * t) * s.V[axis, l] + t * t * (3.0 - 2.0 * t) * s.new_V[axis, l]
         return V + h * t * r * (r * s.dV[axis, l] - t * s.new_dV[axis, l])  # type: ignore[no-any-return]
-    V, slip = 0.0, 0.0
+    V = 0.0
+    slip = 0.0
     for i in range(axis * s.n, (axis + 1) * s.n):
         q, dq = mode_within(s, i, l, axis, t)
         V += s.Gamma[i, l] * (s.omega2[i, l] * q + s.two_xi_omega[i, l] * dq)
         slip += s.slipping[i, l] * q
     if s.yields[l] > 0 and axis < ways_of(s):
-        lowest, free = axis * s.n, 1.0 - s.hardening[l]
+        lowest = axis * s.n
+        free = 1.0 - s.hardening[l]
         if s.mark[lowest, l] == 0:
             slip = free * s.stiffness[lowest, l] * s.middle[lowest, l]
         V -= slip - free * s.mark[lowest, l] * s.strength[lowest, l]
@@ -210,8 +229,12 @@ def measures_within(s: Record, l: int, t: float) -> tuple[float, Measures]:
     follows by the laws.
     """
     tilt, rate = tilt_within(s, l, t)
-    now, up, time = polar(s, l, tilt, rate), ways_of(s), s.time[l] + t * s.h[l]
-    V_x, V_y, V_up = force_within(s, l, 0, t), 0.0, 0.0
+    now = polar(s, l, tilt, rate)
+    up = ways_of(s)
+    time = s.time[l] + t * s.h[l]
+    V_x = force_within(s, l, 0, t)
+    V_y = 0.0
+    V_up = 0.0
     if up == 2:
         V_y = force_within(s, l, 1, t)
     if s.axes > up:
@@ -225,7 +248,8 @@ def measures_within(s: Record, l: int, t: float) -> tuple[float, Measures]:
     V = V_x + s.drive[0, l] + s.tied[l] * now.n, 0.0
     if up == 2:
         V = V[0], V_y + s.drive[1, l] + s.tied[l] * now.t
-    stays, beam = without_shock(s, l, now.x, rate), (found.beam_x, found.beam_y)
+    stays = without_shock(s, l, now.x, rate)
+    beam = (found.beam_x, found.beam_y)
     ground = found.a_x, found.a_y
     return stays, measures_of(s, l, stays, beam, found.lift, V, ground, (found.g_up, V_up))
 
@@ -239,7 +263,8 @@ def raise_contacts(s: Record, l: int) -> None:
     third, end = measures_within(s, l, 0.0)
     raise_by(s, l, end)
     for part in range(parts):
-        first, start = third, end
+        first = third
+        start = end
         second, middle = measures_within(s, l, (part + 0.5) / parts)
         third, end = measures_within(s, l, (part + 1.0) / parts)
         raise_by(s, l, middle)
@@ -275,7 +300,9 @@ def is_held(s: Record, l: int) -> bool:
     """Whether a storey at rest is held: one that lifts off at once has not stood."""
     if ways_of(s) == 2 and s.phase[l] == STUCK:
         return bool(grip_at(s, l, 0).margin >= 0.0)
-    R, size, g_felt = 0.5 * s.diameter[l], 0.0, felt_at(s, l, 0)[0]
+    R = 0.5 * s.diameter[l]
+    size = 0.0
+    g_felt = felt_at(s, l, 0)[0]
     for axis in range(ways_of(s)):
         push = R * z_of(s, l, s.V[axis, l], ground_at(s, l, axis, s.time[l]))
         size = push if ways_of(s) == 1 else size + push * push
@@ -289,20 +316,28 @@ def is_held(s: Record, l: int) -> bool:
 @compiled
 def observe_start(s: Record, l: int) -> None:
     """Look at what begins anew, after an event or a sudden change of the ground."""
-    h, time = s.h[l], s.time[l]
-    tilt, rate = tilt_of(s, l), rate_of(s, l)
+    h = s.h[l]
+    time = s.time[l]
+    tilt = tilt_of(s, l)
+    rate = rate_of(s, l)
     now = polar(s, l, tilt, rate)
-    a_x, g_up = ground_at(s, l, 0, time), g_up_at(s, l, time)
-    V_x, V_y, a_y, beam_y = s.V[0, l], 0.0, 0.0, 0.0
+    a_x = ground_at(s, l, 0, time)
+    g_up = g_up_at(s, l, time)
+    V_x = s.V[0, l]
+    V_y = 0.0
+    a_y = 0.0
+    beam_y = 0.0
     if ways_of(s) == 2:
         a_y = ground_at(s, l, 1, time)
-        V_y, beam_y = s.V[1, l], s.shaking[1, l] - a_y
+        V_y = s.V[1, l]
+        beam_y = s.shaking[1, l] - a_y
     if stands(s, l):
         push_at_rest(s, l, (V_x, V_y), time, s.V[ways_of(s), l])
     V_y += s.drive[1, l] if ways_of(s) == 2 else 0.0
     V = V_x + s.drive[0, l] + s.tied[l] * now.n, V_y + s.tied[l] * now.t
     if s.moves[l] > 0.0 or is_held(s, l):
-        stays, beam = without_shock(s, l, now.x, rate), (s.shaking[0, l] - a_x, beam_y)
+        stays = without_shock(s, l, now.x, rate)
+        beam = (s.shaking[0, l] - a_x, beam_y)
         up = g_up, s.V[ways_of(s), l]
         raise_by(s, l, measures_of(s, l, stays, beam, s.lift[l], V, (a_x, a_y), up))
     if s.devices[l] > 0:
@@ -342,7 +377,9 @@ def observe_devices(s: Record) -> None:
     """Raise what devices see in accepted steps, and book what they dissipated."""
     lanes = lanes_of(s)
     for l in range(lanes):
-        speed, end, least = s.speed[l], s.new_speed[l], NEARLY * s.device_velocity[0, l]
+        speed = s.speed[l]
+        end = s.new_speed[l]
+        least = NEARLY * s.device_velocity[0, l]
         path = cubic(s.h[l], speed * speed, s.square_rate[l], end * end, s.new_square_rate[l])
         rises = max(upper_hull(path), path[0]) > least * least
         # the force that does what rolling resistance does is larger the lower the path is
@@ -361,5 +398,6 @@ def observe_devices(s: Record) -> None:
             tilt, rate = tilt_within(s, l, 0.5)
             middle = worked(s, l, tilt, rate)
             tilt, rate = tilt_within(s, l, 1.0)
-            start, end = worked(s, l, tilt_of(s, l), rate_of(s, l)), worked(s, l, tilt, rate)
+            start = worked(s, l, tilt_of(s, l), rate_of(s, l))
+            end = worked(s, l, tilt, rate)
             raise_devices(s, l, start, middle, end)

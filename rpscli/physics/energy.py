@@ -26,7 +26,8 @@ from rpscli.physics.state import FULL_CONTACT, Record
 def path_at(s: Record, l: int, x: float) -> float:
     """|u_b| over 2 R (1.4)."""
     sine, less, _ = sines(x)
-    p, c = s.p[l], s.c[l]
+    p = s.p[l]
+    c = s.c[l]
     return float((s.u0[l] - p) + p * less + (c * x - s.q0[l] * sine))
 
 
@@ -43,7 +44,9 @@ def beam_at(s: Record, l: int, tilt: tuple[float, float], rate: tuple[float, flo
     if s.phase[l] == FULL_CONTACT:
         return 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     now = polar(s, l, tilt, rate)
-    way, up, rise = s.diameter[l] * path_at(s, l, now.x), 0.0, 0.0
+    way = s.diameter[l] * path_at(s, l, now.x)
+    up = 0.0
+    rise = 0.0
     u_x, u_y = velocity_with(s, l, place_with(s, l, now.x, 0.0, 0.0), now)
     if s.axes > ways_of(s):
         up = lift_at(s, l, now.x) if s.bed_u[l] == 0.0 else 0.0
@@ -87,7 +90,8 @@ def lift_at(s: Record, l: int, x: float) -> float:
 @compiled
 def risen(s: Record, l: int, system: Record, x: float, share: float) -> float:
     """Rise of a compliant end beyond phi_u [m]: of the weight (`sink`), the beam (`root`)."""
-    u, first = system.bed_uplift, system.rolling if system.beta > 0.0 else system.rocking
+    u = system.bed_uplift
+    first = system.rolling if system.beta > 0.0 else system.rocking
     start = s.diameter[l] * (first[4] + first[0] * math.sin(u) - first[1] * math.cos(u))
     end = min(x, system.bed_full) if system.bed_full > 0.0 else x
     area = patch_integral(end, u, s.fade[l]) - patch_integral(u, u, s.fade[l])
@@ -108,7 +112,8 @@ def potential(s: Record, l: int, system: Record, x: float) -> float:
     weight = lifted_mass(s, l) * s.gravity[l]
     if system.compliant == 0:
         return float(weight * lift_at(s, l, x))
-    unit, u = 0.5 * inertia_unit(s, l) * system.bed_k, system.bed_uplift
+    unit = 0.5 * inertia_unit(s, l) * system.bed_k
+    u = system.bed_uplift
     if s.bed_k[l] > 0.0:
         return float(unit * (x * x))
     return float(unit * (u * u) + weight * risen(s, l, system, x, system.sink))
@@ -148,7 +153,8 @@ def look_at(s: Record, l: int) -> None:
     for axis in range(s.axes):
         for i in range(s.n):
             r = axis * s.n + i
-            s.seen_modes[2 * axis, i], s.seen_modes[2 * axis + 1, i] = s.q[r, l], s.dq[r, l]
+            s.seen_modes[2 * axis, i] = s.q[r, l]
+            s.seen_modes[2 * axis + 1, i] = s.dq[r, l]
 
 
 @compiled
@@ -156,12 +162,15 @@ def energy_at(
     s: Record, l: int, system: Record, tilt: tuple[float, float], rate: tuple[float, float]
 ) -> float:
     """Kinetic, potential and elastic energy without devices [J], of modes as `seen_modes`."""
-    beam, energy = beam_at(s, l, tilt, rate), 0.0
+    beam = beam_at(s, l, tilt, rate)
+    energy = 0.0
     for axis in range(s.axes):
         u = beam[RATES + axis]
         energy += 0.5 * s.floors_mass[l] * (u * u)
         for i in range(s.n):
-            r, q, dq = axis * s.n + i, s.seen_modes[2 * axis, i], s.seen_modes[2 * axis + 1, i]
+            r = axis * s.n + i
+            q = s.seen_modes[2 * axis, i]
+            dq = s.seen_modes[2 * axis + 1, i]
             energy += 0.5 * (dq * dq + s.omega2[r, l] * (q * q)) + u * (s.Gamma[r, l] * dq)
     if s.phase[l] == FULL_CONTACT:
         return float(energy)

@@ -62,14 +62,25 @@ def path_in_range(s: Record, l: int) -> tuple[Quintic, float, float]:
     """
     if ways_of(s) == 1:
         return path_of(s, l), s.x_low[l], s.x_high[l]
-    x, v, a, new_x, new_v, new_a = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    x = 0.0
+    v = 0.0
+    a = 0.0
+    new_x = 0.0
+    new_v = 0.0
+    new_a = 0.0
     for axis in range(ways_of(s)):
-        tilt, rate, new_tilt = s.tilt[axis, l], s.tilt_rate[axis, l], s.new_tilt[axis, l]
+        tilt = s.tilt[axis, l]
+        rate = s.tilt_rate[axis, l]
+        new_tilt = s.new_tilt[axis, l]
         new_rate = s.new_tilt_rate[axis, l]
-        x, v, a = x + tilt * tilt, v + tilt * rate, a + rate * rate + tilt * s.bend[axis, l]
-        new_x, new_v = new_x + new_tilt * new_tilt, new_v + new_tilt * new_rate
+        x = x + tilt * tilt
+        v = v + tilt * rate
+        a = a + rate * rate + tilt * s.bend[axis, l]
+        new_x = new_x + new_tilt * new_tilt
+        new_v = new_v + new_tilt * new_rate
         new_a += new_rate * new_rate + new_tilt * s.new_bend[axis, l]
-    low, high = s.x_low[l] * abs(s.x_low[l]), s.x_high[l] * s.x_high[l]
+    low = s.x_low[l] * abs(s.x_low[l])
+    high = s.x_high[l] * s.x_high[l]
     x = min(max(x, low), high)  # what begins at an end is rounded
     as_cone = s.cone[l] > 0.0
     path = quintic(
@@ -87,7 +98,9 @@ def path_in_range(s: Record, l: int) -> tuple[Quintic, float, float]:
 @inlined
 def push_path(s: Record, l: int, axis: int) -> Quintic:
     """R z over the step, what pushes a storey at rest [m/s2]."""
-    R, h, slope = 0.5 * s.diameter[l], s.h[l], s.a_g_slope[axis, l]
+    R = 0.5 * s.diameter[l]
+    h = s.h[l]
+    slope = s.a_g_slope[axis, l]
     start = ground_at(s, l, axis, s.time[l])
     return quintic(
         h,
@@ -103,9 +116,13 @@ def push_path(s: Record, l: int, axis: int) -> Quintic:
 @inlined
 def relief_path(s: Record, l: int) -> Quintic:
     """g + a_v less what contacts feel of it over the step [m/s2]: 0 without springs upwards."""
-    up, spared, h, mass = ways_of(s), s.spared[l], s.h[l], s.floors_mass[l]
+    up = ways_of(s)
+    spared = s.spared[l]
+    h = s.h[l]
+    mass = s.floors_mass[l]
     start = s.g_up[l] - s.gravity[l] + s.time[l] * s.g_up_slope[l]
-    end, rate = start + h * s.g_up_slope[l], mass * s.g_up_slope[l]
+    end = start + h * s.g_up_slope[l]
+    rate = mass * s.g_up_slope[l]
     return quintic(
         h,
         spared * (mass * start + s.V[up, l]),
@@ -122,17 +139,18 @@ def surely_held(s: Record, l: int) -> bool:
     """Whether the margin of a lane at rest surely stays positive over the step."""
     start = g_up_at(s, l, s.time[l])
     end = start + s.h[l] * s.g_up_slope[l]
-    x, relief = push_path(s, l, 0), relief_path(s, l)
-    most_spared, least_spared = (
-        max(upper_hull(relief), relief[0]),
-        min(lower_hull(relief), relief[0]),
-    )
+    x = push_path(s, l, 0)
+    relief = relief_path(s, l)
+    most_spared = max(upper_hull(relief), relief[0])
+    least_spared = min(lower_hull(relief), relief[0])
     right = min(s.limit_right[l] * start, s.limit_right[l] * end) + s.held_right[l]
     right -= max(s.limit_right[l] * most_spared, s.limit_right[l] * least_spared)
     if ways_of(s) == 2:
-        y, most = push_path(s, l, 1), 0.0
+        y = push_path(s, l, 1)
+        most = 0.0
         for i in range(6):
-            off_x, off_y = x[i] - s.held_x[l], y[i] - s.held_y[l]
+            off_x = x[i] - s.held_x[l]
+            off_y = y[i] - s.held_y[l]
             most = max(most, off_x * off_x + off_y * off_y)
         steady = (
             (start == s.gravity[l]) & (end == start) & (s.axes == 2)
@@ -155,7 +173,8 @@ def falls(s: Record, l: int) -> bool:
     square = 0.0
     for axis in range(ways_of(s)):
         square += s.tilt_rate[axis, l] * s.tilt_rate[axis, l]
-    least, v = CIRCLING * CIRCLING * square, s.v[l]
+    least = CIRCLING * CIRCLING * square
+    v = s.v[l]
     return (v < 0.0) & (v * v > least) & (s.cone[l] > 0.0)  # type: ignore[no-any-return]
 
 
@@ -180,7 +199,8 @@ def check_all_steps(s: Record) -> None:
     for l in range(lanes_of(s)):
         moves = s.moves[l] > 0.0
         path, low, high = path_in_range(s, l)
-        lowest, highest = min(lower_hull(path), path[0]), max(upper_hull(path), path[0])
+        lowest = min(lower_hull(path), path[0])
+        highest = max(upper_hull(path), path[0])
         inside = (lowest >= low) & (highest <= high)
         if ways_of(s) == 2:
             inside &= (not falls(s, l)) | (s.new_v[l] < 0.0)
@@ -214,8 +234,11 @@ def storey_paths(s: Record, l: int, systems: Record, r: int) -> tuple[Quintic, Q
 
     Cubics over the step: its force is so far from either strength; or both the rate of its drift.
     """
-    axis, i, h = r // s.n, r % s.n, s.h[l]
-    system, F = systems[s.system[l] + axis], s.strength[r, l] * (1.0 + UNLOADED)
+    axis = r // s.n
+    i = r % s.n
+    h = s.h[l]
+    system = systems[s.system[l] + axis]
+    F = s.strength[r, l] * (1.0 + UNLOADED)
     d0, v0, a0 = drift_of(s, l, system, axis, i, 0)
     d1, v1, a1 = drift_of(s, l, system, axis, i, 1)
     mark = s.mark[r, l]
@@ -230,15 +253,18 @@ def storey_paths(s: Record, l: int, systems: Record, r: int) -> tuple[Quintic, Q
 @compiled
 def first_yield(s: Record, l: int, systems: Record) -> tuple[float, int]:
     """Fraction of the step at which a storey first yields or ends to, and which to which side."""
-    first, which = NO_PASSAGE, 0
+    first = NO_PASSAGE
+    which = 0
     for r in range(ways_of(s) * s.n):
         left, right = storey_paths(s, l, systems, r)
         t = first_descent(left, s.piece)
         if t < first:
-            first, which = t, 2 * r
+            first = t
+            which = 2 * r
         t = first_descent(right, s.piece)
         if t < first:
-            first, which = t, 2 * r + 1
+            first = t
+            which = 2 * r + 1
     return first, which
 
 
@@ -293,13 +319,15 @@ def is_nearest(s: Record, l: int, systems: Record) -> tuple[float, int]:
 @compiled
 def changes(s: Record, l: int, systems: Record) -> tuple[float, int]:
     """Where a device changes its law, and which watched value says so."""
-    first, which = NO_PASSAGE, 0
+    first = NO_PASSAGE
+    which = 0
     for number in range(WATCHED if s.devices[l] > 0 and s.moves[l] > 0.0 else 0):
         there, path = watched_path(s, l, number)
         if there:
             t = first_descent(path, s.piece)
             if t < first:
-                first, which = t, number
+                first = t
+                which = number
     return first, which
 
 
@@ -314,7 +342,9 @@ def yields_first(s: Record, l: int, systems: Record) -> tuple[float, int]:
 @compiled
 def nearest(s: Record, l: int) -> float:
     """Fraction of the step at which x' rises through zero: by the cubic through x' and x''."""
-    low, high, h = 0.0, 1.0, s.h[l]
+    low = 0.0
+    high = 1.0
+    h = s.h[l]
     for _ in range(40):
         t = 0.5 * (low + high)
         r = 1.0 - t
@@ -332,13 +362,18 @@ def let_go(s: Record, l: int, systems: Record) -> tuple[float, int]:
     """Where a storey at rest is no longer held: to the right (1), or to the left (-1)."""
     if s.moves[l] > 0.0:
         return NO_PASSAGE, 0
-    piece, h = s.piece, s.h[l]
+    piece = s.piece
+    h = s.h[l]
     start = g_up_at(s, l, s.time[l])
-    rise, x, spared = h * s.g_up_slope[l], push_path(s, l, 0), relief_path(s, l)
+    rise = h * s.g_up_slope[l]
+    x = push_path(s, l, 0)
+    spared = relief_path(s, l)
     if ways_of(s) == 2:
         if s.phase[l] == STUCK:
-            one, two = grip_at(s, l, 0), grip_at(s, l, 1)
-            start, end = max(one.margin + one.late, 0.0), two.margin + two.late
+            one = grip_at(s, l, 0)
+            two = grip_at(s, l, 1)
+            start = max(one.margin + one.late, 0.0)
+            end = two.margin + two.late
             path = cubic(h, start, one.slope, end, two.slope)
             t = first_descent(path, piece)
         else:
@@ -349,12 +384,16 @@ def let_go(s: Record, l: int, systems: Record) -> tuple[float, int]:
     for i in range(6):
         push = push if push != 0.0 else x[i]
     likelier = -1 if push < 0.0 else 1
-    first, side = NO_PASSAGE, 0
+    first = NO_PASSAGE
+    side = 0
     for sign in (likelier, -likelier):
-        factor, held = s.limit_right[l], s.held_right[l]
+        factor = s.limit_right[l]
+        held = s.held_right[l]
         if sign < 0:
-            factor, held = s.limit_left[l], s.held_left[l]
-        limit, change = factor * start, factor * rise
+            factor = s.limit_left[l]
+            held = s.held_left[l]
+        limit = factor * start
+        change = factor * rise
         limit += ROUNDING * (abs(limit) + abs(held)) + held
         path = (
             limit - sign * x[0] - factor * spared[0],
@@ -366,32 +405,45 @@ def let_go(s: Record, l: int, systems: Record) -> tuple[float, int]:
         )
         t = first_descent(path, piece)
         if t < first:
-            first, side = t, sign
+            first = t
+            side = sign
     return first, side
 
 
 @compiled
 def squared_margin(s: Record, l: int) -> Quintic:
     """The limit's square less that of R z, through both ends of the step with two derivatives."""
-    h, R = s.h[l], 0.5 * s.diameter[l]
+    h = s.h[l]
+    R = 0.5 * s.diameter[l]
     ends = s.piece
     for end in range(2):
-        time, factor = s.time[l] + end * h, s.limit_right[l]
+        time = s.time[l] + end * h
+        factor = s.limit_right[l]
         g_felt, g_rate, bent = felt_at(s, l, end)
-        limit, rise = factor * g_felt + s.held_right[l], factor * g_rate
+        limit = factor * g_felt + s.held_right[l]
+        rise = factor * g_rate
         beyond = limit * (1.0 + ROUNDING)
-        value, slope, bend = beyond * abs(beyond), 2.0 * limit * rise, 2.0 * rise * rise
+        value = beyond * abs(beyond)
+        slope = 2.0 * limit * rise
+        bend = 2.0 * rise * rise
         bend += 2.0 * limit * (factor * bent)
         for axis in range(2):
-            V, dV, ddV = s.V[axis, l], s.dV[axis, l], s.ddV[axis, l]
+            V = s.V[axis, l]
+            dV = s.dV[axis, l]
+            ddV = s.ddV[axis, l]
             if end > 0:
-                V, dV, ddV = s.new_V[axis, l], s.new_dV[axis, l], s.new_ddV[axis, l]
+                V = s.new_V[axis, l]
+                dV = s.new_dV[axis, l]
+                ddV = s.new_ddV[axis, l]
             a_g = ground_at(s, l, axis, time)
-            push, rate = R * z_of(s, l, V, a_g), R * z_of(s, l, dV, s.a_g_slope[axis, l])
+            push = R * z_of(s, l, V, a_g)
+            rate = R * z_of(s, l, dV, s.a_g_slope[axis, l])
             value -= push * push
             slope -= 2.0 * push * rate
             bend -= 2.0 * (rate * rate + push * (R * pushed_by(s, l, ddV)))
-        ends[3 * end], ends[3 * end + 1], ends[3 * end + 2] = value, slope, bend
+        ends[3 * end] = value
+        ends[3 * end + 1] = slope
+        ends[3 * end + 2] = bend
     return quintic(h, ends[0], ends[1], ends[2], ends[3], ends[4], ends[5])
 
 
@@ -440,19 +492,26 @@ def missing_let_go(s: Record, l: int, systems: Record) -> tuple[float, float]:
     if ways_of(s) == 2 and s.phase[l] == STUCK:
         grip = grip_at(s, l, 1)
         return grip.margin + grip.late, grip.slope
-    R, h = 0.5 * s.diameter[l], s.h[l]
+    R = 0.5 * s.diameter[l]
+    h = s.h[l]
     g_felt, g_rate, _ = felt_at(s, l, 1)
-    factor, held, size, growth = s.limit_right[l], s.held_right[l], 0.0, 0.0
+    factor = s.limit_right[l]
+    held = s.held_right[l]
+    size = 0.0
+    growth = 0.0
     if side < 0:
-        factor, held = s.limit_left[l], s.held_left[l]
+        factor = s.limit_left[l]
+        held = s.held_left[l]
     for axis in range(ways_of(s)):
         a_g = ground_at(s, l, axis, s.time[l] + h)
         push = R * z_of(s, l, s.new_V[axis, l], a_g)
         rate = R * z_of(s, l, s.new_dV[axis, l], s.a_g_slope[axis, l])
         if ways_of(s) == 1:
-            size, growth = side * push, side * rate
+            size = side * push
+            growth = side * rate
         else:
-            size, growth = size + push * push, growth + push * rate
+            size = size + push * push
+            growth = growth + push * rate
     if ways_of(s) == 2:
         size = math.sqrt(size)
         growth /= max(size, 1e-300)

@@ -49,10 +49,13 @@ def reach(one: float, other: float) -> float:
 @inlined
 def floors_may_rise(s: Record, l: int) -> bool:
     """Whether the sums, and what they may be within the step, leave room for a larger demand."""
-    rises, part = s.marked[l] > 0, WITHIN / 8.0 * s.h[l]
+    rises = s.marked[l] > 0
+    part = WITHIN / 8.0 * s.h[l]
     part *= part
     for j in range(rows_of(s)):
-        shear, acceleration, bent = 0.0, 0.0, 0.0
+        shear = 0.0
+        acceleration = 0.0
+        bent = 0.0
         for axis in range(ways_of(s)):
             if j in (0, 1 + axis):
                 shear += max(s.shear_before[axis, l], s.shear_sum[axis, l])
@@ -67,13 +70,17 @@ def floors_may_rise(s: Record, l: int) -> bool:
 @compiled
 def observe_floors(s: Record) -> None:
     """Say in `demands_rise` where the demands of floors may be raised."""
-    n, lanes = s.n, lanes_of(s)
+    n = s.n
+    lanes = lanes_of(s)
     for axis in range(ways_of(s)):
         for l in range(lanes):
-            s.shear_sum[axis, l], s.acceleration_sum[axis, l], s.bent[axis, l] = 0.0, 0.0, 0.0
+            s.shear_sum[axis, l] = 0.0
+            s.acceleration_sum[axis, l] = 0.0
+            s.bent[axis, l] = 0.0
         for r in range(axis * n, (axis + 1) * n):
             for l in range(lanes):
-                q, force = s.new_q[r, l] - s.seen_q[r, l], s.force[r, l] - s.seen_force[r, l]
+                q = s.new_q[r, l] - s.seen_q[r, l]
+                force = s.force[r, l] - s.seen_force[r, l]
                 lost = s.dq[r, l] - s.new_dq[r, l]
                 s.shear_sum[axis, l] += s.shear_weight[r, l] * (q * q)
                 s.acceleration_sum[axis, l] += s.acceleration_weight[r, l] * (force * force)
@@ -95,15 +102,23 @@ def raise_floors(s: Record, l: int, systems: Record) -> None:
 
     By those at its end; and by those within, where they bulge enough above both ends.
     """
-    n, ways, rows, within = s.n, ways_of(s), s.seen, False
+    n = s.n
+    ways = ways_of(s)
+    rows = s.seen
+    within = False
     for axis in range(ways):
-        system, shears, accelerations = systems[axis], rows[2 * axis], rows[2 * axis + 1]
+        system = systems[axis]
+        shears = rows[2 * axis]
+        accelerations = rows[2 * axis + 1]
         for i in range(n):
-            shears[i], accelerations[i] = 0.0, 0.0
+            shears[i] = 0.0
+            accelerations[i] = 0.0
         for of in range(n):
             r = axis * n + of
-            q, force = s.new_q[r, l], s.force[r, l]
-            s.seen_q[r, l], s.seen_force[r, l] = q, force
+            q = s.new_q[r, l]
+            force = s.force[r, l]
+            s.seen_q[r, l] = q
+            s.seen_force[r, l] = force
             for i in range(n):
                 shears[i] += system.storey_shear_of[of, i] * q
                 accelerations[i] += system.phi[of, i] * force
@@ -113,7 +128,8 @@ def raise_floors(s: Record, l: int, systems: Record) -> None:
         for j in range(rows_of(s)):
             within |= raise_row(s, l, systems, kind, j)
     for axis in range(ways):
-        s.shear_sum[axis, l], s.acceleration_sum[axis, l] = 0.0, 0.0
+        s.shear_sum[axis, l] = 0.0
+        s.acceleration_sum[axis, l] = 0.0
     if within and s.h[l] > 0.0:
         raise_floors_within(s, l, systems)
 
@@ -124,27 +140,36 @@ def raise_row(s: Record, l: int, systems: Record, kind: int, j: int) -> bool:
 
     True if more may have been between; leaves the sum with which none rises from now on.
     """
-    moved, bent, k = 0.0, 0.0, kind * rows_of(s) + j
+    moved = 0.0
+    bent = 0.0
+    k = kind * rows_of(s) + j
     for axis in range(ways_of(s)):
         if j in (0, 1 + axis):
             moved += s.acceleration_before[axis, l] if kind > 0 else s.shear_before[axis, l]
             bent += s.bent[axis, l]
     bent *= s.bend_ratio[l] if kind > 0 else 1.0
-    moved, bulge = math.sqrt(moved), WITHIN / 8.0 * s.h[l] * math.sqrt(bent)
-    within, room = False, math.inf
+    moved = math.sqrt(moved)
+    bulge = WITHIN / 8.0 * s.h[l] * math.sqrt(bent)
+    within = False
+    room = math.inf
     for i in range(s.n):
         if ways_of(s) == 1 or j == 1:
-            here, share = abs(s.seen[kind, i]), bounds_of(systems, 0, kind)[i]
+            here = abs(s.seen[kind, i])
+            share = bounds_of(systems, 0, kind)[i]
         elif j == 2:
-            here, share = abs(s.seen[2 + kind, i]), bounds_of(systems, 1, kind)[i]
+            here = abs(s.seen[2 + kind, i])
+            share = bounds_of(systems, 1, kind)[i]
         else:
-            x, y = s.seen[kind, i], s.seen[2 + kind, i]
+            x = s.seen[kind, i]
+            y = s.seen[2 + kind, i]
             here = math.sqrt(x * x + y * y)
             share = min(bounds_of(systems, 0, kind)[i], bounds_of(systems, 1, kind)[i])
         most = s.largest[k, l, i]
-        left, before = share * (most - here), share * (most - s.last[k, l, i]) - moved
+        left = share * (most - here)
+        before = share * (most - s.last[k, l, i]) - moved
         within |= min(left, before) < bulge
-        s.largest[k, l, i], s.last[k, l, i] = max(most, here), here
+        s.largest[k, l, i] = max(most, here)
+        s.last[k, l, i] = here
         room = min(room, max(left, 0.0))
     s.room[k, l] = SURELY * (room * room)
     return within
@@ -161,14 +186,18 @@ def raise_floors_within(s: Record, l: int, systems: Record) -> None:
 @compiled
 def raise_floors_between(s: Record, l: int, systems: Record, begin: float, end: float) -> None:
     """The same between fractions of the step."""
-    n, rows = s.n, s.between
+    n = s.n
+    rows = s.between
     for axis in range(ways_of(s)):
         write_between(s, l, systems[axis], axis, begin, end)
     for kind in range(2):
         for j in range(rows_of(s)):
-            k, x = kind * rows_of(s) + j, 3 * kind + (6 if j == 2 else 0)
+            k = kind * rows_of(s) + j
+            x = 3 * kind + (6 if j == 2 else 0)
             for i in range(n):
-                a, b, c = rows[x, i], rows[x + 1, i], rows[x + 2, i]
+                a = rows[x, i]
+                b = rows[x + 1, i]
+                c = rows[x + 2, i]
                 if ways_of(s) == 2 and j == 0:
                     y = x + 6
                     a = math.sqrt(a * a + rows[y, i] * rows[y, i])
@@ -180,7 +209,9 @@ def raise_floors_between(s: Record, l: int, systems: Record, begin: float, end: 
 @compiled
 def write_between(s: Record, l: int, system: Record, axis: int, begin: float, end: float) -> None:
     """Write shears and accelerations at three instants of the step, of a direction."""
-    n, rows, first = s.n, s.between, 6 * axis
+    n = s.n
+    rows = s.between
+    first = 6 * axis
     for k in range(first, first + 6):
         for i in range(n):
             rows[k, i] = 0.0
@@ -189,11 +220,14 @@ def write_between(s: Record, l: int, system: Record, axis: int, begin: float, en
         q0, v0 = mode_within(s, r, l, axis, begin)
         q, v = mode_within(s, r, l, axis, 0.5 * (begin + end))
         q1, v1 = mode_within(s, r, l, axis, end)
-        omega2, damping = s.omega2[r, l], s.two_xi_omega[r, l]
-        f0, f1 = omega2 * q0 + damping * v0, omega2 * q1 + damping * v1
+        omega2 = s.omega2[r, l]
+        damping = s.two_xi_omega[r, l]
+        f0 = omega2 * q0 + damping * v0
+        f1 = omega2 * q1 + damping * v1
         f = omega2 * q + damping * v
         for i in range(n):
-            shear, phi = system.storey_shear_of[of, i], system.phi[of, i]
+            shear = system.storey_shear_of[of, i]
+            phi = system.phi[of, i]
             rows[first, i] += shear * q0
             rows[first + 1, i] += shear * q
             rows[first + 2, i] += shear * q1
@@ -208,11 +242,14 @@ def write_between(s: Record, l: int, system: Record, axis: int, begin: float, en
 def sums_at_start(s: Record, l: int) -> None:
     """What the modes have changed by since the last look, where a step begins anew."""
     for axis in range(ways_of(s)):
-        shear, acceleration = 0.0, 0.0
+        shear = 0.0
+        acceleration = 0.0
         for r in range(axis * s.n, (axis + 1) * s.n):
             force = s.omega2[r, l] * s.q[r, l] + s.two_xi_omega[r, l] * s.dq[r, l]
             force -= s.freed[r, l]
-            q, force = s.q[r, l] - s.seen_q[r, l], force - s.seen_force[r, l]
+            q = s.q[r, l] - s.seen_q[r, l]
+            force = force - s.seen_force[r, l]
             shear += s.shear_weight[r, l] * (q * q)
             acceleration += s.acceleration_weight[r, l] * (force * force)
-        s.shear_before[axis, l], s.acceleration_before[axis, l] = shear, acceleration
+        s.shear_before[axis, l] = shear
+        s.acceleration_before[axis, l] = acceleration

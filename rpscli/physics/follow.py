@@ -110,7 +110,8 @@ def follow_many(
     output: Output,
 ) -> None:
     """The same, side by side (`groups`)."""
-    moving, standing = state[MOVING], state[STANDING]
+    moving = state[MOVING]
+    standing = state[STANDING]
     for k in range(state.shape[0]):
         empty(state[k])
     begin_histories(state, systems, requests, acceleration, output)
@@ -131,7 +132,10 @@ def follow_many(
 @compiled
 def empty(s: Record) -> None:
     """Begin without histories."""
-    s.audited, s.waiting, s.present, s.active = 0, 0, 0, 0
+    s.audited = 0
+    s.waiting = 0
+    s.present = 0
+    s.active = 0
     for l in range(lanes_of(s)):
         idle(s, l)
 
@@ -141,14 +145,17 @@ def begin_histories(
     state: Record, systems: Record, requests: Record, acceleration: Floats, output: Output
 ) -> None:
     """Begin histories as long as there is room, where others stand or wait to."""
-    moving, standing, lanes = state[MOVING], state[STANDING], lanes_of(state[MOVING])
+    moving = state[MOVING]
+    standing = state[STANDING]
+    lanes = lanes_of(state[MOVING])
     while standing.waiting < requests.shape[0]:
         if moving.present + standing.present >= (state.shape[0] - 1) * lanes:
             return
         place = STANDING * lanes + free_lane(standing)
         if standing.active == lanes:
             place = waiting_place(state)
-        s, l = state[place // lanes], place % lanes
+        s = state[place // lanes]
+        l = place % lanes
         begin_history(s, l, systems, requests, standing.waiting, acceleration, output)
         s.active += 1
         standing.waiting += 1
@@ -181,7 +188,8 @@ def look_after_all(state: Record, k: int, systems: Record, results: Record, outp
 @compiled
 def call_in(state: Record) -> None:
     """Let histories that wait go on where there is room."""
-    moving, standing = state[MOVING], state[STANDING]
+    moving = state[MOVING]
+    standing = state[STANDING]
     for k in range(WAITING, state.shape[0]):
         s = state[k]
         for l in range(lanes_of(s) if is_called(moving) or is_called(standing) else 0):
@@ -248,9 +256,11 @@ def accept_steps(s: Record) -> None:  # noqa: C901 -- few fields a loop
             s.bend[axis, l] = chosen(yes, s.new_bend[axis, l], s.bend[axis, l])
         for l in range(lanes):
             yes = s.accepted[l]
-            sums, before = s.shear_sum[axis, l], s.shear_before[axis, l]
+            sums = s.shear_sum[axis, l]
+            before = s.shear_before[axis, l]
             s.shear_before[axis, l] = chosen(yes, sums, before)
-            sums, before = s.acceleration_sum[axis, l], s.acceleration_before[axis, l]
+            sums = s.acceleration_sum[axis, l]
+            before = s.acceleration_before[axis, l]
             s.acceleration_before[axis, l] = chosen(yes, sums, before)
     for axis in range(s.axes):
         for l in range(lanes):
@@ -265,8 +275,10 @@ def accept_steps(s: Record) -> None:  # noqa: C901 -- few fields a loop
             s.dq[r, l] = chosen(s.accepted[l], s.new_dq[r, l], s.dq[r, l])
     for l in range(lanes):
         yes = s.accepted[l]
-        s.x[l], s.v[l] = chosen(yes, s.new_x[l], s.x[l]), chosen(yes, s.new_v[l], s.v[l])
-        s.a[l], s.lift[l] = chosen(yes, s.new_a[l], s.a[l]), chosen(yes, s.new_lift[l], s.lift[l])
+        s.x[l] = chosen(yes, s.new_x[l], s.x[l])
+        s.v[l] = chosen(yes, s.new_v[l], s.v[l])
+        s.a[l] = chosen(yes, s.new_a[l], s.a[l])
+        s.lift[l] = chosen(yes, s.new_lift[l], s.lift[l])
     for l in range(lanes if s.equipped > 0 else 0):
         yes = s.accepted[l]
         s.speed[l] = chosen(yes, s.new_speed[l], s.speed[l])
@@ -289,7 +301,8 @@ ARC = 0.2
 SAME = 1e-12
 """Of the sampling interval: nothing is left of it."""
 
-CALM, EASY = 1 / 128, 0.25
+CALM = 1 / 128
+EASY = 0.25
 """Errors of a step below which the next may be twice as long, or a fifth longer."""
 
 
@@ -302,7 +315,9 @@ def even_part(left: float, longest: float) -> float:
 @inlined
 def near_limit(s: Record, l: int) -> float:
     """Longest step that the distance from upright allows."""
-    x, fast, pulled = s.x[l], 0.0, 0.0
+    x = s.x[l]
+    fast = 0.0
+    pulled = 0.0
     for axis in range(ways_of(s)):
         fast += s.tilt_rate[axis, l] * s.tilt_rate[axis, l]
         pulled += s.bend[axis, l] * s.bend[axis, l]
@@ -345,7 +360,8 @@ def next_intervals(s: Record, acceleration: Floats) -> None:
             set_ground(s, l, acceleration)
         s.due[l] = 1.0 if s.due[l] == 1.0 else 0.0
     for l in range(lanes):
-        goes_on, limit = (s.accepted[l] > 0.0) & (s.due[l] == 0.0), s.h_limit[l]
+        goes_on = (s.accepted[l] > 0.0) & (s.due[l] == 0.0)
+        limit = s.h_limit[l]
         factor = 2.0 if s.error[l] < CALM else (1.2 if s.error[l] < EASY else 1.0)
         limit = factor * limit
         limit = limit if limit < s.h_most[l] else math.inf
@@ -366,7 +382,8 @@ def look_after(s: Record, l: int, systems: Record, output: Output) -> bool:
     """What a lane alone is to do: switch at an event, store, end; True if its history is over."""
     if s.outcome[l] != RUNNING:
         return True
-    kind, system = s.kind[l], systems[0]
+    kind = s.kind[l]
+    system = systems[0]
     if kind != NOTHING:
         s.kind[l] = NOTHING
         stands_still = s.time[l] - s.h[l] == s.time[l]
@@ -441,17 +458,38 @@ def stay_inside(s: Record, l: int) -> None:
 @compiled
 def idle(s: Record, l: int) -> None:
     """Leave a lane without a history: it takes steps of zero length."""
-    s.history[l], s.devices[l], s.outcome[l] = NO_HISTORY, 0, RUNNING
-    s.kinks[l], s.branched[l] = 0.0, 0.0
-    s.yields[l], s.marked[l] = 0, 0
-    s.kind[l], s.wanted[l], s.phase[l], s.moves[l] = NOTHING, NOTHING, FULL_CONTACT, 0.0
-    s.time[l], s.dt[l], s.h[l], s.h_most[l], s.h_limit[l] = 0.0, 1.0, 0.0, 1.0, 0.0
-    s.x[l], s.v[l], s.a[l], s.interval[l], s.npts[l] = 0.0, 0.0, 0.0, 0, 2
+    s.history[l] = NO_HISTORY
+    s.devices[l] = 0
+    s.outcome[l] = RUNNING
+    s.kinks[l] = 0.0
+    s.branched[l] = 0.0
+    s.yields[l] = 0
+    s.marked[l] = 0
+    s.kind[l] = NOTHING
+    s.wanted[l] = NOTHING
+    s.phase[l] = FULL_CONTACT
+    s.moves[l] = 0.0
+    s.time[l] = 0.0
+    s.dt[l] = 1.0
+    s.h[l] = 0.0
+    s.h_most[l] = 1.0
+    s.h_limit[l] = 0.0
+    s.x[l] = 0.0
+    s.v[l] = 0.0
+    s.a[l] = 0.0
+    s.interval[l] = 0
+    s.npts[l] = 2
     for axis in range(ways_of(s)):
-        s.tilt[axis, l], s.tilt_rate[axis, l], s.bend[axis, l] = 0.0, 0.0, 0.0
-        s.a_g[axis, l], s.a_g_slope[axis, l], s.shaking[axis, l] = 0.0, 0.0, 0.0
+        s.tilt[axis, l] = 0.0
+        s.tilt_rate[axis, l] = 0.0
+        s.bend[axis, l] = 0.0
+        s.a_g[axis, l] = 0.0
+        s.a_g_slope[axis, l] = 0.0
+        s.shaking[axis, l] = 0.0
     for r in range(s.axes * s.n):
-        s.q[r, l], s.dq[r, l], s.freed[r, l] = 0.0, 0.0, 0.0
+        s.q[r, l] = 0.0
+        s.dq[r, l] = 0.0
+        s.freed[r, l] = 0.0
     calm_springs(s, l)
 
 
@@ -459,8 +497,12 @@ def idle(s: Record, l: int) -> None:
 def calm_springs(s: Record, l: int) -> None:
     """No force of springs, in any axis."""
     for axis in range(s.V.shape[0]):
-        s.V[axis, l], s.dV[axis, l], s.ddV[axis, l] = 0.0, 0.0, 0.0
-        s.new_V[axis, l], s.new_dV[axis, l], s.new_ddV[axis, l] = 0.0, 0.0, 0.0
+        s.V[axis, l] = 0.0
+        s.dV[axis, l] = 0.0
+        s.ddV[axis, l] = 0.0
+        s.new_V[axis, l] = 0.0
+        s.new_dV[axis, l] = 0.0
+        s.new_ddV[axis, l] = 0.0
         s.shaking[axis, l] = 0.0
 
 
@@ -475,8 +517,10 @@ def begin_history(
     output: Output,
 ) -> None:
     """Load a history into a lane, at rest in full contact or released from a tilt."""
-    request, ways = requests[history], ways_of(s)
-    s.history[l], s.system[l] = history, s.axes * request.system
+    request = requests[history]
+    ways = ways_of(s)
+    s.history[l] = history
+    s.system[l] = s.axes * request.system
     both = systems[s.system[l] : s.system[l] + s.axes]
     system = both[0]
     load_system(s, l, system)
@@ -487,15 +531,20 @@ def begin_history(
     load_devices(s, l, system)
     load_bed(s, l, system)
     clear_results(s, l)
-    s.factors_h[l], s.within_h[l] = -1.0, -1.0
-    s.side[l], s.x[l], s.v[l] = 1.0, 0.0, 0.0
+    s.factors_h[l] = -1.0
+    s.within_h[l] = -1.0
+    s.side[l] = 1.0
+    s.x[l] = 0.0
+    s.v[l] = 0.0
     for axis in range(ways):
-        s.tilt[axis, l], s.tilt_rate[axis, l] = 0.0, 0.0
+        s.tilt[axis, l] = 0.0
+        s.tilt_rate[axis, l] = 0.0
     set_ground(s, l, acceleration)
     enter_phase(s, l, system, first_phase(system))
     s.kappa[l] = 1.0
     if ways == 2:
-        upright, u = place_of(s, l, 0.0), system.bed_uplift
+        upright = place_of(s, l, 0.0)
+        u = system.bed_uplift
         s.kappa[l] = math.sqrt(upright.K / upright.A)
         if system.compliant > 0:  # K goes on from A of full contact
             bedded = s.io_1[l] + s.one[l] * (system.bed_height * system.bed_height)
@@ -513,28 +562,36 @@ def begin_history(
 @compiled
 def load_system(s: Record, l: int, system: Record) -> None:
     """Constants of the structure, folded as the laws want them."""
-    ground, building = 1.0 + 2.0 * system.gamma, 2.0 * system.gamma * system.eta
-    s.diameter[l], s.io_1[l], s.i_3[l] = 2.0 * system.R, system.Io - 1.0, system.inertia_axial
+    ground = 1.0 + 2.0 * system.gamma
+    building = 2.0 * system.gamma * system.eta
+    s.diameter[l] = 2.0 * system.R
+    s.io_1[l] = system.Io - 1.0
+    s.i_3[l] = system.inertia_axial
     springs = s.axes > ways_of(s)
-    s.one[l], s.four[l] = 1.0 + 4.0 * system.gamma, (0.0 if springs else 2.0 * building)
-    s.weigh[l], s.load[l] = (ground + building) / system.R, ground / system.R
+    s.one[l] = 1.0 + 4.0 * system.gamma
+    s.four[l] = 0.0 if springs else 2.0 * building
+    s.weigh[l] = (ground + building) / system.R
+    s.load[l] = ground / system.R
     s.share[l] = 2.0 / (system.columns_mass * system.R)
     s.riding[l] = 0.0 if springs else system.floors_mass
     s.spared[l] = s.share[l] / s.weigh[l] if springs else 0.0
-    s.columns_mass[l], s.cap_beam_mass[l] = system.columns_mass, system.cap_beam_mass
-    s.floors_mass[l], s.gravity[l] = system.floors_mass, system.gravity
-    s.sin_a[l], s.tan_a[l], s.spin[l] = (
-        math.sin(system.alpha),
-        math.tan(system.alpha),
-        system.rolling[2] if system.beta > 0.0 else 0.0,
-    )
-    s.beta[l], s.sin_beta[l] = system.beta, math.sin(system.beta)
+    s.columns_mass[l] = system.columns_mass
+    s.cap_beam_mass[l] = system.cap_beam_mass
+    s.floors_mass[l] = system.floors_mass
+    s.gravity[l] = system.gravity
+    s.sin_a[l] = math.sin(system.alpha)
+    s.tan_a[l] = math.tan(system.alpha)
+    s.spin[l] = system.rolling[2] if system.beta > 0.0 else 0.0
+    s.beta[l] = system.beta
+    s.sin_beta[l] = math.sin(system.beta)
     s.excess_beta[l] = system.beta - math.sin(system.beta)
     s.half_width[l] = system.R * math.sin(system.alpha)
     s.arc_radius[l] = system.R * system.rolling[2] if system.beta > 0.0 else 0.0
     s.theta_cr[l] = system.theta_cr
-    s.contact_time[l], s.shock_time[l] = system.contact_time, system.shock_time
-    s.step_error[l], s.bend_ratio[l] = system.step_error, system.bend_ratio
+    s.contact_time[l] = system.contact_time
+    s.shock_time[l] = system.shock_time
+    s.step_error[l] = system.step_error
+    s.bend_ratio[l] = system.bend_ratio
 
 
 @compiled
@@ -542,10 +599,15 @@ def load_modes(s: Record, l: int, system: Record, axis: int) -> None:
     """The building's modes at rest, in a direction."""
     for of in range(system.n):
         r = axis * system.n + of
-        s.omega2[r, l], s.two_xi_omega[r, l] = system.omega2[of], system.two_xi_omega[of]
-        s.Gamma[r, l], s.shear_weight[r, l] = system.Gamma[of], system.shear_weight[of]
+        s.omega2[r, l] = system.omega2[of]
+        s.two_xi_omega[r, l] = system.two_xi_omega[of]
+        s.Gamma[r, l] = system.Gamma[of]
+        s.shear_weight[r, l] = system.shear_weight[of]
         s.acceleration_weight[r, l] = system.acceleration_weight[of]
-        s.q[r, l], s.dq[r, l], s.seen_q[r, l], s.seen_force[r, l] = 0.0, 0.0, 0.0, 0.0
+        s.q[r, l] = 0.0
+        s.dq[r, l] = 0.0
+        s.seen_q[r, l] = 0.0
+        s.seen_force[r, l] = 0.0
     load_storeys(s, l, system, axis)
     if axis < ways_of(s):
         s.bend_ratio[l] = max(s.bend_ratio[l], system.bend_ratio)
@@ -554,12 +616,21 @@ def load_modes(s: Record, l: int, system: Record, axis: int) -> None:
 @compiled
 def load_request(s: Record, l: int, request: Record, system: Record) -> None:
     """What is followed, and for how long."""
-    s.record[0, l], s.npts[l], s.vertical[l] = request.record, request.npts, request.vertical
+    s.record[0, l] = request.record
+    s.npts[l] = request.npts
+    s.vertical[l] = request.vertical
     if ways_of(s) == 2:
         s.record[ways_of(s) - 1, l] = request.record_y
-    s.scale[l], s.dt[l], s.rate[l] = request.scale, request.dt, 1.0 / request.dt
-    s.outcome[l], s.kind[l], s.wanted[l], s.which[l] = RUNNING, NOTHING, NOTHING, 0
-    s.interval[l], s.h_limit[l], s.stalled[l] = 0, math.inf, 0
+    s.scale[l] = request.scale
+    s.dt[l] = request.dt
+    s.rate[l] = 1.0 / request.dt
+    s.outcome[l] = RUNNING
+    s.kind[l] = NOTHING
+    s.wanted[l] = NOTHING
+    s.which[l] = 0
+    s.interval[l] = 0
+    s.h_limit[l] = math.inf
+    s.stalled[l] = 0
     s.intervals[l] = request.npts - 1 + math.ceil(system.free_vibration / request.dt - 1e-9)
 
 
@@ -569,14 +640,17 @@ def clear_results(s: Record, l: int) -> None:
     for i in range(s.kept.shape[0]):
         s.kept[i, l] = 0
     s.critical_time[l] = -1.0
-    s.normal_top[l], s.normal_bottom[l] = math.inf, math.inf
-    s.closest_pass[l], s.shortest_pass[l] = math.inf, math.inf
+    s.normal_top[l] = math.inf
+    s.normal_bottom[l] = math.inf
+    s.closest_pass[l] = math.inf
+    s.shortest_pass[l] = math.inf
     s.contacts_near[l] = 1.0
     s.directionless[l] = 0
     for k in range(s.room.shape[0]):
         s.room[k, l] = 0.0
         for i in range(s.n):
-            s.largest[k, l, i], s.last[k, l, i] = 0.0, 0.0
+            s.largest[k, l, i] = 0.0
+            s.last[k, l, i] = 0.0
     for axis in range(ways_of(s)):
         s.max_beam[axis, l] = 0.0
     s.steps[l] = 0.0
@@ -589,7 +663,8 @@ def release(s: Record, l: int, system: Record, log: Record) -> None:
     """Start from rest at a rotation, the building unstrained; without a flat part perhaps at 0."""
     theta = abs(system.initial_rotation)
     s.side[l] = math.copysign(1.0, system.initial_rotation)
-    s.x[l], s.max_theta[l] = theta, theta
+    s.x[l] = theta
+    s.max_theta[l] = theta
     s.tilt[0, l] = s.side[l] * theta
     if ways_of(s) == 2:
         s.max_azimuth[l] = azimuth_of(s, l)
@@ -611,7 +686,8 @@ def finish_storeys(s: Record, l: int, result: Record) -> None:
     ways = ways_of(s)
     for axis in range(ways):
         for i in range(s.n):
-            r, free = axis * s.n + i, 1.0 - s.hardening[l]
+            r = axis * s.n + i
+            free = 1.0 - s.hardening[l]
             most = max(s.drift_most[r, l], s.largest[axis + ways - 1, l, i])
             if s.yielded[r, l] > 0.0:  # else its drift is its shear over k
                 most = s.drift_most[r, l]
@@ -626,12 +702,15 @@ def finish_storeys(s: Record, l: int, result: Record) -> None:
 @compiled
 def finish_history(s: Record, l: int, system: Record, results: Record) -> None:
     """Write what the history leaves behind [results (P,)]."""
-    result, ways = results[s.history[l]], ways_of(s)
+    result = results[s.history[l]]
+    ways = ways_of(s)
     result.energy_stored = total_energy(s, l, system)
     if s.outcome[l] == RUNNING:
         released = system.initial_rotation != 0.0 or s.max_theta[l] > system.bed_uplift
         s.outcome[l] = SURVIVED if released or s.events[UPLIFT, l] > 0 else AT_REST
-    result.outcome, result.phase, result.intervals = s.outcome[l], s.phase[l], s.interval[l]
+    result.outcome = s.outcome[l]
+    result.phase = s.phase[l]
+    result.intervals = s.interval[l]
     result.ways = ways
     if s.phase[l] == STUCK and s.bed_k[l] > 0.0:
         result.phase = BEDDED
@@ -648,10 +727,8 @@ def finish_history(s: Record, l: int, system: Record, results: Record) -> None:
         result.storey_shear[i] = s.largest[0, l, i]
         result.floor_acceleration[i] = s.largest[half, l, i]
         if ways == 2:
-            result.storey_shear_x[i], result.storey_shear_y[i] = (
-                s.largest[half - 2, l, i],
-                s.largest[half - 1, l, i],
-            )
+            result.storey_shear_x[i] = s.largest[half - 2, l, i]
+            result.storey_shear_y[i] = s.largest[half - 1, l, i]
             result.floor_acceleration_x[i] = s.largest[half + ways - 1, l, i]
             result.floor_acceleration_y[i] = s.largest[half + ways, l, i]
     result.max_x = s.max_beam[0, l]

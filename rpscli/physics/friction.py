@@ -36,7 +36,8 @@ from rpscli.physics.state import STICKING, STUCK, Record
 @compiled
 def push_of_stops(s: Record, l: int) -> float:
     """Force of all stops against a tilt at rest [N]."""
-    path, push = s.diameter[l] * path_at(s, l, s.x[l]), 0.0
+    path = s.diameter[l] * path_at(s, l, s.x[l])
+    push = 0.0
     for i in range(s.devices[l]):
         push += resistance_of(s, l, i, path, 0.0)
     return push
@@ -51,7 +52,8 @@ def force_at_rest(s: Record, l: int) -> tuple[float, float]:
     if s.devices[l] == 0:
         return 0.0, 0.0
     e, lever, _, _ = tendon_elongation(s, l, s.x[l])
-    arm, elastic = s.diameter[l] * place_of(s, l, s.x[l]).C, push_of_stops(s, l)
+    arm = s.diameter[l] * place_of(s, l, s.x[l]).C
+    elastic = push_of_stops(s, l)
     for i in range(s.devices[l]):
         elastic += s.columns[l] * tension_of(s, l, i, e) * lever / arm
     return elastic, s.friction_force[l] + s.friction_moment[l] / arm
@@ -63,35 +65,50 @@ def set_limits(s: Record, l: int) -> None:
     R = 0.5 * s.diameter[l]
     weigh = R * s.weigh[l]
     elastic, friction = force_at_rest(s, l)
-    elastic, friction = R * pushed_by(s, l, elastic), R * pushed_by(s, l, friction)
+    elastic = R * pushed_by(s, l, elastic)
+    friction = R * pushed_by(s, l, friction)
     right = s.tan_a[l] * weigh
-    s.limit_right[l], s.limit_left[l] = right, right
-    s.held_right[l], s.held_left[l] = elastic + friction, elastic + friction
-    s.held_x[l], s.held_y[l] = 0.0, 0.0
+    s.limit_right[l] = right
+    s.limit_left[l] = right
+    s.held_right[l] = elastic + friction
+    s.held_left[l] = elastic + friction
+    s.held_x[l] = 0.0
+    s.held_y[l] = 0.0
     if s.bed_back[l] > 0.0:  # outwards as the lifted ends, inwards as the bed
-        at, back = place_of(s, l, s.x[l]), R * s.bed_back[l]
+        at = place_of(s, l, s.x[l])
+        back = R * s.bed_back[l]
         missing = R * (s.root[l] - s.sink[l]) * s.w[l] * s.gravity[l] * s.weigh[l]
-        out, held_out = at.Bv / at.C * weigh, elastic + friction + missing / at.C
-        s.limit_right[l], s.held_right[l] = out, held_out
-        s.limit_left[l], s.held_left[l] = 0.0, friction - elastic - back
+        out = at.Bv / at.C * weigh
+        held_out = elastic + friction + missing / at.C
+        s.limit_right[l] = out
+        s.held_right[l] = held_out
+        s.limit_left[l] = 0.0
+        s.held_left[l] = friction - elastic - back
         if s.side[l] < 0.0:
-            s.limit_right[l], s.held_right[l] = 0.0, friction - elastic - back
-            s.limit_left[l], s.held_left[l] = out, held_out
+            s.limit_right[l] = 0.0
+            s.held_right[l] = friction - elastic - back
+            s.limit_left[l] = out
+            s.held_left[l] = held_out
     elif s.phase[l] == STUCK:
-        at, side = place_of(s, l, s.x[l]), s.side[l]
+        at = place_of(s, l, s.x[l])
+        side = s.side[l]
         missing = (s.root[l] - s.sink[l]) * s.w[l] * s.gravity[l] * s.weigh[l]
         elastic += R * (missing + s.bed_k[l] * s.x[l]) / at.C
         _, n, t, _, _ = polar(s, l, tilt_of(s, l), (0.0, 0.0))
         back = elastic + at.Bv / at.C * weigh * s.gravity[l] if s.x[l] > 0.0 else 0.0
-        s.held_x[l], s.held_y[l] = back * n, back * t
+        s.held_x[l] = back * n
+        s.held_y[l] = back * t
         if ways_of(s) == 2:  # within this circle it surely is: what (13.25) asks of dampers alone
             moment = s.friction_moment[l] / (s.diameter[l] * max(at.C, at.h))
             s.held_right[l] = R * pushed_by(s, l, s.friction_force[l] + moment)
             s.limit_right[l] = 0.0
             return
-        right, elastic = side * at.Bv / at.C * weigh, side * elastic
-        s.limit_right[l], s.limit_left[l] = right, -right
-        s.held_right[l], s.held_left[l] = friction + elastic, friction - elastic
+        right = side * at.Bv / at.C * weigh
+        elastic = side * elastic
+        s.limit_right[l] = right
+        s.limit_left[l] = -right
+        s.held_right[l] = friction + elastic
+        s.held_left[l] = friction - elastic
 
 
 @compiled
@@ -103,16 +120,21 @@ def push_at_rest(s: Record, l: int, V: tuple[float, float], time: float, V_up: f
     proportion to what each could. Returns the share of their friction that is asked for, against
     growing tilts, -1 to 1; of a tilt to any side against where it is pushed to, 0 to 1.
     """
-    R, side, g_felt = 0.5 * s.diameter[l], s.side[l], felt(s, l, g_up_at(s, l, time), V_up)
+    R = 0.5 * s.diameter[l]
+    side = s.side[l]
+    g_felt = felt(s, l, g_up_at(s, l, time), V_up)
     # Between bed and lifted ends the columns hold what they can too, up to where they let go.
     if s.friction_force[l] + s.friction_moment[l] == 0.0 or s.bed_back[l] > 0.0:
         return 0.0
-    per_N, z_x, z_y = R * s.share[l], z_of(s, l, V[0], ground_at(s, l, 0, time)), 0.0
+    per_N = R * s.share[l]
+    z_x = z_of(s, l, V[0], ground_at(s, l, 0, time))
+    z_y = 0.0
     if ways_of(s) == 2:
         z_y = z_of(s, l, V[1], ground_at(s, l, 1, time))
     if ways_of(s) == 2 and s.phase[l] == STUCK:
         return push_stuck(s, l, (z_x, z_y), g_felt)
-    x, y = -R * z_x, -R * z_y
+    x = -R * z_x
+    y = -R * z_y
     action = side * x
     if ways_of(s) == 2:
         action = length(x, y)
@@ -133,7 +155,8 @@ def push_at_rest(s: Record, l: int, V: tuple[float, float], time: float, V_up: f
     s.drive[0, l] = -side * share * s.friction_force[l]
     if ways_of(s) == 2:
         push = beyond / max(per_N * action, 1e-300)
-        s.drive[0, l], s.drive[1, l] = push * x, push * y
+        s.drive[0, l] = push * x
+        s.drive[1, l] = push * y
         return float(beyond / dampers)
     return share
 
@@ -192,13 +215,16 @@ def grip_of(
     """
     x, n, t, _, _ = polar(s, l, tilt_of(s, l), (0.0, 0.0))
     w, _ = patch(s, l, x)
-    at, weigh, gravity = place_of(s, l, x), s.weigh[l], s.gravity[l]
+    at = place_of(s, l, x)
+    weigh = s.weigh[l]
+    gravity = s.gravity[l]
     P = max(pushed_by(s, l, s.friction_force[l]) - less, 0.0)
     M = pushed_by(s, l, s.friction_moment[l]) / s.diameter[l]
     arm = at.Bv * weigh
     held = arm * g_felt[0] + (s.root[l] - s.sink[l]) * w * gravity * weigh + s.bed_k[l] * x
     held = held + at.C * pushed_by(s, l, force_at_rest(s, l)[0]) if x > 0.0 else 0.0
-    Q_n, Q_t = at.C * (z[0] * n + z[1] * t) - held, at.h * (z[1] * n - z[0] * t)
+    Q_n = at.C * (z[0] * n + z[1] * t) - held
+    Q_t = at.h * (z[1] * n - z[0] * t)
     rate_n = at.C * (z_rate[0] * n + z_rate[1] * t) - arm * g_felt[1]
     rate_t = at.h * (z_rate[1] * n - z_rate[0] * t)
     pushed = Q_n != 0.0 or Q_t != 0.0  # else it will be where that grows to
@@ -214,7 +240,8 @@ def grip_of(
         far = math.sqrt(d_n * d_n + d_t * d_t)
         d_n, d_t = (d_n / far, d_t / far) if far > 0.0 else (1.0, 0.0)
         long = length(at.C * d_n, at.h * d_t)
-    most, pulled = P * long + M, Q_n * d_n + Q_t * d_t
+    most = P * long + M
+    pulled = Q_n * d_n + Q_t * d_t
     falls = max(rate_n * d_n + rate_t * d_t, 0.0)
     inert = (at.A * d_n * d_n + at.K * d_t * d_t) / (s.diameter[l] * long)
     return Grip(
@@ -236,16 +263,22 @@ ROUNDING = 1e-13
 @compiled
 def grip_at(s: Record, l: int, end: int) -> Grip:
     """How a lane is held at the start (0) or at the end (1) of its step."""
-    z_x, z_y, rate_x, rate_y, time = 0.0, 0.0, 0.0, 0.0, s.time[l] + end * s.h[l]
+    z_x = 0.0
+    z_y = 0.0
+    rate_x = 0.0
+    rate_y = 0.0
+    time = s.time[l] + end * s.h[l]
     for axis in range(2):
         V = s.new_V[axis, l] if end > 0 else s.V[axis, l]
         dV = s.new_dV[axis, l] if end > 0 else s.dV[axis, l]
         z = z_of(s, l, V, ground_at(s, l, axis, time))
         rate = z_of(s, l, dV, s.a_g_slope[axis, l])
         if axis == 0:
-            z_x, rate_x = z, rate
+            z_x = z
+            rate_x = rate
         else:
-            z_y, rate_y = z, rate
+            z_y = z
+            rate_y = rate
     g_felt, g_rate, _ = felt_at(s, l, end)
     return grip_of(s, l, (z_x, z_y), (rate_x, rate_y), (g_felt, g_rate), 0.0)
 
@@ -257,6 +290,7 @@ def push_stuck(s: Record, l: int, z: tuple[float, float], g_felt: float) -> floa
     now = polar(s, l, tilt_of(s, l), (0.0, 0.0))
     used = min(grip.used, 1.0)  # a little more would be asked for just before it lets go (13.26)
     push = used * s.friction_force[l]
-    out, aside = -push * grip.drag_n - push_of_stops(s, l), -push * grip.drag_t
+    out = -push * grip.drag_n - push_of_stops(s, l)
+    aside = -push * grip.drag_t
     s.drive[0, l], s.drive[1, l] = turned(now, out, aside)
     return used

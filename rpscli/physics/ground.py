@@ -13,19 +13,27 @@ from rpscli.physics.state import FULL_CONTACT, NO_RECORD, Floats, Record
 def set_ground(s: Record, l: int, acceleration: Floats) -> None:
     """Set how the ground moves in the interval that begins."""
     i = s.interval[l]
-    inside, scale, rate = i + 1 < s.npts[l], s.scale[l], s.rate[l]
+    inside = i + 1 < s.npts[l]
+    scale = s.scale[l]
+    rate = s.rate[l]
     s.time[l] = 0.0
     for axis in range(ways_of(s)):
-        start, end = 0.0, 0.0
+        start = 0.0
+        end = 0.0
         if inside:
             at = s.record[axis, l] + i
-            start, end = scale * acceleration[at], scale * acceleration[at + 1]
-        s.a_g[axis, l], s.a_g_slope[axis, l] = start, (end - start) * rate
-    start, end = 0.0, 0.0
+            start = scale * acceleration[at]
+            end = scale * acceleration[at + 1]
+        s.a_g[axis, l] = start
+        s.a_g_slope[axis, l] = (end - start) * rate
+    start = 0.0
+    end = 0.0
     if inside and s.vertical[l] != NO_RECORD:
         at = s.vertical[l] + i
-        start, end = scale * acceleration[at], scale * acceleration[at + 1]
-    s.g_up[l], s.g_up_slope[l] = s.gravity[l] + start, (end - start) * rate
+        start = scale * acceleration[at]
+        end = scale * acceleration[at + 1]
+    s.g_up[l] = s.gravity[l] + start
+    s.g_up_slope[l] = (end - start) * rate
 
 
 @compiled
@@ -66,10 +74,17 @@ def log_event(
     """
     row = log_row(s, l, log, kind)
     if row >= 0:
-        entry, sign = log[row], (s.side[l] if ways_of(s) == 1 else 1.0)
+        entry = log[row]
+        sign = s.side[l] if ways_of(s) == 1 else 1.0
         theta = 0.0 if s.phase[l] == FULL_CONTACT else sign * s.x[l]
-        entry.time, entry.kind, entry.theta, entry.energy_lost = time_of(s, l), kind, theta, lost
-        entry.theta_dot_before, entry.theta_dot_after = sign * before, sign * after
-        entry.azimuth, entry.least_tilt, entry.nearness = azimuth_of(s, l), 0.0, 0.0
+        entry.time = time_of(s, l)
+        entry.kind = kind
+        entry.theta = theta
+        entry.energy_lost = lost
+        entry.theta_dot_before = sign * before
+        entry.theta_dot_after = sign * after
+        entry.azimuth = azimuth_of(s, l)
+        entry.least_tilt = 0.0
+        entry.nearness = 0.0
         entry.loss_share = 0.0
     return row

@@ -59,13 +59,16 @@ def waiting_place(state: Record) -> int:
 @compiled
 def leave(state: Record, k: int, place: int) -> None:
     """Copy a history of state k from its place to the other state, or to where it waits for it."""
-    other, lanes = state[STANDING if k == MOVING else MOVING], lanes_of(state[k])
+    other = state[STANDING if k == MOVING else MOVING]
+    lanes = lanes_of(state[k])
     state[k].present -= 1
     other.present += 1
-    to, lane = other, free_lane(other)
+    to = other
+    lane = free_lane(other)
     if lane < 0:
         free = waiting_place(state)
-        to, lane = state[free // lanes], free % lanes
+        to = state[free // lanes]
+        lane = free % lanes
     copy_lane(to, lane, state[place // lanes], place % lanes)
     to.active += 1
 

@@ -33,10 +33,12 @@ def integrate(run: Run, lanes: int = LANES, *, interruptible: bool = False) -> N
     systems = run.systems.view(np.ndarray)  # fields of records take ten times as long
     state = scratch(run.ways, lanes)
     plain = state.view(np.ndarray)
-    plain["n"], plain["stop"] = systems["n"][0], 0
+    plain["n"] = systems["n"][0]
+    plain["stop"] = 0
     plain["equipped"] = int(systems["devices"].max(initial=0))
     plain["yielding"] = int(systems["yields"].any())
-    plain["gives_way"], plain["axes"] = int(systems["compliant"].any()), systems["axes"][0]
+    plain["gives_way"] = int(systems["compliant"].any())
+    plain["axes"] = systems["axes"][0]
     given = run.systems, run.requests, run.acceleration, run.results, run.output
 
     run_kernel = kernel(run.ways, lanes)
@@ -52,7 +54,8 @@ def integrate(run: Run, lanes: int = LANES, *, interruptible: bool = False) -> N
 
 def in_background(work: Callable[..., object], *given: object) -> None:
     """Do some work in another thread; a Ctrl-C does not wait for its end."""
-    ended, failed = Event(), list[BaseException]()
+    ended = Event()
+    failed = list[BaseException]()
 
     def whole() -> None:
         try:

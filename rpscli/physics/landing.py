@@ -36,11 +36,15 @@ MOST_TRIES = 8
 @compiled
 def first_event(s: Record, l: int, systems: Record) -> tuple[float, int, int]:
     """Fraction of the step at which its first event happens, its kind, and which of it."""
-    first, kind, which = NO_PASSAGE, NOTHING, 0
+    first = NO_PASSAGE
+    kind = NOTHING
+    which = 0
     for event in EVENTS:
         t, found = event.first(s, l, systems)
         if t < first:
-            first, kind, which = t, event.kind, found
+            first = t
+            kind = event.kind
+            which = found
     return first, kind, which
 
 
@@ -68,7 +72,8 @@ def resolve_step(s: Record, l: int, systems: Record) -> bool:
     if s.error[l] > 1.0 and s.h[l] > LEAST_STEP * s.dt[l]:
         # also of a step that is to end on an event: there a bed may be steeper than beyond it
         s.h[l] *= 0.5 if s.error[l] < 64.0 else 0.25
-        s.h_limit[l], s.wanted[l] = s.h[l], NOTHING
+        s.h_limit[l] = s.h[l]
+        s.wanted[l] = NOTHING
         return True
     if s.wanted[l] != NOTHING:
         land(s, l, systems)
@@ -77,7 +82,10 @@ def resolve_step(s: Record, l: int, systems: Record) -> bool:
     if kind == NOTHING:
         s.accepted[l] = 1.0
         return True
-    s.wanted[l], s.which[l], s.tries[l], s.h_now[l] = kind, which, 0, s.h[l]
+    s.wanted[l] = kind
+    s.which[l] = which
+    s.tries[l] = 0
+    s.h_now[l] = s.h[l]
     s.h[l] *= fraction
     return True
 
@@ -100,7 +108,9 @@ def land(s: Record, l: int, systems: Record) -> None:
     # a cubic from zero without slope may dip where the value grows with the third power of time
     dips = s.wanted[l] in (CHANGE, YIELD) and value > 0.0 and slope >= 0.0
     kind = NOTHING if dips else s.wanted[l]
-    s.accepted[l], s.kind[l], s.wanted[l] = 1.0, kind, NOTHING
+    s.accepted[l] = 1.0
+    s.kind[l] = kind
+    s.wanted[l] = NOTHING
 
 
 @compiled

@@ -210,11 +210,17 @@ def felt(s: Record, l: int, g_up: float, V_up: float) -> float:
 @compiled
 def felt_at(s: Record, l: int, end: int) -> tuple[float, float, float]:
     """g_f with two derivatives, at the start of the step (0) or at its end (1)."""
-    up, time, spared = ways_of(s), s.time[l] + end * s.h[l], s.spared[l]
+    up = ways_of(s)
+    time = s.time[l] + end * s.h[l]
+    spared = s.spared[l]
     slope = s.g_up_slope[l]
-    V, dV, ddV = s.V[up, l], s.dV[up, l], s.ddV[up, l]
+    V = s.V[up, l]
+    dV = s.dV[up, l]
+    ddV = s.ddV[up, l]
     if end > 0:
-        V, dV, ddV = s.new_V[up, l], s.new_dV[up, l], s.new_ddV[up, l]
+        V = s.new_V[up, l]
+        dV = s.new_dV[up, l]
+        ddV = s.new_ddV[up, l]
     g_felt = felt(s, l, g_up_at(s, l, time), V)
     return g_felt, slope - spared * (s.floors_mass[l] * slope + dV), -spared * ddV
 
@@ -251,17 +257,26 @@ def respond(
 
     At a place and a rate of the tilt, a time of the interval [s], and what devices now do.
     """
-    a_x, a_y = ground_at(s, l, 0, time), 0.0
-    z_x, z_y = z_of(s, l, V[0] + s.drive[0, l], a_x), 0.0
+    a_x = ground_at(s, l, 0, time)
+    a_y = 0.0
+    z_x = z_of(s, l, V[0] + s.drive[0, l], a_x)
+    z_y = 0.0
     if ways_of(s) == 2:
         a_y = ground_at(s, l, 1, time)
         z_y = z_of(s, l, V[1] + s.drive[1, l], a_y)
-    gravity, g_up, ends = s.gravity[l], g_up_at(s, l, time), ends_of(s, l)
+    gravity = s.gravity[l]
+    g_up = g_up_at(s, l, time)
+    ends = ends_of(s, l)
     arms = weight_arms(at, ends, s.weigh[l], w, gravity, felt(s, l, g_up, V[2]))
-    p, q, moves, diameter = tilt.p, tilt.q, s.moves[l] > 0.0, s.diameter[l]
+    p = tilt.p
+    q = tilt.q
+    moves = s.moves[l] > 0.0
+    diameter = s.diameter[l]
     if ways_of(s) == 2:  # upright no square depends on the direction, which is any
         leans = tilt.x > 0.0
-        arms, p, q = (arms if leans else 0.0), (p if leans else 0.0), (q if leans else 0.0)
+        arms = arms if leans else 0.0
+        p = p if leans else 0.0
+        q = q if leans else 0.0
     held = arms + bed_along(ends, tilt.x, tilt.p) - s.turning[l]
     out = bend_along(at, held, p, q, along(tilt, z_x, z_y))
     if ways_of(s) == 1:
@@ -282,10 +297,8 @@ def respond(
     held = bed_across(ends, per_x, tilt.q) - s.turning_across[l]
     aside = bend_across(at, held, p, q, across(tilt, z_x, z_y))
     bend_x, bend_y = turned(tilt, out, aside)
-    beam_out, beam_aside = (
-        beam_along(at, diameter, out, p, q),
-        beam_across(at, diameter, aside, p, q),
-    )
+    beam_out = beam_along(at, diameter, out, p, q)
+    beam_aside = beam_across(at, diameter, aside, p, q)
     beam_x, beam_y = turned(tilt, beam_out, beam_aside)
     a = out + tilt.q * tilt.q * per_x
     return Response(
@@ -304,7 +317,8 @@ def respond(
 @inlined
 def velocity_with(s: Record, l: int, at: Place, tilt: Polar) -> tuple[float, float]:
     """u_b' in x and in y at a place and a rate of the tilt [m/s]."""
-    out, aside = s.diameter[l] * at.C * tilt.p, s.diameter[l] * at.h * tilt.q
+    out = s.diameter[l] * at.C * tilt.p
+    aside = s.diameter[l] * at.h * tilt.q
     if ways_of(s) == 1:
         return out * tilt.n, 0.0
     return turned(tilt, out, aside)

@@ -25,7 +25,8 @@ from rpscli.physics.within import tilt_within
 def observe_tilt(s: Record, log: Record) -> None:
     """Raise the largest tilt and way of the beam by those of accepted steps."""
     for l in range(lanes_of(s)):
-        x, end = s.new_x[l], s.interval[l] * s.dt[l] + (s.time[l] + s.h[l])
+        x = s.new_x[l]
+        end = s.interval[l] * s.dt[l] + (s.time[l] + s.h[l])
         higher = (s.accepted[l] > 0.0) & (x > s.max_theta[l])
         s.tilt_rises[l] = 1.0 if higher & (ways_of(s) == 2) else 0.0
         passing = (x > s.theta_cr[l]) & (s.critical_time[l] < 0.0)
@@ -49,17 +50,20 @@ def observe_tilt(s: Record, log: Record) -> None:
 def raise_tilt(s: Record, l: int, log: Record) -> None:
     """Raise the largest tilt by that of the step just taken, to either side."""
     path = path_of(s, l)
-    height, fraction = s.new_x[l], 1.0
+    height = s.new_x[l]
+    fraction = 1.0
     if s.v[l] > 0.0 and s.new_v[l] < 0.0 and upper_hull(path) > s.max_theta[l]:
         fraction, height = peak_in_step(path)
     bedded = ways_of(s) == 1 and s.bed_k[l] > 0.0
     if bedded and -min(lower_hull(path), path[0]) > s.max_theta[l]:
         over = (-path[0], -path[1], -path[2], -path[3], -path[4], -path[5])
-        t, most = 1.0, -s.new_x[l]
+        t = 1.0
+        most = -s.new_x[l]
         if s.v[l] < 0.0 < s.new_v[l]:
             t, most = peak_in_step(over)
         if most > height:
-            fraction, height = t, most
+            fraction = t
+            height = most
     if height > s.max_theta[l]:
         s.max_theta[l] = height
         s.max_theta_time[l] = s.interval[l] * s.dt[l] + (s.time[l] + fraction * s.h[l])
@@ -82,7 +86,8 @@ def log_critical_passage(
     s: Record, l: int, log: Record, path: tuple[float, float, float, float, float, float]
 ) -> None:
     """Note when theta_cr was passed for the first time, within the step just taken."""
-    level, h = s.theta_cr[l], s.h[l]
+    level = s.theta_cr[l]
+    h = s.h[l]
     t = min(first_descent(offset(path, -1.0, level), s.piece), 1.0)
     sign = s.side[l] if ways_of(s) == 1 else 1.0
     rate = sign * slope(path, t) / h if h > 0.0 else 0.0
@@ -91,10 +96,16 @@ def log_critical_passage(
     row = log_row(s, l, log, CRITICAL_PASSAGE)
     if row >= 0:
         entry = log[row]
-        entry.time, entry.kind, entry.theta = s.critical_time[l], CRITICAL_PASSAGE, sign * level
-        entry.theta_dot_before, entry.theta_dot_after, entry.energy_lost = rate, rate, 0.0
-        entry.azimuth, entry.least_tilt = s.critical_azimuth[l], 0.0
-        entry.nearness, entry.loss_share = 0.0, 0.0
+        entry.time = s.critical_time[l]
+        entry.kind = CRITICAL_PASSAGE
+        entry.theta = sign * level
+        entry.theta_dot_before = rate
+        entry.theta_dot_after = rate
+        entry.energy_lost = 0.0
+        entry.azimuth = s.critical_azimuth[l]
+        entry.least_tilt = 0.0
+        entry.nearness = 0.0
+        entry.loss_share = 0.0
 
 
 @compiled

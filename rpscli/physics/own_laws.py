@@ -17,7 +17,8 @@ from rpscli.registry import GUARD
 
 Law = Callable[..., float]
 
-NAME, REFUSED = "law", "law.refused"
+NAME = "law"
+REFUSED = "law.refused"
 
 
 @dataclass(eq=False)

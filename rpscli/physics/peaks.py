@@ -16,7 +16,8 @@ def middle_of(
 @compiled
 def turning_value(start: float, middle: float, end: float) -> float:
     """Where the parabola through three values turns within the step, its value; else the end."""
-    bend, change = start - 2.0 * middle + end, end - start
+    bend = start - 2.0 * middle + end
+    change = end - start
     turns = abs(change) < 2.0 * abs(bend)
     return middle - change * change / (8.0 * (bend if turns else 1.0)) if turns else end
 

@@ -41,8 +41,10 @@ def quintic(
     h: float, f0: float, df0: float, ddf0: float, f1: float, df1: float, ddf1: float
 ) -> Quintic:
     """Bernstein coefficients of the Hermite quintic over a step of length h [h s]."""
-    d0, d1 = 0.2 * h * df0, 0.2 * h * df1
-    c0, c1 = 0.05 * (h * h) * ddf0, 0.05 * (h * h) * ddf1
+    d0 = 0.2 * h * df0
+    d1 = 0.2 * h * df1
+    c0 = 0.05 * (h * h) * ddf0
+    c1 = 0.05 * (h * h) * ddf1
     return (f0, f0 + d0, f0 + 2.0 * d0 + c0, f1 - 2.0 * d1 + c1, f1 - d1, f1)
 
 
@@ -85,7 +87,8 @@ def offset(b: Quintic, sign: float, level: float) -> Quintic:
 def value(b: Quintic, t: float) -> float:
     """f at t."""
     r = 1.0 - t
-    t2, r2 = t * t, r * r
+    t2 = t * t
+    r2 = r * r
     ends = b[0] * r2 * r2 * r + b[5] * t2 * t2 * t
     return ends + 5.0 * t * r * (
         b[1] * r2 * r + b[4] * t2 * t + 2.0 * t * r * (b[2] * r + b[3] * t)
@@ -102,7 +105,8 @@ def first_descent(b: Quintic, piece: NDArray[np.float64]) -> float:
 @compiled
 def search_descent(b: Quintic, piece: NDArray[np.float64]) -> float:
     """The same for a quintic whose hull does not say that there is none [piece (6,)]."""
-    level, index = 0, 0
+    level = 0
+    index = 0
     while True:
         width = 0.5**level
         restrict(b, index * width, (index + 1) * width, piece)
@@ -119,7 +123,8 @@ def search_descent(b: Quintic, piece: NDArray[np.float64]) -> float:
             if level == 0:
                 return NO_PASSAGE
         else:
-            level, index = level + 1, 2 * index
+            level = level + 1
+            index = 2 * index
 
 
 @compiled
@@ -141,7 +146,9 @@ def restrict(b: Quintic, start: float, end: float, piece: NDArray[np.float64]) -
 @compiled
 def sign_pattern(piece: NDArray[np.float64]) -> tuple[int, int]:
     """Number of sign changes, zeros left out, and the sign of the first coefficient not zero."""
-    changes, first, last = 0, 0, 0
+    changes = 0
+    first = 0
+    last = 0
     for i in range(6):
         sign = 1 if piece[i] > 0.0 else (-1 if piece[i] < 0.0 else 0)
         if sign == 0:
@@ -158,7 +165,8 @@ def sign_pattern(piece: NDArray[np.float64]) -> tuple[int, int]:
 def descent_in(piece: NDArray[np.float64]) -> float:
     """The root of a piece that changes sign once, downwards: Newton's method inside a bracket."""
     b = (piece[0], piece[1], piece[2], piece[3], piece[4], piece[5])
-    low, high = 0.0, 1.0
+    low = 0.0
+    high = 1.0
     t = b[0] / (b[0] - b[5]) if b[0] > 0.0 > b[5] else 0.5  # where the chord crosses
     for _ in range(100):
         f = value(b, t)
@@ -180,7 +188,8 @@ def descent_in(piece: NDArray[np.float64]) -> float:
 def slope(b: Quintic, t: float) -> float:
     """df/dt at t."""
     r = 1.0 - t
-    r2, t2 = r * r, t * t
+    r2 = r * r
+    t2 = t * t
     return 5.0 * (
         (b[1] - b[0]) * (r2 * r2)
         + 4.0 * (b[2] - b[1]) * (r * r2) * t
@@ -196,7 +205,8 @@ def peak_in_step(path: Quintic) -> tuple[float, float]:
 
     Bisection of the slope: it never leaves the step, and is rarely needed.
     """
-    low, high = 0.0, 1.0
+    low = 0.0
+    high = 1.0
     for _ in range(50):
         t = 0.5 * (low + high)
         if slope(path, t) > 0.0:

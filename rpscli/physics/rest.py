@@ -27,7 +27,8 @@ def is_over(s: Record, l: int, systems: Record) -> bool:
     could uplift the storey again. Uplifted in one plane a history is never over: impacts excite the
     building until the storey is down.
     """
-    system, free = systems[0], s.interval[l] + 1 - s.npts[l]
+    system = systems[0]
+    free = s.interval[l] + 1 - s.npts[l]
     if system.until_rest == 0 or free <= 0 or free % REST_EVERY != 0:
         return False
     if s.phase[l] in (FULL_CONTACT, STUCK):
@@ -60,11 +61,13 @@ def largest_force(s: Record, l: int, axis: int) -> float:
 @compiled
 def stays_down(s: Record, l: int) -> bool:
     """Whether the freely vibrating building can never again push hard enough to let go."""
-    square, up = 0.0, ways_of(s)
+    square = 0.0
+    up = ways_of(s)
     for axis in range(up):
         largest = largest_force(s, l, axis)
         square += largest * largest
-    most, lightest = pushed_by(s, l, math.sqrt(square)), s.gravity[l]
+    most = pushed_by(s, l, math.sqrt(square))
+    lightest = s.gravity[l]
     if s.axes > up:
         lightest = felt(s, l, lightest, largest_force(s, l, up))
     if up == 2 and s.phase[l] == STUCK:
@@ -98,11 +101,15 @@ def demands_stand(s: Record, l: int, systems: Record) -> bool:
     """Whether free vibration in full contact can raise no storey shear and no acceleration."""
     rows = 2 * ways_of(s) - 1
     for i in range(s.n):
-        shears, accelerations = 0.0, 0.0
+        shears = 0.0
+        accelerations = 0.0
         for axis in range(ways_of(s)):
-            system, shear, acceleration = systems[axis], 0.0, 0.0
+            system = systems[axis]
+            shear = 0.0
+            acceleration = 0.0
             for of in range(s.n):
-                r, omega = axis * s.n + of, system.omega[of]
+                r = axis * s.n + of
+                omega = system.omega[of]
                 speed = modal_speed(s, l, r)
                 shear += abs(system.storey_shear_of[of, i]) * speed / omega
                 force = omega + system.two_xi_omega[of]
@@ -114,10 +121,8 @@ def demands_stand(s: Record, l: int, systems: Record) -> bool:
                     return False
             if s.yields[l] > 0 and shear >= spare_strength(s, l, axis * s.n + i):
                 return False
-            shears, accelerations = (
-                shears + shear * shear,
-                accelerations + acceleration * acceleration,
-            )
+            shears = shears + shear * shear
+            accelerations = accelerations + acceleration * acceleration
         if math.sqrt(shears) > s.largest[0, l, i]:
             return False
         if math.sqrt(accelerations) > s.largest[rows, l, i]:
@@ -167,18 +172,20 @@ def rests_on_bed(s: Record, l: int, systems: Record) -> bool:
     for axis in range(ways_of(s)):
         building = systems[axis]
         for i in range(s.n):
-            stiffness, spring, damper, beam = 0.0, 0.0, 0.0, 0.0
+            stiffness = 0.0
+            spring = 0.0
+            damper = 0.0
+            beam = 0.0
             for r in range(s.n):
                 shear = building.storey_shear_of[r, i] / building.omega[r]
                 force = building.phi[r, i] * building.omega[r]
                 damped = building.phi[r, i] * building.two_xi_omega[r]
-                stiffness, spring = stiffness + shear * shear, spring + force * force
+                stiffness = stiffness + shear * shear
+                spring = spring + force * force
                 damper += damped * damped
                 beam += abs(damped * building.Gamma[r]) * per_beam
-            shear, acceleration = (
-                v * math.sqrt(stiffness),
-                v * (math.sqrt(spring) + math.sqrt(damper) + beam),
-            )
+            shear = v * math.sqrt(stiffness)
+            acceleration = v * (math.sqrt(spring) + math.sqrt(damper) + beam)
             for row in (0, axis + 1 if ways_of(s) == 2 else 0):
                 if shear > s.largest[row, l, i] or acceleration > s.largest[rows + row, l, i]:
                     return False

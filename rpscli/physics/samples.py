@@ -43,7 +43,8 @@ def store_sample(s: Record, l: int, systems: Record, output: Output) -> None:
 @compiled
 def store_within(s: Record, l: int, systems: Record, output: Output) -> None:
     """Keep the states at the even parts of the interval that the step just taken passes."""
-    h, part = s.h[l], s.dt[l] / output.finer
+    h = s.h[l]
+    part = s.dt[l] / output.finer
     if h <= 0.0:
         return
     for j in range(max(math.ceil(s.time[l] / part - PASSED), 1), output.finer):
@@ -64,10 +65,12 @@ def store_within(s: Record, l: int, systems: Record, output: Output) -> None:
 @compiled
 def shear_of_row(s: Record, l: int, systems: Record, axis: int) -> float:
     """Base shear of the modes that stand in `seen_modes` [N]."""
-    V, elastic = 0.0, 0.0
+    V = 0.0
+    elastic = 0.0
     for i in range(s.n):
         r = axis * s.n + i
-        q, dq = s.seen_modes[2 * axis, i], s.seen_modes[2 * axis + 1, i]
+        q = s.seen_modes[2 * axis, i]
+        dq = s.seen_modes[2 * axis + 1, i]
         V += s.Gamma[r, l] * (s.omega2[r, l] * q + s.two_xi_omega[r, l] * dq)
         elastic += systems[axis].storey_shear_of[i, 0] * q
     return V - base_slip(s, l, axis, elastic) if axis < ways_of(s) else V
@@ -87,7 +90,8 @@ def slip_energy_of_row(s: Record, l: int, system: Record, axis: int) -> float:
     """What plastic drifts change in their energy [J], see `laws.slip_energy`."""
     energy = 0.0
     for i in range(s.n):
-        r, elastic = axis * s.n + i, elastic_of_row(s, system, axis, i)
+        r = axis * s.n + i
+        elastic = elastic_of_row(s, system, axis, i)
         middle = middle_with(s, l, r, elastic)
         energy += slip_force(s, l, r, elastic) * (0.5 * middle - elastic / s.stiffness[r, l])
     return energy
@@ -107,10 +111,17 @@ def write_row(
     """Keep a motion of a lane, whose modes stand in `seen_modes`."""
     if row >= output.samples.shape[0]:
         return
-    sample, ways, moves = output.samples[row], ways_of(s), s.phase[l] != FULL_CONTACT
-    now, share, stored = polar(s, l, tilt, rate), 0.0, 0.0
-    x, p, q = now.x, now.p, now.q
-    V_x, V_y = shear_of_row(s, l, systems, 0), 0.0
+    sample = output.samples[row]
+    ways = ways_of(s)
+    moves = s.phase[l] != FULL_CONTACT
+    now = polar(s, l, tilt, rate)
+    share = 0.0
+    stored = 0.0
+    x = now.x
+    p = now.p
+    q = now.q
+    V_x = shear_of_row(s, l, systems, 0)
+    V_y = 0.0
     if ways == 2:
         V_y = shear_of_row(s, l, systems, ways - 1)
     V_up = shear_of_row(s, l, systems, ways) if s.axes > ways else 0.0
@@ -125,29 +136,38 @@ def write_row(
     w, dw = patch(s, l, x)
     place = place_with(s, l, x, w, dw)
     motion = respond(s, l, place, w, now, (V_x, V_y, V_up), time)
-    sign, beam = s.side[l] if ways == 1 else 1.0, beam_at(s, l, tilt, rate)
+    sign = s.side[l] if ways == 1 else 1.0
+    beam = beam_at(s, l, tilt, rate)
     stays = without_shock(s, l, x, rate)
-    sample.phase, sample.theta_ddot = s.phase[l], sign * motion.a
+    sample.phase = s.phase[l]
+    sample.theta_ddot = sign * motion.a
     sample.theta, sample.theta_dot = (sign * x, sign * p) if moves else (0.0, 0.0)
     sample.azimuth = math.atan2(now.t, now.n) if ways == 2 and moves and x > 0.0 else 0.0
     sample.turning = q / x if ways == 2 and moves and x > 0.0 else 0.0
     sample.height = s.diameter[l] * place.C
     sample.lift = beam_lift(s, l, systems[0], x) if moves else 0.0
-    sample.energy_input, sample.energy_damped = s.energy_input[l], s.energy_damped[l]
-    sample.energy_upwards, sample.energy_yielded = s.energy_upwards[l], s.energy_yielded[l]
-    sample.energy_lost, sample.energy_bed = s.energy_lost[l], s.bed_energy[l]
+    sample.energy_input = s.energy_input[l]
+    sample.energy_damped = s.energy_damped[l]
+    sample.energy_upwards = s.energy_upwards[l]
+    sample.energy_yielded = s.energy_yielded[l]
+    sample.energy_lost = s.energy_lost[l]
+    sample.energy_bed = s.bed_energy[l]
     sample.energy_stored = energy_at(s, l, systems[0], tilt, rate) + stored
     for axis in range(ways if s.yields[l] > 0 else 0):
         sample.energy_stored += slip_energy_of_row(s, l, systems[axis], axis)
     for axis in range(ways):
         V, a_g, n = (V_x, motion.a_x, now.n) if axis == 0 else (V_y, motion.a_y, now.t)
         faster = stays * (motion.beam_x if axis == 0 else motion.beam_y)
-        pushed, lift = V + s.drive[axis, l] + s.tied[l] * n, stays * motion.lift
+        pushed = V + s.drive[axis, l] + s.tied[l] * n
+        lift = stays * motion.lift
         up = motion.g_up, V_up
         F, F_bottom, N, N_bottom = contact_forces(s, l, faster, lift, pushed, a_g, up)
-        sample.beam[axis], sample.base_shear[axis] = beam[axis], V
-        sample.shear_top[axis], sample.shear_bottom[axis] = F, F_bottom
-        sample.normal_top, sample.normal_bottom = N, N_bottom
+        sample.beam[axis] = beam[axis]
+        sample.base_shear[axis] = V
+        sample.shear_top[axis] = F
+        sample.shear_bottom[axis] = F_bottom
+        sample.normal_top = N
+        sample.normal_bottom = N_bottom
     for axis in range(s.axes):
         write_floors(s, l, systems[axis], output, row, axis, beam[axis], beam[RATES + axis])
 
@@ -164,10 +184,13 @@ def write_floors(
     velocity: float,
 ) -> None:
     """Keep ways, velocities and absolute accelerations of the floors along an axis."""
-    n, yields = s.n, s.yields[l] > 0 and axis < ways_of(s)
-    shears, forces = s.freeing[0], s.freeing[1]
+    n = s.n
+    yields = s.yields[l] > 0 and axis < ways_of(s)
+    shears = s.freeing[0]
+    forces = s.freeing[1]
     for i in range(n):
-        shears[i], forces[i] = elastic_of_row(s, system, axis, i) if yields else 0.0, 0.0
+        shears[i] = elastic_of_row(s, system, axis, i) if yields else 0.0
+        forces[i] = 0.0
         slip = 0.0
         if yields:
             slip = slip_force(s, l, axis * n + i, shears[i]) / s.stiffness[axis * n + i, l]
@@ -175,12 +198,18 @@ def write_floors(
     if yields:
         free_rows(s, l, system, axis, shears, forces)
     for i in range(n):
-        u, du, ddu = beam, velocity, 0.0 - forces[i]
+        u = beam
+        du = velocity
+        ddu = 0.0 - forces[i]
         for of in range(n):
-            r, shape = axis * n + of, system.phi[of, i]
-            q, dq = s.seen_modes[2 * axis, of], s.seen_modes[2 * axis + 1, of]
-            u, du = u + shape * q, du + shape * dq
+            r = axis * n + of
+            shape = system.phi[of, i]
+            q = s.seen_modes[2 * axis, of]
+            dq = s.seen_modes[2 * axis + 1, of]
+            u = u + shape * q
+            du = du + shape * dq
             ddu -= shape * (s.omega2[r, l] * q + s.two_xi_omega[r, l] * dq)
         at = n * axis + i
-        output.floors[row, 0, at], output.floors[row, 1, at] = u, du
+        output.floors[row, 0, at] = u
+        output.floors[row, 1, at] = du
         output.floors[row, 2, at] = ddu

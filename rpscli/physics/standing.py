@@ -48,11 +48,14 @@ def responses(omega2: float, c: float, h: float) -> tuple[float, float, float, f
     d = math.sqrt(abs(beyond))
     if beyond > 0.0 and d * h > CREEPS:
         return creeping_responses(omega2 / (a + d), a + d, h)
-    left, z = math.exp(-a * h), d * h
+    left = math.exp(-a * h)
+    z = d * h
     if beyond > 0.0:
-        S, cosine = left * math.sinh(z) / d, math.cosh(z)
+        S = left * math.sinh(z) / d
+        cosine = math.cosh(z)
     else:
-        S, cosine = left * (math.sin(z) / d if d > 0.0 else h), math.cos(z)
+        S = left * (math.sin(z) / d if d > 0.0 else h)
+        cosine = math.cos(z)
     dS = left * cosine - a * S
     I = (1.0 - dS - c * S) / omega2
     return S, dS, I, (h - S - c * I) / omega2
@@ -81,7 +84,9 @@ def decayed(rate: float, h: float) -> float:
 @compiled
 def decayed_twice(rate: float, h: float) -> float:
     """Integral of that."""
-    z, found, term = rate * h, 0.0, 0.5 * h * h
+    z = rate * h
+    found = 0.0
+    term = 0.5 * h * h
     if z > SHORT:
         return (h - decayed(rate, h)) / rate
     for k in range(3, TERMS):
@@ -93,8 +98,12 @@ def decayed_twice(rate: float, h: float) -> float:
 @compiled
 def responses_by_series(omega2: float, c: float, h: float) -> tuple[float, float, float, float]:
     """The same by powers of h, whose factors follow from each other by the equation of motion."""
-    S, I, J = 0.0, 0.0, 0.0
-    before, factor, power = 0.0, 1.0, h
+    S = 0.0
+    I = 0.0
+    J = 0.0
+    before = 0.0
+    factor = 1.0
+    power = h
     for k in range(1, TERMS):
         S += factor * power
         I += factor * power * h / (k + 1)
@@ -128,7 +137,8 @@ def slope_of_ground(s: Record, l: int, axis: int) -> float:
 @inlined
 def stand_along(s: Record, axis: int) -> None:
     """Lead the modes along an axis to the end of the step, in all lanes."""
-    n, lanes = s.n, lanes_of(s)
+    n = s.n
+    lanes = lanes_of(s)
     for l in range(lanes):
         s.new_V[axis, l] = 0.0
         s.new_shaking[axis, l] = s.shaking[axis, l] + s.h[l] * slope_of_ground(s, l, axis)
@@ -136,8 +146,10 @@ def stand_along(s: Record, axis: int) -> None:
         for l in range(lanes):
             load = fma(-s.Gamma[r, l], s.shaking[axis, l], s.freed[r, l])
             rate = -s.Gamma[r, l] * slope_of_ground(s, l, axis)
-            S, I = s.factors[1, r, l], s.factors[2, r, l]
-            q, dq = s.q[r, l], s.dq[r, l]
+            S = s.factors[1, r, l]
+            I = s.factors[2, r, l]
+            q = s.q[r, l]
+            dq = s.dq[r, l]
             new_q = fma(s.factors[0, r, l], q, fma(S, dq, fma(I, load, s.factors[3, r, l] * rate)))
             new_dq = fma(s.factors[4, r, l], q, fma(s.factors[5, r, l], dq, fma(S, load, I * rate)))
             s.new_q[r, l] = new_q

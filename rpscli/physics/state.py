@@ -609,13 +609,16 @@ def record_type(fields: tuple[Field, ...], ways: int = 1, lanes: int = 1) -> np.
     ordered = sorted(
         fields, key=lambda field: (kinds[field], len(field.sizes.split()), field.sizes)
     )
-    of, end, before = dict[str, Location](), 0, 0
+    of = dict[str, Location]()
+    end = 0
+    before = 0
     for field in ordered:
         number = np.int64 if field.unit == WHOLE else np.float64
         kind = np.dtype((number, tuple(int(sizes.get(z, z)) for z in field.sizes.split())))
         if kinds[field] != before:  # and then all do, of many lanes
             end = -(-end // LINE) * LINE
-        before, begin = kinds[field], end
+        before = kinds[field]
+        begin = end
         of[field.name] = kind, begin
         end = begin + kind.itemsize
     if fields is STATE:
@@ -679,7 +682,8 @@ def scratch(ways: int, lanes: int) -> Record:
 
     A state takes megabytes: made anew for each short history, it would take as long as the history.
     """
-    kept, name = vars(_kept), f"{ways} {lanes}"
+    kept = vars(_kept)
+    name = f"{ways} {lanes}"
     if name not in kept:
         kept[name] = records(STATE, 1 if lanes == 1 else STATES, ways, lanes)
     return kept[name]

@@ -59,10 +59,15 @@ def find(s: Record, at: float, weight: float, equipped: bool) -> None:
         V = s.new_V[0, l], (s.new_V[1, l] if up == 2 else 0.0), s.new_V[up, l]
         found = respond(s, l, place, s.w[l], now, V, s.time[l] + at * s.h[l])
         s.new_shaking[up, l] = (found.g_up - s.gravity[l]) + found.lift
-        s.new_bend[0, l], s.new_shaking[0, l] = found.bend_x, found.a_x + found.beam_x
+        s.new_bend[0, l] = found.bend_x
+        s.new_shaking[0, l] = found.a_x + found.beam_x
         if up == 2:
-            s.new_bend[1, l], s.new_shaking[1, l] = found.bend_y, found.a_y + found.beam_y
-        s.new_x[l], s.new_v[l], s.new_a[l], s.new_lift[l] = now.x, now.p, found.a, found.lift
+            s.new_bend[1, l] = found.bend_y
+            s.new_shaking[1, l] = found.a_y + found.beam_y
+        s.new_x[l] = now.x
+        s.new_v[l] = now.p
+        s.new_a[l] = found.a
+        s.new_lift[l] = found.lift
         if equipped:
             u_x, u_y = velocity_with(s, l, place, now)
             s.new_square_rate[l] = 2.0 * (u_x * found.beam_x + u_y * found.beam_y)
@@ -90,17 +95,24 @@ def terms(s: Record, k: int) -> int:
 @inlined
 def advance_mode(s: Record, r: int, l: int, axis: int, k: int) -> float:
     """Lead a mode of a lane to stage k; its part of the base shear there [N]."""
-    h, omega2, damping, q, dq = s.h[l], s.omega2[r, l], s.two_xi_omega[r, l], s.q[r, l], s.dq[r, l]
+    h = s.h[l]
+    omega2 = s.omega2[r, l]
+    damping = s.two_xi_omega[r, l]
+    q = s.q[r, l]
+    dq = s.dq[r, l]
     ddq = fma(-s.Gamma[r, l], s.new_shaking[axis, l], -s.force[r, l])
     if k == 1:
         ddq = mode_acceleration(s, r, l, axis)
     s.ddq[k - 1, r, l] = ddq
-    far, fast = 0.0, 0.0
+    far = 0.0
+    fast = 0.0
     for j in range(terms(s, k)):
         if USED[k, j]:
             term = ddq if j == k - 1 else s.ddq[j, r, l]
-            far, fast = fma(SQUARED[k, j], term, far), fma(STAGES[k, j], term, fast)
-    q, dq = fma(h, fma(h, far, TIMES[k] * dq), q), fma(h, fast, dq)
+            far = fma(SQUARED[k, j], term, far)
+            fast = fma(STAGES[k, j], term, fast)
+    q = fma(h, fma(h, far, TIMES[k] * dq), q)
+    dq = fma(h, fast, dq)
     force = fma(omega2, q, damping * dq)
     s.force[r, l] = force
     if k == END:
@@ -113,7 +125,10 @@ def advance_mode(s: Record, r: int, l: int, axis: int, k: int) -> float:
 @inlined
 def advance_tilt(s: Record, l: int, axis: int, k: int) -> None:
     """Lead a component of a lane's tilt to stage k."""
-    far, fast, h, rate = 0.0, 0.0, s.h[l], s.tilt_rate[axis, l]
+    far = 0.0
+    fast = 0.0
+    h = s.h[l]
+    rate = s.tilt_rate[axis, l]
     for j in range(terms(s, k)):
         if USED[k, j]:
             far = fma(SQUARED[k, j], s.bends[j, axis, l], far)
@@ -125,7 +140,8 @@ def advance_tilt(s: Record, l: int, axis: int, k: int) -> None:
 @inlined
 def advance_to(s: Record, systems: Record, k: int) -> None:
     """Lead all lanes to stage k, modes first, and find their accelerations there."""
-    n, lanes = s.n, lanes_of(s)
+    n = s.n
+    lanes = lanes_of(s)
     for axis in range(s.axes):
         for l in range(lanes):
             s.new_V[axis, l] = 0.0
@@ -200,7 +216,8 @@ difference of both rules is rounding."""
 @inlined
 def error_of(s: Record, l: int) -> float:
     """Difference of the rules of order 6 and 5 in the tilt's rate, over what it may be."""
-    missed, speed = 0.0, 0.0
+    missed = 0.0
+    speed = 0.0
     for axis in range(ways_of(s)):
         error = 0.0
         for k in range(END + 1):
@@ -218,13 +235,17 @@ def error_of(s: Record, l: int) -> float:
 @inlined
 def end_rates(s: Record) -> None:
     """Rates of the base shear at the ends of steps (10.6); the second of buildings at rest."""
-    n, lanes = s.n, lanes_of(s)
+    n = s.n
+    lanes = lanes_of(s)
     for axis in range(s.axes):
         for l in range(lanes):
-            s.new_dV[axis, l], s.new_ddV[axis, l] = 0.0, 0.0
+            s.new_dV[axis, l] = 0.0
+            s.new_ddV[axis, l] = 0.0
         for r in range(axis * n, (axis + 1) * n):
             for l in range(lanes):
-                Gamma, omega2, damping = s.Gamma[r, l], s.omega2[r, l], s.two_xi_omega[r, l]
+                Gamma = s.Gamma[r, l]
+                omega2 = s.omega2[r, l]
+                damping = s.two_xi_omega[r, l]
                 ddq = -(Gamma * s.new_shaking[axis, l]) - s.force[r, l]
                 faster = omega2 * s.new_dq[r, l] + damping * ddq
                 s.new_dV[axis, l] += Gamma * faster
@@ -237,7 +258,8 @@ def end_rates(s: Record) -> None:
 @compiled
 def renew(s: Record, l: int) -> None:
     """Accelerations of one lane at its present state and time: what the next step begins with."""
-    now, up = polar(s, l, tilt_of(s, l), rate_of(s, l)), ways_of(s)
+    now = polar(s, l, tilt_of(s, l), rate_of(s, l))
+    up = ways_of(s)
     s.w[l], s.dw[l] = patch(s, l, now.x)
     if s.devices[l] > 0:
         act(s, l, tilt_of(s, l), rate_of(s, l))
@@ -251,18 +273,25 @@ def renew(s: Record, l: int) -> None:
     shears = s.V[0, l], (s.V[1, l] if up == 2 else 0.0), s.V[up, l]
     found = respond(s, l, place, s.w[l], now, shears, s.time[l])
     s.shaking[up, l] = (found.g_up - s.gravity[l]) + found.lift
-    s.x[l], s.v[l], s.a[l], s.lift[l] = now.x, now.p, found.a, found.lift
+    s.x[l] = now.x
+    s.v[l] = now.p
+    s.a[l] = found.a
+    s.lift[l] = found.lift
     u_x, u_y = velocity_with(s, l, place, now)
     s.speed[l] = length(u_x, u_y)
     s.square_rate[l] = 2.0 * (u_x * found.beam_x + u_y * found.beam_y)
     s.quicker[l] = length(found.beam_x, found.beam_y)
-    s.bend[0, l], s.shaking[0, l] = found.bend_x, found.a_x + found.beam_x
+    s.bend[0, l] = found.bend_x
+    s.shaking[0, l] = found.a_x + found.beam_x
     if up == 2:
-        s.bend[1, l], s.shaking[1, l] = found.bend_y, found.a_y + found.beam_y
+        s.bend[1, l] = found.bend_y
+        s.shaking[1, l] = found.a_y + found.beam_y
     for axis in range(s.axes):
-        s.dV[axis, l], s.ddV[axis, l] = 0.0, 0.0
+        s.dV[axis, l] = 0.0
+        s.ddV[axis, l] = 0.0
         for r in range(axis * s.n, (axis + 1) * s.n):
-            omega2, damping = s.omega2[r, l], s.two_xi_omega[r, l]
+            omega2 = s.omega2[r, l]
+            damping = s.two_xi_omega[r, l]
             force = fma(omega2, s.q[r, l], damping * s.dq[r, l]) - s.freed[r, l]
             ddq = -(s.Gamma[r, l] * s.shaking[axis, l]) - force
             faster = omega2 * s.dq[r, l] + damping * ddq
@@ -284,8 +313,14 @@ def book_power(
     rate: tuple[float, float],
 ) -> None:
     """Add the power of ground, dampers and bed in the only lane, its velocities in `new_dq`."""
-    supplied, damped, upwards, moving = 0.0, 0.0, 0.0, s.moves[0] > 0.0
-    u_x, u_y, lift, bed = 0.0, 0.0, 0.0, 0.0
+    supplied = 0.0
+    damped = 0.0
+    upwards = 0.0
+    moving = s.moves[0] > 0.0
+    u_x = 0.0
+    u_y = 0.0
+    lift = 0.0
+    bed = 0.0
     if moving:
         now = polar(s, 0, tilt, rate)
         w, dw = patch(s, 0, now.x)
@@ -303,7 +338,8 @@ def book_power(
             damped += s.two_xi_omega[r, 0] * (s.new_dq[r, 0] * s.new_dq[r, 0])
         supplied += ground_at(s, 0, axis, time) * momentum
     a_v = g_up_at(s, 0, time) - s.gravity[0]
-    rising, up = lifted_mass(s, 0) * lift, ways_of(s) * s.n
+    rising = lifted_mass(s, 0) * lift
+    up = ways_of(s) * s.n
     for r in range(up, s.axes * s.n):
         rising += s.Gamma[r, 0] * s.new_dq[r, 0]
         upwards += s.two_xi_omega[r, 0] * (s.new_dq[r, 0] * s.new_dq[r, 0])

@@ -55,15 +55,20 @@ def drift_of(
     s: Record, l: int, system: Record, axis: int, i: int, end: int
 ) -> tuple[float, float, float]:
     """A storey's drift times k with two derivatives, at the start (0) or the end (1) of a step."""
-    d, rate, bend = 0.0, 0.0, 0.0
+    d = 0.0
+    rate = 0.0
+    bend = 0.0
     for of in range(s.n):
-        r, each = axis * s.n + of, system.storey_shear_of[of, i]
+        r = axis * s.n + of
+        each = system.storey_shear_of[of, i]
         if end > 0:
-            d, rate = d + each * s.new_q[r, l], rate + each * s.new_dq[r, l]
+            d = d + each * s.new_q[r, l]
+            rate = rate + each * s.new_dq[r, l]
             bend -= each * (s.Gamma[r, l] * s.new_shaking[axis, l] + s.force[r, l])
         else:
             force = s.omega2[r, l] * s.q[r, l] + s.two_xi_omega[r, l] * s.dq[r, l] - s.freed[r, l]
-            d, rate = d + each * s.q[r, l], rate + each * s.dq[r, l]
+            d = d + each * s.q[r, l]
+            rate = rate + each * s.dq[r, l]
             bend -= each * (s.Gamma[r, l] * s.shaking[axis, l] + force)
     return d, rate, bend
 
@@ -85,7 +90,8 @@ def free_storeys(s: Record, systems: Record, k: int) -> None:
         if s.yields[l] == 0:
             continue
         for axis in range(ways_of(s)):
-            system, elastic = systems[s.system[l] + axis], s.elastic[axis]
+            system = systems[s.system[l] + axis]
+            elastic = s.elastic[axis]
             for i in range(n if s.marked[l] > 0 else 1):
                 elastic[i] = 0.0
                 for of in range(n if s.mark[axis * n + i, l] != 0 else 0):
@@ -101,7 +107,8 @@ def free_storeys(s: Record, systems: Record, k: int) -> None:
 @compiled
 def write_load(s: Record, l: int, system: Record, axis: int, elastic: Floats) -> None:
     """Write to `new_freed` the load of plastic drifts under drifts times k (n,)."""
-    n, free = s.n, 1.0 - s.hardening[l]
+    n = s.n
+    free = 1.0 - s.hardening[l]
     for of in range(n):
         s.new_freed[axis * n + of, l] = 0.0
     for i in range(n):
@@ -113,7 +120,8 @@ def write_load(s: Record, l: int, system: Record, axis: int, elastic: Floats) ->
 @compiled
 def slip_rates(s: Record, l: int, axis: int, end: int) -> None:
     """Take what the first storey yields by from the rates of the base shear (`slipping`)."""
-    rate, bend = 0.0, 0.0
+    rate = 0.0
+    bend = 0.0
     for r in range(axis * s.n, (axis + 1) * s.n):
         if end > 0:
             ddq = -(s.Gamma[r, l] * s.new_shaking[axis, l]) - s.force[r, l]
@@ -124,31 +132,46 @@ def slip_rates(s: Record, l: int, axis: int, end: int) -> None:
             rate += s.slipping[r, l] * s.dq[r, l]
         bend += s.slipping[r, l] * ddq
     if end > 0:
-        s.new_dV[axis, l], s.new_ddV[axis, l] = s.new_dV[axis, l] - rate, s.new_ddV[axis, l] - bend
+        s.new_dV[axis, l] = s.new_dV[axis, l] - rate
+        s.new_ddV[axis, l] = s.new_ddV[axis, l] - bend
     else:
-        s.dV[axis, l], s.ddV[axis, l] = s.dV[axis, l] - rate, s.ddV[axis, l] - bend
+        s.dV[axis, l] = s.dV[axis, l] - rate
+        s.ddV[axis, l] = s.ddV[axis, l] - bend
 
 
 @compiled
 def load_storeys(s: Record, l: int, system: Record, axis: int) -> None:
     """Begin a history with storeys that have not yielded."""
     if axis == 0:
-        s.hardening[l], s.yields[l] = system.hardening, system.yields
-        s.marked[l], s.energy_yielded[l], s.taken[l] = 0, 0.0, 0.0
+        s.hardening[l] = system.hardening
+        s.yields[l] = system.yields
+        s.marked[l] = 0
+        s.energy_yielded[l] = 0.0
+        s.taken[l] = 0.0
     for i in range(system.n):
         r = axis * system.n + i
-        s.stiffness[r, l], s.strength[r, l] = system.stiffness[i], system.strength[i]
-        s.mark[r, l], s.middle[r, l], s.freed[r, l], s.new_freed[r, l] = 0, 0.0, 0.0, 0.0
-        s.slipping[r, l], s.middle_most[r, l], s.middle_least[r, l] = 0.0, 0.0, 0.0
-        s.yielded[r, l], s.first_yield[r, l], s.drift_most[r, l] = 0.0, -1.0, 0.0
+        s.stiffness[r, l] = system.stiffness[i]
+        s.strength[r, l] = system.strength[i]
+        s.mark[r, l] = 0
+        s.middle[r, l] = 0.0
+        s.freed[r, l] = 0.0
+        s.new_freed[r, l] = 0.0
+        s.slipping[r, l] = 0.0
+        s.middle_most[r, l] = 0.0
+        s.middle_least[r, l] = 0.0
+        s.yielded[r, l] = 0.0
+        s.first_yield[r, l] = -1.0
+        s.drift_most[r, l] = 0.0
 
 
 @compiled
 def keep_slips(s: Record, l: int, systems: Record) -> None:
     """Have yielding storeys follow the step just accepted, and book what that took."""
-    n, free = s.n, 1.0 - s.hardening[l]
+    n = s.n
+    free = 1.0 - s.hardening[l]
     for axis in range(ways_of(s)):
-        system, elastic = systems[axis], s.elastic[axis]
+        system = systems[axis]
+        elastic = s.elastic[axis]
         for i in range(n):
             r = axis * n + i
             elastic[i], _, _ = drift_of(s, l, system, axis, i, 0)
@@ -156,7 +179,8 @@ def keep_slips(s: Record, l: int, systems: Record) -> None:
                 continue
             c = middle_with(s, l, r, elastic[i])
             took = s.strength[r, l] * free * abs(c - s.middle[r, l])
-            s.middle[r, l], s.yielded[r, l] = c, s.yielded[r, l] + took
+            s.middle[r, l] = c
+            s.yielded[r, l] = s.yielded[r, l] + took
             s.energy_yielded[l] += took
             s.middle_most[r, l] = max(s.middle_most[r, l], c)
             s.middle_least[r, l] = min(s.middle_least[r, l], c)
@@ -170,7 +194,8 @@ def keep_slips(s: Record, l: int, systems: Record) -> None:
 @compiled
 def sum_taken(s: Record, l: int) -> None:
     """Sum what plastic drifts of first storeys take from the base shears."""
-    free, s.taken[l] = 1.0 - s.hardening[l], 0.0
+    free = 1.0 - s.hardening[l]
+    s.taken[l] = 0.0
     for axis in range(ways_of(s)):
         s.taken[l] += free * s.stiffness[axis * s.n, l] * abs(s.middle[axis * s.n, l])
 
@@ -178,7 +203,8 @@ def sum_taken(s: Record, l: int) -> None:
 @compiled
 def turn_storey(s: Record, l: int, systems: Record, which: int) -> None:
     """A storey begins to yield, to the side that `which` names, or no longer does."""
-    r, n = which // 2, s.n
+    r = which // 2
+    n = s.n
     if s.mark[r, l] != 0:
         set_mark(s, l, systems[r // n], r, 0)
         return
@@ -209,11 +235,15 @@ def review_storeys(s: Record, l: int, systems: Record) -> bool:
     A storey that now drifts back, or is no longer at its strength, does not yield; one beyond its
     strength has yielded by what it is.
     """
-    n, changed = s.n, False
+    n = s.n
+    changed = False
     for r in range(ways_of(s) * n if s.yields[l] > 0 else 0):
-        axis, F, k = r // n, s.strength[r, l], s.stiffness[r, l]
+        axis = r // n
+        F = s.strength[r, l]
+        k = s.stiffness[r, l]
         d, rate, _ = drift_of(s, l, systems[axis], axis, r % n, 0)
-        off, mark = d - k * s.middle[r, l], s.mark[r, l]
+        off = d - k * s.middle[r, l]
+        mark = s.mark[r, l]
         if mark != 0 and (mark * rate < 0.0 or mark * off < F * (1.0 - JUMPED)):
             set_mark(s, l, systems[axis], r, 0)
             changed = True
@@ -226,7 +256,8 @@ def review_storeys(s: Record, l: int, systems: Record) -> bool:
 @compiled
 def yield_at_once(s: Record, l: int, system: Record, r: int, middle: float, drift: float) -> None:
     """Move the middle of a storey's range, and book what its springs lose."""
-    n, before = s.n, slip_energy(s, l)
+    n = s.n
+    before = slip_energy(s, l)
     moved = (1.0 - s.hardening[l]) * (middle - s.middle[r, l])
     s.middle[r, l] = middle
     sum_taken(s, l)
@@ -235,7 +266,8 @@ def yield_at_once(s: Record, l: int, system: Record, r: int, middle: float, drif
         s.freed[row, l] += system.storey_shear_of[of, r % n] * moved
         s.new_freed[row, l] = s.freed[row, l]
     took = before - slip_energy(s, l)
-    s.yielded[r, l], s.energy_yielded[l] = s.yielded[r, l] + took, s.energy_yielded[l] + took
+    s.yielded[r, l] = s.yielded[r, l] + took
+    s.energy_yielded[l] = s.energy_yielded[l] + took
     s.middle_most[r, l] = max(s.middle_most[r, l], middle)
     s.middle_least[r, l] = min(s.middle_least[r, l], middle)
     s.drift_most[r, l] = max(s.drift_most[r, l], drift)

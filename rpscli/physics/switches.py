@@ -48,7 +48,8 @@ from rpscli.physics.upright import (
 @compiled
 def leave_range(s: Record, l: int, systems: Record, log: Record, rises: bool) -> None:
     """A tilt comes to an end of its range: of a bed, of an arc, of standing."""
-    system, phase = systems[0], s.phase[l]
+    system = systems[0]
+    phase = s.phase[l]
     if phase == BEDDED or (not rises and s.x_low[l] == system.bed_uplift):
         pass_on_bed(s, l, system, log, phase != BEDDED)
     elif rises and s.x_high[l] == system.theta_limit:
@@ -191,7 +192,8 @@ def slide(s: Record, l: int, system: Record, log: Record, side: int) -> None:
     out = side * s.side[l]
     s.direction[l] = out if ways_of(s) == 1 and has_friction(s, l) else 1.0
     log_event(s, l, log, SLIDING, 0.0, 0.0, 0.0)
-    s.phase[l], s.moves[l] = (BEDDED if s.bed_k[l] > 0.0 else phase), 1.0
+    s.phase[l] = BEDDED if s.bed_k[l] > 0.0 else phase
+    s.moves[l] = 1.0
     if ways_of(s) == 2:
         grip = grip_at(s, l, 0)
         set_sliding(s, l, system, grip.d_n, grip.d_t, s.start_speed[l])

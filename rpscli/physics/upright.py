@@ -64,7 +64,8 @@ UPLIFT_TILT = 1e-9
 FIRST_STEP = 3e-5
 """Longest step at the start of such an uplift [s]."""
 
-DIRECTIONLESS, KEEP_COMING = 1e-12, 8
+DIRECTIONLESS = 1e-12
+KEEP_COMING = 8
 """Passes nearer to upright [rad] leave in a direction that no program resolves: so many of them in
 a row are an accumulation, and become an uplift begun anew along what pushes."""
 
@@ -75,26 +76,35 @@ SLOW = 20.0
 @compiled
 def enter_phase(s: Record, l: int, system: Record, phase: int) -> None:
     """Set the constants of a phase of motion and the range that the tilt has in it."""
-    s.phase[l], s.moves[l] = phase, 0.0 if phase in (FULL_CONTACT, STUCK) else 1.0
+    s.phase[l] = phase
+    s.moves[l] = 0.0 if phase in (FULL_CONTACT, STUCK) else 1.0
     if phase == STUCK:
         return
     # those of a column that stands are those with which a tilt would begin
     rolls = phase == ROLLING or (phase == FULL_CONTACT and system.beta > 0.0)
-    s.rolls[l], constants = 1.0 if rolls else 0.0, system.rolling if rolls else system.rocking
-    s.p[l], s.q0[l], s.c[l] = constants[0], constants[1], constants[2]
-    s.u0[l], s.v0[l] = constants[3], constants[4]
+    s.rolls[l] = 1.0 if rolls else 0.0
+    constants = system.rolling if rolls else system.rocking
+    s.p[l] = constants[0]
+    s.q0[l] = constants[1]
+    s.c[l] = constants[2]
+    s.u0[l] = constants[3]
+    s.v0[l] = constants[4]
     upright = 0.0
     if ways_of(s) == 2:
         upright = UPRIGHT_TILT if s.cone[l] > 0.0 else -1.0
-    s.x_low[l], s.x_high[l] = max(system.beta, upright), system.theta_limit
+    s.x_low[l] = max(system.beta, upright)
+    s.x_high[l] = system.theta_limit
     if phase == ROLLING:
-        s.x_low[l], s.x_high[l] = upright, min(system.beta, system.theta_limit)
+        s.x_low[l] = upright
+        s.x_high[l] = min(system.beta, system.theta_limit)
     s.h_most[l] = 1.0 / system.step_rate
     enter_on_bed(s, l, system, phase)
     if phase == FULL_CONTACT:
-        s.x[l], s.v[l] = 0.0, 0.0
+        s.x[l] = 0.0
+        s.v[l] = 0.0
         for axis in range(ways_of(s)):
-            s.tilt[axis, l], s.tilt_rate[axis, l] = 0.0, 0.0
+            s.tilt[axis, l] = 0.0
+            s.tilt_rate[axis, l] = 0.0
         set_limits(s, l)
 
 
@@ -103,7 +113,8 @@ def move_floors(s: Record, l: int, before: Beam) -> None:
     """The cap beam has left way and velocity of `before` without the floors."""
     now = beam_now(s, l)
     for axis in range(s.axes):
-        moved, faster = now[axis] - before[axis], now[RATES + axis] - before[RATES + axis]
+        moved = now[axis] - before[axis]
+        faster = now[RATES + axis] - before[RATES + axis]
         for r in range(axis * s.n, (axis + 1) * s.n):
             s.q[r, l] -= s.Gamma[r, l] * moved
             s.dq[r, l] -= s.Gamma[r, l] * faster
@@ -112,16 +123,20 @@ def move_floors(s: Record, l: int, before: Beam) -> None:
 @compiled
 def set_polar(s: Record, l: int, x: float, n: float, t: float, p: float, q: float) -> None:
     """Set tilt and rate of a lane by x, the azimuth, x' and the rate across it."""
-    s.x[l], s.v[l] = x, p
-    s.tilt[0, l], s.tilt_rate[0, l] = n * x, n * p - t * q
+    s.x[l] = x
+    s.v[l] = p
+    s.tilt[0, l] = n * x
+    s.tilt_rate[0, l] = n * p - t * q
     if ways_of(s) == 2:
-        s.tilt[1, l], s.tilt_rate[1, l] = t * x, t * p + n * q
+        s.tilt[1, l] = t * x
+        s.tilt_rate[1, l] = t * p + n * q
 
 
 @compiled
 def change_rate(s: Record, l: int, system: Record, p: float, q: float) -> float:
     """Set x' and the rate across it; floors keep their velocities. Returns what is lost [J]."""
-    energy, before = total_energy(s, l, system), beam_now(s, l)
+    energy = total_energy(s, l, system)
+    before = beam_now(s, l)
     x, n, t, _, _ = polar(s, l, tilt_of(s, l), rate_of(s, l))
     set_polar(s, l, x, n, t, p, q)
     move_floors(s, l, before)
@@ -133,7 +148,8 @@ def restitution_at(s: Record, l: int, system: Record, rate: float) -> float:
     """e at a rate of the tilt; what an own law gives outside of (0, 1] ends the history."""
     if system.impact_law == 0:
         return float(system.restitution)
-    of, tan_a = system.impact_constants, math.tan(system.alpha)
+    of = system.impact_constants
+    tan_a = math.tan(system.alpha)
     eta = system.eta if s.spared[l] == 0.0 else 0.0  # floors on springs take no part
     given = (rate, tan_a, system.Io, system.gamma, eta, of[2], of[3], of[4], of[5])
     e = of[0] + of[1] * own_law(system.impact_law, given)
@@ -163,25 +179,36 @@ def pass_upright(s: Record, l: int, system: Record, log: Record, near: bool) -> 
     if not near and x <= 2.0 * UPLIFT_TILT and abs(q) < x:
         set_polar(s, l, x, n, t, 0.0, q)
         return  # it has only begun to tilt, a little too early
-    at, before, strain, kappa = place_of(s, l, x), beam_now(s, l), strain_energy(s, l), s.kappa[l]
-    moving, least, speed = tilting_energy(s, l, at, p, q), x, abs(q)
+    at = place_of(s, l, x)
+    before = beam_now(s, l)
+    strain = strain_energy(s, l)
+    kappa = s.kappa[l]
+    moving = tilting_energy(s, l, at, p, q)
+    least = x
+    speed = abs(q)
     if near:
         speed = math.sqrt(p * p + kappa * kappa * q * q) / kappa
         least = x * abs(q) / speed
     own = s.contact_time[l]
     nearness = math.inf if own == 0.0 else least / max(speed * own, 1e-300)
-    share, e = loss_share(nearness), restitution_at(s, l, system, math.sqrt(p * p + q * q))
-    left, sign = 1.0 - share * (1.0 - e * e), math.copysign(1.0, q)
-    keeps, extra, angle = math.sqrt(left), math.pi / kappa - math.pi, 0.0
+    share = loss_share(nearness)
+    e = restitution_at(s, l, system, math.sqrt(p * p + q * q))
+    left = 1.0 - share * (1.0 - e * e)
+    sign = math.copysign(1.0, q)
+    keeps = math.sqrt(left)
+    extra = math.pi / kappa - math.pi
+    angle = 0.0
     if near:
-        n, t = -n, -t
+        n = -n
+        t = -t
         if q != 0.0:
             inside = 2.0 * math.asin(min(1.0, least / x)) / kappa
             angle = sign * (extra * (1.0 - share) - inside)
     else:
         angle = -sign * share * extra
     if angle != 0.0:
-        cosine, sine = math.cos(angle), math.sin(angle)
+        cosine = math.cos(angle)
+        sine = math.sin(angle)
         n, t = n * cosine - t * sine, t * cosine + n * sine
     set_polar(s, l, x, n, t, max(-keeps * p, 0.0) if near else 0.0, keeps * q)
     move_floors(s, l, before)
@@ -190,7 +217,9 @@ def pass_upright(s: Record, l: int, system: Record, log: Record, near: bool) -> 
     s.energy_passes[l] += lost
     row = log_event(s, l, log, PASS, p, s.v[l], lost)
     if row >= 0:
-        log[row].least_tilt, log[row].nearness, log[row].loss_share = least, nearness, share
+        log[row].least_tilt = least
+        log[row].nearness = nearness
+        log[row].loss_share = share
     s.closest_pass[l] = min(s.closest_pass[l], least / system.alpha)
     s.shortest_pass[l] = min(s.shortest_pass[l], least / max(speed, 1e-300))
     s.passes_as_impacts[l] += 1 if share > 0.5 else 0
@@ -208,14 +237,17 @@ def impact(s: Record, l: int, system: Record, log: Record) -> None:
     """
     if s.phase[l] != first_phase(system):
         enter_phase(s, l, system, first_phase(system))
-    side, arriving = s.side[l], min(s.v[l], 0.0)
+    side = s.side[l]
+    arriving = min(s.v[l], 0.0)
     if system.alpha == 0.0:
         s.side[l] = -side
         set_polar(s, l, 0.0, -side, 0.0, -arriving, 0.0)
         begin_excursion(s, l, log)
         return
-    at, rate = place_of(s, l, 0.0), side * arriving
-    arm, e = s.diameter[l] * at.C, restitution_at(s, l, system, abs(rate))
+    at = place_of(s, l, 0.0)
+    rate = side * arriving
+    arm = s.diameter[l] * at.C
+    e = restitution_at(s, l, system, abs(rate))
     jump = -arm * (1.0 - e) * rate
     lost = tilting_energy(s, l, at, arriving, 0.0)
     if system.floors_jump > 0:
@@ -310,7 +342,9 @@ def come_to_rest(s: Record, l: int, system: Record, log: Record) -> None:
     both velocities times the change.
     """
     x, _, _, p, q = polar(s, l, tilt_of(s, l), rate_of(s, l))
-    before, strain, kept = beam_now(s, l), strain_energy(s, l), bounces_left_out(s, l, system)
+    before = beam_now(s, l)
+    strain = strain_energy(s, l)
+    kept = bounces_left_out(s, l, system)
     # What stops and tendons hold at so small a tilt is theirs, and given back.
     held = force_at_rest(s, l)[0] * s.diameter[l] * math.cos(system.alpha) * x
     lost = tilting_energy(s, l, place_of(s, l, x), p, q) + held
@@ -336,13 +370,17 @@ def begin_tilt(s: Record, l: int, system: Record, z_x: float, z_y: float) -> Non
     """Tilt along z, at rest: by 1e-9 where it may be to any side; the work of that is booked."""
     size = math.sqrt(z_x * z_x + z_y * z_y)
     if size == 0.0:  # what falls freely may tilt to any side
-        z_x, size = 1.0, 1.0
+        z_x = 1.0
+        size = 1.0
     if ways_of(s) == 1:
         s.side[l] = math.copysign(1.0, z_x)
         enter_phase(s, l, system, first_phase(system))
         set_polar(s, l, 0.0, s.side[l], 0.0, 0.0, 0.0)
         return
-    strain, lifted, rise, before = strain_energy(s, l), 0.0, UPLIFT_TILT, beam_now(s, l)
+    strain = strain_energy(s, l)
+    lifted = 0.0
+    rise = UPLIFT_TILT
+    before = beam_now(s, l)
     if s.phase[l] != FULL_CONTACT:
         x, _, _, p, q = polar(s, l, tilt_of(s, l), rate_of(s, l))
         rise -= x
@@ -390,10 +428,14 @@ def pass_on_bed(s: Record, l: int, system: Record, log: Record, enters: bool) ->
     Going outwards x' changes by j, inwards by e/j, and what goes round by e (13.21), (13.22).
     """
     if s.x[l] < 0.0:  # over to the other side
-        s.side[l], s.direction[l] = -s.side[l], -s.direction[l]
+        s.side[l] = -s.side[l]
+        s.direction[l] = -s.direction[l]
         s.v[l] = -s.v[l]
     _, n, t, p, q = polar(s, l, tilt_of(s, l), rate_of(s, l))
-    change, keeps, lost, u = system.lifts, 1.0, 0.0, system.bed_uplift
+    change = system.lifts
+    keeps = 1.0
+    lost = 0.0
+    u = system.bed_uplift
     set_polar(s, l, u, n, t, p, q)
     before = beam_now(s, l)
     if enters:
@@ -440,11 +482,15 @@ HELD = 1e-6
 @compiled
 def hold_between(s: Record, l: int, system: Record, log: Record) -> None:
     """Hold a slow storey at phi_u where the bed pushes out and lifted ends turn back."""
-    phase, side, v, a = s.phase[l], s.side[l], s.v[l], s.a[l]
+    phase = s.phase[l]
+    side = s.side[l]
+    v = s.v[l]
+    a = s.a[l]
     outwards = 1.0 if phase != BEDDED else -1.0
     if not (outwards * a < 0.0 and v * v < 2.0 * abs(a) * HELD * system.bed_uplift):
         return
-    moving, before = total_energy(s, l, system), beam_now(s, l)
+    moving = total_energy(s, l, system)
+    before = beam_now(s, l)
     enter_phase(s, l, system, first_phase(system) if phase == BEDDED else BEDDED)
     renew(s, l)
     if outwards * s.a[l] < 0.0:  # it goes on there

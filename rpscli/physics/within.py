@@ -52,7 +52,11 @@ def mode_path(s: Record, r: int, l: int, axis: int) -> Quintic:
 @compiled
 def mode_within(s: Record, r: int, l: int, axis: int, t: float) -> tuple[float, float]:
     """Displacement and velocity of a mode a fraction t into the step."""
-    h, q0, v0, q1, v1 = s.h[l], s.q[r, l], s.dq[r, l], s.new_q[r, l], s.new_dq[r, l]
+    h = s.h[l]
+    q0 = s.q[r, l]
+    v0 = s.dq[r, l]
+    q1 = s.new_q[r, l]
+    v1 = s.new_dq[r, l]
     if t == 0.0:
         return q0, v0
     if t == 1.0:

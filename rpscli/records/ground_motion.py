@@ -51,7 +51,8 @@ _VERTICAL = re.compile(r"U-?D|UP|DOWN|DWN|VERT\w*|V|[A-Z]*Z\d*", re.IGNORECASE)
 
 UNKNOWN = Recording()
 
-LEAST, MOST = 0.25, 4.0  # factors between these are usual
+LEAST = 0.25  # factors between these are usual
+MOST = 4.0
 
 
 def scale_doubts(name: str, factor: float) -> tuple[str, ...]:
@@ -111,7 +112,8 @@ class GroundMotion(Shown):
     recording: Recording = UNKNOWN
 
     def __post_init__(self) -> None:
-        values, fault = np.zeros(0), ""  # of what is no list
+        values = np.zeros(0)  # of what is no list
+        fault = ""
         with suppress(TypeError, ValueError, OverflowError):
             values = np.array(self.acceleration, dtype=np.float64, order="C")
         if np.ma.is_masked(self.acceleration):
@@ -246,7 +248,8 @@ class GroundMotion(Shown):
         """
         from rpscli.records import measures  # which measure motions
 
-        known, fault = measures.MEASURES, ""
+        known = measures.MEASURES
+        fault = ""
         if measure not in known and measure not in (names := known.names()):
             fault = f"{measure} is not a measure; there are {', '.join(names)}"
         elif measures.needs_period(measure) and period is None:
@@ -355,7 +358,8 @@ class MotionComponents(Frozen):
 
     def turned(self, rotation: float) -> MotionComponents:
         """A pair turned from x towards y [deg]: what acted along x then acts at that azimuth."""
-        x, y = self.horizontal, self.y
+        x = self.horizontal
+        y = self.y
         if y is None or rotation % 360.0 == 0.0:
             return self
         along, across = (
@@ -392,7 +396,8 @@ def rotated(first: GroundMotion, second: GroundMotion, angle: float) -> GroundMo
     require_one_step(first, second, "second")
     # A component itself is not changed by rounding.
     quarters, rest = divmod(angle, 90.0)
-    c, s = math.cos(math.radians(rest)), math.sin(math.radians(rest))
+    c = math.cos(math.radians(rest))
+    s = math.sin(math.radians(rest))
     cosine, sine = ((c, s), (-s, c), (-c, -s), (s, -c))[int(quarters) % 4]
     values = np.zeros(max(first.npts, second.npts))
     values[: first.npts] += cosine * first.acceleration

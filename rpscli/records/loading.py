@@ -76,7 +76,8 @@ def load_record(
     """
     require_kind(source, str, "the record", "give its name as text")
     of = single_source(source, folder)
-    read, factor = _described(of, dt=None if dt is None else float(dt), units=units), of.factor
+    read = _described(of, dt=None if dt is None else float(dt), units=units)
+    factor = of.factor
     if of.both:
         raise RecordError(
             f"{source}: holds two components, and one is wanted here; name one of them, or a"
@@ -87,7 +88,8 @@ def load_record(
     if "factor" not in of.values:
         return motion
     # Results of different factors go to different folders.
-    name, warnings = f"{motion.name}_x{factor:.4g}", scale_doubts(motion.name, factor)
+    name = f"{motion.name}_x{factor:.4g}"
+    warnings = scale_doubts(motion.name, factor)
     return replace(motion.scaled(factor), name=name, warnings=(*motion.warnings, *warnings))
 
 
@@ -189,7 +191,8 @@ _LATE = 10.0  # seconds between the starts of components of one recording at mos
 
 def _beside(first: GroundMotion, second: GroundMotion, source: str) -> GroundMotion:
     """The second component, unless both state to be of different recordings, or the same one."""
-    one, other = first.recording, second.recording
+    one = first.recording
+    other = second.recording
     apart = _apart(one.start, other.start)
     for name, differ in (
         ("station", one.station != other.station),
@@ -230,7 +233,8 @@ def _apart(one: str, other: str) -> float:
             return numbers
         return [*numbers[:-3], 3600.0 * numbers[-3] + 60.0 * numbers[-2] + numbers[-1]]
 
-    first, second = seconds(one), seconds(other)
+    first = seconds(one)
+    second = seconds(other)
     if not (first and second):
         return 0.0
     return abs(first[-1] - second[-1]) if first[:-1] == second[:-1] else float("inf")
@@ -291,7 +295,8 @@ def _files(of: Source, folder: Path | None, notes: list[str]) -> list[Source]:
     """Records of a folder or a glob, or the file itself."""
     from rpscli.records.formats import contents
 
-    place, path = of.place, _located(of.place, folder)
+    place = of.place
+    path = _located(of.place, folder)
     if path.is_dir():
         names = sorted(entry.name for entry in path.iterdir() if entry.is_file())
         files = {f"{Path(place) / name}": path / name for name in names}

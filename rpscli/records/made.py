@@ -105,7 +105,8 @@ def load_pulse(of: Source) -> GroundMotion:
         key = "amplitude" if "amplitude" in of.values else "velocity_amplitude"
         raise RecordError(f"{of}: {key} = 0 makes no pulse")
     dt = of.quantity("dt", "time", period / _STEPS_PER_PERIOD)
-    length, fault = pulse.periods * period, ""
+    length = pulse.periods * period
+    fault = ""
     whole = length / dt if dt else math.nan
     if not 0.0 < dt <= 0.25 * period:
         fault = "must be positive and at most a quarter of the period"
@@ -153,8 +154,10 @@ def _bell_of_waves(of: Source, period: float) -> tuple[_Pulse, float]:
     return pulse, amplitude
 
 
-_FIRM_GROUND, _FIRM_CUT = 15.0 / (2.0 * math.pi), 1.5 / (2.0 * math.pi)  # Hz
-_PEAK_AT, _END_LEVEL = 0.2, 0.01  # of the envelope: when it peaks, what is left at the end
+_FIRM_GROUND = 15.0 / (2.0 * math.pi)  # Hz
+_FIRM_CUT = 1.5 / (2.0 * math.pi)
+_PEAK_AT = 0.2  # of the envelope: when it peaks, what is left at the end
+_END_LEVEL = 0.01
 _PULSE_PHASE = 0.5 * math.pi  # an odd velocity leaves no displacement behind
 _OPTIONS = (
     "pga", "seed", "duration", "dt", "ground_frequency", "ground_damping", "cut_frequency",
@@ -170,8 +173,10 @@ def load_synthetic(of: Source) -> GroundMotion:
     (0.6) of the low cut; with `pulse_velocity`, also `pulse_period` (3 s) and `pulse_cycles` (2).
     """
     of.query(*_OPTIONS)
-    seed, pga = of.integer("seed"), of.acceleration("pga")
-    duration, dt = of.quantity("duration", "time", 30.0), of.quantity("dt", "time", 0.01)
+    seed = of.integer("seed")
+    pga = of.acceleration("pga")
+    duration = of.quantity("duration", "time", 30.0)
+    dt = of.quantity("dt", "time", 0.01)
     ground = of.quantity("ground_frequency", "frequency", _FIRM_GROUND)
     cut = of.quantity("cut_frequency", "frequency", _FIRM_CUT)
     dampings = [of.quantity(f"{name}_damping", "ratio", 0.6) for name in ("ground", "cut")]
@@ -185,7 +190,8 @@ def load_synthetic(of: Source) -> GroundMotion:
     count = round(duration / dt) + 1
     noise = _filtered_noise(count, dt, seed, (ground, dampings[0]), (cut, dampings[1]))
     shaped = _brought_to_rest(noise * envelope(np.linspace(0.0, 1.0, count)), dt)
-    pulse, label = np.zeros(count), ""
+    pulse = np.zeros(count)
+    label = ""
     if "pulse_velocity" in of.values:
         amplitude = of.quantity("pulse_velocity", "velocity")
         period = of.quantity("pulse_period", "time", 3.0)
@@ -234,7 +240,8 @@ def _filtered_noise(
     # Filtering by FFT gives a stationary (periodic) process: nothing has to settle first.
     white = np.random.Generator(np.random.PCG64(seed)).standard_normal(count)
     w = 2.0 * np.pi * np.fft.rfftfreq(count, dt)
-    wg, wc = 2.0 * np.pi * ground[0], 2.0 * np.pi * cut[0]
+    wg = 2.0 * np.pi * ground[0]
+    wc = 2.0 * np.pi * cut[0]
     soil = (wg**2 + 2j * ground[1] * wg * w) / (wg**2 - w**2 + 2j * ground[1] * wg * w)
     low_cut = w**2 / (wc**2 - w**2 + 2j * cut[1] * wc * w)
     return np.asarray(np.fft.irfft(np.fft.rfft(white) * soil * low_cut, count))

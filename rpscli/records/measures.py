@@ -70,7 +70,8 @@ def intensity_measures(motion: GroundMotion) -> IntensityMeasures:
     M. D. Trifunac and A. G. Brady, Bull. Seism. Soc. Am. 65, 1975 (duration to 95 %);
     P. G. Somerville and others, SAC/BD-97/04, 1997, use that to 75 %.
     """
-    a, dt = motion.acceleration, motion.dt
+    a = motion.acceleration
+    dt = motion.dt
     husid = velocity(a**2, dt)
 
     def reached(share: float) -> float:
@@ -184,14 +185,17 @@ def _histories(motion: GroundMotion, period: float, damping: float) -> list[Arra
     s = w * complex(-damping, math.sqrt(1.0 - damping**2))
     # Re(q), Im(q), the acceleration and its slope, as the closed formulae of the integrals lose
     # all digits where w dt is small.
-    a, b = s.real * fine.dt, s.imag * fine.dt
+    a = s.real * fine.dt
+    b = s.imag * fine.dt
     rows = [[a, -b, 1.0, 0.0], [b, a, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0], [0.0, 0.0, 0.0, 0.0]]
     step = expm(np.array(rows))
     grown, _, level, slope = step[0] + 1j * step[1]
-    last, first = fine.dt * slope, fine.dt * (level - slope)
+    last = fine.dt * slope
+    first = fine.dt * (level - slope)
     # At rest at the first sample, which may be a jump.
     q, _ = lfilter([last, first], [1.0, -grown], ground, zi=[-last * ground[0]])
-    displacement, velocity = -q.imag / s.imag, -(s * q).imag / s.imag
+    displacement = -q.imag / s.imag
+    velocity = -(s * q).imag / s.imag
     return [displacement, -(w**2) * displacement - 2.0 * damping * w * velocity]
 
 
@@ -215,13 +219,16 @@ def filtered_incremental_velocity(motion: GroundMotion, period: float) -> float:
     """
     from scipy.signal import butter, filtfilt, find_peaks
 
-    window, corner, dt = 0.7 * period, 0.85 / period, motion.dt
+    window = 0.7 * period
+    corner = 0.85 / period
+    dt = motion.dt
     # Three periods of the corner, after which the filter has forgotten, and the window.
     quiet = np.zeros(math.ceil((3.0 / corner + window) / dt))
     ground = np.concatenate([quiet, motion.acceleration, quiet])
     if corner < (nyquist := 0.5 / dt):
         ground = filtfilt(*butter(2, corner / nyquist), ground, padlen=0)
-    speed, time = velocity(ground, dt), np.arange(ground.size) * dt
+    speed = velocity(ground, dt)
+    time = np.arange(ground.size) * dt
     gained = np.interp(time + window, time, speed) - speed
     # Ripples of rounding on a flat top are no maxima of their own.
     least = 1e-9 * float(np.max(np.abs(gained)))
@@ -365,7 +372,8 @@ def measure_label(measure: str, of: Of | None, at: str = "") -> str:
 
 def of_directions(values: Array, of: Of | Literal["srss"] = USUAL) -> Array:
     """Of values (180, ...) over the directions, (...)."""
-    first, second = values[0], values[90]
+    first = values[0]
+    second = values[90]
     if of == "srss":
         return np.asarray(np.hypot(first, second))
     if of == "rotd50":
@@ -427,5 +435,6 @@ def _peaks(x: Array, y: Array) -> Array:
     # What is nearer than the least reach of some points is the farthest in no direction.
     reach = float(np.abs(turns @ [x[corners], y[corners]]).max(axis=1).min())
     far = x**2 + y**2 >= (reach * (1.0 - 1e-9)) ** 2
-    x, y = x[far], y[far]
+    x = x[far]
+    y = y[far]
     return np.array([np.abs(c * x + s * y).max() for c, s in turns])

@@ -102,7 +102,8 @@ def event_of(recording: Recording) -> str | None:
 
 def earthquake(text: str) -> str:
     """The name and the year of an earthquake that a text begins with; empty without a name."""
-    found, year = _NAME.match(text), _YEAR.search(text)
+    found = _NAME.match(text)
+    year = _YEAR.search(text)
     number = (year[1] or f"19{year[2]}") if year else ""
     return f"{found[1].strip().lower()} {number}".strip() if found else ""
 
@@ -153,7 +154,8 @@ def _family(of: Source, place: str, apart: set[str]) -> str:
         return f"synthetic:{of.values.get('seed', place)}"
     if of.scheme:
         return str(of)
-    folder, name = PurePath(place).parent, PurePath(place).name
+    folder = PurePath(place).parent
+    name = PurePath(place).name
     if (azimuth := _AZIMUTH.fullmatch(place)) and azimuth[1] in apart:
         return azimuth[1]
     if number := _PEER_NUMBER.fullmatch(name):

@@ -64,7 +64,8 @@ def kept(
     motions: Sequence[GroundMotion], filters: Iterable[Filter]
 ) -> tuple[list[GroundMotion], dict[str, dict[str, int]]]:
     """Motions that pass every filter, and how many each keeps out, or knows nothing of."""
-    passing, left_out = list(motions), {}
+    passing = list(motions)
+    left_out = {}
     for each in filters:
         verdicts = [each.keeps(motion) for motion in passing]
         left_out[each.text] = {"outside": verdicts.count(False), "not_known": verdicts.count(None)}
@@ -78,7 +79,8 @@ def parse_filter(text: str) -> Filter:
     Such are `magnitude=6.5..7.5` and `pulse=no`.
     """
     name, _, wanted = (part.strip() for part in text.partition("="))
-    fault, ends = "", [0.0, 0.0]
+    fault = ""
+    ends = [0.0, 0.0]
     low, dots, high = wanted.partition("..")
     if name == "pulse":
         ends = [1.0 if wanted == "yes" else 0.0] * 2
@@ -229,7 +231,8 @@ class SelectionRequest:
     structure: Periods | None = None
 
     def __post_init__(self) -> None:
-        (short, long), (low, high) = self.periods, self.factors
+        (short, long) = self.periods
+        (low, high) = self.factors
         if not 0.0 < short < long < np.inf:
             raise RecordError(f"--periods {short:g} {long:g}: must be > 0 and grow")
         if not 0.0 < low <= high < np.inf:
@@ -360,7 +363,8 @@ def _measured(
     motions: tuple[GroundMotion, ...], damping: float, periods: Array, of: Component
 ) -> Candidate:
     """A motion or a pair with its spectrum and its peaks."""
-    first, spectrum = motions[0], _spectrum(motions, damping, periods, of)
+    first = motions[0]
+    spectrum = _spectrum(motions, damping, periods, of)
     pgv, pgd = (
         measures.measured(first, measure)
         if len(motions) == 1
@@ -499,7 +503,8 @@ def best_choice(pool: Pool, goal: Goal, count: int, per_event: int) -> tuple[lis
     search = _Search(pool, goal, count, per_event)
     if math.comb(len(pool.factors), count) <= WHOLE:
         return search.best_of_all(), True
-    found, random = [], np.random.default_rng(1)
+    found = []
+    random = np.random.default_rng(1)
     for _ in range(ROUNDS):
         best = min(search.exchanged(search.filled([], random)) for _ in range(STARTS))
         for _ in range(KICKS):
@@ -513,7 +518,10 @@ class _Search:
     """Sets of a pool, and moves among them."""
 
     def __init__(self, pool: Pool, goal: Goal, count: int, per_event: int) -> None:
-        self.pool, self.goal, self.count, self.per_event = pool, goal, count, per_event
+        self.pool = pool
+        self.goal = goal
+        self.count = count
+        self.per_event = per_event
         self.features = goal.features(pool.spectra)
 
     def free(self, sets: Numbers) -> NDArray[np.bool_]:
@@ -533,7 +541,8 @@ class _Search:
             for numbers, most in ((recordings, 1), (events, self.per_event)):
                 same = numbers[sets][:, :, None] == numbers[sets][:, None, :]
                 sets = sets[same.sum(axis=2).max(axis=1) <= most]
-            factors, total = every[sets], np.zeros((len(sets), self.features.shape[1]))
+            factors = every[sets]
+            total = np.zeros((len(sets), self.features.shape[1]))
             for place in range(self.count):
                 total += self.features[sets[:, place]]
             cost, _ = self.goal.judged(total, self.count, factors.min(axis=1), factors.max(axis=1))
@@ -553,7 +562,8 @@ class _Search:
 
     def exchanged(self, places: list[int]) -> tuple[float, list[int]]:
         """The cost and the places after the best exchanges, until none helps."""
-        every, size = self.pool.factors, len(places)
+        every = self.pool.factors
+        size = len(places)
         now = self.goal.of_set(self.features[places], every[places])[0]
         while size > 1:
             rest = np.array([np.delete(places, out) for out in range(size)])
@@ -567,6 +577,7 @@ class _Search:
             # Rounding of the sums must not look like progress, or it would never end.
             if cost[out, other] >= now - 1e-12:
                 break
-            now, places = float(cost[out, other]), [*rest[out].tolist(), int(other)]
+            now = float(cost[out, other])
+            places = [*rest[out].tolist(), int(other)]
         places = sorted(places)
         return self.goal.of_set(self.features[places], every[places])[0], places

@@ -49,7 +49,8 @@ def expand_set(of: Source) -> list[Source]:
 
 def unknown(of: Source) -> RecordError:
     """The refusal of what is no component, or no pair, of the sets."""
-    place, stem = of.place, of.place[:-2]
+    place = of.place
+    stem = of.place[:-2]
     known, word = (PAIRS, "pair") if of.of_pair else (COMPONENTS, "component")
     remedy = hint(place, known)
     if place in PAIRS:
@@ -113,7 +114,8 @@ def _component(folder: Path, component: str, source: str, *, normalised: bool) -
         f"{names[0]} {year}", names[1], magnitude, 1e3 * closest, float(vs30), 1.0 / usable,
         {"nearfield_pulse": True, "nearfield_no_pulse": False}.get(name),
     )  # fmt: skip
-    kind, trace = "normalised" if normalised else "as recorded", names[-2 if side == "a" else -1]
+    kind = "normalised" if normalised else "as recorded"
+    trace = names[-2 if side == "a" else -1]
     return GroundMotion(
         values * STANDARD_GRAVITY,
         uniform_step(times, 1e-9 * float(times[-1])),

@@ -29,7 +29,9 @@ from rpscli.records.quantities import (
     to_float,
 )
 
-FILE, LIST, SET = "", "list", "fema_p695"
+FILE = ""
+LIST = "list"
+SET = "fema_p695"
 SCHEMES = (SET, "pulse", "synthetic", LIST)
 
 PAIRING = ("both", "angle", "rotation")
@@ -179,7 +181,9 @@ class Source(Query):
         )
         head = f"{scheme}:{place}" if scheme else place
         made = super().__new__(cls, f"{head}?{words}" if words else head)
-        made.scheme, made.place, made.values = scheme, place, ordered
+        made.scheme = scheme
+        made.place = place
+        made.values = ordered
         return made
 
     def __getnewargs__(self) -> tuple[str, str, Values]:  # type: ignore[override]
@@ -195,9 +199,11 @@ class Source(Query):
         if isinstance(text, Source):
             return text
         match = _SCHEME.fullmatch(text)
-        scheme, (place, options) = FILE, split_options(text)
+        scheme = FILE
+        (place, options) = split_options(text)
         if is_file(text, folder):
-            place, options = text, ""
+            place = text
+            options = ""
         elif match is not None and not is_file(place, folder):
             scheme, rest = match.groups()
             if scheme not in SCHEMES:
@@ -209,7 +215,8 @@ class Source(Query):
                 place, options = split_options(rest)
         each = options_in(options, text).items()
         source = cls(scheme, place, {SPELLINGS.get(name, name): value for name, value in each})
-        given, fault = source.values, ""
+        given = source.values
+        fault = ""
         if valued := [name for name in FLAGS if given.get(name) is not None]:
             fault = f"{valued[0]} takes no value; write {valued[0]} alone"
         if "rotation" in given and not source.both:

@@ -159,11 +159,13 @@ def _en1998(rest: str, source: str) -> TargetSpectrum:
     longest = 4.0  # where the clause ends [s]
     if not (S > 0.0 and 0.0 < T_B < T_C < T_D <= longest):
         raise RecordError(f"{source}: must have s > 0 and 0 < tb < tc < td <= {longest:g} s")
-    a_g, damping = query.acceleration("ag", bare=False), query.quantity("damping", "ratio", 0.05)
+    a_g = query.acceleration("ag", bare=False)
+    damping = query.quantity("damping", "ratio", 0.05)
     if a_g <= 0.0 or not 0.0 <= damping < 1.0:
         raise RecordError(f"{source}: ag must be > 0 and damping in [0, 1); 5 % is 0.05")
     eta = max(0.55, math.sqrt(10.0 / (5.0 + 100.0 * damping)))
-    start, corners = a_g * S, (0.0, T_B, T_C, T_D)
+    start = a_g * S
+    corners = (0.0, T_B, T_C, T_D)
     own = [key for key in _NATIONAL if key in query.values]
     by = f"the user's {', '.join(own)}" if own else "recommended values, no national annex"
     return TargetSpectrum(
@@ -226,7 +228,8 @@ def _asce7(rest: str, source: str) -> TargetSpectrum:
     query = parse_query(rest.lstrip("?"), source, ("sds", "sd1", "tl", "level"))
     mcer = query.choice("level", "design", ["design", "mcer"]) == "mcer"
     S_DS, S_D1 = (query.acceleration(key, bare=False) for key in ("sds", "sd1"))
-    T_L, times = query.quantity("tl", "time"), 1.5 if mcer else 1.0
+    T_L = query.quantity("tl", "time")
+    times = 1.5 if mcer else 1.0
     if not (S_DS > 0.0 and 0.0 < S_D1 / S_DS < T_L):
         raise RecordError(f"{source}: sds and sd1 must be > 0, and sd1/sds, in s, below tl")
     T_S = S_D1 / S_DS
@@ -255,7 +258,8 @@ def _sp14(rest: str, source: str) -> TargetSpectrum:
     """
     query = parse_query(rest.lstrip("?"), source, ("acceleration", "soil"))
     corners = {"I": 0.4, "II": 0.4, "III": 0.8, "IV": 0.8}
-    soil, A = query.choice("soil", "II", [*corners]), query.acceleration("acceleration")
+    soil = query.choice("soil", "II", [*corners])
+    A = query.acceleration("acceleration")
     corner = corners[soil]
     if A <= 0.0:
         raise RecordError(f"{source}: acceleration must be > 0; it is 4 m/s2 for intensity 9")
@@ -326,7 +330,8 @@ def _table(path: Path, options: str, source: str) -> TargetSpectrum:
     scatters = len(head) > 2 and _DEVIATION.fullmatch(head[2]) is not None
     width = 3 if scatters else 2
     cells = np.array([_cells(row, width, f"{path}:{n}") for n, row in rows]).reshape(-1, width)
-    rigid, cells = cells[cells[:, 0] == 0.0], cells[cells[:, 0] > 0.0]  # 0 has no logarithm
+    rigid = cells[cells[:, 0] == 0.0]  # 0 has no logarithm
+    cells = cells[cells[:, 0] > 0.0]
     if len(cells) < 2 or (np.diff(cells[:, 0]) <= 0.0).any():
         raise RecordError(f"{path}: needs two rows at least, with periods that grow")
     known = np.log(cells[:, :2])
@@ -340,7 +345,8 @@ def _table(path: Path, options: str, source: str) -> TargetSpectrum:
     query = parse_query(options, source, ("damping", "component", "level"))
     damping = query.quantity("damping", "ratio", 0.05)
     of = query.choice("component", "", get_args(Of))
-    first, last = float(cells[0, 0]), float(cells[-1, 0])
+    first = float(cells[0, 0])
+    last = float(cells[-1, 0])
     pinned = scatters and not cells[:, 2].all()
     return TargetSpectrum(
         stem_of(path),
@@ -421,7 +427,8 @@ class Requirements:
         structure: Periods | None,
     ) -> tuple[Rule, ...]:
         """Every requirement; ratios are the mean over the target, within the periods looked at."""
-        noun, (low, high) = "motions" if of == "component" else "pairs", looked_at
+        noun = "motions" if of == "component" else "pairs"
+        (low, high) = looked_at
         span = f"{low:.3g} to {high:.3g} s"
         # 1e-6 of the ratios are for factors of six digits.
         found = [Rule(f"number of {noun}", f">= {self.count}", f"{number}", number >= self.count)]

@@ -73,7 +73,8 @@ class Effect(NamedTuple):
     @property
     def moved(self) -> NDArray[np.bool_]:
         """(rows,) away from the first by `FACTOR`, or with the other sign."""
-        own, size = self.values[0], np.abs(self.values)
+        own = self.values[0]
+        size = np.abs(self.values)
         far = np.maximum(size, abs(own)) >= FACTOR * np.minimum(size, abs(own))
         other_sign = np.sign(self.values) * np.sign(own) < 0.0
         return np.asarray((self.values != own) & ~np.isnan(size) & (far | other_sign))
@@ -97,7 +98,8 @@ class Budget:
         return [*self._effects()]
 
     def _effects(self) -> Iterator[Effect]:
-        case, rows = self.case, self.rows
+        case = self.case
+        rows = self.rows
         limits = case_conditions(case.limits, case.structure)
         judged: dict[str, Condition | None] = {each.name: each for each in limits}
         values = [row.values for row in rows]
@@ -105,14 +107,16 @@ class Budget:
         others = np.nonzero([row.cause == RECORDS for row in rows])[0]
         main = [q.name for q in LIMITED if q.demand and not np.isnan(values[0][q.name])]
         for name, limit in (judged or dict.fromkeys(main)).items():
-            quantity, bad = LIMITS.get(name), worse(table, name)
+            quantity = LIMITS.get(name)
+            bad = worse(table, name)
             if quantity:
                 bad[np.isnan(table.columns[name]) & ~table.overturned] = np.nan
                 if limit and np.isnan(bad[0]):
                     needs = NEEDS.get(quantity.needs, "what the case has not")
                     raise UsageError(f"{limit.source}: {name} needs {needs}")
             sign = Condition(name, 0.0, "").sign
-            known, bound = ~np.isnan(bad), limit.limit if limit else np.inf
+            known = ~np.isnan(bad)
+            bound = limit.limit if limit else np.inf
             beyond = exceeds(table, name, bound) & known & (limit is not None)
             spread = (sign * fractiles(bad[others], SHARES)).tolist()
             share = share_of(table, others, beyond[others])
@@ -120,7 +124,8 @@ class Budget:
 
     def sentences(self, effect: Effect) -> str:
         """Which changes turn the verdict, and which the order of magnitude."""
-        of, name = Counter(row.cause for row in self.rows), effect.name
+        of = Counter(row.cause for row in self.rows)
+        name = effect.name
         turned, moved = (
             ", ".join(f"{cause} ({n} of {of[cause]})" for cause, n in Counter(causes).items())
             for which in (effect.turned, effect.moved)
@@ -203,9 +208,11 @@ class Budget:
     def figure(self, effect: Effect, figure: style.Figure) -> None:
         """Bars from the value as it is to each changed one, records as points, limits as lines."""
         assert effect.quantity is not None, "events have no picture"
-        label, unit = effect.quantity.label, effect.quantity.unit
+        label = effect.quantity.label
+        unit = effect.quantity.unit
         others = np.array([row.cause == RECORDS for row in self.rows])
-        values, labels = effect.values[~others], [r.label for r in self.rows if r.cause != RECORDS]
+        values = effect.values[~others]
+        labels = [r.label for r in self.rows if r.cause != RECORDS]
         names = [style.folded(text, 0.42 * style.room(figure), 7.0) for text in labels]
         most = max(1 + name.count("\n") for name in names)
         lines = [(values[0], style.BLACK, "-")]
@@ -213,9 +220,11 @@ class Budget:
             lines.append((effect.limit.limit, style.RED, "--"))
         sizes = np.array([*effect.values, *(line[0] for line in lines)])
         far = 1.15 * np.max(sizes[np.isfinite(sizes)], initial=0.0)
-        factor, places = large(1.0, unit)[0] or 1.0, np.arange(len(names))
+        factor = large(1.0, unit)[0] or 1.0
+        places = np.arange(len(names))
         style.begin(figure, (self.case.title, CAPTION), 1.2 + (0.07 + 0.12 * most) * len(names))
-        axes, kind = figure.subplots(), np.array([style.BLUE, style.ORANGE, style.RED])
+        axes = figure.subplots()
+        kind = np.array([style.BLUE, style.ORANGE, style.RED])
         kinds = np.where(effect.turned, 2, effect.moved)[~others]
         ends, points = (factor * np.clip(v, -far, far) for v in (values, effect.values[others]))
         axes.barh(places, ends - ends[0], left=ends[0], height=0.65, color=kind[kinds])

@@ -91,7 +91,8 @@ def timehistory_files(result: TimeHistoryResult, title: str, look: Look = USUAL)
     yield "timehistory.csv", csv_lines(history_columns(result))
     yield "events.csv", csv_text(event_columns(result.events))
     yield "storeys.csv", csv_text(storey_columns(result))
-    of, of_pair = result.structure, result.trace.y is not None
+    of = result.structure
+    of_pair = result.trace.y is not None
     words = title, history.record_name(result)
     along = ("along the tilt, where going round drives too",) * of_pair
     known = (
@@ -115,7 +116,8 @@ def floor_spectra_files(result: TimeHistoryResult, title: str, look: Look = USUA
     """Spectra of the floors, a row each and period from the bottom; none without a building."""
     if not result.structure.storeys:
         return
-    isolated, fixed = isolated_floor_spectra(result), fixed_base_floor_spectra(result)
+    isolated = isolated_floor_spectra(result)
+    fixed = fixed_base_floor_spectra(result)
     count, periods = isolated.displacement.shape
     columns = [
         Column("floor", "-", np.repeat(np.arange(1, count + 1), periods)),

@@ -125,7 +125,8 @@ def page_sections(
     which: Sequence[Block] = (),
 ) -> list[Section]:
     """All of a page in its order; `which` says of which system structure and formulas are."""
-    structure, podium = case.structure, case.document["podium"]
+    structure = case.structure
+    podium = case.document["podium"]
     told = [Notice(f"Warning: {text}") for text in warnings]
     repeat: list[Block] = [
         "From the folder in which this page was made, with the same versions:",
@@ -164,7 +165,8 @@ def structure_blocks(structure: PodiumStructure, title: str, look: Look) -> list
 def _storeys(structure: PodiumStructure) -> Table:
     building = structure.superstructure
     assert building is not None, "there are storeys"
-    shape, heights = derived.first_shape(building), building.storey_heights
+    shape = derived.first_shape(building)
+    heights = building.storey_heights
     count = building.storeys
     columns = {
         "storey": np.arange(count) + 1,
@@ -223,7 +225,8 @@ def hidden_table(*, both: bool) -> Table:
     """Limits of the model, in the words of the theory, of one component or of both."""
     text = resources.files("rpscli").joinpath(THEORY).read_text(encoding="utf-8")
     _, plane, space = text.split(f"\n{HIDDEN}")
-    heads, rows = [], []
+    heads = []
+    rows = []
     for table in (plane, space) if both else (plane,):
         lines = (HIDDEN + table).split("\n\n", 1)[0].splitlines()
         heads, _, *found = ([cell.strip() for cell in line.strip("|").split("|")] for line in lines)
@@ -256,7 +259,8 @@ def history_short(
         yield limits_table(verdicts)
     yield timehistory.restitution_text(result.structure)
     yield from map(Notice, timehistory.neighbours_texts(result, beside))
-    both, planar = [result.motion.y is not None], result.structure.planar_only
+    both = [result.motion.y is not None]
+    planar = result.structure.planar_only
     yield from filter(None, [timehistory.direction_note(both, planar)])
 
 

@@ -127,7 +127,8 @@ def _steps_for_springs(structure: PodiumStructure) -> float:
     above = structure.superstructure
     assert above is not None, "floors on springs are floors"
     # Riding on the beam a heavy building may leave no restitution, which steps do not ask for.
-    above, law = replace(above, vertical_period=None), ImpactLaw(loss=0.0)
+    above = replace(above, vertical_period=None)
+    law = ImpactLaw(loss=0.0)
     riding = replace(structure, superstructure=above, impact_law=law)
     return steps_a_second(structure) / steps_a_second(riding)
 
@@ -150,8 +151,11 @@ UPWARDS = (
 
 def _column_at_rest(structure: PodiumStructure) -> dict[str, float]:
     """One column under the weight at rest, tilted to a tenth of alpha, by letters."""
-    b, x = structure.bearing, 0.1 * structure.bearing.alpha
-    N, y, r = structure.rest_force, min(x, b.beta), b.radius
+    b = structure.bearing
+    x = 0.1 * structure.bearing.alpha
+    N = structure.rest_force
+    y = min(x, b.beta)
+    r = b.radius
     turned = math.sin(x) + math.sin(y) * math.cos(x) - math.cos(y) * math.sin(x)
     moment = N * (b.half_width * math.cos(x) + r * turned)
     return {"N_0": N, "x": x, "y": y, "moment": moment, **_ends(structure, x, N)}
@@ -161,7 +165,8 @@ def _ends(structure: PodiumStructure, x: float, N: float) -> dict[str, float]:
     """Pressure on arcs at a tilt [rad] and the edge under N of a column [N], by letters."""
     import numpy as np  # slow
 
-    b, design = structure.bearing, structure.column
+    b = structure.bearing
+    design = structure.column
     assert design is not None, "there is a column"
     found = {
         "L": design.edge_length or math.nan, "E_c": design.contact_modulus,
@@ -249,12 +254,14 @@ BEFORE = {
 
 def derivations(structure: PodiumStructure, podium: Mapping[str, Any]) -> Iterator[Derivation]:
     """All derived quantities that are numbers, in the order in which they follow."""
-    letters, formulas = _letters(structure), _formulas(structure, podium)
+    letters = _letters(structure)
+    formulas = _formulas(structure, podium)
     further = (*CONTACT * bool(structure.bed), *COLUMN * bool(structure.column))
     exact = f"{structure.critical_rotation:.{DIGITS}g}"
     for quantity in (*GEOMETRY, *DYNAMICS, FIRST_PERIOD, *further):
         for row in (*BEFORE.get(quantity.name, ()), quantity):
-            value, formula = row.value(structure), formulas.get(row.name, "")
+            value = row.value(structure)
+            formula = formulas.get(row.name, "")
             if not isinstance(value, float | int):
                 continue
             if row.name == "critical_rotation_paper" and f"{value:.{DIGITS}g}" == exact:
@@ -266,16 +273,20 @@ def derivations(structure: PodiumStructure, podium: Mapping[str, Any]) -> Iterat
 
 def column_derivations(result: TimeHistoryResult) -> Iterator[Derivation]:
     """Largest moment, pressure and edge of the most loaded column of a history."""
-    structure, demand = result.structure, result.column_demand
+    structure = result.structure
+    demand = result.column_demand
     assert demand is not None, "there is a column"
     state = demand.at_largest_moment
     for each in demand.instants:
-        x, N = abs(each.rotation), each.axial_force
+        x = abs(each.rotation)
+        N = each.axial_force
         letters = _letters(structure) | _ends(structure, x, N) | {"x": x, "N_1": N}
         rows = []
         if each.largest == "column_moment":
-            F, rise = state.side * each.shear, state.rise
-            P, Q = N * math.cos(x) + F * math.sin(x), F * math.cos(x) - N * math.sin(x)
+            F = state.side * each.shear
+            rise = state.rise
+            P = N * math.cos(x) + F * math.sin(x)
+            Q = F * math.cos(x) - N * math.sin(x)
             letters |= {"s": state.side, "F_1": each.shear, "d": rise, "P": P, "Q": Q}
             letters["e"] = (each.moment + rise * Q) / P
             letters |= {"N_mean": demand.mean_force, "columns": structure.columns}
@@ -314,9 +325,13 @@ EDGES = {
 
 def _formulas(structure: PodiumStructure, podium: Mapping[str, Any]) -> dict[str, str]:
     """Expressions by the names of the quantities; empty for what the case gives."""
-    bearing, building, law = structure.bearing, structure.superstructure, structure.impact_law.kind
-    flat, beam = bearing.is_flat, structure.cap_beam_mass > 0.0
-    given, sizes = podium["bearing"], "dimensions" in podium["bearing"]
+    bearing = structure.bearing
+    building = structure.superstructure
+    law = structure.impact_law.kind
+    flat = bearing.is_flat
+    beam = structure.cap_beam_mass > 0.0
+    given = podium["bearing"]
+    sizes = "dimensions" in podium["bearing"]
     by_eta = building is not None and "superstructure_mass_ratio" in podium
     floors = [] if building is None else building.masses.tolist()
     first_order = "(1 - tan_alpha / tan_alpha_w) / 2"
@@ -379,7 +394,8 @@ def _of_column(structure: PodiumStructure, crushed: float) -> dict[str, str]:
     A round end whose edge is `crushed` over its whole width bears everywhere.
     """
     square = structure.column is not None and structure.column.section == "square"
-    line, ellipse = "sqrt(N_0 * E_c / (pi * L * radius))", "3 * N_0 / (2 * pi * a_c * b_c)"
+    line = "sqrt(N_0 * E_c / (pi * L * radius))"
+    ellipse = "3 * N_0 / (2 * pi * a_c * b_c)"
     segment = "N_0 / (strength * (wide / 2)^2) = p_c - sin(p_c) * cos(p_c)"
     segment = segment if crushed < 1.0 else "N_0 / (strength * pi * (wide / 2)^2)"
     turned = "(sin(x) + sin(y) * cos(x) - cos(y) * sin(x))"
@@ -413,9 +429,12 @@ LETTERS = {
 
 def _letters(structure: PodiumStructure) -> dict[str, float]:
     """Numbers for the letters of all expressions, SI units."""
-    b, law, building = structure.bearing, structure.impact_law, structure.superstructure
+    b = structure.bearing
+    law = structure.impact_law
+    building = structure.superstructure
     letters: dict[str, float] = {name: attrgetter(of)(structure) for name, of in LETTERS.items()}
-    letters["height"], letters["width"] = 2.0 * b.half_height, 2.0 * b.half_width
+    letters["height"] = 2.0 * b.half_height
+    letters["width"] = 2.0 * b.half_width
     letters["m_column"] = structure.columns_mass / structure.columns
     letters["tan_alpha_w"] = b.slenderness if b.is_flat else b.wedge_slenderness
     if law.kind == "value":
@@ -437,7 +456,8 @@ def _letters(structure: PodiumStructure) -> dict[str, float]:
     if structure.column is not None:
         letters |= _column_at_rest(structure)
     if building is not None:
-        shape, k = first_shape(building), building.stiffnesses
+        shape = first_shape(building)
+        k = building.stiffnesses
         letters |= {f"m_{i}": mass for i, mass in enumerate(building.masses.tolist(), 1)}
         letters |= {"n": building.storeys, "m_i": letters["m_1"]}
         letters["sum_m"] = float(building.masses @ shape**2)

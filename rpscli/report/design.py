@@ -76,7 +76,8 @@ def requirement_rows(
 def answer_document(answer: Answer, verdicts: Sequence[Verdict]) -> dict[str, Any]:
     """Everything but the designs one by one, which are in `designs.csv`."""
     objective = answer.task.file.minimise
-    name, place = objective_label(objective), answer.closest
+    name = objective_label(objective)
+    place = answer.closest
     design = {
         "design": place + 1,
         "values": dict(zip(answer.task.keys, answer.values[place].tolist(), strict=True)),
@@ -119,13 +120,16 @@ def answer_document(answer: Answer, verdicts: Sequence[Verdict]) -> dict[str, An
 
 def answer_tables(answer: Answer, verdicts: Sequence[Verdict]) -> Iterator[Part]:
     """The best design, its requirements, and how it hangs on the choice of records."""
-    place, objective = answer.closest, answer.task.file.minimise
+    place = answer.closest
+    objective = answer.task.file.minimise
     minimised = {name for name, term in objective.items() if len(objective) == term.times == 1}
-    title, interval = ("best", "least violated")[answer.best is None], _interval(answer.interval())
+    title = ("best", "least violated")[answer.best is None]
+    interval = _interval(answer.interval())
     rows = []
     for column, key in enumerate(answer.task.keys):
         # As it was judged: no digit less.
-        value, ends = f"{answer.values[place, column]:.10g}", _interval(answer.interval(column))
+        value = f"{answer.values[place, column]:.10g}"
+        ends = _interval(answer.interval(column))
         rows.append((axis_label(key), "minimised" if key in minimised else "", value, ends))
     if not minimised & {*answer.task.keys}:
         unit = objective_unit(objective)
@@ -194,7 +198,8 @@ def neighbours_note(answer: Answer, best: int) -> Iterator[str]:
 
 def nothing_passes(answer: Answer) -> str:
     """Which requirement stands in the way least, where no design passes."""
-    place, lines = answer.closest, [f"no design of {len(answer.places)} meets all requirements"]
+    place = answer.closest
+    lines = [f"no design of {len(answer.places)} meets all requirements"]
     rows = np.flatnonzero(~answer.met[:, 0, place])
     for row in rows[np.argsort(answer.excess[rows, place], kind="stable")].tolist():
         requirement = answer.requirements[row]
@@ -220,7 +225,8 @@ def design_columns(answer: Answer) -> list[Column]:
     for name, flags in (("valid", answer.valid), ("passes", answer.passes[0])):
         columns.append(Column(name, "-", [str(flag).lower() for flag in flags.tolist()]))
     columns.append(column("passing_share", "-", answer.passing_share))
-    name, known = objective_label(objective).replace(",", ""), answer.valid
+    name = objective_label(objective).replace(",", "")
+    known = answer.valid
     least = np.where(known, answer.objectives[0], np.nan)
     columns.append(column(f"least {name}", objective_unit(objective), least))
     for row, requirement in enumerate(answer.requirements):
@@ -253,12 +259,15 @@ def figures(answer: Answer, title: str) -> Mapping[str, style.Draw]:
 
 def requirements_figure(answer: Answer, title: str, figure: style.Figure) -> None:
     """One unknown: the value of every requirement against it, with its limit and the answer."""
-    order, best = np.argsort(answer.values[:, 0]), answer.best
-    key, requirements = answer.values[order, 0], answer.requirements
+    order = np.argsort(answer.values[:, 0])
+    best = answer.best
+    key = answer.values[order, 0]
+    requirements = answer.requirements
     style.begin(figure, (title, _counts(answer)), 1.9 + 2.3 * len(requirements))
     grid = figure.subplots(len(requirements), 1, squeeze=False, sharex=True)[:, 0]
     for row, (axes, requirement) in enumerate(zip(grid, requirements, strict=True)):
-        values, name = answer.results[row, 0, order], requirement.condition.name
+        values = answer.results[row, 0, order]
+        name = requirement.condition.name
         shown = np.where(np.isfinite(values), values, np.nan)
         if answer.resamples:
             ends = 0.5 * (1.0 - CONFIDENCE), 0.5 * (1.0 + CONFIDENCE)
@@ -280,9 +289,11 @@ def requirements_figure(answer: Answer, title: str, figure: style.Figure) -> Non
         if (off := np.nan_to_num(values, nan=0.0) > end).any():
             axes.plot(key[off], np.full(off.sum(), end), "^", ms=4.0, color=style.RED,
                       clip_on=False, label="off the scale, or overturned")  # fmt: skip
-        words, known = name, "overturned [1/year]" if name == RATE else "share of records"
+        words = name
+        known = "overturned [1/year]" if name == RATE else "share of records"
         if name in LIMITS:
-            words, known = LIMITS[name].label, LIMITS[name].axis_label
+            words = LIMITS[name].label
+            known = LIMITS[name].axis_label
         axes.set_ylabel(known)
         axes.set_title(style.typeset(requirement_label(requirement).replace(name, words, 1)))
     grid[-1].set_xlabel(axis_label(answer.task.keys[0]))
@@ -312,7 +323,8 @@ def region_figure(answer: Answer, title: str, figure: style.Figure) -> None:
     for axes, (x, y) in zip(grid.flat, shown, strict=False):
         axes.locator_params(nbins=MOST_TICKS)
         for name, marker, colour in MARKS:
-            at, share = answer.values[of[name]].T, answer.passing_share[of[name]]
+            at = answer.values[of[name]].T
+            share = answer.passing_share[of[name]]
             kind: dict[str, Any] = {"color": colour}
             if answer.resamples and name != "no valid case":
                 kind = {"c": share, "cmap": colours, "norm": norm, "edgecolors": style.BLACK}

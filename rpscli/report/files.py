@@ -276,7 +276,9 @@ class OutputFolder:
     # A later run of the same command on the same file under the same record may replace them,
     # though the file's content or the options have changed.
     def __init__(self, folder: Path, run: Run, *, force: bool = False) -> None:
-        self.folder, self.run, self.force = folder, run, force
+        self.folder = folder
+        self.run = run
+        self.force = force
         self.contents: dict[Path, Content] = {}
         self.removed: list[str] = []
         self._earlier = self._claimed()
@@ -347,7 +349,8 @@ class OutputFolder:
     @property
     def _subject(self) -> dict[str, Any]:
         """File and record of the run, as the folder knows them."""
-        run, record = self.run, self.run.record
+        run = self.run
+        record = self.run.record
         return {
             "file": None if run.file is None else self._known_as(run.file),
             "record": self._known_as(record) if isinstance(record, Path) else record,

@@ -55,7 +55,8 @@ def record_table(motion: GroundMotion, measures: IntensityMeasures) -> Table:
 
 def record_files(motion: GroundMotion, spectrum: ResponseSpectrum, look: Look = USUAL) -> Files:
     """Files of a ground motion: a row a sample with its integrals, and a row a period."""
-    a, dt = motion.acceleration, motion.dt
+    a = motion.acceleration
+    dt = motion.dt
     yield "record.csv", csv_lines([
         Column("time", "s", motion.time),
         Column("acceleration", "m/s2", a),
@@ -84,7 +85,9 @@ def selection_document(selection: Selection) -> dict[str, Any]:
     """What was chosen, beside the target; SI units."""
     names = ("source", "second", "factor", "clamped", "event", "pgv", "pgd", "misfit")
     columns = picked(selection_columns(selection), *names)
-    target, asked, errors = selection.target, selection.requirements, selection.errors
+    target = selection.target
+    asked = selection.requirements
+    errors = selection.errors
     of_target = (
         "name", "parameters", "source", "edition", "checked", "level", "damping", "pgv", "pgv_by",
         "pgd",
@@ -106,7 +109,8 @@ def selection_document(selection: Selection) -> dict[str, Any]:
 
 def selection_columns(selection: Selection) -> list[Column]:
     """`selection.csv`: one row a motion, its peaks scaled."""
-    chosen, three = selection.chosen, partial(shown, digits=3)
+    chosen = selection.chosen
+    three = partial(shown, digits=3)
     misfits = [float(misfit(one.scaled[1:], selection.wanted)) for one in chosen]
     seconds = [one.motions[1].source if len(one.motions) > 1 else None for one in chosen]
 
@@ -143,7 +147,9 @@ WHY_PGV = (
 
 def selection_doubts(selection: Selection, fixed: float | None) -> Iterator[str]:
     """What a human should look at; `fixed` is T1 of the structure on a fixed base [s]."""
-    asked, target, chosen = selection.requirements, selection.target, selection.chosen
+    asked = selection.requirements
+    target = selection.target
+    chosen = selection.chosen
     first, last = selection.periods[[0, -1]]
     if fixed is not None and not first <= fixed <= last:
         yield (
@@ -167,7 +173,8 @@ def selection_doubts(selection: Selection, fixed: float | None) -> Iterator[str]
         of = f"{selection.clamped} of {len(chosen)} factors"
         yield f"{of} are held at a bound: widen --factors, or give motions of another size"
     for name in ("pgv", "pgd"):
-        wanted, mean = getattr(target, name), getattr(selection, f"mean_{name}")
+        wanted = getattr(target, name)
+        mean = getattr(selection, f"mean_{name}")
         if wanted is not None and not wanted / FAR <= mean <= wanted * FAR:
             yield f"the mean {name.upper()} is {mean / wanted:.2g} times that of the target"
     remedy = "take that from the clause (--periods), and give the spectrum as a CSV file"
@@ -181,7 +188,9 @@ def selection_tables(
     """What was chosen, how well it fits, and what the code asks."""
     names = ("name", "event", "factor", "pgv", "pgd", "misfit", "clamped")
     yield Table(picked(selection_columns(selection), *names), words=2)
-    target, errors, asked = selection.target, selection.errors, selection.requirements
+    target = selection.target
+    errors = selection.errors
+    asked = selection.requirements
     low, high = selection.periods[[0, -1]]
     by = f" ({target.pgv_by})" if target.pgv else ""
     refused = f"; {selection.refused} beyond the factors" * bool(selection.refused)
@@ -242,7 +251,8 @@ def selection_list(selection: Selection, folder: Path) -> str:
     )
     lines = []
     for one in selection.chosen:
-        of, place = one.source, one.source.place
+        of = one.source
+        place = one.source.place
         if is_file(place, None) and not Path(place).expanduser().is_absolute():
             of = of.at(Path(os.path.relpath(place, folder)).as_posix())
         lines.append(of.plus(factor=f"{of.factor * one.factor:g}"))

@@ -172,7 +172,8 @@ def page(
     kept = [section for section in sections if section.blocks]
     shown = [block for s in kept for block in s.blocks if isinstance(block, Picture)]
     drawn = iter(figures(shown, FOR_FIGURES))
-    links, written = [], []
+    links = []
+    written = []
     for place, section in enumerate(kept, 1):
         links.append(element("li", element("a", section.title, href=f"#s{place}")))
         blocks = [_block(block, drawn) for block in section.blocks]
@@ -261,4 +262,5 @@ def _kind(text: str) -> str:
     return "sentence" if len(text) > LONG_TEXT and " " in text else "word"
 
 
-LONGEST_WORD, LONG_TEXT = 36, 24  # letters
+LONGEST_WORD = 36  # letters
+LONG_TEXT = 24

@@ -80,7 +80,8 @@ def demand_tables(result: TimeHistoryResult) -> Iterator[Table | str]:
 
 def outcome_text(result: TimeHistoryResult) -> str:
     """The end of the history, its nearness to overturning, and sliding of the columns."""
-    parts, passed = [OUTCOMES[result.outcome]], result.critical_passage_time
+    parts = [OUTCOMES[result.outcome]]
+    passed = result.critical_passage_time
     if result.structure.bearing.is_spherical:
         parts = [parts[0].replace("uplifts", "rolls")]
     if result.outcome.startswith("overturned"):
@@ -109,7 +110,8 @@ def overturned_text(structure: PodiumStructure, settings: TimeHistorySettings) -
 
 def restitution_text(structure: PodiumStructure) -> str:
     """The restitution at impact, its law, and what half of its loss would leave."""
-    law, e = structure.impact_law, structure.restitution
+    law = structure.impact_law
+    e = structure.restitution
     if structure.bearing.is_spherical:
         return "no impacts: columns without a flat part roll through the upright position"
     parts = [f"restitution at impact: e = {shown(e)} (law {law.kind}), e2 = {shown(e * e)}"]
@@ -124,7 +126,8 @@ def contact_text(structure: PodiumStructure) -> str | None:
     """Kind, period and settlement of compliant ends; None of rigid ones."""
     if (bed := structure.bed) is None:
         return None
-    kind, ratio = structure.contact.kind, bed.period_ratio
+    kind = structure.contact.kind
+    ratio = bed.period_ratio
     parts = [f"{kind} contact"]
     if ratio is not None:
         period = shown(bed.period, 3)
@@ -245,7 +248,8 @@ def _of_building(result: TimeHistoryResult) -> Iterator[Row]:
 
 def _of_contacts(result: TimeHistoryResult) -> Iterator[Row]:
     """Impacts or passes, joints, friction, and forces of one column, or of all together."""
-    structure, e = result.structure, result.structure.restitution
+    structure = result.structure
+    e = result.structure.restitution
     if not structure.bearing.is_spherical:
         yield "restitution at impact e", shown(e), f"e2 = {shown(e * e)}", ""
     yield from _passes(result)
@@ -392,7 +396,8 @@ ENERGIES = (
 
 
 def _energy(result: TimeHistoryResult) -> Iterator[Row]:
-    energy, structure = result.energy, result.structure
+    energy = result.energy
+    structure = result.structure
     parts = {
         f"  {label}": float(getattr(energy, name))
         for label, name, needed in ENERGIES
@@ -405,7 +410,8 @@ def _energy(result: TimeHistoryResult) -> Iterator[Row]:
 
 def _storeys_table(result: TimeHistoryResult) -> Table:
     """Largest demands of each storey, on bearings and on a fixed base."""
-    isolated, fixed = isolated_demands(result), fixed_base_demands(result)
+    isolated = isolated_demands(result)
+    fixed = fixed_base_demands(result)
     drift = ("drift mm", "storey_drifts", 1e3)
     if isolated.storey_drift_ratios is not None:
         drift = ("drift ratio", "storey_drift_ratios", 1.0)
@@ -496,7 +502,9 @@ OF_RECORD = ("name", "source", "npts", "dt", "pga")
 
 def timehistory_document(result: TimeHistoryResult) -> dict[str, Any]:
     """Scalar results, demands of each storey, energies [J], and what to be warned of."""
-    fixed, column, structure = fixed_base_demands(result), result.column_demand, result.structure
+    fixed = fixed_base_demands(result)
+    column = result.column_demand
+    structure = result.structure
     unknown = {name for _, name, needed in ENERGIES[1:3] if not getattr(structure, needed)}
     return {
         "record": {name: getattr(result.record, name) for name in OF_RECORD},

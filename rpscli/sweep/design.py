@@ -78,7 +78,8 @@ class Requirement(NamedTuple):
             value = np.tensordot(self.rates, [_share(at, weights, event) for at in demands], axes=1)
             excess = np.nan_to_num(value[0] / self.condition.limit - 1.0, nan=np.inf)
             return value, value <= self.condition.limit, excess
-        at, condition = demands[self.intensity], self.condition
+        at = demands[self.intensity]
+        condition = self.condition
         counted = judge(at, weights, condition)
         if condition.name in EVENTS:
             value = _share(at, weights, condition)
@@ -95,7 +96,8 @@ def _share(demands: Array, weights: Array, event: Condition) -> Array:
 
 def requirements_of(task: DesignTask, layout: StudyPoints) -> tuple[Requirement, ...]:
     """Requirements in the order of verdicts; refuse a design that requires nothing."""
-    limits, several = layout.properties[0].limits, len(layout.scales) > 1
+    limits = layout.properties[0].limits
+    several = len(layout.scales) > 1
     (measure,) = shown_keys(layout, (INTENSITY,))
     found = [
         Requirement(limit, place, measure, level if several else None)
@@ -128,7 +130,8 @@ def weights_of(clusters: Sequence[int], resamples: int, seed: int) -> Array:
     that it would with as many new records, were these all there are. Draws of one cluster fewer,
     which the bands of fragilities are of, scatter by sqrt(K/(K - 1)) more, as means do.
     """
-    ones, count = np.ones((1, len(clusters))), len(set(clusters))
+    ones = np.ones((1, len(clusters)))
+    count = len(set(clusters))
     if count < 2:
         return ones
     even = np.full(count, 1.0 / count)
@@ -227,7 +230,8 @@ class Answer:
     @property
     def governs(self) -> Flags:
         """(requirements,) without which a better design would pass."""
-        met, known = self.met[:, 0], np.where(self.valid, self.objectives[0], np.inf)
+        met = self.met[:, 0]
+        known = np.where(self.valid, self.objectives[0], np.inf)
         least = np.min(known, where=self.passes[0], initial=np.inf)
         others = (np.delete(met, row, axis=0).all(axis=0) for row in range(len(met)))
         return np.array([np.min(known, where=w, initial=np.inf) < least for w in others])
@@ -259,8 +263,10 @@ class Search:
     """A search whose `first` round is laid out, with which the file is checked to its end."""
 
     def __init__(self, task: DesignTask) -> None:
-        search, unknowns = task.file.search, len(task.unknowns)
-        self.task, self.faults = task, dict[str, None]()
+        search = task.file.search
+        unknowns = len(task.unknowns)
+        self.task = task
+        self.faults = dict[str, None]()
         self.weights = weights_of(task.clusters, search.resamples, search.seed)
         size = search.first or min(512, 2 ** (unknowns + 4))
         size = min(size, search.most or size)
@@ -289,7 +295,8 @@ class Search:
 
     def valid_cases(self, values: Array) -> Flags:
         """(designs,) which values make valid cases; why others do not is kept in `faults`."""
-        study, found = self.task.study, np.ones(len(values), dtype=bool)
+        study = self.task.study
+        found = np.ones(len(values), dtype=bool)
         where = study.base, study.base.name, study.base_folder
         for place, row in enumerate(self.task.rows(values)):
             given = dict(zip(self.task.keys, row, strict=True))
@@ -303,7 +310,8 @@ class Search:
     def _judged(self, of: Round, evaluate: Callable[[StudyPoints], Table]) -> Answer:
         """The designs of a round; those that are no valid cases fail."""
         table = None if of.layout is None else evaluate(of.layout)
-        scales, members = len(self.layout.scales), len(self.layout.members)
+        scales = len(self.layout.scales)
+        members = len(self.layout.members)
         shape = len(of.valid), self.weights.shape[1], scales, members
         weights = np.repeat(self.weights, members, axis=1) / members  # parts of their record
 
@@ -347,8 +355,10 @@ def next_places(answer: Answer, count: int) -> Array:
     many resamples as well; the others go to the neighbours of the best design, to the ends of its
     ranges, and between designs one of which passes and the other would be better.
     """
-    places, aim = answer.places, answer.closest
-    resolution, objectives = answer.task.file.search.resolution, answer.objectives[0]
+    places = answer.places
+    aim = answer.closest
+    resolution = answer.task.file.search.resolution
+    objectives = answer.objectives[0]
     passes = np.concatenate([answer.holds[None], answer.passes[1:]])
     first, second = neighbours(places)
     length = np.linalg.norm(places[first] - places[second], axis=1)

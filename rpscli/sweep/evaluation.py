@@ -154,7 +154,9 @@ class Recent(Generic[Key, Value]):
     """Values that were asked for last, sizes of `room` in all; safe to share among threads."""
 
     def __init__(self, room: float, size: Callable[[Value], float] = lambda _: 1.0) -> None:
-        self._room, self._size, self._held = room, size, 0.0
+        self._room = room
+        self._size = size
+        self._held = 0.0
         self._values: OrderedDict[Key, Value] = OrderedDict()
         self._lock = RLock()
 
@@ -281,7 +283,8 @@ class StudyContext:
     """Systems and ground motions of a plan, shared by all batches of a process."""
 
     def __init__(self, plan: Plan) -> None:
-        self.plan, self.records = plan, RecordCache()
+        self.plan = plan
+        self.records = RecordCache()
         self._systems: Recent[int, System] = Recent(SYSTEMS_KEPT)
 
     def system(self, number: int, values: Sequence[Any], known: System | None = None) -> System:
@@ -347,7 +350,9 @@ def _named(
     return {f"{state}{q.name}{index}": q for state in states for q in known}
 
 
-_FIXED, _ROLLING, _ROCKING = ("fixed_base.",), ("rolling.",), ("rocking.",)
+_FIXED = ("fixed_base.",)
+_ROLLING = ("rolling.",)
+_ROCKING = ("rocking.",)
 
 SCALARS: dict[Analysis, Named] = {
     "timehistory": _named((*rq.HISTORY, *rq.YIELDING, *rq.SAMPLED, *rq.IMPACTS, *rq.INTENSITIES)),
@@ -401,7 +406,8 @@ class PointResults(NamedTuple):
         if column is None:
             column = self.columns[name] = np.full(shape, np.nan)
         elif any(new > old for new, old in zip(shape, column.shape, strict=True)):
-            before, wider = column, map(max, shape, column.shape)
+            before = column
+            wider = map(max, shape, column.shape)
             column = self.columns[name] = np.full(tuple(wider), np.nan)
             column[_up_to(before.shape)] = before
         inner: Any = (rows, *_up_to(values.shape[1:]))
@@ -431,7 +437,8 @@ def stacked(values: Sequence[Any]) -> Array:
 
 def split(path: str) -> tuple[str, tuple[int, ...]]:
     """The name of a column and the indices in its rows that a dotted path stands for."""
-    parts, indices = path.split("."), []
+    parts = path.split(".")
+    indices = []
     while len(parts) > 1 and parts[-1].isdecimal():
         indices.append(int(parts.pop()))
     return ".".join(parts), tuple(reversed(indices))
@@ -532,7 +539,8 @@ def _static(context: StudyContext, points: Sequence[Point], results: PointResult
         if isinstance(values, str):
             results.messages[row] = values
         else:
-            rows[row], results.outcomes[row] = values, DONE
+            rows[row] = values
+            results.outcomes[row] = DONE
             del results.messages[row]
     for name in KNOWN[analysis]:
         if any(name in row for row in rows):

@@ -93,8 +93,10 @@ class StudyPoints:
         rest, member = divmod(index, len(self.members))
         rest, scale = divmod(rest, len(self.scales))
         system, record = divmod(rest, len(self.records))
-        properties, change = self.properties[system], self.members[member]
-        factor, request = self.scales[scale], self.records[record] or properties.record
+        properties = self.properties[system]
+        change = self.members[member]
+        factor = self.scales[scale]
+        request = self.records[record] or properties.record
         at = system if self.records == (None,) else record
         if request is not None and change.rotation and self.pairs[at]:
             request = request._replace(rotation=request.rotation + change.rotation)
@@ -176,7 +178,8 @@ class StudyPoints:
     @cached_property
     def recordings(self) -> Indices:
         """(points,) numbers of the recordings, or events, of all points."""
-        of, sources = self.identifying["record"][0], [r.source for r in self.requests]
+        of = self.identifying["record"][0]
+        sources = [r.source for r in self.requests]
         folder = self.study.base_folder if self.records == (None,) else self.study.folder
         numbers = np.array(clusters(sources, folder, self.independent))
         return frozen(numbers[self.places[of]])
@@ -196,7 +199,8 @@ class StudyPoints:
         """Measure that the records are scaled to, in words; empty without one."""
         if (measure := self.plan.measure) is None:
             return ""
-        name, unit = measure_label(measure.measure, self.of), MEASURES[measure.measure].unit
+        name = measure_label(measure.measure, self.of)
+        unit = MEASURES[measure.measure].unit
         if (count := len(measure.values)) > 1:
             return f"{count} values of {name}"
         return f"{name} = {as_written(measure.values[0], unit)}"
@@ -218,7 +222,9 @@ class StudyPoints:
 
 def lay_out(study: Study, watched: Watched = iter) -> StudyPoints:
     """The points of a study, whose systems are all examined."""
-    file, scale, folder = study.file, study.scale, str(study.folder)
+    file = study.file
+    scale = study.scale
+    folder = str(study.folder)
     drawn = sample(file.sample) if file.sample else np.empty((1, 0))
     varied = [key for axis in study.axes for key in axis.keys]
     plan = Plan(
@@ -231,7 +237,8 @@ def lay_out(study: Study, watched: Watched = iter) -> StudyPoints:
         whole=file.whole_histories,
         solver=solver_version(),
     )
-    context, members = StudyContext(plan), changes(file.perturb)
+    context = StudyContext(plan)
+    members = changes(file.perturb)
     properties = examined(study, context, drawn, members, watched)
     values = scale.values if isinstance(scale, MeasureScale) else scale
     try:

@@ -46,13 +46,17 @@ from rpscli.sweep.store import Store
 
 def all_keys(layout: StudyPoints) -> list[bytes]:
     """Digests of resolved case, record content, scale, perturbation and solver of all points."""
-    plan, keys, of_system = layout.plan, list[bytes](), layout.points_of_system
-    tails, before = [b""], None
+    plan = layout.plan
+    keys = list[bytes]()
+    of_system = layout.points_of_system
+    tails = [b""]
+    before = None
     for system, properties in enumerate(layout.properties):
         begun = hashlib.sha256(plan.solver.encode() + plan.analysis.encode() + properties.digest)
         own = properties.record, properties.scale, layout.period_of_measure(properties)
         if plan.analysis == "timehistory" and own != before:
-            tails, before = [], own
+            tails = []
+            before = own
             for number in range(system * of_system, (system + 1) * of_system):
                 point = layout[number]
                 assert point.record is not None, "points of histories have a record"
@@ -86,7 +90,9 @@ class Start:
 
 def start(layout: StudyPoints, store: Store, *, retry_failed: bool = False) -> Start:
     """Compare a study with its store."""
-    keys, known, before = all_keys(layout), store.outcomes(), store.facts()
+    keys = all_keys(layout)
+    known = store.outcomes()
+    before = store.facts()
     # The study and its case as they are written, with overrides.
     written = {**layout.study.document.content, "base": layout.plan.base}
     now = {
@@ -96,7 +102,8 @@ def start(layout: StudyPoints, store: Store, *, retry_failed: bool = False) -> S
     }
     wanted = set(keys)
     seen = {key for key, failed in known.items() if key in wanted and not (failed and retry_failed)}
-    kept, pending = sum(key in seen for key in keys), list[int]()
+    kept = sum(key in seen for key in keys)
+    pending = list[int]()
     for number, key in enumerate(keys):
         if key not in seen:
             seen.add(key)
@@ -107,7 +114,8 @@ def start(layout: StudyPoints, store: Store, *, retry_failed: bool = False) -> S
             f"{store.path} holds the results of another study ({name}); name another folder with"
             " -o, or discard them with --fresh"
         )
-    unused, notes = len(known.keys() - wanted), list[str]()
+    unused = len(known.keys() - wanted)
+    notes = list[str]()
     if before:
         if (solver := before["solver"]) != now["solver"]:
             text = f"the solver changed from {solver} to {now['solver']}: nothing of it applies"
@@ -167,7 +175,8 @@ def batches(layout: StudyPoints, pending: Sequence[int], jobs: int) -> Iterator[
     systems, within = np.divmod(numbers, layout.points_of_system)
     records = within // (layout.points_of_system // len(layout.records))
     order = np.lexsort((records, block[systems], -storeys[systems]))
-    numbers, systems = numbers[order], systems[order]
+    numbers = numbers[order]
+    systems = systems[order]
     changes = np.diff(storeys[systems]) | np.diff(block[systems])
     for part in np.split(numbers, np.flatnonzero(changes) + 1):
         for first in range(0, len(part), size):
@@ -216,7 +225,9 @@ class Engine:
     """
 
     def __init__(self, context: StudyContext, jobs: int, scheduler: str | None = None) -> None:
-        self.jobs, self._context, self._opened = jobs, context, ExitStack()
+        self.jobs = jobs
+        self._context = context
+        self._opened = ExitStack()
         self._executor: Executor = Threads()
         self._deadly: type[BaseException] | tuple[()] = ()
         # Batches that are under way, and on a cluster kept ready for each of its threads.
@@ -245,7 +256,8 @@ class Engine:
                 f"--scheduler {address}: no Dask scheduler with a worker answers there ({error})"
             ) from None
         self.jobs = max(1, sum(client.nthreads().values()))
-        self._ahead, self._deadly = 2 * self.jobs, dask.KilledWorker
+        self._ahead = 2 * self.jobs
+        self._deadly = dask.KilledWorker
         # A batch whose worker dies is computed by another.
         self._executor = client.get_executor(pure=False, retries=2)
         plan = self._context.plan
@@ -267,7 +279,8 @@ class Engine:
         self, batches: Iterable[list[Point]]
     ) -> Iterator[tuple[list[Point], PointResults]]:
         """The batches with their results, as they come; taken when there is room for them."""
-        source, under_way = iter(batches), dict[Future[PointResults], list[Point]]()
+        source = iter(batches)
+        under_way = dict[Future[PointResults], list[Point]]()
 
         def fill() -> None:
             for points in islice(source, max(self._ahead - len(under_way), 0)):
@@ -365,7 +378,8 @@ def run(
         wanted = takewhile(lambda _: not interrupted.is_set(), work)
         for points, results in engine.outcomes(wanted):
             store.add([begin.keys[point.number] for point in points], results)
-            computed, seconds = progress.computed + len(points), time.monotonic() - began
+            computed = progress.computed + len(points)
+            seconds = time.monotonic() - began
             progress = replace(
                 progress,
                 computed=computed,
@@ -409,8 +423,11 @@ def estimated_seconds(layout: StudyPoints, jobs: int) -> tuple[float, str]:
 
     Returns the time [s], and how it was found: what may take too long to be tried is estimated.
     """
-    context, count = layout.context, len(layout)
-    spent, points, tried = 0.0, 0, "trying some of the points"
+    context = layout.context
+    count = len(layout)
+    spent = 0.0
+    points = 0
+    tried = "trying some of the points"
     few = 1 if layout.plan.whole else WORTH_LANES  # by the kernel that computes the study
     numbers = sorted({count * (2 * i + 1) // (2 * PROBES) for i in range(PROBES)})
     for batch in batches(layout, numbers, jobs=1):
@@ -425,7 +442,8 @@ def estimated_seconds(layout: StudyPoints, jobs: int) -> tuple[float, str]:
             return alone * count / min(jobs, count), tried
         more = few * (1 + int(LONGEST_PROBING / _seconds(context, first)))
         affordable = batch[: min(more, within)]
-        spent, points = spent + _seconds(context, affordable), points + len(affordable)
+        spent = spent + _seconds(context, affordable)
+        points = points + len(affordable)
         if spent > LONGEST_PROBING:
             break
     return spent / points * count / min(jobs, count), tried

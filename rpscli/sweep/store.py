@@ -40,7 +40,9 @@ CREATE TABLE IF NOT EXISTS entries (
     digest BLOB NOT NULL      -- of the fields before
 )"""
 
-BATCH, FACTS, FIXED_BASE = "batch", "facts", "fixed base"
+BATCH = "batch"
+FACTS = "facts"
+FIXED_BASE = "fixed base"
 
 KEY = 32
 """Bytes of the key of a point."""
@@ -199,7 +201,8 @@ class Store:
     def batches(self) -> Iterator[tuple[list[bytes], PointResults]]:
         """Keys and results of all batches, the oldest first; columns are views of what was read."""
         for head, numbers in self._entries(BATCH):
-            count, columns = len(head["outcomes"]), {}
+            count = len(head["outcomes"])
+            columns = {}
             start = count * KEY
             for name, sizes in head["columns"].items():
                 column = np.frombuffer(numbers, FLOAT, count * math.prod(sizes), start)
@@ -221,7 +224,8 @@ class Store:
         """Results of points with some names; elements of lists by their index, as in `at_path`."""
         row_of: dict[bytes, int] = {}
         rows = np.array([row_of.setdefault(key, len(row_of)) for key in keys], np.int64)
-        wanted, stored = tuple(names), PointResults.alike(len(row_of), MISSING)
+        wanted = tuple(names)
+        stored = PointResults.alike(len(row_of), MISSING)
         for batch, results in self.batches():
             known = [(i, row_of[key]) for i, key in enumerate(batch) if key in row_of]
             if not known:

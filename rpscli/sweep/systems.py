@@ -75,7 +75,8 @@ def _values(unit: Array, given: RangeSection) -> Array:
 
     if given.low is not None and given.high is not None:
         return given.low + (given.high - given.low) * unit
-    mean, cov = given.mean, given.cov
+    mean = given.mean
+    cov = given.cov
     assert mean is not None and cov is not None, "a rule of the file"  # noqa: PT018
     deviation = cov * abs(mean)
     if given.distribution == "uniform":
@@ -155,7 +156,8 @@ def examined(
     properties: list[SystemProperties] = []
     requests: dict[RecordRequest, RecordRequest] = {}
     complaints: dict[str, None] = {}
-    faulty, pairs = 0, any(Source.parse(source).both for source in study.sources)
+    faulty = 0
+    pairs = any(Source.parse(source).both for source in study.sources)
     lengths = (*(len(axis.rows) for axis in study.axes), len(drawn))
     rows_of = itertools.product(*map(range, lengths))
     for number, rows in zip(watched(range(math.prod(lengths))), rows_of, strict=True):
@@ -206,7 +208,8 @@ def _properties(
     *,
     both: bool,
 ) -> SystemProperties:
-    structure, building = case.structure, case.structure.superstructure
+    structure = case.structure
+    building = case.structure.superstructure
     buildings = filter(None, (building, structure.superstructure_y))
     return SystemProperties(
         values=values,

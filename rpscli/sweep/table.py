@@ -152,9 +152,13 @@ class Table(Outcomes):
 
         By default it is the one that the study scales to, else PGV.
         """
-        layout, scaled, context = self.layout, self.layout.plan.measure, self.layout.context
+        layout = self.layout
+        scaled = self.layout.plan.measure
+        context = self.layout.context
         if measure is None and scaled is not None:
-            measure, period, damping = scaled.measure, scaled.period, scaled.damping
+            measure = scaled.measure
+            period = scaled.period
+            damping = scaled.damping
         measure = measure or "PGV"
         same = scaled and (scaled.measure, scaled.period, scaled.damping)
         values = np.full(len(self), np.nan)
@@ -162,7 +166,8 @@ class Table(Outcomes):
             assert point.record is not None, "points of histories have a record"
             if same == (measure, period, damping):
                 # Not by way of the factor, whose rounding would blur equal intensities.
-                unscaled, factor = point.scale, point.scale_change
+                unscaled = point.scale
+                factor = point.scale_change
             else:
                 own = period or layout.properties[point.system].period
                 what = measure, own if needs_period(measure) else None, damping
@@ -184,7 +189,8 @@ class Group(NamedTuple):
 
 def groups(layout: StudyPoints, keys: Sequence[str], within: Indices | None = None) -> list[Group]:
     """All points, or some, grouped by the values of keys, in the order in which these are named."""
-    numbers, axes = np.arange(len(layout)) if within is None else within, layout.study.axes
+    numbers = np.arange(len(layout)) if within is None else within
+    axes = layout.study.axes
     known: dict[str, tuple[int, Sequence[object]]] = {
         key: (number, [row[place] for row in axis.rows])
         for number, axis in enumerate(axes)
@@ -233,7 +239,9 @@ def points_csv(table: Table) -> Iterator[str]:
 
     Numbers have all their digits; what does not exist is empty.
     """
-    layout, scales, units = table.layout, table.factors, units_of_columns(table.layout)
+    layout = table.layout
+    scales = table.factors
+    units = units_of_columns(table.layout)
     known = [
         (layout.places[of], [_cell(value, units[name]) for value in values])
         for name, (of, values) in layout.identifying.items()
@@ -270,7 +278,8 @@ def _cell(value: object, unit: str) -> str:
 
 def point_columns(table: Table) -> Columns:
     """(points,) of each column of `points.csv` by name: SI numbers, NaN for none, else objects."""
-    layout, units = table.layout, units_of_columns(table.layout)
+    layout = table.layout
+    units = units_of_columns(table.layout)
     columns = {
         name: array([in_si(value, units[name]) for value in values])[layout.places[of]]
         for name, (of, values) in layout.identifying.items()
@@ -302,7 +311,8 @@ def fixed_base_references(layout: StudyPoints, store: Store, jobs: int) -> Fixed
     The response is linear: one run at scale 1 serves every scale, and systems that differ in their
     bearings alone share it.
     """
-    known, records = store.fixed_base(), layout.context.records
+    known = store.fixed_base()
+    records = layout.context.records
     found: dict[tuple[int, RecordRequest], bytes] = {}
     runs: dict[bytes, tuple[PodiumStructure, MotionComponents]] = {}
     structures: dict[bytes, PodiumStructure] = {}  # buildings of many systems are the same

@@ -73,7 +73,8 @@ def run_of(
     With `pairs` all motions have two horizontal components, and systems are those of pairs.
     """
     first = systems.view(np.ndarray)
-    n, devices = int(first["n"][0]), int(first["devices"].max())
+    n = int(first["n"][0])
+    devices = int(first["devices"].max())
     starts = [0, *accumulate(motion.samples.size for motion in motions)]
     placed = []
     for motion, start in zip(motions, starts, strict=False):
@@ -83,7 +84,8 @@ def run_of(
         placed.append((start, second, above, motion.npts, motion.dt))
     given = np.zeros(len(requests), record_type(REQUEST))
     for row, (system, number, scale) in zip(given, requests, strict=True):
-        row["system"], row["scale"] = system, scale
+        row["system"] = system
+        row["scale"] = scale
         place = "record", "record_y", "vertical", "npts", "dt"
         for name, value in zip(place, placed[number], strict=True):
             row[name] = value
@@ -207,7 +209,8 @@ def sampled_history(
             break
         events = seen
         del run  # before there is room for another
-    kept, output = int(history.intervals) * finer + 1, run.output
+    kept = int(history.intervals) * finer + 1
+    output = run.output
     # Shortened in place, which nothing else looks at: a copy would take as much again.
     for array in (output.floors, output.devices):
         array.resize((kept, *array.shape[1:]), refcheck=False)

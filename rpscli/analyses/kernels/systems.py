@@ -71,14 +71,17 @@ def directions(structure: PodiumStructure, *, pairs: bool) -> list[PodiumStructu
 @lru_cache(STACKS_KEPT)
 def _stacked(systems: tuple[tuple[PodiumStructure, TimeHistorySettings], ...], axes: int) -> Record:
     stacked = records(SYSTEM, count=len(systems))
-    n, rows = systems[0][0].storeys, stacked.view(_PLAIN, np.ndarray)
+    n = systems[0][0].storeys
+    rows = stacked.view(_PLAIN, np.ndarray)
     places = [_PLAIN.fields[name][1] for name in _SQUARE]  # type: ignore[index]
-    before, behind = min(places), max(places) + _PLAIN[_SQUARE[0]].itemsize
+    before = min(places)
+    behind = max(places) + _PLAIN[_SQUARE[0]].itemsize
     into = rows.view(np.uint8).reshape(len(systems), -1)
     for row, (structure, settings) in enumerate(systems):
         plain = _system(structure, settings).view(_PLAIN, np.ndarray)
         numbers = plain.view(np.uint8)
-        into[row, :before], into[row, behind:] = numbers[:before], numbers[behind:]
+        into[row, :before] = numbers[:before]
+        into[row, behind:] = numbers[behind:]
         for name in _SQUARE:
             rows[name][row, :n, :n] = plain[name][0, :n, :n]
     rows["axes"] = axes
@@ -100,11 +103,17 @@ def _system(structure: PodiumStructure, settings: TimeHistorySettings) -> Record
 def fill_podium(record: Record, structure: PodiumStructure) -> None:
     """The rocking storey, its devices with the constants of their laws, and what it stands on."""
     b = structure.bearing
-    record["n"], record["axes"] = structure.storeys, 1
-    record["R"], record["alpha"], record["beta"] = b.semi_diagonal, b.alpha, b.beta
+    record["n"] = structure.storeys
+    record["axes"] = 1
+    record["R"] = b.semi_diagonal
+    record["alpha"] = b.alpha
+    record["beta"] = b.beta
     record["theta_cr"] = b.critical_rotation
-    record["rolling"], record["rocking"] = b.rolling, b.rocking
-    record["Io"], record["gamma"], record["eta"] = b.inertia_ratio, structure.gamma, structure.eta
+    record["rolling"] = b.rolling
+    record["rocking"] = b.rocking
+    record["Io"] = b.inertia_ratio
+    record["gamma"] = structure.gamma
+    record["eta"] = structure.eta
     record["columns_mass"] = structure.columns_mass
     record["cap_beam_mass"] = structure.cap_beam_mass
     record["floors_mass"] = structure.superstructure_mass
@@ -120,7 +129,8 @@ def fill_podium(record: Record, structure: PodiumStructure) -> None:
         numbers = impact.factor * (1.0 - impact.loss), impact.factor * impact.loss
         record["impact_law"] = address_of(own.restitution, own.taken()[own.restitution])
         record["impact_constants"][: 2 + len(impact.constants)] = *numbers, *impact.constants
-    record["columns"], record["devices"] = structure.columns, len(structure.devices)
+    record["columns"] = structure.columns
+    record["devices"] = len(structure.devices)
     for i, device in enumerate(structure.devices):
         record["device_kind"][i] = DEVICE_KINDS[type(device)]
         constants = device.constants(structure)
@@ -128,15 +138,21 @@ def fill_podium(record: Record, structure: PodiumStructure) -> None:
         if isinstance(device, OwnDamper):
             from rpscli.physics.own_laws import address_of
 
-            law, taken = device.law, device.law.taken()
+            law = device.law
+            taken = device.law.taken()
             watched = 0 if law.watched is None else address_of(law.watched, taken[law.watched])
             record["own_law"][i, 0] = address_of(law.force, taken[law.force])
             record["own_law"][i, 1:] = watched, law.linear is None
     if (bed := structure.bed) is not None:
-        record["compliant"], record["bed_uplift"] = 1, bed.uplift_rotation
-        record["bed_full"], record["bed_height"] = bed.full_rotation, bed.height
-        record["bed_k"], record["bed_c"] = bed.spring, bed.damper
-        record["sink"], record["root"], record["lifts"] = bed.sink, bed.root, bed.kept
+        record["compliant"] = 1
+        record["bed_uplift"] = bed.uplift_rotation
+        record["bed_full"] = bed.full_rotation
+        record["bed_height"] = bed.height
+        record["bed_k"] = bed.spring
+        record["bed_c"] = bed.damper
+        record["sink"] = bed.sink
+        record["root"] = bed.root
+        record["lifts"] = bed.kept
         for phase in ("rolling", "rocking"):  # u_b goes on from there
             record[phase][3] += bed.shift
 
@@ -145,7 +161,8 @@ def fill_settings(
     record: Record, structure: PodiumStructure, settings: TimeHistorySettings
 ) -> None:
     """Limits and steps; refuse a start beyond the overturning limit, or a model that ends there."""
-    critical, end = structure.critical_rotation, structure.bearing.largest_rotation
+    critical = structure.critical_rotation
+    end = structure.bearing.largest_rotation
     limit = settings.overturning_limit * critical
     if limit > end:
         raise ValueError(
@@ -178,19 +195,29 @@ def fill_building(record: Record, building: Superstructure) -> None:
     """The modes of the fixed base, mass-normalised, with the storey shears of each."""
     # Any weights would do for `physics.floors`; these let the fewest steps pass the bound.
     n = record["n"] = building.storeys
-    omega, xi, shapes = building.frequencies, building.damping_ratios, building.shapes.T
-    omega2, shaken = omega * omega, np.abs(building.participation)
+    omega = building.frequencies
+    xi = building.damping_ratios
+    shapes = building.shapes.T
+    omega2 = omega * omega
+    shaken = np.abs(building.participation)
     shaken = np.maximum(shaken, LEAST_SHAKEN * shaken.max())
     shears = np.diff(shapes, prepend=0.0) * building.stiffnesses
-    record["omega"][:n], record["Gamma"][:n] = omega, building.participation
-    record["omega2"][:n], record["two_xi_omega"][:n] = omega2, 2.0 * xi * omega
-    record["phi"][:n, :n], record["storey_shear_of"][:n, :n] = shapes, shears
-    of_shears, of_accelerations = omega**3 * shaken**-0.3, omega**-0.6 * shaken**-0.5
-    record["shear_weight"][:n], record["acceleration_weight"][:n] = of_shears, of_accelerations
-    record["mass"][:n], record["stiffness"][:n] = building.masses, building.stiffnesses
+    record["omega"][:n] = omega
+    record["Gamma"][:n] = building.participation
+    record["omega2"][:n] = omega2
+    record["two_xi_omega"][:n] = 2.0 * xi * omega
+    record["phi"][:n, :n] = shapes
+    record["storey_shear_of"][:n, :n] = shears
+    of_shears = omega**3 * shaken**-0.3
+    of_accelerations = omega**-0.6 * shaken**-0.5
+    record["shear_weight"][:n] = of_shears
+    record["acceleration_weight"][:n] = of_accelerations
+    record["mass"][:n] = building.masses
+    record["stiffness"][:n] = building.stiffnesses
     record["strength"][:n] = math.inf
     if building.strengths is not None:
-        record["yields"], record["strength"][:n] = 1, building.strengths
+        record["yields"] = 1
+        record["strength"][:n] = building.strengths
         record["hardening"] = building.hardening
     record["bend_ratio"] = np.max(omega2 * omega2 * of_accelerations / of_shears)
     record["shear_bound_of"][:n] = np.sum(shears.T**2 / of_shears, axis=1) ** -0.5
@@ -237,7 +264,9 @@ def step_error(settings: TimeHistorySettings, share: float = 1.0) -> float:
 LEAST_ERROR = 1e-12
 """Below it the difference of both rules is rounding: their weights are up to 176."""
 
-STEP_SECONDS, MODE_SECONDS, STRENGTH_SECONDS = 1.5e-6, 2e-7, 2e-8
+STEP_SECONDS = 1.5e-6
+MODE_SECONDS = 2e-7
+STRENGTH_SECONDS = 2e-8
 """About the time of a step of one history, what each mode adds, and each of a storey that yields.
 """
 
@@ -281,7 +310,8 @@ def powers(structure: PodiumStructure) -> list[tuple[float, float]]:
 
 def linear_speed(structure: PodiumStructure, accuracy: float) -> float:
     """Up to this velocity of the cap beam a power of it is taken as linear [m/s]."""
-    R, g = structure.bearing.semi_diagonal, structure.gravity
+    R = structure.bearing.semi_diagonal
+    g = structure.gravity
     least, most = (share * math.sqrt(g * R) for share in LINEAR_SPEEDS)
     limit = FASTEST_POWER * math.sqrt(g / R) * least_base_mass(structure)
     speeds = [(c / limit) ** (1.0 / (1.0 - exponent)) for c, exponent in powers(structure)]
@@ -334,7 +364,8 @@ def most_seconds(
     structure: PodiumStructure, settings: TimeHistorySettings, motion: MotionComponents
 ) -> float:
     """About the computing time of these [s]."""
-    axes, above = len(directions(structure, pairs=motion.y is not None)), structure.superstructure
+    axes = len(directions(structure, pairs=motion.y is not None))
+    above = structure.superstructure
     each = STEP_SECONDS + MODE_SECONDS * axes * structure.storeys
     if above is not None and above.strengths is not None:
         each += STRENGTH_SECONDS * axes * structure.storeys**2
@@ -346,7 +377,8 @@ def bedded_rate(structure: PodiumStructure) -> float:
     bed = structure.bed
     if bed is None:
         return 0.0
-    stiffness, decay = bed.stiffness, bed.damper / bed.inertia + fastest_decay(structure)
+    stiffness = bed.stiffness
+    decay = bed.damper / bed.inertia + fastest_decay(structure)
     highest = 0.0
     if (building := structure.superstructure) is not None:
         stiffness += float(building.stiffnesses[0])

@@ -22,7 +22,8 @@ KEYS_SHOWN = 12
 
 def checked(model: type[Model], document: Document) -> Model:
     """The sections of a document, each valid in itself; raises CaseError with all faults."""
-    read, errors = None, list[ErrorDetails]()
+    read = None
+    errors = list[ErrorDetails]()
     try:
         read = model.model_validate(document.content)
     except ValidationError as error:
@@ -42,14 +43,16 @@ def _told(
     # Among the values of a varied key null takes the key out.
     empty = [p for p in _nulls(inside, ()) if p[0] != "vary" or [*map(type, p[3:])] != [int]]
     announced = {fault.path for fault in document.faults}.intersection(empty)
-    unknown, missing = list[Path](), list[Path]()
+    unknown = list[Path]()
+    missing = list[Path]()
     yield from document.faults
     for path in (path for path in empty if path not in announced):
         if annotation_at(model, path) is not None:  # else it is unknown
             text = f"{dotted(path)} has no value; write one, or remove the key"
             yield Fault(path, text, at_key=isinstance(path[-1], str))
     for error in errors:
-        path, kind = _path(error, document), error["type"]
+        path = _path(error, document)
+        kind = error["type"]
         if kind == "extra_forbidden":
             unknown += [path] * (path not in announced)
         elif any(path == inner[: len(path)] for inner in empty):

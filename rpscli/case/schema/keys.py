@@ -127,7 +127,8 @@ def unknown_key(
 ) -> tuple[Fault, Path | None]:
     """The fault of an unknown key, and the known key it was taken for, if one is looked for."""
     *above, key = path
-    parent, text = tuple(above), f"{dotted(path)} is not a key of the format"
+    parent = tuple(above)
+    text = f"{dotted(path)} is not a key of the format"
     named = dotted(tuple(part for part in path if isinstance(part, str)))
     meant: Path | None = None
     if not suggest:
@@ -137,7 +138,8 @@ def unknown_key(
         meant = path_of(plain)
         remedy = f"; did you mean {plain}? elements of lists are counted from 0"
     elif now := REMOVED.get(named):
-        text, remedy = f"{dotted(path)} is gone", f": {now}"
+        text = f"{dotted(path)} is gone"
+        remedy = f": {now}"
     elif (meant := _meant(model, parent, str(key))) is None:
         section = section_at(model, parent)
         fields = [*fields_of(section)] if section else []
@@ -280,7 +282,8 @@ def json_schema_of(model: type[BaseModel]) -> dict[str, Any]:
 
 def study_json_schema(model: type[BaseModel]) -> dict[str, Any]:
     """JSON schema of a study or design file; its base may lack what keys bring."""
-    study, base = json_schema_of(model), json_schema_of(CaseFile)
+    study = json_schema_of(model)
+    base = json_schema_of(CaseFile)
     definitions = {**base.pop("$defs"), **study.pop("$defs")}
     del base["required"], base["$schema"]
     described = study["properties"]["base"]["description"]

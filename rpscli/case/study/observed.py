@@ -18,7 +18,8 @@ from rpscli.csv_text import csv_rows
 from rpscli.errors import CaseError, hint, listed
 from rpscli.units import KINDS, in_si, si_value
 
-RECORD, OVERTURNED = "record", "overturned"
+RECORD = "record"
+OVERTURNED = "overturned"
 PATH: Path = ("observed",)
 
 _UNITS = {OVERTURNED: "-"} | {quantity.name: quantity.unit for quantity in LIMITED}
@@ -106,7 +107,8 @@ def read_observed(
         columns.append(_Column(title, "" if unit in ("-", "1") else unit))
     known = [RECORD, "scale", *(key for axis in axes for key in axis.keys)]
     document.refuse(_fault(name, first, text) for text in _title_faults(columns, known))
-    faults, seen = [], dict[tuple[object, ...], Observation]()
+    faults = []
+    seen = dict[tuple[object, ...], Observation]()
     for line, row in rest:
         try:
             new = _observation(line, columns, row)
@@ -156,7 +158,9 @@ def _observation(line: int, columns: Sequence[_Column], row: Sequence[str]) -> O
     """A line; raises ValueError with what is wrong with it."""
     if len(row) != len(columns):
         raise ValueError(f"has {len(row)} cells and {len(columns)} titles; make them equal")
-    record, system, values = "", [], []
+    record = ""
+    system = []
+    values = []
     for column, cell in zip(columns, map(str.strip, row), strict=True):
         if column.name == RECORD:
             record = cell

@@ -217,7 +217,8 @@ class RangeSection(Section):
 
     @model_validator(mode="after")
     def _complete(self) -> Self:
-        ends, moments = (self.low, self.high), (self.mean, self.cov)
+        ends = (self.low, self.high)
+        moments = (self.mean, self.cov)
         uniform = None not in ends and moments == (None, None) and self.distribution == "uniform"
         if not uniform and (None in moments or ends != (None, None)):
             refuse("must have low and high alone (uniform), or distribution, mean and cov")

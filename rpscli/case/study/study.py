@@ -240,7 +240,8 @@ def _with_linked(
 ) -> tuple[Axis, ...]:
     """The axes with keys that are linear sums of others of theirs."""
     for key, terms in linked.items():
-        path, names = ("linked", key), [name for name in terms if name != PLUS]
+        path = ("linked", key)
+        names = [name for name in terms if name != PLUS]
         axis = next((each for each in axes if names and {*names} <= {*each.keys}), None)
         if axis is None:
             text = f"linked.{key} needs {listed(names or ['a key'], 'and')}, which no axis of vary"
@@ -286,7 +287,8 @@ def sources_of(
 def _product(item: object, path: Path) -> list[str]:
     """Sources of a mapping: every option may have several values, the first varies slowest."""
     pattern = RecordPattern.model_validate(item)
-    source, extra = pattern.source, pattern.model_extra or {}
+    source = pattern.source
+    extra = pattern.model_extra or {}
     options = [[f"{key}={_text(value)}" for value in values] for key, values in extra.items()]
     if (count := math.prod(map(len, options))) > MOST_SOURCES:
         raise ValueError(
@@ -397,9 +399,11 @@ def _size_faults(file: StudyFile, axes: Sequence[Axis], sources: Sequence[str]) 
     parts: dict[Path, int] = {("vary", i): len(axis.rows) for i, axis in enumerate(axes)}
     if file.sample is not None:
         parts["sample", "size"] = file.sample.size
-    most, name = MOST_SYSTEMS, "systems"
+    most = MOST_SYSTEMS
+    name = "systems"
     if math.prod(parts.values()) <= most:
-        most, name = MOST_POINTS, "points"
+        most = MOST_POINTS
+        name = "points"
         parts["records",] = max(len(sources), 1)
         if file.scale is not None:
             values = file.scale.values if isinstance(file.scale, MeasureScale) else file.scale

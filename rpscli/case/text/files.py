@@ -80,7 +80,8 @@ def decoded(data: bytes, name: str) -> str:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         before = data[: error.start]
-        line, column = before.count(b"\n") + 1, len(before) - before.rfind(b"\n")
+        line = before.count(b"\n") + 1
+        column = len(before) - before.rfind(b"\n")
         raise CaseError(
             f"{name}:{line}:{column}: the byte 0x{data[error.start]:02x} is not UTF-8; save the"
             " file as UTF-8 text"

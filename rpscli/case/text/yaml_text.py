@@ -36,14 +36,16 @@ def syntax_error(error: yaml.YAMLError, text: str, name: str) -> str:
     """One line: place, what is wrong, what to do."""
     if isinstance(error, yaml.reader.ReaderError):
         before = text[: error.position]
-        line, column = before.count("\n") + 1, len(before) - before.rfind("\n")
+        line = before.count("\n") + 1
+        column = len(before) - before.rfind("\n")
         code = error.character if isinstance(error.character, int) else ord(error.character)
         return (
             f"{name}:{line}:{column}: the character U+{code:04X} is not allowed in YAML; delete it"
             " and save the file as UTF-8 text"
         )
     assert isinstance(error, yaml.MarkedYAMLError), "PyYAML has no third kind of error"
-    mark, start = error.problem_mark or error.context_mark, error.context_mark
+    mark = error.problem_mark or error.context_mark
+    start = error.context_mark
     place = f"{name}:{mark.line + 1}:{mark.column + 1}" if mark else name
     problem = error.problem or "cannot be read"
     remedy = next((remedy for part, remedy in REMEDIES.items() if part in problem), None)
@@ -168,7 +170,8 @@ class _Reader:
             raise CaseError(f"{place}: the anchor holds an alias of itself; write the value out")
         self.open_nodes.append(node)
         value: Any = None
-        tag, named = node.tag.removeprefix(TAG), f"{dotted(path)}: " if path else ""
+        tag = node.tag.removeprefix(TAG)
+        named = f"{dotted(path)}: " if path else ""
         if isinstance(node, MappingNode) and tag == "map":
             value = {key: self.value(item, (*path, key)) for key, item in self.pairs(node, path)}
         elif isinstance(node, SequenceNode) and tag == "seq":

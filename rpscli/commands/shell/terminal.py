@@ -37,7 +37,9 @@ if TYPE_CHECKING:
 WARNINGS_SHOWN = 5
 PLAIN_WIDTH = 100
 """Columns where the output is no terminal and COLUMNS is not set."""
-LONGEST_WORD, LONGEST_HEAD, MOST_LINES = 30, 14, 9
+LONGEST_WORD = 30
+LONGEST_HEAD = 14
+MOST_LINES = 9
 """Letters of a word that is not broken, in cells and in heads; lines of heads."""
 ALL_FOLD = 0
 """Lines of heads where numbers are broken as well, since one column beside the keys is too wide."""
@@ -92,7 +94,8 @@ class Terminal:
 def _fitting(table: Table, console: Console) -> Iterator[RichTable]:
     """The parts of a table that is wider than the terminal: its keys begin each."""
     columns = list(range(len(table.columns)))
-    keys, others = columns[: table.keys], columns[table.keys :]
+    keys = columns[: table.keys]
+    others = columns[table.keys :]
     while others:
         for count in range(len(others), 0, -1):
             shown = [*keys, *others[:count]]
@@ -108,12 +111,14 @@ def _widths(table: Table, columns: Sequence[int], room: int, *, fold: bool) -> l
 
     Numbers never do, but where one column beside the keys is too wide.
     """
-    heads, rows = [visible(table.heads[i]) for i in columns], table.rows
+    heads = [visible(table.heads[i]) for i in columns]
+    rows = table.rows
     cells = [[visible(row[i]) for row in rows] for i in columns]
     wide = [max(1, *map(len, [head, *own])) for head, own in zip(heads, cells, strict=True)]
     in_head = [min(max(map(len, head.split()), default=1), LONGEST_HEAD) for head in heads]
     for lines in (1, 2, 3, MOST_LINES, *[ALL_FOLD] * fold, LAST):
-        widths, least = [], []
+        widths = []
+        least = []
         for index, head, own, most, word in zip(columns, heads, cells, wide, in_head, strict=True):
             if index < table.words:
                 longest = max((len(part) for cell in own for part in cell.split()), default=0)
@@ -226,13 +231,16 @@ class Ending(NamedTuple):
     @classmethod
     def of(cls, error: BaseException) -> Ending:
         """All faults of the command line are one kind; words of hundreds of letters are cut."""
-        name, code = type(error).__name__, getattr(error, "exit_code", INTERNAL)
+        name = type(error).__name__
+        code = getattr(error, "exit_code", INTERNAL)
         if isinstance(error, click.ClickException):
-            name, text = "UsageError", error.format_message()
+            name = "UsageError"
+            text = error.format_message()
         elif isinstance(error, RpsError):
             text = str(error)
         elif isinstance(error, KeyboardInterrupt | click.Abort):
-            name, code = "Interrupted", INTERRUPTED
+            name = "Interrupted"
+            code = INTERRUPTED
             text = "interrupted; no file is half written; the same command may be given again"
         elif isinstance(error, OSError):
             place = f"{str(error.filename)[:200]}: " if error.filename else ""
@@ -292,7 +300,8 @@ MANY = 5000
 LONG = 10.0
 """Time that is worth a word [s]."""
 USUALLY = "a few seconds"
-FIRST_LINE, GROWTH = 2.0, 1.6
+FIRST_LINE = 2.0
+GROWTH = 1.6
 """Seconds until the first plain line; the next ones come after ever longer times."""
 
 _bars: list[Any] = []

@@ -32,7 +32,8 @@ STOP_SPEED = 5e-3
 """Of that at which sliding begins: what slides more slowly to any side is stopped, or turned to
 where it is pushed. A step may err by a fiftieth of it, however slow the motion is."""
 
-STOP_SPEED_OF_PASSES, SLOW_RATE = 1e-9, 1e-3
+STOP_SPEED_OF_PASSES = 1e-9
+SLOW_RATE = 1e-3
 """Of sqrt(g R), and of sqrt(g/R): the same of rigid ends. What passes upright asks for velocities
 in proportion, except where it tilts more slowly than this."""
 
@@ -46,11 +47,23 @@ def has_friction(s: Record, l: int) -> bool:
 @compiled
 def load_devices(s: Record, l: int, system: Record) -> None:
     """Begin a history with its devices as they are at rest and upright."""
-    s.devices[l], s.columns[l], s.tendons[l] = system.devices, system.columns, 0
-    s.linear_speed[l], s.direction[l] = system.linear_speed, 1.0
-    s.viscous[l], s.friction_force[l], s.friction_moment[l], s.kinks[l] = 0.0, 0.0, 0.0, 0.0
-    s.turning[l], s.turning_across[l], s.tied[l], s.pull[l] = 0.0, 0.0, 0.0, 0.0
-    s.branched[l], s.drag_branched[l], s.stop_force[l], s.tendon_moment[l] = 0.0, 0.0, 0.0, 0.0
+    s.devices[l] = system.devices
+    s.columns[l] = system.columns
+    s.tendons[l] = 0
+    s.linear_speed[l] = system.linear_speed
+    s.direction[l] = 1.0
+    s.viscous[l] = 0.0
+    s.friction_force[l] = 0.0
+    s.friction_moment[l] = 0.0
+    s.kinks[l] = 0.0
+    s.turning[l] = 0.0
+    s.turning_across[l] = 0.0
+    s.tied[l] = 0.0
+    s.pull[l] = 0.0
+    s.branched[l] = 0.0
+    s.drag_branched[l] = 0.0
+    s.stop_force[l] = 0.0
+    s.tendon_moment[l] = 0.0
     s.least_height[l] = math.inf
     s.start_speed[l] = system.start_speed
     for axis in range(ways_of(s)):
@@ -72,7 +85,8 @@ def paces(s: Record, l: int, at: Place, tilt: Polar) -> tuple[float, float, floa
     These are of dampers [m/s] and of rolling resistance [rad/s]; in one plane they have the sign of
     `direction`.
     """
-    out, aside = s.diameter[l] * at.C * tilt.p, s.diameter[l] * at.h * tilt.q
+    out = s.diameter[l] * at.C * tilt.p
+    aside = s.diameter[l] * at.h * tilt.q
     if ways_of(s) == 1:
         return out, 0.0, abs(out), s.direction[l] * out, s.direction[l] * tilt.p
     speed = length(out, aside)
@@ -83,15 +97,20 @@ def paces(s: Record, l: int, at: Place, tilt: Polar) -> tuple[float, float, floa
 def push_by_devices(s: Record, l: int, at: Place, tilt: Polar) -> None:
     """Write what the devices of a lane do at a place and rate: `drive` and `turning`."""
     u_out, u_aside, speed, _, swing = paces(s, l, at, tilt)
-    drag, resisting, moves = s.drag_branched[l] + s.viscous[l], s.stop_force[l], s.moves[l] > 0.0
-    rolls, aside_rolls = s.direction[l] * s.friction_moment[l], 0.0
+    drag = s.drag_branched[l] + s.viscous[l]
+    resisting = s.stop_force[l]
+    moves = s.moves[l] > 0.0
+    rolls = s.direction[l] * s.friction_moment[l]
+    aside_rolls = 0.0
     if ways_of(s) == 1:
         resisting += s.direction[l] * s.friction_force[l]
     else:
         drag += s.friction_force[l] / max(speed, 1e-150)
         per_rate = s.friction_moment[l] / max(swing, 1e-300)
-        rolls, aside_rolls = per_rate * tilt.p, per_rate * tilt.q
-    moment, diameter = s.tendon_moment[l] + rolls, s.diameter[l]
+        rolls = per_rate * tilt.p
+        aside_rolls = per_rate * tilt.q
+    moment = s.tendon_moment[l] + rolls
+    diameter = s.diameter[l]
     s.turning[l] = -pushed_by(s, l, moment) / diameter if moves else 0.0
     s.turning_across[l] = -pushed_by(s, l, aside_rolls) / diameter if moves else 0.0
     push_x, push_y = turned(tilt, -(drag * u_out + resisting), -drag * u_aside)
@@ -104,14 +123,19 @@ def push_by_devices(s: Record, l: int, at: Place, tilt: Polar) -> None:
 def act_branched(s: Record, l: int, at: Worked) -> None:
     """Write the sums of what has branches or powers, and of tendons `tied` and `pull`."""
     speed = math.sqrt(at.along * at.along + at.across * at.across)
-    drag, resisting, tense = 0.0, 0.0, 0.0
+    drag = 0.0
+    resisting = 0.0
+    tense = 0.0
     for i in range(s.devices[l]):
         if is_apart(s, l, i):
             drag += drag_of(s, l, i, at.path, speed)
             resisting += resistance_of(s, l, i, at.path, at.along)
             tense += s.columns[l] * tension_of(s, l, i, at.e)
-    s.drag_branched[l], s.stop_force[l], s.tendon_moment[l] = drag, resisting, tense * at.lever
-    s.tied[l], s.pull[l] = -tense * at.sin_psi, tense * at.cos_psi
+    s.drag_branched[l] = drag
+    s.stop_force[l] = resisting
+    s.tendon_moment[l] = tense * at.lever
+    s.tied[l] = -tense * at.sin_psi
+    s.pull[l] = tense * at.cos_psi
 
 
 @compiled
@@ -138,7 +162,9 @@ def begin_work(s: Record, weight: float) -> None:
     """Begin the means of the step with what is worked at its start."""
     for l in range(lanes_of(s)):
         now = polar(s, l, tilt_of(s, l), rate_of(s, l))
-        s.mean_square[l], s.mean_pace[l], s.mean_swing[l] = 0.0, 0.0, 0.0
+        s.mean_square[l] = 0.0
+        s.mean_pace[l] = 0.0
+        s.mean_swing[l] = 0.0
         add_work(s, l, place_with(s, l, now.x, 0.0, 0.0), now, weight)
     for l in range(lanes_of(s)):
         if s.branched[l] > 0.0:

@@ -41,14 +41,16 @@ def slowing(s: Record, l: int, end: int) -> tuple[float, float]:
     if ways_of(s) == 1:
         p, a = (s.new_v[l], s.new_a[l]) if end > 0 else (s.v[l], s.a[l])
         return s.direction[l] * p, s.direction[l] * a
-    speed, least = (s.new_speed[l] if end > 0 else s.speed[l]), s.stop_speed[l]
+    speed = s.new_speed[l] if end > 0 else s.speed[l]
+    least = s.stop_speed[l]
     return speed * speed - least * least, s.new_square_rate[l] if end > 0 else s.square_rate[l]
 
 
 @inlined
 def kink_limit(s: Record, l: int) -> float:
     """Longest step over which |u_b'| changes by a part of itself only."""
-    speed, least = s.speed[l], s.linear_speed[l]
+    speed = s.speed[l]
+    least = s.linear_speed[l]
     most = 2.0 * least if speed <= least else KINK * speed
     return most / max(s.quicker[l], 1e-300)  # type: ignore[no-any-return]
 
@@ -83,9 +85,11 @@ def change_law(s: Record, l: int, log: Record, which: int) -> bool:
     """What a watched value that fell below zero stands for; True if friction now holds the tilt."""
     if which == 0:  # what goes round goes on
         _, n, t, _, q = polar(s, l, tilt_of(s, l), rate_of(s, l))
-        s.v[l], s.tilt_rate[0, l] = 0.0, 0.0
+        s.v[l] = 0.0
+        s.tilt_rate[0, l] = 0.0
         if ways_of(s) == 2:
-            s.tilt_rate[0, l], s.tilt_rate[1, l] = -t * q, n * q
+            s.tilt_rate[0, l] = -t * q
+            s.tilt_rate[1, l] = n * q
         reset_yielded_tendons(s, l)
         return True
     second = which > SLOTS

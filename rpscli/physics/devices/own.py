@@ -22,7 +22,8 @@ def load(s: Record, l: int, i: int, system: Record) -> None:
 def asked(s: Record, l: int, i: int, which: int, path: float, speed: float) -> float:
     """Force (0) or watched value (1) of a law of another package."""
     of = s.law
-    u, v = max(path, 0.0), max(speed, 0.0)  # a step may try what is beyond upright
+    u = max(path, 0.0)  # a step may try what is beyond upright
+    v = max(speed, 0.0)
     given = (u, v, of[i, 0, l], of[i, 1, l], of[i, 2, l], of[i, 3, l], 0.0, 0.0, 0.0)
     return own_law(s.own_law[i, which, l], given)
 
@@ -57,8 +58,10 @@ def watched(
         return False, 0.0, 0.0
     sign = 1.0 if s.branch[i, l] == WORKING else -1.0
     x, p = (s.new_x[l], s.new_v[l]) if end > 0 else (s.x[l], s.v[l])
-    path, out = s.diameter[l] * path_at(s, l, x), s.diameter[l] * place_of(s, l, x).C * p
-    speed, near = (s.new_speed[l] if end > 0 else s.speed[l]), NEARBY * s.dt[l]
+    path = s.diameter[l] * path_at(s, l, x)
+    out = s.diameter[l] * place_of(s, l, x).C * p
+    speed = s.new_speed[l] if end > 0 else s.speed[l]
+    near = NEARBY * s.dt[l]
     rate = s.new_square_rate[l] if end > 0 else s.square_rate[l]
     faster = 0.5 * rate / max(speed, 1e-150)
     later = asked(s, l, i, 1, path + near * out, speed + near * faster)

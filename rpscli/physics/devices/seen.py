@@ -14,11 +14,9 @@ from rpscli.physics.state import FRICTION, FULL_CONTACT, ROLLING_RESISTANCE, TEN
 def raise_devices(s: Record, l: int, start: Worked, middle: Worked, end: Worked) -> None:
     """Raise the largest forces and rates of devices by those of three instants, and between."""
     for i in range(s.devices[l]):
-        one, two, three = (
-            device_at(s, l, i, start),
-            device_at(s, l, i, middle),
-            device_at(s, l, i, end),
-        )
+        one = device_at(s, l, i, start)
+        two = device_at(s, l, i, middle)
+        three = device_at(s, l, i, end)
         force = peak(one[0], two[0], three[0])
         s.device_force[i, l] = max(s.device_force[i, l], force)
         s.device_velocity[i, l] = max(s.device_velocity[i, l], peak(one[1], two[1], three[1]))
@@ -41,6 +39,9 @@ def store_devices(s: Record, l: int, at: Worked, share: float, sample: Floats) -
                 force *= share * s.direction[l]
                 if s.phase[l] == FULL_CONTACT and kind == ROLLING_RESISTANCE:
                     force = 0.0
-            force, displacement = -side * force, side * displacement
-        sample[0, i], sample[1, i] = force + 0.0, displacement + 0.0
-        sample[2, i], sample[3, i] = s.device_energy[i, l], stored_in(s, l, i, at)
+            force = -side * force
+            displacement = side * displacement
+        sample[0, i] = force + 0.0
+        sample[1, i] = displacement + 0.0
+        sample[2, i] = s.device_energy[i, l]
+        sample[3, i] = stored_in(s, l, i, at)

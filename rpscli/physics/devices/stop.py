@@ -68,13 +68,17 @@ def watched(
     if second and branch != BEYOND:
         return False, 0.0, 0.0
     x, p, a = (s.new_x[l], s.new_v[l], s.new_a[l]) if end > 0 else (s.x[l], s.v[l], s.a[l])
-    at, diameter = place_of(s, l, x), s.diameter[l]
-    stiffness, damping = s.law[i, STOP_STIFFNESS, l], s.law[i, STOP_DAMPING, l]
+    at = place_of(s, l, x)
+    diameter = s.diameter[l]
+    stiffness = s.law[i, STOP_STIFFNESS, l]
+    damping = s.law[i, STOP_DAMPING, l]
     if branch == IDLE or second:
-        stiffness, damping = 1.0, 0.0
+        stiffness = 1.0
+        damping = 0.0
     sign = 1.0 if branch == WORKING or second else -1.0
     beyond = diameter * path_at(s, l, x) - s.law[i, STOP_GAP, l]
-    along, faster = diameter * at.C * p, diameter * (at.C * a + at.B * p * p)
+    along = diameter * at.C * p
+    faster = diameter * (at.C * a + at.B * p * p)
     value = sign * (stiffness * beyond + damping * along)
     return True, value, sign * (stiffness * along + damping * faster)
 

@@ -21,9 +21,15 @@ DEVICES = (
 def load_device(s: Record, l: int, i: int, system: Record) -> None:
     """Begin with a device."""
     kind = system.device_kind[i]
-    s.device_kind[i, l], s.branch[i, l], s.permanent[i, l] = kind, IDLE, 0.0
-    s.device_force[i, l], s.device_velocity[i, l], s.device_energy[i, l] = 0.0, 0.0, 0.0
-    s.square_constant[i, l], s.pace_constant[i, l], s.swing_constant[i, l] = 0.0, 0.0, 0.0
+    s.device_kind[i, l] = kind
+    s.branch[i, l] = IDLE
+    s.permanent[i, l] = 0.0
+    s.device_force[i, l] = 0.0
+    s.device_velocity[i, l] = 0.0
+    s.device_energy[i, l] = 0.0
+    s.square_constant[i, l] = 0.0
+    s.pace_constant[i, l] = 0.0
+    s.swing_constant[i, l] = 0.0
     s.apart[i, l] = 0.0
     for k in range(4):
         s.law[i, k, l] = system.device_constants[i, k]

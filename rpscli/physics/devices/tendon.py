@@ -56,7 +56,8 @@ def power(s: Record, l: int, i: int, at: Worked) -> float:
 @compiled
 def stored(s: Record, l: int, i: int, at: Worked) -> float:
     """In all tendons, over that of their prestress."""
-    tense, prestress = tension(s, l, i, at.e), s.law[i, TENDON_PRESTRESS, l]
+    tense = tension(s, l, i, at.e)
+    prestress = s.law[i, TENDON_PRESTRESS, l]
     change = tense * tense - prestress * prestress
     return float(0.5 * s.columns[l] * change / s.law[i, TENDON_STIFFNESS, l])
 
@@ -71,7 +72,8 @@ def watched(
 ) -> tuple[bool, float, float]:
     """Tight, or slack; second, not yielding."""
     branch = s.branch[i, l]
-    limit, stiffness = s.law[i, TENDON_YIELD, l], s.law[i, TENDON_STIFFNESS, l]
+    limit = s.law[i, TENDON_YIELD, l]
+    stiffness = s.law[i, TENDON_STIFFNESS, l]
     if branch == BEYOND or (second and (branch == IDLE or limit == math.inf)):
         return False, 0.0, 0.0
     x, p = (s.new_x[l], s.new_v[l]) if end > 0 else (s.x[l], s.v[l])

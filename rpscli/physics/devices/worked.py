@@ -29,15 +29,20 @@ class Worked(NamedTuple):
 @compiled
 def worked(s: Record, l: int, tilt: tuple[float, float], rate: tuple[float, float]) -> Worked:
     """How devices are worked at a tilt and its rate."""
-    now, diameter = polar(s, l, tilt, rate), s.diameter[l]
+    now = polar(s, l, tilt, rate)
+    diameter = s.diameter[l]
     if s.phase[l] == FULL_CONTACT:
         still = Polar(0.0, now.n, now.t, 0.0, 0.0)
         return Worked(still, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
     at = place_with(s, l, now.x, 0.0, 0.0)  # C and h know of no patch
-    e, lever, sin_psi, cos_psi = 0.0, 0.0, 0.0, 1.0
+    e = 0.0
+    lever = 0.0
+    sin_psi = 0.0
+    cos_psi = 1.0
     if s.tendons[l] > 0:
         e, lever, sin_psi, cos_psi = tendon_elongation(s, l, now.x)
-    out, aside = diameter * at.C * now.p, diameter * at.h * now.q
+    out = diameter * at.C * now.p
+    aside = diameter * at.h * now.q
     path = diameter * path_at(s, l, now.x)
     return Worked(now, path, out, aside, at.C, e, lever, sin_psi, cos_psi)
 
@@ -51,7 +56,8 @@ def tendon_elongation(s: Record, l: int, x: float) -> tuple[float, float, float,
     the ground while rolling and B + r beta while rocking, de/dx = 2 cos(psi) times that distance.
     """
     y = x if s.rolls[l] > 0.0 else s.beta[l]
-    half_sine, half_sine_y = math.sin(0.5 * x), math.sin(0.5 * y)
+    half_sine = math.sin(0.5 * x)
+    half_sine_y = math.sin(0.5 * y)
     across, upwards, reach = end_displacement(
         s.half_width[l],
         s.arc_radius[l],
@@ -61,7 +67,9 @@ def tendon_elongation(s: Record, l: int, x: float) -> tuple[float, float, float,
     distance = math.sqrt(across * across + upwards * upwards)
     if x < 0.0:  # on from upright as it came there, where a step may try
         distance = -distance
-    sin_psi, cos_psi = 0.0, 1.0
+    sin_psi = 0.0
+    cos_psi = 1.0
     if distance != 0.0:
-        sin_psi, cos_psi = across / distance, upwards / distance
+        sin_psi = across / distance
+        cos_psi = upwards / distance
     return 2.0 * distance, 2.0 * cos_psi * reach, sin_psi, cos_psi

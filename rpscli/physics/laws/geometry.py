@@ -51,7 +51,8 @@ class Phase(NamedTuple):
 def rolling_phase(alpha: float, rho: float) -> Phase:
     """Constants while the contact point travels along the arc (x < beta) [alpha rad]."""
     k = 2.0 * rho * math.cos(alpha)
-    p, q = math.sin(alpha), k - math.cos(alpha)
+    p = math.sin(alpha)
+    q = k - math.cos(alpha)
     return Phase(p=p, q=q, c=k, u0=p, v0=q)
 
 
@@ -143,7 +144,8 @@ def path_along(
     rolling: Phase, rocking: Phase, beta: float, x: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], ...]:
     """B, C, u_b/2R and v_b/2R along an array of x >= 0, each in its own phase [beta rad, x rad]."""
-    cos_x, sin_x = np.cos(x), np.sin(x)
+    cos_x = np.cos(x)
+    sin_x = np.sin(x)
     rolls = x < beta
     one, two = (
         (

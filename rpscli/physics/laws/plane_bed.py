@@ -17,7 +17,8 @@ from rpscli.physics.laws.geometry import Value
 
 def patch(x: Value, uplift: float, fade: float) -> tuple[Value, Value]:
     """w and dw/dx [x, uplift rad; fade 1/rad]."""
-    root, shape = 1.0 / np.sqrt(x), 1.0 - fade * (x - uplift)
+    root = 1.0 / np.sqrt(x)
+    shape = 1.0 - fade * (x - uplift)
     cube = shape * shape * shape
     w = root * cube * shape
     return w, -(0.5 * w / x + 4.0 * fade * cube * root)
@@ -25,8 +26,10 @@ def patch(x: Value, uplift: float, fade: float) -> tuple[Value, Value]:
 
 def patch_integral(x: Value, uplift: float, fade: float) -> Value:
     """The integral of w over x from 0, by the powers of x in w."""
-    a, root = 1.0 + fade * uplift, np.sqrt(x)
-    z, a2 = fade * x, a * a
+    a = 1.0 + fade * uplift
+    root = np.sqrt(x)
+    z = fade * x
+    a2 = a * a
     series = a2 * a2 / 0.5 - 4.0 * a2 * a * z / 1.5 + 6.0 * a2 * z * z / 2.5
     area: Value = root * (series - 4.0 * a * z * z * z / 3.5 + z * z * z * z / 4.5)
     return area

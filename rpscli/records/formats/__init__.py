@@ -50,10 +50,13 @@ FORMATS = Registry("formats", {form.name: form for form in (*_OURS, _PLAIN)}, Re
 """In the order of recognition."""
 
 _OTHER_QUANTITIES = {".vt2": "velocity", ".dt2": "displacement"}
-_STRONGEST, _WEAKEST = 4.0, 1e-3  # g
+_STRONGEST = 4.0  # g
+_WEAKEST = 1e-3
 _NONSENSE = 1e9  # g; raw counts taken for g have a hundredth, and squares stay finite
-_FINEST, _COARSEST = 1e-4, 0.1  # s
-_OFFSET, _MANY = 0.1, 100  # of the peak, samples
+_FINEST = 1e-4  # s
+_COARSEST = 0.1
+_OFFSET = 0.1  # of the peak, samples
+_MANY = 100
 
 
 def read_record(path: Path, of: Source) -> GroundMotion:
@@ -73,7 +76,8 @@ def read_record(path: Path, of: Source) -> GroundMotion:
     except RecordError as error:
         unusable = [] if form in _OURS else [o.fault for o in FORMATS.offers() if o.fault]
         raise RecordError("\n".join([str(error), *unusable])) from error
-    peak, mean = motion.pga / STANDARD_GRAVITY, abs(float(motion.acceleration.mean()))
+    peak = motion.pga / STANDARD_GRAVITY
+    mean = abs(float(motion.acceleration.mean()))
     if peak > _NONSENSE:
         raise text.fault(
             f"the largest value is {peak:.3g} g, which is not a ground acceleration; the file is"

@@ -105,7 +105,8 @@ class Layout:
 
     def stated(self, text: RecordText, channel: Channel) -> tuple[Stated, int, Said]:
         """The statements of the header of a channel, and the line where its values begin."""
-        start, heads = channel.line, text.heads
+        start = channel.line
+        heads = text.heads
         first = end = start + self.header if isinstance(self.header, int) else -1
         if isinstance(self.header, str):
             begins = re.compile(self.header, re.IGNORECASE).match
@@ -113,7 +114,8 @@ class Layout:
             first = end + 1
             if end < 0:
                 raise text.fault(self.lacks.format("the values"), start)
-        said, lines = Said(), [*enumerate(heads[start : end + 1], start)]
+        said = Said()
+        lines = [*enumerate(heads[start : end + 1], start)]
         for name, words in self.says.items():
             found = statements(*words, lines)
             said.update((name, each) for each in found[:1])
@@ -160,7 +162,8 @@ class Layout:
             text.series(start, count, width=width, stop=stop, closed_by=self.ends)
             for start, stop in zip(begin, [*begin[1:], None], strict=True)
         )
-        of, place = stated.recording, said["place"].value if "place" in said else ""
+        of = stated.recording
+        place = said["place"].value if "place" in said else ""
         words = [of.event, of.origin, " ".join(filter(None, (of.station, place, of.direction)))]
         if self.label:
             words.append(f"channel {channel.number}, {channel.label}")
@@ -216,7 +219,9 @@ def _smc_numbers(text: RecordText, end: int, said: Said) -> int:
     """48 integers and 50 reals, then comments."""
     integers, _ = text.series(end, 48, stop=end + 6)
     reals, _ = text.series(end + 6, 50, stop=end + 16)
-    comments, count, rate = int(integers[15]), int(integers[16]), reals[1]
+    comments = int(integers[15])
+    count = int(integers[16])
+    rate = reals[1]
     if not (0 <= comments < MOST_VALUES and 0 < count < MOST_VALUES and 0.0 < rate < 1e4):
         raise text.fault(
             f"the headers give {count} values, {rate:g} a second, {comments} comments, which no"
@@ -230,7 +235,8 @@ def _smc_numbers(text: RecordText, end: int, said: Said) -> int:
 
 def _knet_numbers(text: RecordText, end: int, said: Said) -> int:
     """Their number is that of samples in the stated duration; KiK-net numbers its directions."""
-    duration, rate = said.pop("duration"), text.number(said["rate"], positive=True)
+    duration = said.pop("duration")
+    rate = text.number(said["rate"], positive=True)
     count = text.number(duration, positive=True) * rate
     if not 0.5 < count < MOST_VALUES:
         raise text.fault(

@@ -129,7 +129,8 @@ def _header(text: RecordText) -> _Header | None:
 
 def _stated(text: RecordText, npts: Statement, dt: Statement, start: int) -> tuple[Stated, str]:
     """Statements of the header, each once or alike, and a note on a step that may be rounded."""
-    counts, steps = [npts], [dt]
+    counts = [npts]
+    steps = [dt]
     for index, line in enumerate(text.heads[:start]):
         if other := _OTHER_SERIES.search(line):
             raise text.fault(
@@ -151,7 +152,8 @@ def _stated(text: RecordText, npts: Statement, dt: Statement, start: int) -> tup
     text.agreed(counts, text.count)
     text.agreed(steps, text.step)
     # 1/256 s is printed as .0039 by PEER: a whole rate that prints the same, but is not the same.
-    step, numeral = text.step(dt), dt.value.partition(" ")[0]
+    step = text.step(dt)
+    numeral = dt.value.partition(" ")[0]
     resolution = last_digit(numeral) * step / text.number(dt._replace(value=numeral))
     stated = Stated(unit, step, resolution, recording=_recording(_title(text, npts)))
     agreed = text.agreed_dt(step, 0.51 * resolution / step)

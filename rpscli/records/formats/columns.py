@@ -128,7 +128,8 @@ def read_columns(text: RecordText) -> GroundMotion:
     text.single_channel()
     doubts = [] if width == 1 and even else [_wrapped(text, table)]
     title = titles[0] if width == 1 and titles else None
-    stated, values = _stated(text, table, title), table.values
+    stated = _stated(text, table, title)
+    values = table.values
     text.agreed_factor(stated.unit)
     dt = text.agreed_dt(stated.step)
     # A whole number before decimal ones is a count or a flag: 4000, or 1 and then the time step.
@@ -186,7 +187,9 @@ def _title(cell: str, line: int) -> _Title:
 
 def _table(text: RecordText) -> _Table:
     header: list[Statement] = []
-    values, widths, lines = array("d"), array("q"), array("q")  # of records there may be millions
+    values = array("d")  # of records there may be millions
+    widths = array("q")
+    lines = array("q")
     above = -1
     for index, line in enumerate(text.lines):
         row = numbers_in(_plain(line))
@@ -314,7 +317,8 @@ def _wrapped(text: RecordText, table: _Table) -> str:
 def _stated(text: RecordText, table: _Table, title: _Title | None) -> Stated:
     """Statements of the header and of the title; two units, or steps, are refused."""
     lines = [(of.line, of.value) for of in table.header]
-    units, steps = statements("units", _UNITS_KEY, lines), statements("dt", _STEP, lines)
+    units = statements("units", _UNITS_KEY, lines)
+    steps = statements("dt", _STEP, lines)
     peak = next(iter(statements("peak", _PEAK, lines)), None)
     if title and title.unit and (canonical_unit(title.unit) or not _NO_UNIT.fullmatch(title.unit)):
         units.append(Statement(f"the title {title.name}", title.unit, title.line))

@@ -49,7 +49,8 @@ MOST_VALUES = 10_000_000  # of one series: more than a day at a hundred samples 
 _SHOWN = 40  # letters of a value in a message
 _HEADER_WIDTH = 1000  # letters
 _LARGEST_FILE = 200_000_000  # bytes; a day at a hundred samples a second has a tenth
-_SHORTEST_STEP, _LONGEST_STEP = 1e-6, 100.0  # s
+_SHORTEST_STEP = 1e-6  # s
+_LONGEST_STEP = 100.0
 
 
 class Statement(NamedTuple):
@@ -139,7 +140,8 @@ class RecordText:
 
     def agreed_dt(self, stated: float | None, tolerance: float = 1e-9) -> float:
         """The sampling interval [s], from the file or from a user who does not contradict it."""
-        dt, fault = stated if self.dt is None else self.dt, ""
+        dt = stated if self.dt is None else self.dt
+        fault = ""
         if dt is None:
             raise self.fault(
                 "the file does not state its sampling interval and none was given; say "
@@ -179,7 +181,8 @@ class RecordText:
                 f"the file holds {len(channels)} channels; say which one by "
                 f"?channel={channels[0].number} after the file name ({listing})"
             )
-        asked, shown = self.channel.strip().lower(), self.channel[:60]
+        asked = self.channel.strip().lower()
+        shown = self.channel[:60]
         wanted = [of for of in channels if asked in (str(of.number), of.label.strip().lower())]
         if not wanted:
             raise self.fault(f"there is no channel {shown}; the file has {listing}")
@@ -189,7 +192,8 @@ class RecordText:
 
     def number(self, stated: Statement, *, positive: bool = False) -> float:
         """The finite number that a header states."""
-        numeral, fault = stated.value.strip(), ""
+        numeral = stated.value.strip()
+        fault = ""
         shown = numeral[:_SHOWN]
         if re.fullmatch(r"[+-]?[0-9]*,[0-9]+", numeral):
             fault = f"{shown} has a decimal comma; write {shown.replace(',', '.')}"
@@ -270,8 +274,10 @@ class RecordText:
         Rows but the last have `width` numbers, if that is given; blank lines are skipped. Behind
         the values stands the line `stop`, the end of the file, or a line `closed_by` a pattern.
         """
-        values, last = list[float](), start
-        index, end = start, min(stop or len(self.lines), len(self.lines))
+        values = list[float]()
+        last = start
+        index = start
+        end = min(stop or len(self.lines), len(self.lines))
         while index < end and (row := numbers_in(self.lines[index])) is not None:
             short = width and values and len(values) % width
             if width and row and (short or len(row) > width):
@@ -437,7 +443,8 @@ def uniform_step(times: Array, resolution: Array | float) -> float:
         # Each time bounds the step from both sides; the bounds close in as the samples go on.
         allowance = np.broadcast_to(rounding + summed * typical, times.shape)
         either = allowance[1:] + (allowance[0] if times[0] else 0.0)  # a printed zero is exact
-        elapsed, count = times[1:] - times[0], np.arange(1, times.size)
+        elapsed = times[1:] - times[0]
+        count = np.arange(1, times.size)
         lowest = float(np.max((elapsed - either) / count))
         highest = float(np.min((elapsed + either) / count))
         if 0.0 < lowest <= highest:

@@ -67,7 +67,8 @@ class Bodies(NamedTuple):
 
 def bodies_of(structure: PodiumStructure) -> Bodies:
     """Numbers of a structure."""
-    bearing, above = structure.bearing, structure.superstructure
+    bearing = structure.bearing
+    above = structure.superstructure
     names = ("masses", "stiffnesses", "damping_matrix")
     masses, stiffnesses, damping = ((getattr(above, name) if above else ()) for name in names)
     return Bodies(
@@ -91,7 +92,8 @@ def description(
     _part(model, "option", timestep=time_step, gravity=f"0 0 {-of.gravity}", **OPTIONS)
     closing = f"{CLOSING_STEPS * time_step} {closing_damping}"
     _part(_part(model, "default"), "geom", solref=closing, **CONTACTS)
-    world, springs = _part(model, "worldbody"), _part(model, "tendon")
+    world = _part(model, "worldbody")
+    springs = _part(model, "tendon")
     _part(world, "geom", type="plane", size="0 0 1", contype=0, conaffinity=1)
     for number in range(columns):
         _add_column(world, of, number, columns)
@@ -112,7 +114,8 @@ def _part(of: Element, tag: str, **said: object) -> Element:
 
 def model_text(structure: PodiumStructure, title: str, note: str) -> tuple[str, str]:
     """The model as a file, and its limits in words."""
-    bearing, engine = structure.bearing, replace(structure, impact_law=ImpactLaw()).restitution
+    bearing = structure.bearing
+    engine = replace(structure, impact_law=ImpactLaw()).restitution
     e = structure.restitution
     other = f"; the case has e = {e:.4g}, and histories part at the first impact"
     limits = LIMITS.format(
@@ -150,7 +153,9 @@ def _add_column(world: Element, of: Bodies, number: int, columns: int) -> None:
 
 
 def _add_cap_beam(world: Element, of: Bodies, columns: int, *, level: bool) -> None:
-    H, half, reach = half_sizes(of)[0], 0.5 * THICKNESS, 0.5 * columns * SPACING
+    H = half_sizes(of)[0]
+    half = 0.5 * THICKNESS
+    reach = 0.5 * columns * SPACING
     spin = of.cap_beam_mass * (half**2 + reach**2) / 3.0
     beam = _part(world, "body", pos=f"0 0 {2.0 * H + half}")
     inertia = f"{spin} {spin} {spin}"

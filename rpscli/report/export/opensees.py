@@ -71,11 +71,9 @@ the weight restores, as an impact in its middle; of smaller swings it takes a sm
 def model_text(result: TimeHistoryResult, title: str, note: str) -> tuple[str, str]:
     """The model as a file, and its limits in words."""
     structure = result.structure
-    bearing, above, critical = (
-        structure.bearing,
-        structure.superstructure,
-        structure.critical_rotation,
-    )
+    bearing = structure.bearing
+    above = structure.superstructure
+    critical = structure.critical_rotation
     farthest = max(1.2, result.settings.overturning_limit) * critical
     rotation = np.linspace(0.0, min(farthest, bearing.largest_rotation), POINTS + 1)
     force, beam, _ = structure.path(rotation)

@@ -46,7 +46,8 @@ def by_mujoco(time: Any, ground: Any, up: Any, start: dict[str, float]) -> Rows:
         mujoco.mj_step(model, data, round(SETTLING / model.opt.timestep))
     interval = STEPS_TOGETHER * model.opt.timestep
     count = round(time[-1] / interval)
-    middles, weight = (np.arange(count) + 0.5) * interval, model.opt.gravity[2]
+    middles = (np.arange(count) + 0.5) * interval
+    weight = model.opt.gravity[2]
     pushes, lifts = (np.interp(middles, time, each) for each in (ground, up))
     for i in range(count + 1):
         if i:
@@ -61,7 +62,8 @@ def by_opensees(time: Any, ground: Any, _: Any, start: dict[str, float]) -> Rows
     """At the samples of the record, without vertical motion."""
     loaded("openseespy.opensees")
     model = runpy.run_path(str(HERE / "model.py"))
-    ops, dt = model["ops"], float(time[1] - time[0])
+    ops = model["ops"]
+    dt = float(time[1] - time[0])
     model["build"](ground.tolist(), dt, float(start["beam across"]))
     parts = int(np.ceil(dt / AT_ONCE))
     for i in range(len(time)):

@@ -41,8 +41,10 @@ class Scene:
     def __init__(
         self, axes: style.Axes, result: TimeHistoryResult, title: str, speed: float
     ) -> None:
-        of_pair, result = result.trace.y is not None, in_plane(result)
-        self.result, structure = result, result.structure
+        of_pair = result.trace.y is not None
+        result = in_plane(result)
+        self.result = result
+        structure = result.structure
         self.levels = level_heights(structure)
         self.magnification = _magnification(result, self.levels)
         height = 2.0 * structure.bearing.half_height
@@ -79,8 +81,10 @@ class Scene:
 
     def show(self, sample: int) -> None:
         """Move everything to where it is at a sample."""
-        trace, bearing = self.result.trace, self.result.structure.bearing
-        shift, lift = float(trace.cap_beam_displacement[sample]), float(trace.lift[sample])
+        trace = self.result.trace
+        bearing = self.result.structure.bearing
+        shift = float(trace.cap_beam_displacement[sample])
+        lift = float(trace.lift[sample])
         corners = outline(bearing, float(trace.rotation[sample]), shift, lift)
         for foot, column in zip(self.feet, self.columns, strict=True):
             column.set_xy(corners + np.array([foot, 0.0]))
@@ -88,7 +92,8 @@ class Scene:
         half = 0.5 * self.width
         if len(self.feet) > 1:
             top = base + self.thickness
-            left, right = shift - half, shift + half
+            left = shift - half
+            right = shift + half
             self.beam.set_xy([(left, base), (right, base), (right, top), (left, top)])
         if self.floors:
             drift = trace.floor_displacements[sample] - shift
@@ -110,8 +115,10 @@ class PlanView:
 
         trace = result.trace
         assert trace.y is not None, "both components act"
-        self.x, self.y = trace.cap_beam_displacement, trace.y.cap_beam_displacement
-        self.azimuth, self.memory = lean_azimuth(trace), round(MEMORY / result.record.dt)
+        self.x = trace.cap_beam_displacement
+        self.y = trace.y.cap_beam_displacement
+        self.azimuth = lean_azimuth(trace)
+        self.memory = round(MEMORY / result.record.dt)
         radius = result.structure.bearing.end_half_width
         farthest = float(np.nanmax(trace.size("cap_beam_displacement")))
         self.reach = 1.15 * (radius + farthest)
@@ -170,7 +177,8 @@ FramePlan: TypeAlias = tuple[NDArray[np.int64], float]
 
 def frame_plan(result: TimeHistoryResult, wanted: FilmRequest) -> FramePlan:
     """Frames of a history, by default of all its motion; a UsageError if they are too many."""
-    time, rotation = result.trace.time, np.abs(result.trace.rotation)
+    time = result.trace.time
+    rotation = np.abs(result.trace.rotation)
     moving = np.flatnonzero(rotation > 0.01 * rotation.max()) if rotation.any() else np.empty(0)
     first = max(time[int(moving[0])] - 0.5, 0.0) if moving.size else 0.0
     last = min(time[int(moving[-1])] + 0.5, time[-1]) if moving.size else time[-1]
@@ -213,13 +221,16 @@ def history_film(
             height_ratios=[4.2, 1.0],
         )  # fmt: skip
         scene = Scene(panels["scene"], result, title, speed)
-        trace, record = result.trace, panels["record"]
+        trace = result.trace
+        record = panels["record"]
         detail: PlanView | BearingView
         shown: Any
         if trace.y is not None:
-            detail, shown = PlanView(panels["detail"], result), samples
+            detail = PlanView(panels["detail"], result)
+            shown = samples
         else:
-            detail, shown = BearingView(panels["detail"], result.structure), trace.rotation[samples]
+            detail = BearingView(panels["detail"], result.structure)
+            shown = trace.rotation[samples]
             frame_end(panels["detail"], result.structure.bearing)
             panels["detail"].set_title("lower end of a column, enlarged", fontsize=style.small())
         for name, of, colour in (("y", trace.y, style.RED), ("x", trace, style.BLACK)):

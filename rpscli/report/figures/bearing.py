@@ -55,11 +55,14 @@ def outline(
 ) -> Array:
     """Corners of the column, (points, 2) [m], counter-clockwise; turned clockwise by `rotation`."""
     # Up to B the ends are flat, then arcs of radius r up to B', and sides are straight.
-    H, B, r = bearing.half_height, bearing.half_width, bearing.radius
+    H = bearing.half_height
+    B = bearing.half_width
+    r = bearing.radius
     arc = np.linspace(0.0, bearing.beta, ARC_POINTS if bearing.beta > 0.0 else 1)
     corner = np.column_stack([B + r * np.sin(arc), -H + r * (1.0 - np.cos(arc))])
     right = np.vstack([corner, corner[::-1] * (1.0, -1.0)])  # upwards
-    cosine, sine = math.cos(rotation), math.sin(rotation)
+    cosine = math.cos(rotation)
+    sine = math.sin(rotation)
     turned = np.vstack([right, -right]) @ np.array([[cosine, -sine], [sine, cosine]])
     return np.asarray(turned + np.array([0.5 * displacement, H + 0.5 * lift]))
 
@@ -77,7 +80,8 @@ def contact_points(bearing: Bearing, rotation: float, displacement: float, lift:
     return np.array([[reach, 0.0], [displacement - reach, 2.0 * bearing.half_height + lift]])
 
 
-COLUMN, BEAM = "#DDDDDD", "#CCE3F0"
+COLUMN = "#DDDDDD"
+BEAM = "#CCE3F0"
 
 ASPECT = 1.15  # largest height of the picture of a column over its width
 LEAST_ASPECT = 0.2
@@ -98,7 +102,9 @@ class SceneDevices:
     def __init__(
         self, axes: style.Axes, devices: Sequence[Device], feet: Array, half: float, base: float
     ) -> None:
-        self.feet, self.half, self.base = feet, half, base
+        self.feet = feet
+        self.half = half
+        self.base = base
         by_scene: dict[int, list[Any]] = {BRACE: [], POSTS: [], CABLES: [], NOWHERE: []}
         for device in devices:
             by_scene[DRAWN[type(device)].scene].append(device)
@@ -118,13 +124,15 @@ class SceneDevices:
     def show(self, shift: float, lift: float) -> None:
         """Move them with the cap beam, displaced and lifted [m]."""
         for side, gap, post in self.stops:
-            at, pushed = side * (self.half + gap), max(side * shift - gap, 0.0)
+            at = side * (self.half + gap)
+            pushed = max(side * shift - gap, 0.0)
             post.set_data([at, at + side * pushed], [0.0, 1.06 * self.base])
             post.set_color(style.RED if pushed else style.BLACK)
         for foot, tendon in zip(self.feet, self.tendons, strict=False):
             tendon.set_data([foot, foot + shift], [0.0, self.base + lift])
         if self.brace is not None:
-            start, end = -0.75 * self.half, shift - 0.45 * self.half
+            start = -0.75 * self.half
+            end = shift - 0.45 * self.half
             top = self.base + lift
             self.brace.set_data([start, 0.5 * (start + end), end], [0.0, 0.5 * top, top])
 
@@ -133,7 +141,8 @@ class BearingView:
     """A column between ground and cap beam, to scale; `show` leans it."""
 
     def __init__(self, axes: style.Axes, structure: PodiumStructure) -> None:
-        self.structure, bearing = structure, structure.bearing
+        self.structure = structure
+        bearing = structure.bearing
         self.height = 2.0 * bearing.half_height
         self.half = (1.0 + 2.0 * BESIDE) * bearing.end_half_width
         self.thickness = 0.06 * self.height
@@ -165,7 +174,9 @@ class BearingView:
         self.contacts.set_data(*touching.T)
         if self.beam is not None:
             low = self.height + lift
-            left, right, top = shift - self.half, shift + self.half, low + self.thickness
+            left = shift - self.half
+            right = shift + self.half
+            top = low + self.thickness
             self.beam.set_xy([(left, low), (right, low), (right, top), (left, top)])
         self.devices.show(shift, lift)
         return shift, lift
@@ -175,13 +186,16 @@ def draw_bearing(axes: style.Axes, structure: PodiumStructure, rotation: float =
     """A column at a rotation [rad]: its dimensions at rest, displacement and lift if it leans."""
     if not abs(rotation) < 0.5 * math.pi:
         raise UsageError(f"rotation = {rotation:g} rad must be less than a quarter turn, 1.57 rad")
-    bearing, critical = structure.bearing, structure.critical_rotation
+    bearing = structure.bearing
+    critical = structure.critical_rotation
     view = BearingView(axes, structure)
     u, v = view.show(rotation)
-    height, half = view.height, view.half
+    height = view.height
+    half = view.half
     far, high = displaced(structure, max(abs(rotation), critical))
     posts = [half + gap for _, gap, _ in view.devices.stops]
-    right, left = max(far + half, *posts, 0.0), max(half, *posts, 0.0)
+    right = max(far + half, *posts, 0.0)
+    left = max(half, *posts, 0.0)
     if rotation < 0.0:
         left, right = right, left
     corners = (-left, right, 0.0, height + high + view.thickness)
@@ -210,7 +224,8 @@ def draw_bearing(axes: style.Axes, structure: PodiumStructure, rotation: float =
 
 def draw_end(axes: style.Axes, bearing: Bearing, bed: Bed | None = None) -> None:
     """The lower end of a column at rest, enlarged: its widths, the radius, the edge's height."""
-    half, B = bearing.end_half_width, bearing.half_width
+    half = bearing.end_half_width
+    B = bearing.half_width
     x, y = outline(bearing).T
     axes.axhline(0.0, color=style.BLACK, lw=1.2)
     axes.fill(x, y, fc=COLUMN, ec=style.BLACK, lw=1.0)
@@ -236,7 +251,8 @@ def draw_end(axes: style.Axes, bearing: Bearing, bed: Bed | None = None) -> None
         style.note(axes, words, (1.06 * half, edge), (0.0, 3.0), ha="left")
         title = "an end, enlarged"
     if bed is not None and bed.contact_share is not None:
-        x, y = B * (1.0 - 2.0 * bed.contact_share), -3.2 * step
+        x = B * (1.0 - 2.0 * bed.contact_share)
+        y = -3.2 * step
         axes.plot([x, B], [y, y], color=style.RED, lw=2.5, solid_capstyle="butt")
         words = f"{1e3 * (B - x):.3g} mm in contact at α/10"
         style.note(axes, words, (B, y), (0.0, -4.0), ha="right")
@@ -263,7 +279,8 @@ def _state(bearing: Bearing, critical: float, rotation: float, u: float, v: floa
 
 def _draw_dimensions(axes: style.Axes, bearing: Bearing) -> None:
     """R from the middle of the column to the edge, and the height."""
-    H, B = bearing.half_height, bearing.half_width
+    H = bearing.half_height
+    B = bearing.half_width
     axes.plot([0.0, B], [H, 0.0], color=style.RED, lw=1.0)
     axes.plot([0.0, 0.0], [0.0, H], color=style.RED, lw=0.6, ls=(0, (6, 3)))
     axes.plot(0.0, H, "o", color=style.RED, ms=3.0)
@@ -284,7 +301,8 @@ def _frame(
 ) -> None:
     """Limits of one scale both ways; `room` is kept free, in its parts; `aspect` at most."""
     left, right, bottom, top = content
-    across, upwards = 1.0 - room[0] - room[1], 1.0 - room[2] - room[3]
+    across = 1.0 - room[0] - room[1]
+    upwards = 1.0 - room[2] - room[3]
     width = (right - left) / across
     if upwards > 0.0:
         width = max(width, (top - bottom) / upwards / aspect)
@@ -319,7 +337,8 @@ LONGEST = 0.4  # of the arrow of the larger force, over the height of the column
 
 def column_figure(result: TimeHistoryResult, title: str, figure: style.Figure) -> None:
     """The tilted column with its end forces beside axial force, shear and moment."""
-    narrow, demand = style.narrow(figure), result.column_demand
+    narrow = style.narrow(figure)
+    demand = result.column_demand
     assert demand is not None, "it is drawn where it was computed"
     at = f"t = {demand.instants[0].time:.5g} s, θ = {demand.instants[0].rotation:.3g} rad"
     words = title, record_name(result), f"most loaded column at {at}"
@@ -335,13 +354,17 @@ def column_figure(result: TimeHistoryResult, title: str, figure: style.Figure) -
 
 def draw_end_forces(axes: style.Axes, structure: PodiumStructure, demand: ColumnDemand) -> None:
     """The column to scale; arrows of the forces on it, to a scale of their own."""
-    bearing, s, x = structure.bearing, demand.at_largest_moment, demand.instants[0].rotation
+    bearing = structure.bearing
+    s = demand.at_largest_moment
+    x = demand.instants[0].rotation
     shift, lift = displaced(structure, x)
-    height, wide = 2.0 * bearing.half_height, bearing.end_half_width
+    height = 2.0 * bearing.half_height
+    wide = bearing.end_half_width
     axes.fill(*outline(bearing, x, shift, lift).T, fc=COLUMN, ec=style.BLACK, lw=1.0)
     foot, head = contact_points(bearing, x, shift, lift)
     if x == 0.0:  # in full contact, where the forces pass beside the axis
-        foot, head = (np.array([s.side * s.lever, 0.0]), np.array([-s.side * s.lever, height]))
+        foot = np.array([s.side * s.lever, 0.0])
+        head = np.array([-s.side * s.lever, height])
     largest = max(abs(s.normal_bottom), abs(s.normal_top), 1.0)
     for name, place, F, N in (
         ("bottom", foot, s.shear_bottom, s.normal_bottom),
@@ -366,7 +389,8 @@ def draw_section_forces(
     panels: list[style.Axes], structure: PodiumStructure, demand: ColumnDemand
 ) -> None:
     """P, Q and M over the height of the column from its foot."""
-    bearing, mass = structure.bearing, structure.columns_mass / structure.columns
+    bearing = structure.bearing
+    mass = structure.columns_mass / structure.columns
     along = np.linspace(0.0, 2.0 * bearing.half_height, POINTS)
     forces = demand.at_largest_moment.section_forces(bearing, mass, along)
     names = ("axial force $P$ [kN]", "shear $Q$ [kN]", "moment $M$ [kN m]")
@@ -378,7 +402,8 @@ def draw_section_forces(
         axes.margins(x=0.1)
         for end, upwards in ((0, 5.0), (-1, -5.0)):
             left = shown[end] > 0.0
-            text, at = f"{shown[end]:.4g}".replace("-", "−"), (shown[end], along[end])
+            text = f"{shown[end]:.4g}".replace("-", "−")
+            at = (shown[end], along[end])
             style.note(axes, text, at, (-7.0 if left else 7.0, upwards))
         axes.set(xlabel=name, ylim=(0.0, along[-1]))
         if axes is not panels[0]:
@@ -388,7 +413,8 @@ def draw_section_forces(
 
 def devices_figure(result: TimeHistoryResult, title: str, figure: style.Figure) -> None:
     """The loops of all devices."""
-    narrow, count = style.narrow(figure), len(result.structure.devices)
+    narrow = style.narrow(figure)
+    count = len(result.structure.devices)
     columns = min(count, 2 if narrow else 3)
     rows = -(-count // columns)
     words = title, result.record.name, result.sampling
@@ -401,7 +427,8 @@ def devices_figure(result: TimeHistoryResult, title: str, figure: style.Figure) 
 def draw_device(axes: style.Axes, result: TimeHistoryResult, index: int) -> None:
     """Resistance of a device against displacement, of tendons tension against elongation."""
     style.require("devices", index, range(len(result.structure.devices)))
-    trace, device = result.trace.devices, result.structure.devices[index]
+    trace = result.trace.devices
+    device = result.structure.devices[index]
     drawn = DRAWN[type(device)]
     force = drawn.sign * trace.force[:, index]
     factor, prefix = style.engineering(float(np.nanmax(np.abs(force), initial=0.0)))

@@ -57,9 +57,11 @@ def draw_shears(axes: style.Axes, result: TimeHistoryResult) -> None:
 def draw_storey_drifts(axes: style.Axes, result: TimeHistoryResult) -> None:
     """Largest storey drifts, as a part of the storey heights where these are known."""
     for demands, look in _series(result):
-        values, label = demands.storey_drifts * 1e3, STOREY_DRIFTS.in_unit("mm")
+        values = demands.storey_drifts * 1e3
+        label = STOREY_DRIFTS.in_unit("mm")
         if demands.storey_drift_ratios is not None:
-            values, label = demands.storey_drift_ratios * 100.0, STOREY_DRIFT_RATIOS.in_unit("%")
+            values = demands.storey_drift_ratios * 100.0
+            label = STOREY_DRIFT_RATIOS.in_unit("%")
         axes.stairs(values, **STAIRS, **look)
         axes.set_xlabel(label)
     _levels(axes, result.structure.storeys)
@@ -162,19 +164,23 @@ def loops_figure(result: TimeHistoryResult, title: str, figure: style.Figure) ->
 
 def draw_loop(axes: style.Axes, result: TimeHistoryResult, storey: int) -> None:
     """Shear of a storey, counted from 1, over its drift, and the lines on which it yields."""
-    structure, trace = result.structure, result.trace
+    structure = result.structure
+    trace = result.trace
     if not structure.yields:
         raise UsageError("a panel of loop: needs storeys that yield, superstructure.yield")
     style.require("storeys", storey, range(1, structure.storeys + 1))
-    place, seen = storey - 1, [structure, structure.across][: 1 if trace.y is None else 2]
+    place = storey - 1
+    seen = [structure, structure.across][: 1 if trace.y is None else 2]
     strongest = max(float(of.superstructure.strengths.max()) for of in seen)  # type: ignore[union-attr]
     factor, prefix = style.engineering(strongest)
     looks = (style.BLUE, "in x"), (style.RED, "in y")
     for of, way, (colour, name) in zip((trace, trace.y), seen, looks, strict=False):
         building = way.superstructure
         assert of is not None and building is not None and building.strengths is not None  # noqa: PT018
-        drifts, shears = 1e3 * of.drifts[:, place], factor * of.storey_shears[:, place]
-        k, F = factor * building.stiffnesses[place], factor * building.strengths[place]
+        drifts = 1e3 * of.drifts[:, place]
+        shears = factor * of.storey_shears[:, place]
+        k = factor * building.stiffnesses[place]
+        F = factor * building.strengths[place]
         reach = 1e3 * max(float(np.abs(of.drifts[:, place]).max()), 1.2 * F / k)
         for side in (-1.0, 1.0):
             ends = np.array([-reach, reach])

@@ -27,7 +27,9 @@ WAYS: tuple[Way, ...] = get_args(Way)
 
 def record_name(result: TimeHistoryResult) -> str:
     """The name of the horizontal motion, and its factor."""
-    name, y, scale = result.record.name, result.motion.y, result.motion.scale
+    name = result.record.name
+    y = result.motion.y
+    scale = result.motion.scale
     times = "" if scale == 1.0 else f", times {scale:.4g}"
     pair, found, turned = name.partition("_both")
     if y is None or not found:
@@ -65,11 +67,13 @@ def in_plane(result: TimeHistoryResult, *, one_sided: bool = False) -> TimeHisto
     for name in (each.name for each in fields(trace.y)):
         if getattr(trace, name) is None:
             continue
-        x, y = getattr(trace, name), getattr(trace.y, name)
+        x = getattr(trace, name)
+        y = getattr(trace.y, name)
         cosine, sine = (of(plane).reshape(-1, *[1] * (x.ndim - 1)) for of in (np.cos, np.sin))
         along[name] = cosine * x + sine * y
     side = np.where(np.cos(trace.azimuth - plane) < 0.0, -1.0, 1.0)
-    rotation, rate = side * trace.rotation, side * trace.rotation_rate
+    rotation = side * trace.rotation
+    rate = side * trace.rotation_rate
     seen = replace(trace, **along, rotation=rotation, rotation_rate=rate, azimuth=None, y=None)
     return replace(result, trace=seen)
 
@@ -109,7 +113,8 @@ def _draw_floors(
     axes: style.Axes, result: TimeHistoryResult, way: Way, values: Array, over: str, most: int = 3
 ) -> None:
     """Some columns of (samples, n), the roof's first, with time below."""
-    time, storeys = result.trace.time, result.structure.storeys
+    time = result.trace.time
+    storeys = result.structure.storeys
     for floor, colour in zip(shown_floors(storeys)[:most], FLOOR_COLOURS, strict=False):
         name = "roof" if floor == storeys else f"floor {floor}"
         axes.plot(time, values[:, floor - 1], color=colour, label=name, lw=0.8)
@@ -142,7 +147,8 @@ NEAR = 8.0  # a level up to so many times the largest rotation is brought into v
 
 def rotation_figure(result: TimeHistoryResult, title: str, figure: style.Figure) -> None:
     """Ground acceleration, rotation with its phases, and events; of pairs the azimuth as well."""
-    rows, both = _rows(result), result.trace.azimuth is not None
+    rows = _rows(result)
+    both = result.trace.azimuth is not None
     draws: list[Callable[..., None]]
     draws = [draw_ground, draw_rotation, *[draw_azimuth] * both, *[draw_events] * bool(rows)]
     heights = [1.3 if both else 1.0, 2.4, *[0.9] * both, *[0.18 * len(rows)] * bool(rows)]
@@ -160,7 +166,8 @@ def _rows(result: TimeHistoryResult) -> list[tuple[tuple[str, ...], str, str]]:
 
 def draw_ground(axes: style.Axes, result: TimeHistoryResult) -> None:
     """Ground acceleration, and what uplifts quasi-statically."""
-    limit, trace = result.structure.uplift_acceleration, result.trace
+    limit = result.structure.uplift_acceleration
+    trace = result.trace
     name = None
     if trace.y is not None:
         name = "in x"
@@ -179,7 +186,8 @@ def draw_ground(axes: style.Axes, result: TimeHistoryResult) -> None:
 
 def draw_azimuth(axes: style.Axes, result: TimeHistoryResult) -> None:
     """Towards which columns lean, from x towards y; half a turn further at each pass."""
-    azimuth, leans = result.trace.azimuth, result.trace.rotation > 0.0
+    azimuth = result.trace.azimuth
+    leans = result.trace.rotation > 0.0
     if azimuth is None:
         raise UsageError("a panel of azimuth: needs a history under both horizontal components")
     shown = np.where(leans, np.degrees(azimuth), np.nan)
@@ -197,7 +205,8 @@ def levels(
     result: TimeHistoryResult, near: float = NEAR
 ) -> tuple[list[tuple[str, float, str, str]], float]:
     """Of beta and theta_cr symbol, value, line and colour; how far to look to see the near ones."""
-    critical, beta = result.structure.critical_rotation, result.structure.bearing.beta
+    critical = result.structure.critical_rotation
+    beta = result.structure.bearing.beta
     found = [("\\beta", beta, ":", style.PINK)] if beta > 0.0 else []
     found.append(("\\theta_{cr}", critical, "--", style.RED))
     largest = max(result.max_rotation, 1e-3 * critical)
@@ -206,7 +215,8 @@ def levels(
 
 def draw_rotation(axes: style.Axes, result: TimeHistoryResult) -> None:
     """Rotation with its phases, beta and theta_cr; over theta_cr on the right."""
-    trace, critical = result.trace, result.structure.critical_rotation
+    trace = result.trace
+    critical = result.structure.critical_rotation
     found, top = levels(result)
     one_sided = trace.azimuth is not None
     axes.set_ylim(0.0 if one_sided else -top, top)
@@ -250,8 +260,10 @@ def draw_events(axes: style.Axes, result: TimeHistoryResult) -> None:
 
 def draw_moment(axes: style.Axes, result: TimeHistoryResult) -> None:
     """Driving moment of ground and building against rotation, and 2 R W s B of the weight."""
-    one_sided, result = result.trace.y is not None, in_plane(result, one_sided=True)
-    trace, critical = result.trace, result.structure.critical_rotation
+    one_sided = result.trace.y is not None
+    result = in_plane(result, one_sided=True)
+    trace = result.trace
+    critical = result.structure.critical_rotation
     reach = 1.1 * max(result.max_rotation, 0.02 * critical)
     factor, prefix = style.engineering(float(np.nanmax(np.abs(trace.driving_moment))))
     # Upright there is no tilt that the moment of a pair could be along.
@@ -275,7 +287,8 @@ def draw_moment(axes: style.Axes, result: TimeHistoryResult) -> None:
 
 def _draw_longest(axes: style.Axes, result: TimeHistoryResult, factor: float) -> None:
     """The swing to one side that turns the columns most, with its times and its direction."""
-    time, rotation = result.trace.time, result.trace.rotation
+    time = result.trace.time
+    rotation = result.trace.rotation
     peak = int(np.nanargmax(np.abs(rotation)))
     ends = np.flatnonzero(rotation * rotation[peak] <= 0.0)
     if result.both_components:  # where it comes nearest to upright
@@ -283,8 +296,10 @@ def _draw_longest(axes: style.Axes, result: TimeHistoryResult, factor: float) ->
         ends = np.union1d(ends, np.flatnonzero(nearest) + 1)
     if rotation[peak] == 0.0 or not ends[ends < peak].size:
         return
-    first, last = ends[ends < peak][-1] + 1, min([*ends[ends > peak], len(time)])
-    x, y = rotation[first:last], factor * result.trace.driving_moment[first:last]
+    first = ends[ends < peak][-1] + 1
+    last = min([*ends[ends > peak], len(time)])
+    x = rotation[first:last]
+    y = factor * result.trace.driving_moment[first:last]
     label = f"the largest swing, {time[first]:.2f} to {time[last - 1]:.2f} s"
     axes.plot(x, y, color=style.BLUE, lw=1.4, label=label)
     for place in np.linspace(0, len(x) - 2, 7).astype(int)[1:-1]:
@@ -305,7 +320,8 @@ MOST = 20_000
 
 def draw_energy(axes: style.Axes, result: TimeHistoryResult) -> None:
     """Input against what is stored and lost on the way, one on top of the other."""
-    trace, made = result.trace, result.structure
+    trace = result.trace
+    made = result.structure
     largest = np.nanmax(np.abs([trace.energy_input, trace.energy_stored]))
     factor, prefix = style.engineering(float(largest))
     passes = result.both_components and not result.structure.passes_smoothly
@@ -373,7 +389,8 @@ def draw_path(axes: style.Axes, result: TimeHistoryResult) -> LineCollection:
 
 def draw_push(axes: style.Axes, result: TimeHistoryResult) -> None:
     """Moment of ground and building about the contacts, x against y, with the uplift circle."""
-    trace, structure = result.trace, result.structure
+    trace = result.trace
+    structure = result.structure
     assert trace.y is not None, "both components act"
     both = np.array([trace.driving_moment, trace.y.driving_moment])
     lifts = np.finfo(float).tiny if structure.bed is None else structure.bed.uplift_rotation

@@ -171,11 +171,13 @@ def complaints() -> Iterator[list[str]]:
     """Messages that matplotlib would print, and then go on."""
     from logging.handlers import BufferingHandler
 
-    handler, texts = BufferingHandler(capacity=1000), list[str]()
+    handler = BufferingHandler(capacity=1000)
+    texts = list[str]()
     handler.setLevel(logging.WARNING)
     logger = logging.getLogger("matplotlib")
     logger.addHandler(handler)
-    passed_on, logger.propagate = logger.propagate, False
+    passed_on = logger.propagate
+    logger.propagate = False
     try:
         yield texts
     finally:

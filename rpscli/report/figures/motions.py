@@ -63,7 +63,8 @@ def draw_motion(
     if quantity != "acceleration":
         integral = velocity if quantity == "velocity" else displacement
         values = integral(values, motion.dt)
-    time, peak = motion.time, int(np.argmax(np.abs(values)))
+    time = motion.time
+    peak = int(np.argmax(np.abs(values)))
     axes.plot(time, values, color=colour, lw=0.7)
     axes.plot(time[peak], values[peak], "o", color=style.RED, ms=4.0)
     axes.set(xlim=(0.0, motion.duration), xlabel="time [s]", ylabel=f"{quantity}\n[{unit}]")
@@ -105,7 +106,8 @@ def selection_figure(selection: Selection, title: str, figure: style.Figure) -> 
         f"{len(selection.chosen)} of {selection.candidates}, {COMPONENTS[selection.of]}; misfit of"
         f" the mean {selection.misfit:.3f}, factors at a bound: {selection.clamped}"
     )
-    narrow, ratios = style.narrow(figure), [1.6, 1.0]
+    narrow = style.narrow(figure)
+    ratios = [1.6, 1.0]
     style.begin(figure, (title, note), 6.0 if narrow else 3.8, 8.0)
     way: dict[str, Any] = {"height_ratios": ratios} if narrow else {"width_ratios": ratios}
     left, right = figure.subplots(*((2, 1) if narrow else (1, 2)), **way)
@@ -115,7 +117,8 @@ def selection_figure(selection: Selection, title: str, figure: style.Figure) -> 
 
 
 def _draw_spectra(axes: style.Axes, selection: Selection) -> None:
-    periods, wanted = selection.periods, selection.wanted
+    periods = selection.periods
+    wanted = selection.wanted
     for one, (line, colour) in zip(selection.chosen, cycle(LOOKS), strict=False):
         spectrum = one.factor * one.acceleration
         axes.plot(periods, spectrum, color=colour, ls=line, lw=0.8, label=one.name)

@@ -59,7 +59,8 @@ def draw_structure(axes: style.Axes, structure: PodiumStructure) -> None:
         axes.set_title(columns, fontsize=style.small())
         return
     thickness = 0.12 * height
-    left, top = -0.5 * width, height + thickness
+    left = -0.5 * width
+    top = height + thickness
     corners = [(left, height), (-left, height), (-left, top), (left, top)]
     axes.fill(*zip(*corners, strict=True), fc=BEAM, ec=style.BLACK, lw=0.7)
     beside = partial(axes.text, edge, va="center", fontsize=style.small())
@@ -144,7 +145,8 @@ LOWER_HEIGHT = 2.7  # of the end of a column and the restoring force [in]
 def bearing_figure(result: PushoverResult, title: str, figure: style.Figure) -> None:
     """The states of a column, an end of it enlarged, and the restoring force with the states."""
     structure = result.structure
-    beta, critical = structure.bearing.beta, structure.critical_rotation
+    beta = structure.bearing.beta
+    critical = structure.critical_rotation
     states = [0.0, *([beta] if 0.0 < beta < critical else []), critical]
     rows, columns = (2, 2) if style.narrow(figure) else (1, 3)
     style.begin(figure, (title,), 6.2)
@@ -154,7 +156,8 @@ def bearing_figure(result: PushoverResult, title: str, figure: style.Figure) -> 
     for axes, rotation in zip(cells, states, strict=False):
         draw_bearing(axes, structure, rotation)
     if len(states) < len(cells):
-        end, force = cells[len(states)], below.subplots()
+        end = cells[len(states)]
+        force = below.subplots()
     else:
         end, force = below.subplots(1, 2, width_ratios=[1.0, 2.0])
     style.blank(cells[len(states) + 1 :])
@@ -180,9 +183,12 @@ def storey_curve_figure(result: PushoverResult, title: str, figure: style.Figure
 
 def draw_force(axes: style.Axes, result: PushoverResult) -> None:
     """Force against displacement, rolling and rocking, and back where the way back is another."""
-    curve, beta = result.curve, result.structure.bearing.beta
+    curve = result.curve
+    beta = result.structure.bearing.beta
     factor, prefix = style.engineering(float(np.max(curve.force)))
-    u, F, back = curve.displacement, factor * curve.force, factor * curve.unloading_force
+    u = curve.displacement
+    F = factor * curve.force
+    back = factor * curve.unloading_force
     returns = bool(np.any(back != F))
     if returns:
         axes.axhline(0.0, color=style.GREY, lw=0.6)
@@ -218,7 +224,8 @@ def draw_force(axes: style.Axes, result: PushoverResult) -> None:
 
 def draw_lift(axes: style.Axes, result: PushoverResult) -> None:
     """Lift against displacement."""
-    u, lift = result.curve.displacement, 1e3 * result.curve.lift
+    u = result.curve.displacement
+    lift = 1e3 * result.curve.lift
     for inside, colour, _ in _phases(result):
         axes.plot(u[inside], lift[inside], color=colour, lw=2.0)
     axes.set(ylim=(0.0, None), ylabel="lift [mm]", xlabel=DISPLACEMENT)
@@ -226,7 +233,8 @@ def draw_lift(axes: style.Axes, result: PushoverResult) -> None:
 
 def _phases(result: PushoverResult) -> Iterator[tuple[NDArray[np.bool_], str, str]]:
     """Points of the curve in each phase that there is, its colour and its name."""
-    rotation, beta = result.curve.rotation, result.structure.bearing.beta
+    rotation = result.curve.rotation
+    beta = result.structure.bearing.beta
     phases = (rotation <= beta, style.BLUE, "rolling"), (rotation >= beta, style.RED, "rocking")
     yield from (phase for phase in phases if np.count_nonzero(phase[0]) > 1)
 

@@ -128,7 +128,8 @@ def drawn_into(target: Target | Axes, draw: Draw) -> Target:
     if isinstance(target, Axes):
         if (place := target.get_subplotspec()) is None:
             raise UsageError("the axes are no subplot: give a figure, or axes of plt.subplots()")
-        axes, target = target, target.figure.add_subfigure(place)
+        axes = target
+        target = target.figure.add_subfigure(place)
         axes.remove()
     if (whole := root(target)).get_layout_engine() is None:
         whole.set_layout_engine("constrained")
@@ -318,7 +319,8 @@ def width_of(text: str, size: float) -> float:
             return float(measure(line, font, line.count("$") % 2 == 0 < line.count("$"))[0])
         return float(measure(line, font, ismath=False)[0])
 
-    font, measure = FontProperties(size=size), text_to_path.get_text_width_height_descent
+    font = FontProperties(size=size)
+    measure = text_to_path.get_text_width_height_descent
     return max(map(points, text.split("\n"))) / 72.0
 
 
@@ -391,7 +393,8 @@ def legend_above(axes: Axes) -> None:
     room = _room(axes)
     if not (found := entries([axes])):
         return
-    place, engine = axes.get_subplotspec(), root(axes.figure).get_layout_engine()
+    place = axes.get_subplotspec()
+    engine = root(axes.figure).get_layout_engine()
     if engine is None and place is not None and place.rowspan.start:
         axes.legend(fontsize=small(), loc="best")  # nothing makes room below other axes
         return

@@ -80,7 +80,8 @@ def comparison(study: StoredPoints, options: ComparisonOptions) -> Found:
     intensity = study.table.intensity(options.measure, options.period, options.damping)
     observed = layout.study.observed
     assert observed is not None, "`unpaired` was asked before"
-    pairs, systems = observed_pairs(layout, observed), grouping(study.table)
+    pairs = observed_pairs(layout, observed)
+    systems = grouping(study.table)
     compared = []
     for system in systems.groups:
         of_system = np.isin(pairs.points, system.every)
@@ -107,7 +108,8 @@ def _compared(
     table = system.table
     results = table.overturned if name == OVERTURNED else demand(table, table.columns[name])
     known = ~table.failed[points]
-    points, observed = points[known], observed[known]
+    points = points[known]
+    observed = observed[known]
     computed = np.asarray(results[points], dtype=float)
     found: Endings | Maxima
     if name != OVERTURNED:
@@ -130,7 +132,8 @@ def _tables(
     """Endings, maxima, and every pair: hits and misses by record."""
     rows: dict[str, list[tuple[Any, ...]]] = {"": [], "_maxima": [], "_pairs": []}
     for each in compared:
-        found, values = each.found, each.values
+        found = each.found
+        values = each.values
         if isinstance(found, Maxima):
             ratio = found.counted, found.overturned, found.median, found.dispersion
             rows["_maxima"].append((values, each.quantity, *ratio, each.failed))
@@ -182,7 +185,8 @@ def comparison_figure(
 
 def _draw_outcomes(axes: style.Axes, each: Compared, found: Endings, intensity: Intensity) -> str:
     """Both shares by intensity; below and above, the outcomes that differ."""
-    at, agreed = intensity.values[each.points], found.agreed
+    at = intensity.values[each.points]
+    agreed = found.agreed
     for name, bins, colour, marker in (
         ("observed", found.observed, style.BLACK, "o"),
         ("computed", found.computed, style.BLUE, "s"),
@@ -204,7 +208,8 @@ def _draw_outcomes(axes: style.Axes, each: Compared, found: Endings, intensity: 
 
 def _draw_maxima(axes: style.Axes, each: Compared, found: Maxima) -> str:
     """Computed over observed maxima; overturned histories at the upper edge."""
-    observed, computed = each.observed, each.computed
+    observed = each.observed
+    computed = each.computed
     drawn = np.isfinite(computed) & (computed > 0.0) & (observed > 0.0)
     axes.plot(observed[drawn], computed[drawn], ls="", marker="o", ms=3.2, color=style.BLUE)
     if drawn.any():
@@ -246,16 +251,19 @@ def observed_pairs(layout: StudyPoints, observed: Observed) -> Pairs:
         for place, row in enumerate(observed.rows)
         if row.record in records
     }
-    points, places = [], []
+    points = []
+    places = []
     for group in groups(layout, observed.keys):
         system = tuple(map(comparable, observed.keys, group.values))
         row_of = np.array([rows.get((n, system), -1) for n in range(len(layout.records))])
         place = row_of[layout.places.record[group.points]]
         points.append(group.points[place >= 0])
         places.append(place[place >= 0])
-    found, row = np.concatenate(points), np.concatenate(places)
+    found = np.concatenate(points)
+    row = np.concatenate(places)
     order = np.argsort(found, kind="stable")
-    found, row = found[order], row[order]
+    found = found[order]
+    row = row[order]
     values = np.array([seen.values for seen in observed.rows]).T[:, row]
     notes = []
     if unused := len(observed.rows) - len(np.unique(row)):
@@ -343,7 +351,8 @@ class Paired(NamedTuple):
 
 def rotation(study: StoredPoints, options: RotationOptions) -> Found:
     """Largest rotations over alpha of each system and of the reference (paper, Figure 7)."""
-    table, layout = study.table, study.table.layout
+    table = study.table
+    layout = study.table.layout
     leading = leading_keys(layout)
     key = options.key or leading[-1]
     systems = groups(layout, [key])
@@ -357,11 +366,13 @@ def rotation(study: StoredPoints, options: RotationOptions) -> Found:
         shown[within] = []
         for system in (each for each in systems if each is not reference):
             kept = np.isin(system.points, within.every)
-            mine, theirs = system.points[kept], reference.points[kept]
+            mine = system.points[kept]
+            theirs = reference.points[kept]
             bad = table.failed[mine] | table.failed[theirs]
             pair = Paired(system.values[0], mine[~bad], theirs[~bad], int(bad.sum()))
             shown[within].append(pair)
-    pairs, count = [each for group in shown.values() for each in group], len(systems) - 1
+    pairs = [each for group in shown.values() for each in group]
+    count = len(systems) - 1
     alpha = np.array([properties.alpha for properties in layout.properties])
     ratio = table.columns["max_rotation"] / alpha[np.arange(len(table)) // layout.points_of_system]
     ratio = np.where(table.overturned, np.inf, ratio)
@@ -384,7 +395,8 @@ def rotation(study: StoredPoints, options: RotationOptions) -> Found:
 
     # One row a pair; a rotation is empty where the structure overturned.
     factors = len(layout.scales) > 1 and layout.plan.measure is None
-    rows, names = [], list[str]()
+    rows = []
+    names = list[str]()
     for each in pairs:
         for mine, theirs in zip(each.points.tolist(), each.references.tolist(), strict=True):
             named = layout.described(mine) | ({INTENSITY: layout[mine].scale} if factors else {})
@@ -414,14 +426,16 @@ def unknown_reference(
     _document: Document, axes: Sequence[Axis], request: ReportRequest
 ) -> Iterator[Fault]:
     """A reference that its key does not take, or no key at all."""
-    options, report = request.options, f"the report {request.kind}"
+    options = request.options
+    report = f"the report {request.kind}"
     assert isinstance(options, RotationOptions), "requests have the options of their kind"
     of_key = [axis for axis in axes if options.key is None or options.key in axis.keys][-1:]
     if not of_key:
         yield Fault(request.path, f"{report} needs a varied key: systems to compare")
         return
     place = of_key[0].keys.index(options.key) if options.key else 0
-    key, values = of_key[0].keys[place], [row[place] for row in of_key[0].rows]
+    key = of_key[0].keys[place]
+    values = [row[place] for row in of_key[0].rows]
     if len({repr(value) for value in values}) < 2:
         yield Fault(
             request.path,

@@ -210,7 +210,8 @@ class Fragilities:
 
     def placed(self, curve: Fragility) -> tuple[str, str, int, int]:
         """Panel, name and place among how many: systems in panels of states, or the reverse."""
-        system, limit = labels(self.systems.keys, curve.values), curve.limit.title
+        system = labels(self.systems.keys, curve.values)
+        limit = curve.limit.title
         if len(self.systems.groups) > len(panels.COLOURS):
             return system, limit, self.limits.index(curve.limit), len(self.limits)
         return limit, system, curve.place, len(self.systems.groups)
@@ -232,7 +233,8 @@ class Fragilities:
     ) -> Callable[[str], style.Draw]:
         """A figure of panels by their titles."""
         x_label = f"{measure_name(self.intensity)} [{self.intensity.unit}]"
-        row, shown = 2 if len(groups) == 4 else 3, [*groups.values()]
+        row = 2 if len(groups) == 4 else 3
+        shown = [*groups.values()]
         return panels.panel_figure([*groups], shown, draw, in_row=row, x_label=x_label, **words)
 
     def told(self, notes: Iterable[tuple[Fragility, str | None]]) -> Iterator[str]:
@@ -267,7 +269,8 @@ def _fragility(
     limit: LimitState,
 ) -> Fragility:
     place, group = placed
-    layout, points = table.layout, group.points
+    layout = table.layout
+    points = group.points
     kept = points[measured.values[points] > 0.0]
     intensity = measured.values[kept]
     beyond = exceeds(table, limit.result, limit.threshold or 0.0)[kept]
@@ -284,8 +287,10 @@ def _fragility(
     bootstrap = Bootstrap(options.resamples, options.confidence, options.seed)
     fit = lognormal_fit(intensity, beyond, layout.clusters[kept], weight, grid, bootstrap, level)
     counts = len(kept), int(beyond.sum()), int(table.overturned[kept].sum())
-    total, largest = float(options.dispersion.total(fit.beta)), float(intensity.max(initial=0.0))
-    seen, failed = binned(table, kept, intensity, beyond), len(group.every) - len(kept)
+    total = float(options.dispersion.total(fit.beta))
+    largest = float(intensity.max(initial=0.0))
+    seen = binned(table, kept, intensity, beyond)
+    failed = len(group.every) - len(kept)
     return Fragility(group.values, limit, fit, grid, seen, *counts, failed, place, total, largest)
 
 
@@ -322,11 +327,13 @@ def margins(study: StoredPoints, options: FragilityOptions, found: Fragilities) 
     # P695 (2009), chapter 7; its table 7-3 has the ACMR of probabilities of 10 and 20 %.
     from scipy.special import ndtr, ndtri
 
-    factor, total = options.spectral_shape, options.dispersion.total
+    factor = options.spectral_shape
+    total = options.dispersion.total
     rows = []
     for name, value in options.intensities(study.table.layout).items():
         for curve in found.curves:
-            fit, (medians, betas) = curve.fit, curve.fit.resampled
+            fit = curve.fit
+            (medians, betas) = curve.fit.resampled
             cmr = fit.median / value
             below, resampled = (-np.log(factor * of) for of in (cmr, medians / value))
             ends = band(ndtr(resampled / total(betas)), options.confidence)
@@ -343,7 +350,9 @@ def margins(study: StoredPoints, options: FragilityOptions, found: Fragilities) 
 def fragility(study: StoredPoints, options: FragilityOptions) -> Found:
     """Curves, and the data that they go through."""
     found = fragilities(study, options)
-    keys, measure, unit = found.systems.keys, found.intensity.name, found.intensity.unit
+    keys = found.systems.keys
+    measure = found.intensity.name
+    unit = found.intensity.unit
     curves = [((curve.values, curve.limit.label), curve) for curve in found.curves]
     fit_heads = (
         f"limit, intensity, method, median [{unit}], median_low [{unit}], median_high [{unit}],"
@@ -409,7 +418,9 @@ def fragility_figure(report: Fragilities) -> Callable[[str], style.Draw]:
 
     def draw(axes: style.Axes, curves: list[Fragility]) -> None:
         for curve in curves:
-            fit, grid, seen = curve.fit, curve.grid, curve.observed
+            fit = curve.fit
+            grid = curve.grid
+            seen = curve.observed
             _, name, place, count = report.placed(curve)
             look = panels.look(place, count) | {"ms": 3.2}
             dashes = "--" if fit.method == "penalised" else "-"

@@ -86,7 +86,8 @@ def storey_shear(study: StoredPoints, options: StoreyShearOptions) -> Found:
             axes.stairs(values, edges, orientation="horizontal", **look)
         axes.set_ylim(0.0, len(edges) - 1)
         axes.locator_params(axis="y", integer=True)
-        survivors, every = len(profile.histories.survivors), len(profile.histories)
+        survivors = len(profile.histories.survivors)
+        every = len(profile.histories)
         text = f"{survivors} survivors{panels.break_if_narrow(axes)}of {every}"
         panels.corner(axes, "right", "top", text)
 
@@ -107,7 +108,8 @@ def storey_shear(study: StoredPoints, options: StoreyShearOptions) -> Found:
 
 def profile_of(study: StoredPoints, group: Histories) -> Profile | None:
     """The profile of a group; None without storeys."""
-    table, layout = study.table, study.table.layout
+    table = study.table
+    layout = study.table.layout
     systems = np.unique(group.every // layout.points_of_system)
     n = layout.properties[systems[0]].storeys
     if n == 0:

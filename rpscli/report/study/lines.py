@@ -89,8 +89,10 @@ class Panel(NamedTuple):
 
 def lines(study: StoredPoints, options: LinesOptions) -> Found:
     """The lines of every series of every panel; a statistic where points share an abscissa."""
-    layout, together = study.table.layout, axis_keys(study.table.layout, options.x)
-    panel_keys, series = options.panels or (), options.series
+    layout = study.table.layout
+    together = axis_keys(study.table.layout, options.x)
+    panel_keys = options.panels or ()
+    series = options.series
     if series is None:
         series = own_keys(layout, (*panel_keys, *together))
     names = (*options.result, *options.dashed)
@@ -104,7 +106,8 @@ def lines(study: StoredPoints, options: LinesOptions) -> Found:
     every = [line for panel in shown for line in panel.lines]
     single = all(c + o < 2 for x in every for c, o in zip(x.counted, x.overturned, strict=True))
     statistic = "" if single else statistic_words(options.statistic)
-    x_name, series_keys = shown_keys(layout, (options.x,))[0], shown_keys(layout, series)
+    x_name = shown_keys(layout, (options.x,))[0]
+    series_keys = shown_keys(layout, series)
     rows = [
         (
             (*panel.values, *line.values), line.result, _unit(line.result), line.x[i],
@@ -161,7 +164,8 @@ def _lines(
     columns: Mapping[str, Array], options: LinesOptions, series: Histories, name: str
 ) -> list[Line]:
     """Lines of one result of one series: one, or one for each point if results are lists."""
-    x, y = columns.get(options.x), columns.get(name)
+    x = columns.get(options.x)
+    y = columns.get(name)
     points: list[list[Any]] = [[]]
     if y is not None and x is not None:
         for n in series.every.tolist():
@@ -199,7 +203,8 @@ def _draw(
     names = dict(zip(results, words, strict=True))
     dashed = [line for line in panel.lines if line.result in options.dashed]
     paths = {tuple(plain(y) for y in line.y) for line in dashed}
-    among, count = len(dashed) if len(paths) == 1 else 1, max(len(series), len(results))
+    among = len(dashed) if len(paths) == 1 else 1
+    count = max(len(series), len(results))
     panels.large_axis(axes.xaxis, _unit(options.x))
     panels.large_axis(axes.yaxis, _unit(results[0]))
     for line in panel.lines:
@@ -211,7 +216,8 @@ def _draw(
             x = range(len(line.x))
             axes.set_xticks(x, [plain(value) for value in line.x])
         parts = (labels(series_keys, line.values), names[line.result])
-        name, shade = ", ".join(filter(None, parts)) or None, panels.colour(place, count)
+        name = ", ".join(filter(None, parts)) or None
+        shade = panels.colour(place, count)
         look: dict[str, Any] = {"ls": _staggered(place, among), "color": shade}
         if line.result not in options.dashed:
             look = {"ls": ("-", "-.", ":")[options.result.index(line.result) % 3]}
@@ -266,7 +272,8 @@ def unknown_results(
     document: Document, axes: Sequence[Axis], request: ReportRequest
 ) -> Iterator[Fault]:
     """Results that the analysis does not have."""
-    options, analysis = request.options, document.content.get("analysis", "timehistory")
+    options = request.options
+    analysis = document.content.get("analysis", "timehistory")
     assert isinstance(options, LinesOptions), "requests have the options of their kind"
     varied = {key for axis in axes for key in axis.keys} | {"record", "scale"}
     named = [("x", options.x)] if options.x not in varied else []
@@ -317,7 +324,8 @@ def ida(study: StoredPoints, options: IdaOptions) -> Found:
         spread = np.column_stack([fractiles(column, THREE) for column in curves.T])
         shown.append(Ida(group.values, levels, np.array([*map(_height, levels)]), curves, spread))
     (name,) = shown_keys(table.layout, (INTENSITY,))
-    of, level_name = SCALARS["timehistory"][options.result], f"{name} [{unit_of(name)}]"
+    of = SCALARS["timehistory"][options.result]
+    level_name = f"{name} [{unit_of(name)}]"
     three = [f"{options.result}_{round(100 * share)} [{of.unit}]" for share in THREE]
     heads = f"{level_name}, {', '.join(three)}, counted, overturned, failed"
     rows = [
@@ -368,7 +376,8 @@ def _height(level: Histories) -> float:
 
 def _run_out(values: Array, levels: Array, edge: float) -> tuple[list[float], list[float]]:
     """A curve from the origin to the first level at which it leaves the frame."""
-    x, y = [0.0], [0.0]
+    x = [0.0]
+    y = [0.0]
     for value, level in zip(values.tolist(), levels[1:].tolist(), strict=True):
         if np.isinf(value):
             # Flat at the last level that stood: a little more, and it overturns.

@@ -27,7 +27,8 @@ COLOURS = (
 )  # fmt: skip
 MARKERS = "osD^vP*X"
 MOST_TICKS = 5  # on each axis of a panel: ticks take most of the time of drawing
-NO_PANEL, LEAST_HEIGHT = 1.3, 0.5
+NO_PANEL = 1.3
+LEAST_HEIGHT = 0.5
 """Of a given figure what is no panel, and of each panel without its title [in]."""
 
 

@@ -118,9 +118,13 @@ def with_band(value: float, low: float, high: float) -> str:
 def _readable(columns: Sequence[Column], labels: Mapping[str, str]) -> Table:
     """The columns that have labels, or all; a value and the ends of its band are one cell."""
     known = {column.name: list(column.values) for column in columns}
-    heads, cells, words = [], [], 0
+    heads = []
+    cells = []
+    words = 0
     for column in columns:
-        name, unit, values = column.name, column.unit, known[column.name]
+        name = column.name
+        unit = column.unit
+        values = known[column.name]
         if name.endswith(ENDS) or (labels and name not in labels):
             continue
         own = labels.get(name) or symbol(name).replace("_", " ")

@@ -99,8 +99,11 @@ def risk(study: StoredPoints, options: RiskOptions) -> Found:
     found = fragile.fragilities(study, options)
     risks = [risk_of(curve, hazard, options) for curve in found.curves]
     known = [each for each in risks if each.fragility.fit.fitted]
-    keys, measured, unit = found.systems.keys, found.intensity.name, found.intensity.unit
-    years, total = options.years, bool(options.dispersion.given)
+    keys = found.systems.keys
+    measured = found.intensity.name
+    unit = found.intensity.unit
+    years = options.years
+    total = bool(options.dispersion.given)
     life = f"probability_in_{years:g}_years"
     # Name, unit, what readers see above it, if they see it, and value of each column.
     columns: list[tuple[str, str, str | None, Callable[[Risk], object]]] = [
@@ -159,12 +162,16 @@ def risk_of(fragility: Fragility, hazard: Hazard, options: RiskOptions) -> Risk:
     """The annual rate of one fragility, with what contributes to it."""
     low, high = hazard.intensity[[0, -1]]
     edges = np.append(np.geomspace(low, high, BINS + 1), math.inf)
-    fit, total, observed = fragility.fit, fragility.total, fragility.observed
-    nan, of_shares = math.nan, math.nan
+    fit = fragility.fit
+    total = fragility.total
+    observed = fragility.observed
+    nan = math.nan
+    of_shares = math.nan
     if observed.share.any():
         of_shares = rates.rate_of_shares(hazard, observed.intensity, observed.share)
     if not fit.fitted:
-        none, lost = np.full(BINS + 1, nan), (nan,) * len(hazard.fractiles)
+        none = np.full(BINS + 1, nan)
+        lost = (nan,) * len(hazard.fractiles)
         return Risk(fragility, nan, NOTHING, edges, none, nan, of_shares, lost, nan, ())
     at = np.append(edges[:-1], max(fragility.largest, low))
     above = rates.rates_above(hazard, fit.median, total, at)
@@ -173,7 +180,8 @@ def risk_of(fragility: Fragility, hazard: Hazard, options: RiskOptions) -> Risk:
         annual_rate(hazard, *pair) if 0.0 < pair[0] < math.inf else nan
         for pair in zip(medians, options.dispersion.total(betas), strict=True)
     ]
-    rate, curves = float(above[0]), [hazard.fractile(share) for share in hazard.fractiles]
+    rate = float(above[0])
+    curves = [hazard.fractile(share) for share in hazard.fractiles]
     return Risk(
         fragility,
         rate,
@@ -190,7 +198,8 @@ def risk_of(fragility: Fragility, hazard: Hazard, options: RiskOptions) -> Risk:
 
 def _notes(fragility: Fragility, hazard: Hazard, rate: float, of_shares: float) -> Iterator[str]:
     """Doubts about one rate, and about that of the shares."""
-    fit, weakest = fragility.fit, fragility.observed.intensity[:1]
+    fit = fragility.fit
+    weakest = fragility.observed.intensity[:1]
     unseen = fragility.observed.share[0] * (hazard.rate[0] - rates.exceeded(hazard, weakest)[0])
     if unseen > CLEARLY * of_shares:
         yield (
@@ -235,7 +244,8 @@ def risk_figure(
 ) -> Callable[[str], style.Draw]:
     """One panel a limit state: what share of its rate comes from which intensities."""
     groups = found.in_panels(risks, lambda each: each.fragility)
-    rows, (low, high) = min(max(map(len, groups.values())), MOST_BANDS), _shown(risks)
+    rows = min(max(map(len, groups.values())), MOST_BANDS)
+    (low, high) = _shown(risks)
     last = float(risks[0].edges[-2])
 
     def line(axes: style.Axes) -> float:

@@ -110,7 +110,8 @@ class Cloud(NamedTuple):
 
 def scatter(study: StoredPoints, options: ScatterOptions) -> Found:
     """Every history that stood."""
-    table, series = study.table, options.series or ()
+    table = study.table
+    series = options.series or ()
     both = ordinate(table, options.x), ordinate(table, options.y)
     found = grouping(table, options.panels, series)
     clouds = _clouds(found, both, ~table.overturned)
@@ -129,7 +130,8 @@ def scatter(study: StoredPoints, options: ScatterOptions) -> Found:
 
 def demand(study: StoredPoints, options: DemandOptions) -> Found:
     """Histories that lifted off and stood, with a curve in each panel."""
-    table, leading = study.table, leading_keys(study.table.layout)
+    table = study.table
+    leading = leading_keys(study.table.layout)
     series = options.series if options.series is not None else leading[1:-1]
     x, y = both = [ordinate(table, name) for name in ("rotation_ratio", "base_shear_ratio")]
     found = grouping(table, options.panels, series)
@@ -153,7 +155,8 @@ def demand(study: StoredPoints, options: DemandOptions) -> Found:
         for cloud in clouds
     ]
     heads = f"{', '.join(COEFFICIENTS)}, counted, at_rest, overturned, failed, note"
-    notes, without = list(found.notes), [cloud.note for cloud in clouds if cloud.note]
+    notes = list(found.notes)
+    without = [cloud.note for cloud in clouds if cloud.note]
     if without:
         notes.append(f"{len(without)} of {len(clouds)} panels have no curve: {without[0]}")
     figure = _figure(table, found, clouds, both, series, curves=True)
@@ -189,7 +192,8 @@ def _figure(
         panels.large_axis(axes.xaxis, x.unit)
         panels.large_axis(axes.yaxis, y.unit)
         for place, part in enumerate(cloud.shown.parts(series)):
-            at, name = part.points, labels(series_keys, part.values) or None
+            at = part.points
+            name = labels(series_keys, part.values) or None
             look: dict[str, Any] = {"ls": "", "ms": 3.0, "mew": 0.0, "alpha": 0.7, "label": name}
             axes.plot(x.values[at], y.values[at], **panels.look(place, most), **look)
         if curves:
@@ -215,7 +219,8 @@ def _draw_curve(
     axes: style.Axes, fit: Bilinear | None, x: Array, highest: float, top: float
 ) -> None:
     """The curve as far as its points (m,) go, with its numbers where it leaves room for them."""
-    apart, text = panels.break_if_narrow(axes), "no curve: too few points"
+    apart = panels.break_if_narrow(axes)
+    text = "no curve: too few points"
     place = ("right", "bottom")
     if fit is not None:
         ends = np.array([x.min(), fit.break_x, x.max()])
@@ -290,7 +295,9 @@ LOOKS = (
 
 def overturning_spectrum(study: StoredPoints, options: SpectrumOptions) -> Found:
     """Amplitude and frequency of every point, made dimensionless by its own system."""
-    table, layout, series = study.table, study.table.layout, options.series or ()
+    table = study.table
+    layout = study.table.layout
+    series = options.series or ()
     frequency, amplitude = both = _pulses_of(study, options)
     found = grouping(table, options.panels, (*series, INTENSITY, "record"))
     series_keys = shown_keys(layout, series)
@@ -306,7 +313,8 @@ def overturning_spectrum(study: StoredPoints, options: SpectrumOptions) -> Found
             boundary = _boundary(part, frequency, amplitude)
             if several:
                 # What overturned and the least that did; survivors would hide the other series.
-                fell, name = part.points[part.fallen], labels(series_keys, part.values)
+                fell = part.points[part.fallen]
+                name = labels(series_keys, part.values)
                 look = panels.look(place, most)
                 faint = look | {"ls": "", "ms": 2.6, "mew": 0.0, "alpha": 0.35}
                 axes.plot(frequency[fell], amplitude[fell], **faint)
@@ -340,12 +348,14 @@ def overturning_spectrum(study: StoredPoints, options: SpectrumOptions) -> Found
 
 def _pulses_of(study: StoredPoints, options: SpectrumOptions) -> tuple[Array, Array]:
     """(points,) frequency of the pulse over p, and its amplitude over g tan(alpha)."""
-    table, layout = study.table, study.table.layout
+    table = study.table
+    layout = study.table.layout
     pulses: dict[RecordRequest, PulseSection] = {}
     frequency, amplitude = np.full((2, len(table)), np.nan)
     for point in layout:
         assert point.record is not None, "points of histories have a record"
-        of, number = layout.properties[point.system], point.number
+        of = layout.properties[point.system]
+        number = point.number
         if (pulse := pulses.get(point.record)) is None:
             pulse = pulses[point.record] = pulse_of(point.record.source, options)
         frequency[number] = 2.0 * math.pi / pulse.period / of.frequency_parameter
@@ -357,7 +367,8 @@ def _pulses_of(study: StoredPoints, options: SpectrumOptions) -> tuple[Array, Ar
 
 def _boundary(part: Histories, frequency: Array, amplitude: Array) -> tuple[Array, Array]:
     """Frequency ratios, and the least amplitude ratios that overturned; NaN where none did."""
-    fallen, ratios = part.points[part.fallen], np.unique(frequency[part.every])
+    fallen = part.points[part.fallen]
+    ratios = np.unique(frequency[part.every])
     least = [amplitude[fallen[frequency[fallen] == r]].min(initial=np.inf) for r in ratios]
     return ratios, np.where(np.isfinite(least), least, np.nan)
 
@@ -426,23 +437,27 @@ def bilinear_fit(x: Array, y: Array) -> Bilinear | None:
     all counts (D. J. Hudson, J. Am. Stat. Assoc. 61, 1966).
     """
     order = np.argsort(x, kind="stable")
-    x, y = np.asarray(x)[order], np.asarray(y)[order]
+    x = np.asarray(x)[order]
+    y = np.asarray(y)[order]
     ends = np.unique(x)
     if len(ends) < 2 * FEWEST:
         return None
     inner = ends[FEWEST - 1 : len(ends) - FEWEST + 1]
     # n, sums of x, y, x^2, x y and y^2 over the points up to each, about the mean of all.
     middle = float(x.mean())
-    centred, level = x - middle, y - y.mean()
+    centred = x - middle
+    level = y - y.mean()
     columns = [np.ones_like(x), centred, level, centred**2, centred * level, level**2]
-    running, total = np.cumsum(columns, axis=1), np.sum(columns, axis=1)[:, None]
+    running = np.cumsum(columns, axis=1)
+    total = np.sum(columns, axis=1)[:, None]
 
     def sums(breaks: Array) -> tuple[Array, Array]:
         """(6, breaks) up to and beyond each break."""
         before = running[:, np.searchsorted(x, breaks, side="right") - 1]
         return before, total - before
 
-    left, right = inner[:-1], inner[1:]
+    left = inner[:-1]
+    right = inner[1:]
     (a, b), (c, d) = map(_lines, sums(left))
     with np.errstate(divide="ignore", invalid="ignore"):
         crossing = middle + (c - a) / (b - d)
@@ -462,8 +477,11 @@ def _lines(sums: Array) -> tuple[Array, Array]:
 
 def _squares(k: Array, before: Array, after: Array) -> Array:
     """Sum of squares of the best a + b min(x, k) + c max(x - k, 0), at given breaks k."""
-    (n, x, y, xx, xy, yy), (m, u, v, uu, uv, vv) = before, after
-    low, beyond, both = x + m * k, u - m * k, k * (u - m * k)
+    (n, x, y, xx, xy, yy) = before
+    (m, u, v, uu, uv, vv) = after
+    low = x + m * k
+    beyond = u - m * k
+    both = k * (u - m * k)
     rows = (n + m, low, beyond), (low, xx + m * k * k, both), (beyond, both, uu - k * (u + beyond))
     matrix = np.moveaxis(np.array(rows), 2, 0)
     load = np.stack([y + v, xy + k * v, uv - k * v], axis=1)

@@ -58,7 +58,8 @@ def share_columns(name: str, shares: Sequence[Share]) -> list[Column]:
 
 def summary_columns(summary: Summary) -> list[Column]:
     """`statistics.csv`: one row a system and intensity; ``inf`` where so many overturned."""
-    rows, overturned = summary.rows, [row.overturned for row in summary.rows]
+    rows = summary.rows
+    overturned = [row.overturned for row in summary.rows]
     columns = key_columns(summary.keys, [row.values for row in rows])
     columns += counted_columns(overturned)
     columns.append(Column("failed", "-", [row.failed for row in rows]))
@@ -95,9 +96,11 @@ def demand_columns(summary: Summary) -> list[Column]:
 
 def verdict_columns(keys: Sequence[str], verdicts: Sequence[Verdict]) -> list[Column]:
     """`verdicts.csv`: one row a limit of each system and intensity."""
-    limits, results = [], []
+    limits = []
+    results = []
     for verdict in verdicts:
-        of, found = verdict.condition, verdict.fractile
+        of = verdict.condition
+        found = verdict.fractile
         bounds = (None, of.limit) if of.from_below else (of.limit, None)
         share = of.share if of.fractile is None else None
         at = None if found is None else reached(found)
@@ -167,7 +170,8 @@ def verdict_lines(keys: Sequence[str], verdicts: Sequence[Verdict], of: str = ""
     lines = []
     for verdict in filter(lambda verdict: verdict.fails, verdicts):
         what = "limit exceeded" if verdict.exceeded else "limit not shown to be met"
-        system, limit = labels(keys, verdict.values), verdict.condition
+        system = labels(keys, verdict.values)
+        limit = verdict.condition
         where = f" ({system})" if system else ""
         asked = f"{what}: {of}{limit.name}: {requirement_text(limit)}"
         lines.append(f"{asked}; {verdict_text(verdict)}{where}, {limit.source}")
@@ -178,7 +182,8 @@ def summary_tables(summary: Summary | None, wanted: set[str] | None = None) -> I
     """Outcomes; then median, 84 % fractile and largest value of demands: the main or some."""
     if summary is None:
         return
-    rows, systems = summary.rows, [row.values for row in summary.rows]
+    rows = summary.rows
+    systems = [row.values for row in summary.rows]
     behind = [row.overturned.by for row in rows if row.overturned.behind][:1]
     outcomes = []
     for row in rows:

@@ -32,7 +32,8 @@ from rpscli.sweep.table import Array, StoredPoints, groups, leading_keys
 MOST_ROWS = 60
 MOST_COLUMNS = 12
 SMALLER = 0.75  # second texts of cells, as a part of small letters
-LEAST_WIDTH, LINE = 0.55, 0.13  # of a column, and height of a line of its labels [in]
+LEAST_WIDTH = 0.55  # of a column, and height of a line of its labels [in]
+LINE = 0.13
 
 
 class OverturningOptions(ReportOptions):
@@ -77,7 +78,8 @@ def _share(histories: Histories) -> Cell:
 
 def _statistic(histories: Histories, values: Array, wanted: float | str, largest: float) -> Cell:
     """A statistic of a demand, whose largest value of what stood is known."""
-    found, fallen = histories.statistic(values, wanted), histories.overturned.number
+    found = histories.statistic(values, wanted)
+    fallen = histories.overturned.number
     numbers = {"": reached(found), ";counted": len(histories), ";overturned": fallen}
     text = "-" if np.isnan(found) else "overturned" if np.isinf(found) else f"{found:.3g}"
     shade = 0.8 if np.isinf(found) else float(0.6 * found / largest)
@@ -86,14 +88,19 @@ def _statistic(histories: Histories, values: Array, wanted: float | str, largest
 
 def table_report(study: StoredPoints, options: TableOptions) -> Found:
     """Each system, at each intensity unless the study says otherwise."""
-    table, layout = study.table, study.table.layout
+    table = study.table
+    layout = study.table.layout
     make: Callable[[Histories], Cell] = _share
-    result, unit, words = "overturned", "-", "overturned: share, number, 95 % interval"
+    result = "overturned"
+    unit = "-"
+    words = "overturned: share, number, 95 % interval"
     if options.statistic != "overturned":
-        quantity, values = SCALARS["timehistory"][options.result], table.columns[options.result]
+        quantity = SCALARS["timehistory"][options.result]
+        values = table.columns[options.result]
         stood = values[np.isfinite(values) & ~table.overturned]
         largest = stood.max(initial=0.0) or 1.0
-        result, unit = options.result, quantity.unit
+        result = options.result
+        unit = quantity.unit
         words = f"{quantity.in_unit(unit)}: {statistic_words(options.statistic)}"
         make = partial(_statistic, values=values, wanted=options.statistic, largest=largest)
     elif behind := Histories(table, (), np.arange(len(table))).overturned.behind:
@@ -101,7 +108,8 @@ def table_report(study: StoredPoints, options: TableOptions) -> Found:
     across = options.columns
     if across is None:
         across = tuple(key for key in leading_keys(layout)[-1:] if key not in (options.rows or ()))
-    rows, column_keys = grouping(table, options.rows, across), shown_keys(layout, across)
+    rows = grouping(table, options.rows, across)
+    column_keys = shown_keys(layout, across)
     columns = [group.values for group in groups(layout, across)]
     nothing = make(Histories(table, (), np.empty(0, dtype=np.int64)))
     cells = []
@@ -125,7 +133,8 @@ def table_report(study: StoredPoints, options: TableOptions) -> Found:
     written.append(Column("failed", "-", [row.failed for row in rows.groups]))
 
     heads = ["\n".join(map(label, column_keys, values)) or "all" for values in columns]
-    names, before = [], list[str]()
+    names = []
+    before = list[str]()
     for row in rows.groups:  # those that begin like the row before tell how they go on
         parts = list(map(label, rows.keys, row.values))
         same = takewhile(lambda pair: len({*pair}) == 1, zip(parts, before, strict=False))
@@ -173,7 +182,8 @@ def _picture(
         [style.folded(cell.texts[1], 0.95 * room / SMALLER, size) for cell in row] for row in drawn
     ]
     height = max(0.19 + 0.11 * max(map(lines, below)), 0.1 + LINE * lines(names))
-    other, most = 0.6 + LINE * lines(few), len(names)
+    other = 0.6 + LINE * lines(few)
+    most = len(names)
     if style.given(figure):
         most = min(most, max(1, int((style.inches(figure)[1] - other) / height)))
     counts = ("rows", most, len(cells)), ("columns", columns, len(heads))
@@ -184,9 +194,11 @@ def _picture(
     axes.pcolormesh(shades, cmap="Blues", vmin=0.0, vmax=1.0, alpha=0.75)
     inside: dict[str, Any] = {"ha": "center", "in_layout": False}
     for y, x in np.ndindex(most, columns):
-        first, further = drawn[y][x].texts[0], below[y][x]
+        first = drawn[y][x].texts[0]
+        further = below[y][x]
         up = 0.055 * lines([further]) * bool(further)
-        fits, at = size * min(1.0 / SMALL, 0.95 * room / wide([first])), y + 0.5
+        fits = size * min(1.0 / SMALL, 0.95 * room / wide([first]))
+        at = y + 0.5
         axes.text(x + 0.5, at - (up - 0.07) / height, first, va="bottom", fontsize=fits, **inside)
         axes.text(
             x + 0.5, at - (up - 0.08) / height, further, va="top", fontsize=SMALLER * size,

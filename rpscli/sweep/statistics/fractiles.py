@@ -17,7 +17,8 @@ from rpscli.sweep.table import Array, Indices, Outcomes
 CONFIDENCE = 0.95
 LEAST_SHOWN = 5e-4
 """Lower ends of intervals below this are shown as 0."""
-LOW, HIGH = 0.16, 0.84
+LOW = 0.16
+HIGH = 0.84
 THREE = (LOW, 0.50, HIGH)
 """Fractiles of bands about a median."""
 ROUNDING = 1e-9
@@ -85,7 +86,8 @@ def clustered(happened: NDArray[np.bool_], cluster: Indices, by: By = "recording
     nothing where none or all are counted; so two more are taken in for it, one in which it happened
     in all histories, and one in which it happened in none.
     """
-    number, of = int(happened.sum()), len(happened)
+    number = int(happened.sum())
+    of = len(happened)
     names, place = np.unique(cluster, return_inverse=True)
     if len(names) == of:
         return share(number, of)._replace(by=by)
@@ -94,7 +96,8 @@ def clustered(happened: NDArray[np.bool_], cluster: Indices, by: By = "recording
     mean = of / len(names)
     counts = np.append(np.bincount(place, happened), [mean, 0.0])
     sizes = np.append(sizes, [mean, mean])
-    total, several = sizes.sum(), len(sizes)
+    total = sizes.sum()
+    several = len(sizes)
     p = counts.sum() / total
     scatter = several / (several - 1.0) * float(np.sum((counts - p * sizes) ** 2)) / total**2
     effective = min(max(of * p * (1.0 - p) / total / scatter, alike), of)

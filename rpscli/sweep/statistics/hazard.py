@@ -131,7 +131,8 @@ def _number(cell: str) -> float:
 
 def exceeded(hazard: Hazard, intensities: Array) -> Array:
     """(n,) how often a year the ground motion is above intensities [1/year]."""
-    x, height = np.log(hazard.intensity), np.log(hazard.rate)
+    x = np.log(hazard.intensity)
+    height = np.log(hazard.rate)
     at = np.log(intensities)
     first = np.clip(np.searchsorted(x, at, side="right") - 1, 0, len(x) - 2)
     slopes = np.diff(height) / np.diff(x)
@@ -162,7 +163,8 @@ def rates_above(hazard: Hazard, median: float, beta: float, intensities: Array) 
     """(n,) how often a year motions above intensities of the curve exceed the limit [1/year]."""
     from scipy.special import ndtr
 
-    x, height = np.log(hazard.intensity), np.log(hazard.rate)
+    x = np.log(hazard.intensity)
+    height = np.log(hazard.rate)
     slopes = -np.diff(height) / np.diff(x)
     at = np.log(intensities)
     first = np.minimum(np.searchsorted(x, at, side="right") - 1, len(slopes) - 1)
@@ -186,5 +188,6 @@ def _pieces(
     # In the tail where both are small, or their difference would have no digits.
     low, high = np.where(low > 0.0, (-high, -low), (low, high))
     with np.errstate(divide="ignore"):
-        below, above = log_ndtr(low), log_ndtr(high)
+        below = log_ndtr(low)
+        above = log_ndtr(high)
         return np.asarray(np.exp(constant + above + np.log1p(-np.exp(below - above))))

@@ -128,8 +128,10 @@ def _hopeless(level: Array, y: NDArray[np.bool_]) -> str | None:
 
 def _separation(level: Array, y: NDArray[np.bool_]) -> tuple[Band, str]:
     """Between which intensities separated data change from none to all, and what to say of it."""
-    top, bottom = float(level[~y].max()), float(level[y].min())
-    none, every = level[level < bottom], level[level > top]
+    top = float(level[~y].max())
+    bottom = float(level[y].min())
+    none = level[level < bottom]
+    every = level[level > top]
     between = float(none.max(initial=0.0)), float(every.min(initial=math.inf))
     if top < bottom:
         where = f"up to {top:.4g} no point exceeds the limit, from {bottom:.4g} on all do"
@@ -147,7 +149,8 @@ def _separation(level: Array, y: NDArray[np.bool_]) -> tuple[Band, str]:
 
 def _no_fit(note: str, grid: Array) -> Lognormal:
     nothing = np.full(len(grid), math.nan)
-    band, none = (nothing, nothing), (np.empty(0), np.empty(0))
+    band = (nothing, nothing)
+    none = (np.empty(0), np.empty(0))
     return Lognormal("none", note, math.nan, math.nan, NOTHING, NOTHING, nothing, band, none)
 
 
@@ -236,14 +239,17 @@ class Probit(NamedTuple):
 def separated(x: Array, y: NDArray[np.bool_], weights: Array) -> NDArray[np.bool_]:
     """(fits,) whether some x tells all zeros of y from all ones, or one kind is missing."""
     counts = weights > 0.0
-    ones, zeros = counts & y, counts & ~y
-    (low, top), (high, bottom) = _span(x, zeros), _span(x, ones)
+    ones = counts & y
+    zeros = counts & ~y
+    (low, top) = _span(x, zeros)
+    (high, bottom) = _span(x, ones)
     return np.asarray((top <= high) | (bottom <= low))
 
 
 def _span(x: Array, chosen: NDArray[np.bool_]) -> tuple[Array, Array]:
     """(fits,) least and largest x of the chosen (fits, points)."""
-    least, largest = np.where(chosen, x, math.inf), np.where(chosen, x, -math.inf)
+    least = np.where(chosen, x, math.inf)
+    largest = np.where(chosen, x, -math.inf)
     return least.min(axis=1), largest.max(axis=1)
 
 
@@ -258,7 +264,8 @@ def probit_fit(
     """Fit every row of weights by Fisher scoring, with or without the penalty."""
     # The penalty adjusts the score by h/2 times the logarithmic derivative of the working weight, h
     # being the leverage. Data with a single x have no slope even so: they do not converge.
-    middle, spread = float(x.mean()), float(x.std()) or 1.0
+    middle = float(x.mean())
+    spread = float(x.std()) or 1.0
     z = (x - middle) / spread
     penalty = penalised.astype(float)
     at = np.zeros((2, len(weights)))
@@ -270,7 +277,8 @@ def probit_fit(
         rows = np.flatnonzero(active)
         if not len(rows):
             break
-        step, before = steps[:, rows], objective[rows]
+        step = steps[:, rows]
+        before = objective[rows]
         for _ in range(MOST_HALVINGS):
             there = _evaluated(at[:, rows] + step, z, y, weights[rows], penalty[rows])
             worse = ~(there[0] >= before - 1e-12 * np.abs(before))
@@ -296,7 +304,9 @@ def _evaluated(
     density = np.exp(-0.5 * eta**2) / math.sqrt(2.0 * math.pi)
     pull = density / (p * q)
     working = weights * density * pull
-    i0, i1, i2 = working.sum(axis=1), working @ z, working @ z**2
+    i0 = working.sum(axis=1)
+    i1 = working @ z
+    i2 = working @ z**2
     determinant = np.maximum(i0 * i2 - i1**2, 1e-300)
     objective = np.sum(weights * np.log(np.where(y, p, q)), axis=1)
     score = weights * (y - p) * pull
@@ -306,6 +316,7 @@ def _evaluated(
         leverage *= working / determinant[:, None]
         growth = -2.0 * eta - pull * (q - p)
         score += penalty[:, None] * 0.5 * leverage * growth
-    u0, u1 = score.sum(axis=1), score @ z
+    u0 = score.sum(axis=1)
+    u1 = score @ z
     step = np.array([i2 * u0 - i1 * u1, i0 * u1 - i1 * u0]) / determinant
     return objective, step

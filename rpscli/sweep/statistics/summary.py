@@ -118,7 +118,8 @@ MOVING = 0.01
 
 def _still_moving(table: Table) -> Iterator[str]:
     """The remark on residual rotations that are those of an instant."""
-    at_end, largest = table.columns["residual_rotation"], table.columns["max_rotation"]
+    at_end = table.columns["residual_rotation"]
+    largest = table.columns["max_rotation"]
     survived = table.outcomes == "survived"
     if number := np.count_nonzero(survived & (at_end > MOVING * largest)):
         yield (
@@ -164,7 +165,8 @@ NAMED = 5
 
 def step_notes(table: Table) -> Iterator[str]:
     """Remarks on points that change with steps of half the length; nothing if none does."""
-    layout, known = table.layout, np.flatnonzero(~table.failed)
+    layout = table.layout
+    known = np.flatnonzero(~table.failed)
     some = known[:: max(-(-len(known) // COMPUTED_AGAIN), 1)].tolist()
     requests = [layout.context.history(layout[number]) for number in some]
     finer = [
@@ -188,7 +190,8 @@ def _change(table: Table, number: int, after: Demand) -> tuple[float, str]:
         return math.inf, f"{number + 1} ({outcome} or {after.outcome})".replace("_", " ")
     changes = {}
     for name in ("max_rotation", "max_base_shear"):
-        old, new = float(table.columns[name][number]), getattr(after, name)
+        old = float(table.columns[name][number])
+        new = getattr(after, name)
         if abs(new - old) > PROMISED * max(old, new):
             changes[name] = abs(new - old) / max(old, new)
     words = ", ".join(f"{name} {change:.2g} of it" for name, change in changes.items())

@@ -80,7 +80,8 @@ def rates_of_levels(layout: StudyPoints) -> tuple[Array, float]:
 
     The rate of any shares (levels,) is their product with these: it is linear in them.
     """
-    section, measure = layout.study.file.hazard, layout.plan.measure
+    section = layout.study.file.hazard
+    measure = layout.plan.measure
     assert section is not None, "a limit on a rate has a hazard"
     if measure is None or measure.measure != section.measure or len(layout.scales) < 2:
         text = f"hazard: shares at two and more values of {section.measure} are needed; write"
@@ -88,7 +89,8 @@ def rates_of_levels(layout: StudyPoints) -> tuple[Array, float]:
         layout.study.document.refuse([Fault(("hazard",), text)])
     hazard = read_hazard(layout.study.folder / section.file, section.measure)
     levels = np.array(layout.scales, dtype=float)
-    order, rates = np.argsort(levels), np.zeros(len(levels))
+    order = np.argsort(levels)
+    rates = np.zeros(len(levels))
     for place, alone in zip(order, np.eye(len(levels)), strict=True):
         rates[place] = rate_of_shares(hazard, levels[order], alone)
     return rates, float(exceeded(hazard, levels[order[-1:]])[0])
@@ -196,13 +198,15 @@ def verdicts(
     values: tuple[object, ...] = (),
 ) -> list[Verdict]:
     """On histories that did not fail, by their points; `record_of` names the record of a point."""
-    found, asked = [], tuple(conditions)
+    found = []
+    asked = tuple(conditions)
     strictly = any(condition.name == NOT_SHOWN for condition in asked)
     for condition in (each for each in asked if each.name != NOT_SHOWN):
         demands = worse(table, condition.name)[points]
         every = np.ones((1, len(points)))
         counted = judge(demands[None], every, condition)
-        at, worst = None, int(np.argmax(demands))
+        at = None
+        worst = int(np.argmax(demands))
         if condition.fractile is not None:
             at = condition.sign * float(decisive(demands[None], every, condition)[0, 0])
         of_result = condition.name not in EVENTS
@@ -235,7 +239,9 @@ def judged(table: Table, summary: Summary, conditions: Iterable[Condition] = ())
 
     Systems that cannot have a result are not judged by it; `not_judged` tells of them.
     """
-    layout, further, found = table.layout, tuple(conditions), list[Verdict]()
+    layout = table.layout
+    further = tuple(conditions)
+    found = list[Verdict]()
     strictly = any(condition.name == NOT_SHOWN for condition in further)
     on_rates = [limit for limit in layout.properties[0].limits if limit.name == RATE]  # the study's
 
@@ -263,7 +269,8 @@ def judged(table: Table, summary: Summary, conditions: Iterable[Condition] = ())
             shares = [row.overturned for row in summary.rows[first : first + len(rates)]]
             ends = [(np.nan if s.fraction is None else s.fraction, s.low, s.high) for s in shares]
             rate, low, high = (rates @ np.array(ends)).tolist()
-            over, interval = not rate <= condition.limit, (low, high)
+            over = not rate <= condition.limit
+            interval = (low, high)
             what = condition, values, shares[-1], 0, rate, "", None, over, strictly, interval
             found.append(Verdict(*what))
     return found
