@@ -37,10 +37,14 @@ figures.storey_curve(right, rpscli.pushover(case.structure))
 
 # %% A motion of your own: an array, scaled to a peak ground velocity
 time = np.arange(0.0, 6.0, 0.01)
-pulse = rpscli.GroundMotion(np.sin(2.0 * np.pi * time) * np.exp(-time), dt=0.01, name="my pulse")
+pulse = rpscli.GroundMotion(
+    np.sin(2.0 * np.pi * time) * np.exp(-time), dt=0.01, name="my pulse"
+)
 for pgv in (0.3, 0.6, 0.9):
     demand = rpscli.demand(case.structure, pulse.scaled_to("PGV", pgv), case.analysis)
-    print(f"PGV {pgv} m/s: {demand.outcome}, {demand.rotation_ratio:.2f} of the critical rotation")
+    print(
+        f"PGV {pgv} m/s: {demand.outcome}, {demand.rotation_ratio:.2f} of the critical rotation"
+    )
 
 # %% A study: a file, or what it would say
 study = rpscli.load_study(
@@ -50,7 +54,10 @@ study = rpscli.load_study(
         "base": "cases/six_storey.yaml",
         "vary": [{"podium.bearing.curvature_ratio": [0.5, 1.0, 1.5]}],
         "records": [
-            {"source": "synthetic:?pga=0.5g&duration=15&dt=0.02", "seed": [1, 2, 3, 4, 5, 6]}
+            {
+                "source": "synthetic:?pga=0.5g&duration=15&dt=0.02",
+                "seed": [1, 2, 3, 4, 5, 6],
+            }
         ],
         "scale": {"measure": "PGV", "values": ["40 cm/s", "80 cm/s"]},
         "limits": {"rotation_ratio": {"at_most": 0.5, "share": 0.5}},
@@ -74,7 +81,11 @@ result
 print(result["rotation_ratio"].reshape(3, 6, 2).max(axis=1))
 print(result.statistics["fixed_base_ratio_median"])
 try:
-    print(result.to_dataframe().groupby("podium.bearing.curvature_ratio")["rotation_ratio"].max())
+    print(
+        result.to_dataframe()
+        .groupby("podium.bearing.curvature_ratio")["rotation_ratio"]
+        .max()
+    )
 except ModuleNotFoundError:
     print("pandas is not installed")
 

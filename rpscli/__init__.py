@@ -17,7 +17,10 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from rpscli import figures, plugins
     from rpscli.analyses.demand import demand
-    from rpscli.analyses.floor_spectra import fixed_base_floor_spectra, isolated_floor_spectra
+    from rpscli.analyses.floor_spectra import (
+        fixed_base_floor_spectra,
+        isolated_floor_spectra,
+    )
     from rpscli.analyses.largest_demands import Demand
     from rpscli.analyses.modal import ModalResult, modal
     from rpscli.analyses.pushover import PushoverResult, pushover

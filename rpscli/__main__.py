@@ -16,8 +16,9 @@ for garbage as often as Python does by default takes a tenth of a command's time
 def main() -> None:
     """Run the command line."""
     gc.set_threshold(OBJECTS_BETWEEN_COLLECTIONS)
-    # Matrices of a hundred storeys are small: threads of the linear algebra would only wait for
-    # work, which costs as much as work, and studies use all cores by threads of their own.
+    # Matrices of a hundred storeys are small: threads of the linear algebra would only
+    # wait for work, which costs as much as work, and studies use all cores by threads of
+    # their own.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     # Which line of the program warns is nothing to its users.
     warnings.formatwarning = lambda text, *_, **__: f"warning: {text}\n"

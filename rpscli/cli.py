@@ -37,13 +37,17 @@ SECTIONS = {
     },
 }
 """Lines of the help."""
-COMMANDS = {name: summary for lines in SECTIONS.values() for name, summary in lines.items()}
+COMMANDS = {
+    name: summary for lines in SECTIONS.values() for name, summary in lines.items()
+}
 HOMES = {"schema": "init", "completion": "init", "design": "sweep"}
 """Modules of `rpscli.commands` that hold a command besides their own."""
 
 
 class Program(Group):
-    """The program itself: it imports a command when that is used, and ends with an exit code."""
+    """The program itself: it imports a command when that is used,
+    and ends with an exit code.
+    """
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Names in the order of the help."""
@@ -67,7 +71,9 @@ class Program(Group):
             with formatter.section(section):
                 formatter.write_dl([*lines.items()])
 
-    def main(self, args: Sequence[str] | None = None, *rest: Any, **options: Any) -> NoReturn:
+    def main(
+        self, args: Sequence[str] | None = None, *rest: Any, **options: Any
+    ) -> NoReturn:
         """Run, report what went wrong, and leave."""
         words = list(sys.argv[1:] if args is None else args)
         options["standalone_mode"] = False
@@ -76,7 +82,8 @@ class Program(Group):
         try:
             code = super().main(words, *rest, **options)
         except SystemExit as end:
-            # Click leaves with 1 if nobody reads its help to the end, as in `rps --help | head -1`.
+            # Click leaves with 1 if nobody reads its help to the end, as in `rps --help |
+            # head -1`.
             if end.code == 1 and {"--help", "-h", "--version"}.intersection(words):
                 sys.exit(0)
             raise
@@ -91,14 +98,17 @@ class Program(Group):
 @click.command(
     cls=Program,
     context_settings={"help_option_names": ["-h", "--help"]},
-    epilog="Exit codes: 0 done, 1 internal error or nothing could be written, 2 usage, 3 case or"
-    " record invalid, 4 analysis failed, 5 study with failed points, 6 verification mismatch,"
-    " 7 refused to overwrite, 10 a limit was exceeded, 130 interrupted.",
+    epilog=(
+        "Exit codes: 0 done, 1 internal error or nothing could be written, 2 usage, 3"
+        " case or record invalid, 4 analysis failed, 5 study with failed points, 6"
+        " verification mismatch, 7 refused to overwrite, 10 a limit was exceeded, 130"
+        " interrupted."
+    ),
 )
 @click.version_option(VERSION, message="rps %(version)s", help="Show the version.")
 def program() -> None:
     """Rocking podium structures: buildings on kinematic bearings under earthquakes.
 
-    A case is a YAML file; `rps init` writes one to start from. Results go to the standard output
-    and to a folder, everything else to the standard error.
+    A case is a YAML file; `rps init` writes one to start from. Results go to the standard
+    output and to a folder, everything else to the standard error.
     """

@@ -1,7 +1,7 @@
 """Errors: one class for each exit code of the command line.
 
-A message names the place, the value found, the rule that it breaks and a remedy. Nothing here
-knows about terminals: the command line turns these into text and an exit status.
+A message names the place, the value found, the rule that it breaks and a remedy. Nothing
+here knows about terminals: the command line turns these into text and an exit status.
 """
 
 from __future__ import annotations
@@ -81,7 +81,9 @@ class PluginError(RpsError):
 
 
 class OutputError(RpsError):
-    """A result cannot be written: no permission, a full disk, a file where a folder should be."""
+    """A result cannot be written: no permission, a full disk, a file
+    where a folder should be.
+    """
 
 
 @contextmanager
@@ -97,11 +99,15 @@ def refused_by_system(
 
 
 def alike(word: str, known: Iterable[str], most: int, likeness: float = 0.0) -> list[str]:
-    """The known words that are nearest to one, of which `likeness` is the part of equal letters."""
+    """The known words that are nearest to one, of which `likeness` is
+    the part of equal letters.
+    """
     import difflib  # needed by those who made a mistake only
 
     folded = {name.lower().replace("-", "_"): name for name in known}
-    found = difflib.get_close_matches(word.lower().replace("-", "_"), folded, most, likeness)
+    found = difflib.get_close_matches(
+        word.lower().replace("-", "_"), folded, most, likeness
+    )
     return [folded[name] for name in found]
 
 
@@ -119,7 +125,9 @@ def hint(word: str, known: Iterable[str], otherwise: str, likeness: float = 0.7)
 def all_made(
     make: Callable[[Item], Made], items: Iterable[Item], fault: type[RpsError]
 ) -> list[Made]:
-    """Results of `make` for all items; its faults are raised together, a line for each."""
+    """Results of `make` for all items; its faults are raised
+    together, a line for each.
+    """
     made = []
     complaints = []
     for item in items:
@@ -138,9 +146,11 @@ def listed(words: Iterable[str], last: str = "or") -> str:
     return f"{', '.join(head)} {last} {tail}" if head else tail
 
 
-# Control characters but for tabulators, blanks and line ends, and marks that turn the direction of
-# writing: a terminal obeys them.
-_UNSEEN = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069]")
+# Control characters but for tabulators, blanks and line ends, and marks that turn the
+# direction of writing: a terminal obeys them.
+_UNSEEN = re.compile(
+    r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069]"
+)
 
 
 def visible(text: str) -> str:
@@ -156,7 +166,9 @@ def beginning(line: str) -> str:
 def require_visible(name: str, fault: type[RpsError]) -> None:
     """Refuse names of files that hold line ends or what does not show."""
     if name != visible(name) or "\n" in name or "\t" in name:
-        raise fault(f"{name[:200]!r}: the name holds characters that do not show; rename the file")
+        raise fault(
+            f"{name[:200]!r}: the name holds characters that do not show; rename the file"
+        )
 
 
 def stem_of(path: PurePath) -> str:
@@ -175,11 +187,14 @@ def is_number(value: object) -> TypeGuard[float]:
 
 SMALLEST = 1e-15
 LARGEST = 1e15
-"""Magnitudes outside are slips: no building has them in SI units, and squares would overflow."""
+"""Magnitudes outside are slips: no building has them in SI units,
+and squares would overflow."""
 
 
 def is_size(value: object) -> bool:
-    """Whether a value is a number above zero that follows from what a building may have."""
+    """Whether a value is a number above zero that follows from
+    what a building may have.
+    """
     return is_number(value) and SMALLEST**2 <= value <= LARGEST**2
 
 
@@ -202,7 +217,9 @@ _kinds = cache(get_type_hints)
 
 
 def origin_of(kind: Any) -> Any:
-    """The class of an annotation, also behind an alias, as NDArray is one since numpy 2.5."""
+    """The class of an annotation, also behind an alias, as
+    NDArray is one since numpy 2.5.
+    """
     origin = get_origin(kind) or kind
     return get_origin(getattr(origin, "__value__", None)) or origin
 
@@ -216,12 +233,16 @@ def _fits(value: object, kind: Any) -> bool:
         if not isinstance(value, tuple | list):
             return False
         each = repeat(parts[0]) if parts[-1] is ... else parts
-        return (parts[-1] is ... or len(parts) == len(value)) and all(map(_fits, value, each))
+        return (parts[-1] is ... or len(parts) == len(value)) and all(
+            map(_fits, value, each)
+        )
     if origin in {float, int}:
         return is_number(value) and abs(value) <= LARGEST**2
     if origin is Literal:
         return isinstance(value, str)
-    return origin.__name__ == "ndarray" or isinstance(value, origin)  # any sequence makes an array
+    return origin.__name__ == "ndarray" or isinstance(
+        value, origin
+    )  # any sequence makes an array
 
 
 def told(value: object) -> str:
@@ -229,7 +250,9 @@ def told(value: object) -> str:
     return str(value) if isinstance(value, Real) else repr(value)
 
 
-def require_kind(value: object, kinds: type | tuple[type, ...], what: str, remedy: str) -> None:
+def require_kind(
+    value: object, kinds: type | tuple[type, ...], what: str, remedy: str
+) -> None:
     """Refuse what a function cannot take, in one sentence."""
     if not isinstance(value, kinds):
         raise UsageError(f"{what} was given as {type(value).__name__}; {remedy}")

@@ -1,8 +1,8 @@
 """Figures of results, drawn into axes of your own.
 
-Each function draws one panel into the matplotlib Axes that it gets first, with labels and units;
-titles, limits, colours and files are yours. ``legend=False`` leaves out the legend. `style` gives a
-figure the look of those that the program writes.
+Each function draws one panel into the matplotlib Axes that it gets first, with labels and
+units; titles, limits, colours and files are yours. ``legend=False`` leaves out the
+legend. `style` gives a figure the look of those that the program writes.
 
 >>> from rpscli import figures, load_case, pushover
 >>> from matplotlib.figure import Figure
@@ -20,10 +20,12 @@ After the axes come
   components also `orbit` and `azimuth`, and displacements take ``"x"`` or ``"y"``;
 - a `PushoverResult` for `storey_curve`, `lift` and `capacity`;
 - a `ModalResult`, ``"rolling"`` or ``"rocking"``, and the number of the mode, for `mode`;
-- a `PodiumStructure` for `structure`, and for `bearing`, which takes a rotation [rad] too; a
-  `Bearing` for `bearing_end`;
-- a `GroundMotion` for `motion`, and ``"velocity"`` or ``"displacement"`` in place of acceleration;
-- response spectra for `spectrum` and `spectra`; floor spectra and the floor for `floor_spectrum`.
+- a `PodiumStructure` for `structure`, and for `bearing`, which takes a rotation [rad]
+  too; a `Bearing` for `bearing_end`;
+- a `GroundMotion` for `motion`, and ``"velocity"`` or ``"displacement"``
+  in place of acceleration;
+- response spectra for `spectrum` and `spectra`; floor spectra and the
+  floor for `floor_spectrum`.
 """
 
 from __future__ import annotations
@@ -47,15 +49,18 @@ def _examined(draw: Panel) -> Panel:
     axes_name, drawn_name, *_ = (*draw.__annotations__.values(), "")
 
     @wraps(draw)
-    def panel(axes: Any, drawn: Any, *arguments: Any, legend: bool = True, **named: Any) -> None:
+    def panel(
+        axes: Any, drawn: Any, *arguments: Any, legend: bool = True, **named: Any
+    ) -> None:
         for value, name in ((axes, axes_name), (drawn, drawn_name)):
             kind = name.rpartition(".")[2]
             known = {parent.__name__ for parent in type(value).__mro__}
             if kind.isidentifier() and kind not in known:
                 home = "matplotlib" if kind == "Axes" else "rpscli"
                 raise UsageError(
-                    f"{draw.__name__.replace('draw_', 'a panel of ')}: needs {kind} of {home}"
-                    f" where a {type(value).__name__} was given; see help(rpscli.figures)"
+                    f"{draw.__name__.replace('draw_', 'a panel of ')}: needs {kind} of"
+                    f" {home} where a {type(value).__name__} was given; see"
+                    " help(rpscli.figures)"
                 )
         draw(axes, drawn, *arguments, **named)
         _style.fit([axes])
@@ -101,5 +106,7 @@ def __getattr__(name: str) -> Any:
         return moment_rotation
     if not name.startswith("_") and name in FIGURES.names():
         return FIGURES[name]
-    meant = hint(name, [*__all__, *FIGURES.names()], "help(rpscli.figures) lists all", 0.6)
+    meant = hint(
+        name, [*__all__, *FIGURES.names()], "help(rpscli.figures) lists all", 0.6
+    )
     raise AttributeError(f"rpscli.figures has no panel {name}; {meant}")

@@ -14,7 +14,9 @@ def available_cores() -> int:
 
 
 def mode_of(path: Path) -> int:
-    """Of what is there, else 0; a refusal is an error, unlike in Path.exists of Python 3.14."""
+    """Of what is there, else 0; a refusal is an error, unlike in
+    Path.exists of Python 3.14.
+    """
     try:
         return path.stat().st_mode
     except (FileNotFoundError, NotADirectoryError):

@@ -1,7 +1,8 @@
-"""Things by name: ours, and those that other packages add by entry points `rpscli.<kind>`.
+"""Things by name: ours, and those that other packages add by
+entry points `rpscli.<kind>`.
 
-Other packages are looked for when a name is none of ours, and where all are listed. One that is
-broken is named where it is asked for, and left out where others are.
+Other packages are looked for when a name is none of ours, and where all are listed. One
+that is broken is named where it is asked for, and left out where others are.
 """
 
 from __future__ import annotations
@@ -43,8 +44,9 @@ class Offer(NamedTuple):
 class Registry(dict[str, Item]):
     """Ours by name, of one `kind`; subscripts also find what other packages add.
 
-    Theirs must be an `item`, a dataclass or a `Callable[[...], ...]`, and their functions give what
-    it says: all else is a `PluginError` that names the package. Some names are `taken`.
+    Theirs must be an `item`, a dataclass or a `Callable[[...], ...]`, and their
+    functions give what it says: all else is a `PluginError` that names the
+    package. Some names are `taken`.
     """
 
     def __init__(
@@ -69,7 +71,9 @@ class Registry(dict[str, Item]):
         if name in self or name in self._taken:
             return "rps has one of this name, which is taken"
         known = name.replace("-", "_").isidentifier()
-        return "" if known else f"{name!r} must be letters, digits, _ and -, a letter first"
+        return (
+            "" if known else f"{name!r} must be letters, digits, _ and -, a letter first"
+        )
 
     def blaming(self, name: str) -> AbstractContextManager[None]:
         """Errors of what follows are those of the package that adds a name."""
@@ -85,7 +89,9 @@ class Registry(dict[str, Item]):
             try:
                 if name not in self:
                     yield name, self[name]
-            except PluginError:  # told where it is asked for, and by `rps explain plugins`
+            except (
+                PluginError
+            ):  # told where it is asked for, and by `rps explain plugins`
                 continue
 
     def everything(self) -> dict[str, Item]:
@@ -115,7 +121,9 @@ def _points(kind: str) -> dict[str, EntryPoint]:
 
 
 def _package(point: EntryPoint) -> str:
-    return f"{point.dist.name} {point.dist.version}" if point.dist else "an unknown package"
+    return (
+        f"{point.dist.name} {point.dist.version}" if point.dist else "an unknown package"
+    )
 
 
 def _named(point: EntryPoint) -> str:
@@ -138,7 +146,9 @@ def _blaming(what: str) -> Iterator[None]:
 
 
 def _sound(value: Any, kind: Any, name: str, what: str) -> Any:
-    """A value of the kind that an annotation names; its functions give what theirs say."""
+    """A value of the kind that an annotation names; its
+    functions give what theirs say.
+    """
     origin = origin_of(kind)
     kinds = get_args(kind)
     if origin is Callable and callable(value):
@@ -149,9 +159,15 @@ def _sound(value: Any, kind: Any, name: str, what: str) -> Any:
         return origin(value)
     if origin is Iterable:
         return [_sound(each, kinds[0], name, what) for each in value]
-    fits = value in kinds if origin is Literal else origin is Any or isinstance(value, origin)
+    fits = (
+        value in kinds
+        if origin is Literal
+        else origin is Any or isinstance(value, origin)
+    )
     if origin is float or not fits:
-        shown = f"{value}" if isinstance(value, float) else f"of type {type(value).__name__}"
+        shown = (
+            f"{value}" if isinstance(value, float) else f"of type {type(value).__name__}"
+        )
         known = {float: "a finite number", Callable: "a function"}
         wanted = known.get(origin) or getattr(origin, "__name__", kind)
         raise TypeError(f"{name} is {shown}, and must be {wanted}")
@@ -159,7 +175,9 @@ def _sound(value: Any, kind: Any, name: str, what: str) -> Any:
     each = [part for kind in hints.values() for part in (kind, *get_args(kind))]
     if not any(get_origin(part) is Callable for part in each):
         return value  # which has guarded itself
-    return replace(value, **{n: _sound(getattr(value, n), k, n, what) for n, k in hints.items()})
+    return replace(
+        value, **{n: _sound(getattr(value, n), k, n, what) for n, k in hints.items()}
+    )
 
 
 GUARD = "guards"
@@ -178,7 +196,9 @@ def _guarded(function: Callable[..., Any], kind: Any, what: str) -> Callable[...
             if isinstance(made, np.ndarray):
                 good = made.shape == np.shape(arguments[0]) and np.all(np.isfinite(made))
                 if not good:
-                    raise ValueError(f"{name} must be finite, a number for each that it gets")
+                    raise ValueError(
+                        f"{name} must be finite, a number for each that it gets"
+                    )
             return made
 
     setattr(guarded, GUARD, True)
@@ -186,5 +206,13 @@ def _guarded(function: Callable[..., Any], kind: Any, what: str) -> Callable[...
 
 
 def _meaning(item: Any) -> str:
-    functions = filter(callable, vars(item).values()) if is_dataclass(item) else iter([item])
-    return (next(functions).__doc__ or "").strip().split("\n")[0]
+    functions = (
+        filter(callable, vars(item).values()) if is_dataclass(item) else iter([item])
+    )
+    return summary_of(next(functions))
+
+
+def summary_of(item: Any) -> str:
+    """The first sentence of an object's docstring, in one line; empty without one."""
+    first, *_ = (item.__doc__ or "").strip().split("\n\n")
+    return " ".join(first.split())

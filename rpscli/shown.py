@@ -1,4 +1,6 @@
-"""Objects whose arrays stay as they are, and how they show themselves: in a line, in a notebook."""
+"""Objects whose arrays stay as they are, and how they show themselves:
+in a line, in a notebook.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +22,9 @@ def frozen(value: Value) -> Value:
     """
     if isinstance(value, np.ndarray):
         value.flags.writeable = False
-    elif isinstance(value, np.void):  # a record, as writable as the array that it is an entry of
+    elif isinstance(
+        value, np.void
+    ):  # a record, as writable as the array that it is an entry of
         return cast("Value", frozen(np.array(value))[()])
     elif isinstance(value, tuple):
         for part in value:
@@ -37,7 +41,8 @@ class Frozen:
         frozen(vars(self))
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        # Copies of arrays are writable; what was cached beside the fields is copied as well.
+        # Copies of arrays are writable; what was cached beside the fields is copied as
+        # well.
         vars(self).update(frozen(state))
 
 
@@ -50,7 +55,9 @@ class Shown(Frozen):
     """Base of dataclasses that hold too many numbers to be printed whole."""
 
     def facts(self) -> Mapping[str, Any]:
-        """Properties that tell it from others, the most important first; fields by default."""
+        """Properties that tell it from others, the most important
+        first; fields by default.
+        """
         return {each.name: getattr(self, each.name) for each in fields(self)}  # type: ignore[arg-type]
 
     def __repr__(self) -> str:
@@ -60,7 +67,10 @@ class Shown(Frozen):
 
     def _repr_html_(self) -> str:
         """A table for notebooks."""
-        cells = [(escape(str(name)), escape(fact_text(of))) for name, of in self.facts().items()]
+        cells = [
+            (escape(str(name)), escape(fact_text(of)))
+            for name, of in self.facts().items()
+        ]
         rows = "".join(f"<tr><th>{name}</th><td>{of}</td></tr>" for name, of in cells)
         return f"<table><caption>{type(self).__name__}</caption>{rows}</table>"
 

@@ -87,8 +87,8 @@ class StudyInterrupted(KeyboardInterrupt):
 
     def __init__(self, stored: int, total: int, path: Path) -> None:
         super().__init__(
-            f"interrupted: {stored} of {total} points are stored in {path}; the same command"
-            " continues from there"
+            f"interrupted: {stored} of {total} points are stored in {path}; the same"
+            " command continues from there"
         )
         self.points = {"total": total, "stored": stored}
 
@@ -100,16 +100,17 @@ def load_study(
     conditions: Iterable[Condition] = (),
     watched: Watched = iter,
 ) -> Study:
-    """A study from its file, or from what such a file would say; all its systems are checked.
+    """A study from its file, or from what such a file would say; all
+    its systems are checked.
 
     Parameters
     ----------
     source
-        A file, ``-`` for the standard input, or a mapping; relative names in a mapping start at the
-        working folder.
+        A file, ``-`` for the standard input, or a mapping; relative names in a mapping
+        start at the working folder.
     overrides, conditions
-        Texts ``key=value`` over the study's own values, or over those of its base case; limits
-        besides those of study and case.
+        Texts ``key=value`` over the study's own values, or over those of its base case;
+        limits besides those of study and case.
     watched
         Goes through the numbers of the systems while they are checked.
 
@@ -125,7 +126,9 @@ def load_study(
         digest = sha256(text.encode()).hexdigest()
         checked = study_of(document, of_base, kinds=REPORTS, folder=Path(), digest=digest)
     else:
-        require_kind(source, (str, Path), "the study", "give the name of a file, or a mapping")
+        require_kind(
+            source, (str, Path), "the study", "give the name of a file, or a mapping"
+        )
         checked = parse_study(**opened(source), kinds=REPORTS, overrides=overrides)
     study = Study(lay_out(checked, watched), tuple(overrides), tuple(conditions))
     study.require_results()
@@ -152,10 +155,14 @@ class Study(Shown):
         """Refuse limits and reports on results that its systems do not have."""
         layout = self.layout
         layout.study.document.refuse(requirement_faults(layout))
-        _ = [*rate_notes(layout)]  # which refuses a hazard that the intensities do not go with
+        _ = [
+            *rate_notes(layout)
+        ]  # which refuses a hazard that the intensities do not go with
         for condition in self.conditions:
             if layout.plan.analysis != "timehistory":
-                raise UsageError(f"--fail-on {condition.name} needs analysis: timehistory")
+                raise UsageError(
+                    f"--fail-on {condition.name} needs analysis: timehistory"
+                )
             if lacking(layout, condition.name, all):
                 raise UsageError(f"--fail-on: {needs_of(condition.name, 'no')}")
 
@@ -175,7 +182,9 @@ class Study(Shown):
     @property
     def warnings(self) -> list[str]:
         """Remarks on its file, and doubts about its systems, each kind once."""
-        doubts = doubts_of_many([properties.doubts for properties in self.layout.properties])
+        doubts = doubts_of_many(
+            [properties.doubts for properties in self.layout.properties]
+        )
         return [*self.layout.study.notes, *doubts]
 
     def facts(self) -> dict[str, Any]:
@@ -191,8 +200,11 @@ class Study(Shown):
             "reports": list(self.reports),
         }
 
-    def output(self, place: Path, command: str = "sweep", *, force: bool = False) -> OutputFolder:
-        """A folder for its results, claimed for a command; a store there belongs to the study.
+    def output(
+        self, place: Path, command: str = "sweep", *, force: bool = False
+    ) -> OutputFolder:
+        """A folder for its results, claimed for a command; a store
+        there belongs to the study.
 
         Parameters
         ----------
@@ -215,7 +227,9 @@ class Study(Shown):
         file = None if study.source.startswith("<") else Path(study.source)
         known = Store(place).path.exists()
         return OutputFolder(
-            place, Run(command, study.name, file, study.digest, inputs), force=force or known
+            place,
+            Run(command, study.name, file, study.digest, inputs),
+            force=force or known,
         )
 
     def run(
@@ -233,10 +247,11 @@ class Study(Shown):
         Parameters
         ----------
         folder
-            Of the store, which `rps sweep` reads and continues; without one the points are stored
-            in a temporary folder that ends with the result.
+            Of the store, which `rps sweep` reads and continues; without one the points
+            are stored in a temporary folder that ends with the result.
         jobs, scheduler
-            Threads, all cores by default; address of a Dask scheduler, in place of threads.
+            Threads, all cores by default; address of a Dask
+            scheduler, in place of threads.
         fresh, retry_failed
             Discard stored results, or recompute failed points.
         progress
@@ -252,8 +267,14 @@ class Study(Shown):
         keeper = _Temporary() if folder is None else None
         place = Path(keeper.place if keeper else folder or "")
         self.output(place)
-        how: dict[str, Any] = {"jobs": jobs, "scheduler": scheduler, "retry_failed": retry_failed}
-        result = run_in(Store(place, fresh=fresh), self, lambda _: nullcontext(progress), **how)
+        how: dict[str, Any] = {
+            "jobs": jobs,
+            "scheduler": scheduler,
+            "retry_failed": retry_failed,
+        }
+        result = run_in(
+            Store(place, fresh=fresh), self, lambda _: nullcontext(progress), **how
+        )
         return replace(result, _keeper=keeper)
 
 
@@ -267,12 +288,15 @@ def run_in(
     scheduler: str | None = None,
     retry_failed: bool = False,
 ) -> StudyResult:
-    """Run a study in a store. `watch` is told where it begins; what it gives is told how far it is.
+    """Run a study in a store. `watch` is told where it begins; what it
+    gives is told how far it is.
 
     `announce` says that points under way will end after a first Ctrl-C.
     """
     if jobs is not None and not 0 < jobs <= MOST_JOBS:
-        raise UsageError(f"jobs = {jobs} must be a number of threads from 1 to {MOST_JOBS}")
+        raise UsageError(
+            f"jobs = {jobs} must be a number of threads from 1 to {MOST_JOBS}"
+        )
     layout = study.layout
     jobs = jobs or available_cores()
     with store:
@@ -291,7 +315,9 @@ def run_in(
                 stored = sum(key in known for key in begin.keys)
                 raise StudyInterrupted(stored, len(study), store.path) from None
         table = Table.of(layout, partial(store.results, begin.keys))
-        return StudyResult(study, StoredPoints(table, begin.keys, store, jobs), begin, done)
+        return StudyResult(
+            study, StoredPoints(table, begin.keys, store, jobs), begin, done
+        )
 
 
 class Failure(NamedTuple):
@@ -306,8 +332,8 @@ class Failure(NamedTuple):
 class Collected:
     """The files of a study by name, and what its reports say.
 
-    `notes` warn of the numbers, `parts` and `documents` are tables of reports for readers and for
-    JSON, `broken` are the reports that could not be made.
+    `notes` warn of the numbers, `parts` and `documents` are tables of reports for readers
+    and for JSON, `broken` are the reports that could not be made.
     """
 
     files: dict[str, str | Content] = field(default_factory=dict)
@@ -359,13 +385,20 @@ class StudyResult(Shown):
     def __getitem__(self, name: str) -> Any:
         """(points,) of a varied key or a result, as `points.csv` names it."""
         if name not in self.columns:
-            near = f"near are {', '.join(alike(str(name), self.columns, 3))}; `columns` has all"
-            raise KeyError(f"{name} is not a column; {hint(str(name), self.columns, near, 0.6)}")
+            near = (
+                f"near are {', '.join(alike(str(name), self.columns, 3))}; `columns` has"
+                " all"
+            )
+            raise KeyError(
+                f"{name} is not a column; {hint(str(name), self.columns, near, 0.6)}"
+            )
         return self.columns[name]
 
     @cached_property
     def columns(self) -> Columns:
-        """(points,) arrays of all columns of `points.csv` by name; what does not exist is NaN."""
+        """(points,) arrays of all columns of `points.csv` by name;
+        what does not exist is NaN.
+        """
         return frozen(point_columns(self.table))
 
     @property
@@ -399,7 +432,9 @@ class StudyResult(Shown):
 
     @cached_property
     def summary(self) -> Summary | None:
-        """Statistics of each system at each intensity; None of analyses without histories."""
+        """Statistics of each system at each intensity; None of
+        analyses without histories.
+        """
         if self.layout.plan.analysis != "timehistory":
             return None
         return summary(self.table, self.results.fixed_base)
@@ -412,26 +447,36 @@ class StudyResult(Shown):
     @cached_property
     def judgements(self) -> list[Verdict]:
         """Verdicts on every limit of each system at each intensity."""
-        return judged(self.table, self.summary, self.study.conditions) if self.summary else []
+        return (
+            judged(self.table, self.summary, self.study.conditions)
+            if self.summary
+            else []
+        )
 
     @cached_property
     def statistics(self) -> Columns:
         """Columns of `statistics.csv`: a row a system and intensity.
 
-        Counts, the share that overturned with its 95 % interval, and median, 84 % fractile and
-        largest value of all demands, infinite where so many overturned.
+        Counts, the share that overturned with its 95 % interval, and median, 84 %
+        fractile and largest value of all demands, infinite where so many overturned.
         """
         return frozen(_arrays(summary_columns(self._of_histories())))
 
     @cached_property
     def verdicts(self) -> Columns:
-        """Columns of `verdicts.csv`: a row a limit of the study or of its base case and system."""
-        return frozen(_arrays(verdict_columns(self._of_histories().keys, self.judgements)))
+        """Columns of `verdicts.csv`: a row a limit of the study or of
+        its base case and system.
+        """
+        return frozen(
+            _arrays(verdict_columns(self._of_histories().keys, self.judgements))
+        )
 
     @property
     def passed(self) -> bool:
         """True if no limit is exceeded and no point failed."""
-        return not self.failures and not any(verdict.exceeded for verdict in self.judgements)
+        return not self.failures and not any(
+            verdict.exceeded for verdict in self.judgements
+        )
 
     def _of_histories(self) -> Summary:
         if self.summary is None:
@@ -463,13 +508,15 @@ class StudyResult(Shown):
         name
             Of its files.
         target
-            A figure, a part of one or axes of matplotlib to be drawn into; axes give their place to
-            a part of their figure. A figure of its own by default.
+            A figure, a part of one or axes of matplotlib to be drawn into; axes give
+            their place to a part of their figure. A figure of its own by default.
         """
         found = self.report(name)
         if found.figure is None:
             raise UsageError(f"{name}: {'; '.join(found.notes) or 'nothing to draw'}")
-        return found.drawn(self.study.reports[name].options.title or self.study.title, target)
+        return found.drawn(
+            self.study.reports[name].options.title or self.study.title, target
+        )
 
     def write(
         self,
@@ -480,15 +527,16 @@ class StudyResult(Shown):
         style: Path | str | None = None,
         force: bool = False,
     ) -> list[str]:
-        """Write points, statistics, verdicts and reports as `rps sweep` does; names of the files.
+        """Write points, statistics, verdicts and reports as `rps sweep`
+        does; names of the files.
 
         Parameters
         ----------
         folder
             The one of the store by default.
         figures, columns, style
-            Formats (png, svg, pdf), columns of a journal that figures fill (1 or 2), and a file
-            with matplotlib's settings.
+            Formats (png, svg, pdf), columns of a journal that figures fill (1 or 2), and
+            a file with matplotlib's settings.
         force
             Overwrite what is in the way.
 
@@ -512,7 +560,9 @@ class StudyResult(Shown):
 
 
 def collected(result: StudyResult, look: Look, place: Path | None = None) -> Collected:
-    """All files, for commands in them those of a place; a report that fails takes no other."""
+    """All files, for commands in them those of a place; a report
+    that fails takes no other.
+    """
     found = Collected({"points.csv": points_csv(result.table)})
     base = result.layout.study.base_file
     if base is None and result.failures:
@@ -555,7 +605,9 @@ def collected(result: StudyResult, look: Look, place: Path | None = None) -> Col
     return found
 
 
-def error_of(result: StudyResult, found: Collected, *, limits: bool = True) -> RpsError | None:
+def error_of(
+    result: StudyResult, found: Collected, *, limits: bool = True
+) -> RpsError | None:
     """The gravest of what went wrong, whose exit code counts; its text tells of all."""
     errors: list[RpsError] = [*found.broken]
     if failed := [f"point {f.point}: {f.message}\n  {f.command}" for f in found.failures]:
@@ -568,7 +620,10 @@ def error_of(result: StudyResult, found: Collected, *, limits: bool = True) -> R
 
 def _first(texts: list[str], file: str) -> list[str]:
     more = len(texts) - FAILURES_SHOWN
-    return [*texts[:FAILURES_SHOWN], *[f"... and {more} more, all in {file}"] * (more > 0)]
+    return [
+        *texts[:FAILURES_SHOWN],
+        *[f"... and {more} more, all in {file}"] * (more > 0),
+    ]
 
 
 class _Temporary:

@@ -1,4 +1,6 @@
-"""Numbers written with a unit, turned into SI: the one table of units, of cases and of records."""
+"""Numbers written with a unit, turned into SI: the one table of units,
+of cases and of records.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +12,9 @@ from typing import NamedTuple, Self
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import hint, listed
 
-WITH_UNIT = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*([^\s\d_,'].*?)?\s*$")
+WITH_UNIT = re.compile(
+    r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*([^\s\d_,'].*?)?\s*$"
+)
 _POWER = r"([A-Za-zµ]{1,20})(?:(?:\^|\*\*)?(-?[1-9]))?"
 _FACTOR = re.compile(rf"\s*([*/·]|\s|^)\s*{_POWER}")
 UNIT_TEXT = re.compile(rf"{_POWER}(?:(?:\s*[*/·]\s*|\s){_POWER}){{0,5}}\Z")
@@ -30,7 +34,8 @@ KINDS = {
     "rad": ("an angle", ("rad", "mrad", "deg")),
     "deg": ("a direction", ("deg", "rad")),
 }
-"""Quantity that each SI unit of the formats measures, and units it is usually written in."""
+"""Quantity that each SI unit of the formats measures, and units
+it is usually written in."""
 
 OTHER_KINDS = {"Hz": "a frequency"}
 
@@ -58,7 +63,9 @@ POWER = (2, 1, -3)
 
 
 class Written(float):
-    """A number in SI that was given as a text with a unit, which is what readers are shown."""
+    """A number in SI that was given as a text with a unit, which
+    is what readers are shown.
+    """
 
     text: str
 
@@ -76,7 +83,9 @@ class Written(float):
 
 
 class Unit(NamedTuple):
-    """A factor to SI, mantissa times a power of ten, and powers of length, mass and time."""
+    """A factor to SI, mantissa times a power of ten, and powers
+    of length, mass and time.
+    """
 
     mantissa: float
     tens: int
@@ -117,7 +126,8 @@ OTHERS = {
 }  # fmt: skip
 
 PREFIXES = {
-    "n nano": -9, "u µ micro": -6, "m milli": -3, "c centi": -2, "d deci": -1, "da deca": 1,
+    "n"
+    " nano": -9, "u µ micro": -6, "m milli": -3, "c centi": -2, "d deci": -1, "da deca": 1,
     "h hecto": 2, "k kilo": 3, "M mega": 6, "G giga": 9, "T tera": 12,
 }  # fmt: skip
 """Powers of ten."""
@@ -153,7 +163,9 @@ def unit_of_text(written: str) -> Unit | None:
         factor = unit.mantissa ** abs(power)
         mantissa = mantissa * factor if power > 0 else mantissa / factor
         tens += power * unit.tens
-        dimension = tuple(a + power * b for a, b in zip(dimension, unit.dimension, strict=True))
+        dimension = tuple(
+            a + power * b for a, b in zip(dimension, unit.dimension, strict=True)
+        )
     return Unit(mantissa, tens, dimension)
 
 
@@ -164,12 +176,14 @@ def si_value(text: str, unit: str) -> float:
     match = WITH_UNIT.match(text)
     if match is None:
         raise ValueError(
-            f"must be {kind}: a number in {unit}, or a number with its unit in quotes, such as"
-            f" '1.5 {units[1]}'{_grouped(text)}"
+            f"must be {kind}: a number in {unit}, or a number with its unit in quotes,"
+            f" such as '1.5 {units[1]}'{_grouped(text)}"
         )
     number, written = match.groups()
     if written is None:
-        raise ValueError(f"is text without a unit; write {number} ({unit}) without quotes")
+        raise ValueError(
+            f"is text without a unit; write {number} ({unit}) without quotes"
+        )
     return float(number) * si_factor(written, unit)
 
 
@@ -190,8 +204,8 @@ def si_factor(written: str, unit: str) -> float:
     kind, units = KINDS[unit]
     if written.lower() in {"ton", "tons"}:
         raise ValueError(
-            f"has the unit {written!r}, which is 1000 kg to some and 907 kg or 1016 kg to others;"
-            " write t for 1000 kg, or use lb"
+            f"has the unit {written!r}, which is 1000 kg to some and 907 kg or 1016 kg to"
+            " others; write t for 1000 kg, or use lb"
         )
     found = unit_of_text(written)
     wanted = unit_of_text(unit)
@@ -199,7 +213,9 @@ def si_factor(written: str, unit: str) -> float:
         meant = hint(written, units, f"use {listed(units)}")
         raise ValueError(f"has the unknown unit {written!r}; it must be {kind}: {meant}")
     if found.dimension != wanted.dimension:
-        weight = "; the mass of a weight W is W/g" * (found.dimension == FORCE and unit == "kg")
+        weight = "; the mass of a weight W is W/g" * (
+            found.dimension == FORCE and unit == "kg"
+        )
         raise ValueError(
             f"is {_kind(found.dimension)}, but must be {kind}: {listed(units)}{weight}"
         )
@@ -224,12 +240,18 @@ def in_si(value: object, unit: str) -> object:
 
 def as_written(value: float, unit: str) -> str:
     """A number in SI as its file has it, with its unit."""
-    return value.text if isinstance(value, Written) else f"{value:g} {unit}".removesuffix(" -")
+    return (
+        value.text
+        if isinstance(value, Written)
+        else f"{value:g} {unit}".removesuffix(" -")
+    )
 
 
 def _kind(dimension: tuple[int, ...]) -> str:
     """Kind of a quantity of these dimensions, in words."""
-    for unit, kind in ({unit: kind for unit, (kind, _) in KINDS.items()} | OTHER_KINDS).items():
+    for unit, kind in (
+        {unit: kind for unit, (kind, _) in KINDS.items()} | OTHER_KINDS
+    ).items():
         if (known := unit_of_text(unit)) and known.dimension == dimension:
             return kind
     return "another quantity"

@@ -15,12 +15,18 @@ VARIABLE = "RPS_CACHE_DIR"
 
 
 def user_cache() -> Path | None:
-    """The first place that only this user may write to, made if needed; None if there is none."""
-    return next((each for each in cache_places() if is_writable(each) and is_private(each)), None)
+    """The first place that only this user may write to, made if
+    needed; None if there is none.
+    """
+    return next(
+        (each for each in cache_places() if is_writable(each) and is_private(each)), None
+    )
 
 
 def cache_places() -> list[Path]:
-    """Folder that ``RPS_CACHE_DIR`` names, the user's cache, one in the temporary folder."""
+    """Folder that ``RPS_CACHE_DIR`` names, the user's cache, one
+    in the temporary folder.
+    """
     places = [users_folder(VARIABLE), users_folder("XDG_CACHE_HOME", "~/.cache", "rps")]
     user = os.getuid() if hasattr(os, "getuid") else 0
     with suppress(FileNotFoundError):  # not even temporary files can be written
@@ -30,13 +36,17 @@ def cache_places() -> list[Path]:
 
 
 def users_folder(variable: str, usual: str = "", *below: str) -> Path | None:
-    """Folder that a variable names, else the usual one; None without either, or a home."""
+    """Folder that a variable names, else the usual one; None
+    without either, or a home.
+    """
     path = os.path.expanduser(os.environ.get(variable) or usual)  # noqa: PTH111 -- which raises
     return None if path[:1] in {"", "~"} else Path(path, *below)
 
 
 def is_private(folder: Path) -> bool:
-    """True if only this user may write to a folder, from which code is run; else a warning."""
+    """True if only this user may write to a folder, from which
+    code is run; else a warning.
+    """
     if os.name == "nt":
         return True
     state = folder.stat()

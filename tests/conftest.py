@@ -23,7 +23,9 @@ settings.register_profile("untimed", deadline=None)
 settings.load_profile("untimed")
 
 
-def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+def pytest_collection_modifyitems(
+    config: pytest.Config, items: list[pytest.Item]
+) -> None:
     """Leave out tests marked `long` unless the marker expression speaks of them.
 
     What takes longest, the README's commands, begins first: at the end one worker would wait.
@@ -31,7 +33,9 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     items.sort(key=lambda item: item.path.parent != config.rootpath / "tests")
     if "long" in config.option.markexpr:
         return
-    config.hook.pytest_deselected(items=[i for i in items if i.get_closest_marker("long")])
+    config.hook.pytest_deselected(
+        items=[i for i in items if i.get_closest_marker("long")]
+    )
     items[:] = [i for i in items if not i.get_closest_marker("long")]
 
 

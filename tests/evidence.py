@@ -57,7 +57,10 @@ Evidence = tuple[str, str]
 def marks(node: ast.AST) -> Iterator[Evidence]:
     """Capability and kind of each mark in decorators or in a `pytestmark`."""
     for call in ast.walk(node):
-        if isinstance(call, ast.Call) and ast.unparse(call.func) == "pytest.mark.evidence":
+        if (
+            isinstance(call, ast.Call)
+            and ast.unparse(call.func) == "pytest.mark.evidence"
+        ):
             capability, kind = (ast.literal_eval(argument) for argument in call.args)
             if capability not in CAPABILITIES or kind not in KINDS:
                 raise ValueError(f"{capability!r}, {kind!r}: add it to tests/evidence.py")
@@ -85,9 +88,8 @@ def table() -> str:
     """Rows by capability, columns by kind; each file with the number of its tests."""
     cells: dict[Evidence, list[str]] = {}
     for path in sorted(TESTS.rglob("test_*.py")):
-        link = (
-            f"[{path.stem.removeprefix('test_')}](../{path.relative_to(TESTS.parent).as_posix()})"
-        )
+        place = path.relative_to(TESTS.parent).as_posix()
+        link = f"[{path.stem.removeprefix('test_')}](../{place})"
         for mark, count in tests_of(path).items():
             cells.setdefault(mark, []).append(f"{link} {count}")
     lines = ["| capability | " + " | ".join(KINDS.values()) + " |", "|---" * 5 + "|"]
@@ -97,19 +99,27 @@ def table() -> str:
     for kind, name in KINDS.items():
         there = [each for each in CAPABILITIES if (each, kind) in cells]
         without = [each for each in CAPABILITIES if each not in there]
-        told = "; ".join(without) if len(without) < len(there) else f"all but {'; '.join(there)}"
+        told = (
+            "; ".join(without)
+            if len(without) < len(there)
+            else f"all but {'; '.join(there)}"
+        )
         lines.append(f"\nWithout {name}: {told} ({len(without)} of {len(CAPABILITIES)}).")
     return "\n".join(lines)
 
 
 def with_table(text: str) -> str:
     """A document with the table between its two marks."""
-    found = re.subn(f"{BEGIN}[\\s\\S]*?{END}", lambda _: f"{BEGIN}\n{table()}\n{END}", text)
+    found = re.subn(
+        f"{BEGIN}[\\s\\S]*?{END}", lambda _: f"{BEGIN}\n{table()}\n{END}", text
+    )
     if found[1] != 1:
         raise ValueError(f"{DOCUMENT.name} has no place `{BEGIN}` ... `{END}`")
     return found[0]
 
 
 if __name__ == "__main__":
-    DOCUMENT.write_text(with_table(DOCUMENT.read_text(encoding="utf-8")), encoding="utf-8")
+    DOCUMENT.write_text(
+        with_table(DOCUMENT.read_text(encoding="utf-8")), encoding="utf-8"
+    )
     sys.stdout.write(f"{table()}\n")

@@ -25,7 +25,13 @@ from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.model.bearing import Bearing
-from rpscli.model.devices import FrictionDamper, RollingResistance, Stop, Tendon, ViscousDamper
+from rpscli.model.devices import (
+    FrictionDamper,
+    RollingResistance,
+    Stop,
+    Tendon,
+    ViscousDamper,
+)
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import Device, PodiumStructure
 from rpscli.model.superstructure import (
@@ -82,7 +88,9 @@ def building(
     return Superstructure(masses, stiffnesses, damping or RayleighDamping(0.05, (1, 2)))
 
 
-def yielding(above: Superstructure, first: float, hardening: float = 0.05) -> Superstructure:
+def yielding(
+    above: Superstructure, first: float, hardening: float = 0.05
+) -> Superstructure:
     """The building with strengths as the shears of its first mode, from that of storey 1 [N]."""
     strengths = first_mode_strengths(above.masses, above.stiffnesses, first)
     return replace(above, strengths=strengths, hardening=hardening)
@@ -131,14 +139,22 @@ def stillness(dt: float) -> GroundMotion:
 
 
 def let_go(
-    structure: PodiumStructure, rotation: float, seconds: float, dt: float = 0.01, **settings: Any
+    structure: PodiumStructure,
+    rotation: float,
+    seconds: float,
+    dt: float = 0.01,
+    **settings: Any,
 ) -> TimeHistoryResult:
     """From rest at a tilt, on a ground that stands still."""
-    chosen = TimeHistorySettings(free_vibration=seconds, initial_rotation=rotation, **settings)
+    chosen = TimeHistorySettings(
+        free_vibration=seconds, initial_rotation=rotation, **settings
+    )
     return time_history(structure, stillness(dt), chosen, with_fixed_base=False)
 
 
-def linear_response(M: Array, C: Array, K: Array, push: Array, a_g: Array, dt: float) -> Array:
+def linear_response(
+    M: Array, C: Array, K: Array, push: Array, a_g: Array, dt: float
+) -> Array:
     """Positions and rates, (samples, 2 n), of M u'' + C u' + K u = -push a_g, exact if linear."""
     n = len(M)
     flow = np.eye(2 * n, k=n)
@@ -149,7 +165,9 @@ def linear_response(M: Array, C: Array, K: Array, push: Array, a_g: Array, dt: f
     return np.asarray(states).reshape(len(a_g), 2 * n)
 
 
-def part(record: GroundMotion, start: float, seconds: float, factor: float = 1.0) -> GroundMotion:
+def part(
+    record: GroundMotion, start: float, seconds: float, factor: float = 1.0
+) -> GroundMotion:
     """From an instant on, for a time [s], times a factor."""
     first, count = round(start / record.dt), round(seconds / record.dt) + 1
     return ground(factor * record.acceleration[first : first + count], record.dt)
@@ -201,14 +219,20 @@ def waves(seconds: float, dt: float, peak: float, seed: int) -> GroundMotion:
     return ground(peak * a / np.max(np.abs(a)), dt)
 
 
-def steps_an_interval(structure: PodiumStructure, dt: float, accuracy: float = 1.0) -> int:
+def steps_an_interval(
+    structure: PodiumStructure, dt: float, accuracy: float = 1.0
+) -> int:
     """Taylor steps of an uplifted structure in a sampling interval without event."""
     return max(math.ceil(dt * accuracy * uplifted_rate(structure)), 1)
 
 
 def oracle_system(structure: PodiumStructure) -> OracleSystem:
     """The same structure as the second integrator wants it."""
-    bearing, above, law = structure.bearing, structure.superstructure, structure.impact_law
+    bearing, above, law = (
+        structure.bearing,
+        structure.superstructure,
+        structure.impact_law,
+    )
     none = np.zeros(0)
     return OracleSystem(
         bearing.semi_diagonal,
@@ -223,7 +247,9 @@ def oracle_system(structure: PodiumStructure) -> OracleSystem:
         np.zeros((0, 0)) if above is None else above.damping_matrix,
         structure.gravity,
         law="flexible" if law.kind == "flexible" else "rigid",
-        restitution=structure.restitution if law.kind == "value" or law.factor != 1.0 else None,
+        restitution=structure.restitution
+        if law.kind == "value" or law.factor != 1.0
+        else None,
     )
 
 

@@ -21,7 +21,9 @@ from rpscli.cli import program
 
 ROOT = Path(__file__).parents[1]
 PACKAGE = ROOT / "rpscli"
-GUIDE, THEORY, VERIFICATION = (PACKAGE / f"{x}.md" for x in ("GUIDE", "THEORY", "VERIFICATION"))
+GUIDE, THEORY, VERIFICATION = (
+    PACKAGE / f"{x}.md" for x in ("GUIDE", "THEORY", "VERIFICATION")
+)
 
 QUICK = "tests/test_readme.py::test_commands_run_in_their_order"
 LONG = "tests/test_readme.py::test_commands_of_a_page_run"
@@ -110,7 +112,12 @@ def blocks(document: Path) -> list[Block]:
 
 def of_blocks(document: Path, language: str = "sh") -> list[str]:
     """Lines of its blocks in a language."""
-    return [of for b in blocks(document) if b.language == language for of in b.text.splitlines()]
+    return [
+        of
+        for b in blocks(document)
+        if b.language == language
+        for of in b.text.splitlines()
+    ]
 
 
 def rps_lines(page: Path) -> list[str]:
@@ -131,14 +138,24 @@ def of_texts(page: Path) -> list[str]:
         lines = [f"{line}  # {meaning}" if meaning else line for line, meaning in told]
     else:
         lines = re.findall(r"^\s+(?:- )?(?:run: )?(rps .*)$", text, re.MULTILINE)
-    named = (line for line in dict.fromkeys(lines) if not re.fullmatch(r"rps record [a-z]+", line))
+    named = (
+        line
+        for line in dict.fromkeys(lines)
+        if not re.fullmatch(r"rps record [a-z]+", line)
+    )
     return [line for line in named if "=" not in line.split()[1]]
 
 
 def pages() -> dict[str, Path]:
     """Whatever may show commands, by its place."""
-    found = [*ROOT.glob("*.md"), *(ROOT / ".ci").rglob("*.yaml"), *(ROOT / ".github").rglob("*.*")]
-    found += [path for folder in ("rpscli", "cases") for path in (ROOT / folder).rglob("*.*")]
+    found = [
+        *ROOT.glob("*.md"),
+        *(ROOT / ".ci").rglob("*.yaml"),
+        *(ROOT / ".github").rglob("*.*"),
+    ]
+    found += [
+        path for folder in ("rpscli", "cases") for path in (ROOT / folder).rglob("*.*")
+    ]
     found += (ROOT / "tests").rglob("README.md")
     named = {path.relative_to(ROOT).as_posix(): path for path in sorted(found)}
     return {
@@ -211,7 +228,12 @@ def not_printed(shown: str, output: str) -> list[str]:
 
 def table(document: Path, below: str) -> list[list[str]]:
     """Cells of the first table below some words: those of its head, then its rows."""
-    rows = document.read_text("utf-8").partition(below)[2].partition("\n|")[2].split("\n\n")[0]
+    rows = (
+        document.read_text("utf-8")
+        .partition(below)[2]
+        .partition("\n|")[2]
+        .split("\n\n")[0]
+    )
     cells = [[c.strip() for c in row.strip("|").split("|")] for row in rows.splitlines()]
     return [cells[0], *cells[2:]]
 

@@ -14,7 +14,9 @@ def fixed(values: Sequence[float], width: int, form: str) -> str:
     return "\n".join("".join(cells[i : i + width]) for i in range(0, len(cells), width))
 
 
-def csmip(channels: tuple[int, ...] = (1,), peak: float = PEAK, names: tuple[str, ...] = ()) -> str:
+def csmip(
+    channels: tuple[int, ...] = (1,), peak: float = PEAK, names: tuple[str, ...] = ()
+) -> str:
     text = []
     for number, name in zip(channels, names or ["90 DEG"] * len(channels), strict=True):
         body = fixed([VALUES[0] + number - channels[0], *VALUES[1:]], 8, "{:10.3f}")
@@ -115,7 +117,9 @@ def smc(title: str = "2 CORRECTED ACCELEROGRAM") -> str:
     reals = [1.7e38] * 50
     reals[1], reals[29], reals[31] = 50.0, PEAK, -10.0
     cells = [f"{value:11.4E}" for value in VALUES]
-    glued = "".join(cell.replace("E+0", "E+").replace("E-0", "E-").rjust(10) for cell in cells)
+    glued = "".join(
+        cell.replace("E+0", "E+").replace("E-0", "E-").rjust(10) for cell in cells
+    )
     return "\n".join(
         [
             title.ljust(80),

@@ -24,17 +24,23 @@ WITH_EXAMPLES = [
 ]
 
 
-@pytest.mark.parametrize("path", WITH_EXAMPLES, ids=lambda path: str(path.relative_to(ROOT)))
+@pytest.mark.parametrize(
+    "path", WITH_EXAMPLES, ids=lambda path: str(path.relative_to(ROOT))
+)
 def test_examples(path: Path) -> None:
     """Of whatever has a docstring: doctest itself finds none of cached properties."""
     text = path.read_text(encoding="utf-8")
-    name = ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
+    name = ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(
+        ".__init__"
+    )
     names = vars(importlib.import_module(name))
     runner, parser = doctest.DocTestRunner(), doctest.DocTestParser()
     for node in ast.walk(ast.parse(text)):
         if isinstance(node, (ast.Module, ast.ClassDef, ast.FunctionDef)):
             place = f"{name}.{getattr(node, 'name', '')}"
-            examples = parser.get_doctest(ast.get_docstring(node) or "", names, place, None, None)
+            examples = parser.get_doctest(
+                ast.get_docstring(node) or "", names, place, None, None
+            )
             runner.run(examples)
     assert runner.tries == text.count(">>> ")
     assert not runner.failures
@@ -59,7 +65,9 @@ def described(docstring: str | None) -> set[str]:
 
 def public(body: list[ast.stmt]) -> Iterator[ast.FunctionDef | ast.ClassDef]:
     for node in body:
-        if isinstance(node, ast.FunctionDef | ast.ClassDef) and not node.name.startswith("_"):
+        if isinstance(node, ast.FunctionDef | ast.ClassDef) and not node.name.startswith(
+            "_"
+        ):
             yield node
             if isinstance(node, ast.ClassDef):
                 yield from public(node.body)
@@ -98,7 +106,9 @@ def shared(node: ast.FunctionDef | ast.ClassDef) -> set[str]:
     if isinstance(node, ast.FunctionDef):
         return set()
     methods = [each for each in public(node.body) if isinstance(each, ast.FunctionDef)]
-    return {name for each in methods for name in arguments(each)} - set(fields(node.body)[0])
+    return {name for each in methods for name in arguments(each)} - set(
+        fields(node.body)[0]
+    )
 
 
 def parsed(file: Path) -> ast.Module:
@@ -113,7 +123,9 @@ def public_nodes() -> Iterator[tuple[str, ast.FunctionDef | ast.ClassDef, set[st
     for module, names in rpscli._HOMES.items():
         file = PACKAGE.joinpath(*module.split(".")).with_suffix(".py")
         for node in parsed(file).body:
-            if not isinstance(node, ast.FunctionDef | ast.ClassDef) or node.name.startswith("_"):
+            if not isinstance(
+                node, ast.FunctionDef | ast.ClassDef
+            ) or node.name.startswith("_"):
                 continue
             if node.name in names.split():
                 # An answer to what a base class asks has no docstring; linters see to all others.

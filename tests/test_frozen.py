@@ -81,10 +81,15 @@ def parts(value: Any, name: str, seen: dict[int, Any]) -> Iterator[tuple[str, An
     if isinstance(value, dict | list | tuple):
         for key, part in value.items() if isinstance(value, dict) else enumerate(value):
             yield from parts(part, f"{name}[{key!r}]", seen)
-    if not type(value).__module__.startswith("rpscli.") or "schema" in type(value).__module__:
+    if (
+        not type(value).__module__.startswith("rpscli.")
+        or "schema" in type(value).__module__
+    ):
         return
     for attribute, member in inspect.getmembers_static(type(value)):
-        if isinstance(member, property | cached_property) and not attribute.startswith("_"):
+        if isinstance(member, property | cached_property) and not attribute.startswith(
+            "_"
+        ):
             yield from parts(getattr(value, attribute), f"{name}.{attribute}", seen)
     for attribute, part in list(getattr(value, "__dict__", {}).items()):
         if not attribute.startswith("_"):
@@ -107,7 +112,11 @@ def test_nothing_that_is_offered_is_forgotten() -> None:
 def test_arrays_are_read_only_in_copies_too(name: str) -> None:
     made = OBJECTS[name]()
     assert not writable(made)
-    if name not in {"Case", "Study", "StudyResult"}:  # copies of these hold more than results
+    if name not in {
+        "Case",
+        "Study",
+        "StudyResult",
+    }:  # copies of these hold more than results
         for again in (copy.copy(made), copy.deepcopy(made), pickled(made)):
             assert not writable(again)
 

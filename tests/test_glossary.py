@@ -40,14 +40,18 @@ LABELS = sorted(
 @pytest.mark.parametrize("label", LABELS)
 def test_labels_are_made_of_words_of_the_glossary(label: str) -> None:
     words = EXPLAINED | PLAIN
-    assert any(re.search(rf"\b{re.escape(word)}(s|es)?\b", label.lower()) for word in words)
+    assert any(
+        re.search(rf"\b{re.escape(word)}(s|es)?\b", label.lower()) for word in words
+    )
 
 
 def test_outcomes_are_explained_with_the_sentences_that_are_printed() -> None:
     entries = [entry for entry, _ in glossary()]
     for outcome in (*OUTCOMES.values(), "failed"):
         (entry,) = (entry for entry in entries if outcome in re.split(r", | \(", entry))
-        assert SENTENCES[outcome].rpartition(": ")[2].partition(",")[0] in re.split(r"[,()]", entry)
+        assert SENTENCES[outcome].rpartition(": ")[2].partition(",")[0] in re.split(
+            r"[,()]", entry
+        )
 
 
 def test_no_word_is_explained_twice() -> None:

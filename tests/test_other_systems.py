@@ -66,25 +66,38 @@ def rps(*words: str, exit_code: int = 0) -> str:
 @pytest.fixture
 def windows(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """What Python has on Linux alone, or not on Windows, is not there."""
-    for name in ("fork", "forkpty", "getuid", "sched_getaffinity", "O_NONBLOCK", "mkfifo"):
+    for name in (
+        "fork",
+        "forkpty",
+        "getuid",
+        "sched_getaffinity",
+        "O_NONBLOCK",
+        "mkfifo",
+    ):
         monkeypatch.delattr(os, name, raising=False)
     for name in ("SIGKILL", "SIGHUP", "SIGALRM", "SIGUSR1"):
         monkeypatch.delattr(signal, name, raising=False)
     for module in ("fcntl", "termios", "resource", "pwd"):
         monkeypatch.setitem(sys.modules, module, None)  # then importing it fails
-    monkeypatch.setattr(user_cache, "is_private", lambda _: True)  # as its first line says there
+    monkeypatch.setattr(
+        user_cache, "is_private", lambda _: True
+    )  # as its first line says there
 
 
 def test_what_differs_between_systems_is_named_in_one_place() -> None:
     found: dict[str, set[str]] = {name: set() for name in SEAMS}
     for path in SOURCES:
-        for name in re.findall(rf"(?:import |\.)({'|'.join(SEAMS)})\b", path.read_text("utf-8")):
+        for name in re.findall(
+            rf"(?:import |\.)({'|'.join(SEAMS)})\b", path.read_text("utf-8")
+        ):
             found[name].add(path.relative_to(ROOT / "rpscli").as_posix())
     assert found == SEAMS
 
 
 @pytest.mark.usefixtures("windows")
-def test_commands_run_as_on_windows(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_commands_run_as_on_windows(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.chdir(tmp_path)
     (tmp_path / "study.yaml").write_text(STUDY, encoding="utf-8")
     none = ("--figures", "none")
@@ -100,7 +113,9 @@ def test_commands_run_as_on_windows(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     assert available_cores() == os.cpu_count()
 
 
-def test_windows_asks_for_no_owner(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_windows_asks_for_no_owner(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     tmp_path.chmod(0o777)
     with monkeypatch.context() as patch:
         patch.setattr(os, "name", "nt")
@@ -113,7 +128,12 @@ def test_homes_get_no_folders_of_names_that_nobody_uses(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, system: str, home: str
 ) -> None:
     """In containers users may have no home: then Python leaves the `~` in a path."""
-    for variable in (user_cache.VARIABLE, "XDG_CACHE_HOME", "XDG_CONFIG_HOME", "MPLCONFIGDIR"):
+    for variable in (
+        user_cache.VARIABLE,
+        "XDG_CACHE_HOME",
+        "XDG_CONFIG_HOME",
+        "MPLCONFIGDIR",
+    ):
         monkeypatch.setenv(variable, "")  # to be put back
         monkeypatch.delenv(variable)
     monkeypatch.delitem(sys.modules, "matplotlib", raising=False)
@@ -125,8 +145,12 @@ def test_homes_get_no_folders_of_names_that_nobody_uses(
     (tmp_path / "home").mkdir()
     place = known(user_cache.user_cache())
     quiet_matplotlib()
-    assert place.is_relative_to(tmp_path / ("temporary" if home == "~" else "home/.cache"))
-    assert os.environ.get("MPLCONFIGDIR") == (str(place / "matplotlib") if home == "~" else None)
+    assert place.is_relative_to(
+        tmp_path / ("temporary" if home == "~" else "home/.cache")
+    )
+    assert os.environ.get("MPLCONFIGDIR") == (
+        str(place / "matplotlib") if home == "~" else None
+    )
     left = {path.name for path in (tmp_path / "home").iterdir()}
     usual = {".cache", ".config"} if system == "linux" else {".cache"}
     assert left == (set() if home == "~" else usual)
@@ -157,16 +181,23 @@ def test_a_file_that_another_program_holds_open_is_named(
         raise PermissionError(errno.EACCES, "Access is denied", str(self))
 
     monkeypatch.setattr(Path, "replace", refuse)
-    with pytest.raises(Exception, match=r"table\.csv: cannot be written: Access is denied"):
+    with pytest.raises(
+        Exception, match=r"table\.csv: cannot be written: Access is denied"
+    ):
         write_whole({tmp_path / "table.csv": b"new"})
-    assert {path.name for path in tmp_path.iterdir()} == {"table.csv"}  # and nothing half written
+    assert {path.name for path in tmp_path.iterdir()} == {
+        "table.csv"
+    }  # and nothing half written
     assert (tmp_path / "table.csv").read_bytes() == b"old"
 
 
 @pytest.mark.parametrize(
     ("code", "told"),
     [
-        (sqlite3.SQLITE_IOERR | 15 << 8, "the disk cannot be read or written"),  # IOERR_LOCK
+        (
+            sqlite3.SQLITE_IOERR | 15 << 8,
+            "the disk cannot be read or written",
+        ),  # IOERR_LOCK
         (sqlite3.SQLITE_CANTOPEN, "cannot be written"),
         (sqlite3.SQLITE_READONLY, "cannot be written"),
         (sqlite3.SQLITE_BUSY, "is in use"),
@@ -202,10 +233,14 @@ def test_ctrl_c_is_left_alone_outside_the_main_thread() -> None:
 
 
 @pytest.mark.parametrize("encoding", ["cp1252", "cp866"])
-def test_consoles_that_are_not_utf_8_show_all_that_they_can(tmp_path: Path, encoding: str) -> None:
+def test_consoles_that_are_not_utf_8_show_all_that_they_can(
+    tmp_path: Path, encoding: str
+) -> None:
     """Lines of tables, Greek letters and Cyrillic titles: what cannot be shown becomes `?`."""
     text = (ROOT / "cases" / "free_standing_block.yaml").read_text("utf-8")
-    (tmp_path / "блок.yaml").write_text(text.replace("title: ", "title: Блок на краю, "), "utf-8")
+    (tmp_path / "блок.yaml").write_text(
+        text.replace("title: ", "title: Блок на краю, "), "utf-8"
+    )
     words = ("-m", "rpscli", "check", "блок.yaml")
     plain = {"PYTHONUTF8": "0"}
     shown = python(*words, folder=tmp_path, encoding=encoding, environment=plain).stdout
@@ -233,7 +268,8 @@ for line in sys.argv[1:]:
 
 
 @pytest.mark.parametrize(
-    "name", ["with blanks and (brackets)", "каталог с пробелами", "o'quote & co", "深い" * 10]
+    "name",
+    ["with blanks and (brackets)", "каталог с пробелами", "o'quote & co", "深い" * 10],
 )
 def test_folders_of_any_name_hold_cases_and_results(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
@@ -241,9 +277,19 @@ def test_folders_of_any_name_hold_cases_and_results(
     folder = tmp_path / name
     folder.mkdir()
     monkeypatch.chdir(folder)
-    for words in (("init", "--example", "rigid_frame"), ("check", "cases/rigid_frame.yaml")):
+    for words in (
+        ("init", "--example", "rigid_frame"),
+        ("check", "cases/rigid_frame.yaml"),
+    ):
         rps(*words)
-    rps("pushover", str(folder / "cases/rigid_frame.yaml"), "--figures", "none", "-o", name)
+    rps(
+        "pushover",
+        str(folder / "cases/rigid_frame.yaml"),
+        "--figures",
+        "none",
+        "-o",
+        name,
+    )
     assert (folder / name / "run.json").is_file()
 
 
@@ -260,7 +306,9 @@ def test_a_path_that_is_too_long_is_named(
         load_record(str(tmp_path / ("d" * 300)))
     monkeypatch.chdir(tmp_path)
     shutil.copy(ROOT / "cases" / "free_standing_block.yaml", "block.yaml")
-    output = rps("pushover", "block.yaml", "--figures", "none", "-o", "d" * 300, exit_code=1)
+    output = rps(
+        "pushover", "block.yaml", "--figures", "none", "-o", "d" * 300, exit_code=1
+    )
     assert "cannot be written" in output
     assert "name another place with -o" in output
 
@@ -278,4 +326,11 @@ def test_folders_of_records_have_names_that_windows_allows(source: str) -> None:
     name = load_record(source).name
     assert not set('<>:"/\\|?*') & set(name)
     assert name == name.strip(". ")
-    assert name.partition(".")[0].upper() not in {"CON", "PRN", "AUX", "NUL", "COM1", "LPT1"}
+    assert name.partition(".")[0].upper() not in {
+        "CON",
+        "PRN",
+        "AUX",
+        "NUL",
+        "COM1",
+        "LPT1",
+    }

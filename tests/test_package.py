@@ -34,7 +34,9 @@ def test_the_conda_recipe_is_of_this_version_with_the_same_requirements() -> Non
     _, *run = RECIPE["requirements"]["run"]  # Python first
     assert bounds(run) == bounds(PROJECT["project"]["dependencies"])
     assert f">={RECIPE['context']['python_min']}" == PROJECT["project"]["requires-python"]
-    scripts = dict(each.split(" = ") for each in RECIPE["build"]["python"]["entry_points"])
+    scripts = dict(
+        each.split(" = ") for each in RECIPE["build"]["python"]["entry_points"]
+    )
     assert scripts == PROJECT["project"]["scripts"]
 
 
@@ -42,10 +44,15 @@ def test_the_lock_has_what_the_project_needs() -> None:
     text = (ROOT / ".ci/lock.txt").read_text("utf-8")
     locked = dict(re.findall(r"^([\w.-]+)==([\w.]+)", text, re.MULTILINE))
     wanted = bounds(
-        PROJECT["project"]["dependencies"] + PROJECT["project"]["optional-dependencies"]["records"]
+        PROJECT["project"]["dependencies"]
+        + PROJECT["project"]["optional-dependencies"]["records"]
     )
     numbers = {name: [int(n) for n in locked[name].split(".")] for name in wanted}
-    low = {n: b for n, b in wanted.items() if numbers[n] < [int(part) for part in b.split(".")]}
+    low = {
+        n: b
+        for n, b in wanted.items()
+        if numbers[n] < [int(part) for part in b.split(".")]
+    }
     assert low == {}
 
 
@@ -54,12 +61,19 @@ def test_every_action_is_pinned_and_every_workflow_has_few_permissions() -> None
         text = path.read_text("utf-8")
         uses = re.findall(r"uses: (\S+)(.*)", text)
         assert uses
-        assert [u for u, v in uses if not re.search(r"@[0-9a-f]{40}$", u) or "# v" not in v] == []
+        assert [
+            u for u, v in uses if not re.search(r"@[0-9a-f]{40}$", u) or "# v" not in v
+        ] == []
         workflow = yaml.safe_load(text)
         assert workflow["permissions"] == {"contents": "read"}
         assert workflow["concurrency"]["group"]
-    publish = yaml.safe_load((WORKFLOWS[0].parent / "release.yml").read_text("utf-8"))["jobs"]
-    assert publish["publish"]["permissions"] == {"id-token": "write", "attestations": "write"}
+    publish = yaml.safe_load((WORKFLOWS[0].parent / "release.yml").read_text("utf-8"))[
+        "jobs"
+    ]
+    assert publish["publish"]["permissions"] == {
+        "id-token": "write",
+        "attestations": "write",
+    }
     assert "secrets." not in (WORKFLOWS[0].parent / "release.yml").read_text("utf-8")
 
 
@@ -76,7 +90,9 @@ def test_what_is_not_ready_is_not_published() -> None:
     assert f"the tag v9.9 is not that of version {VERSION}" in refused.stderr
 
 
-def test_links_of_the_readme_lead_to_the_repository(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_links_of_the_readme_lead_to_the_repository(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     # What builds the package is not among what tests need.
     base = SimpleNamespace(MetadataHookInterface=object)
     parts = ("hatchling", "metadata", "plugin", "interface")
@@ -95,7 +111,9 @@ def test_links_of_the_readme_lead_to_the_repository(monkeypatch: pytest.MonkeyPa
     assert f"]({source}/blob/v{VERSION}/rpscli/GUIDE.md" in text
     assert f"]({source}/raw/v{VERSION}/cases/pictures/" in text
     for link in links:
-        here = re.sub(rf"^{re.escape(source)}/(blob|raw)/v{re.escape(VERSION)}/", "", link)
+        here = re.sub(
+            rf"^{re.escape(source)}/(blob|raw)/v{re.escape(VERSION)}/", "", link
+        )
         assert here == link or (ROOT / here.partition("#")[0]).exists()
 
 

@@ -33,7 +33,9 @@ import rpscli
 from rpscli.model.bearing import Bearing
 
 PAPER = ROOT / "rpscli" / "paper.md"
-_, HEAD, BODY = re.split(r"^---\n", PAPER.read_text("utf-8"), maxsplit=2, flags=re.MULTILINE)
+_, HEAD, BODY = re.split(
+    r"^---\n", PAPER.read_text("utf-8"), maxsplit=2, flags=re.MULTILINE
+)
 TEXT = " ".join(BODY.split())
 
 REQUIRED = (
@@ -61,11 +63,17 @@ NUMBERS = {
 
 def test_form() -> None:
     head = yaml.safe_load(HEAD)
-    assert {"title", "tags", "authors", "affiliations", "date", "bibliography"} <= set(head)
+    assert {"title", "tags", "authors", "affiliations", "date", "bibliography"} <= set(
+        head
+    )
     assert re.fullmatch(r"\d{1,2} [A-Z][a-z]+ \d{4}", head["date"])
     sections = re.findall(r"^# (.*)$", BODY, re.MULTILINE)
     assert [name for name in sections if name in REQUIRED] == list(REQUIRED)
-    assert 750 <= len(re.sub(r"!?\[|\]\([^)]*\)|\[?-?@[\w;, @-]+\]?", " ", BODY).split()) <= 1750
+    assert (
+        750
+        <= len(re.sub(r"!?\[|\]\([^)]*\)|\[?-?@[\w;, @-]+\]?", " ", BODY).split())
+        <= 1750
+    )
     figures = re.findall(r"\]\((\S+\.png)\)", BODY)
     assert len(figures) == 2
     assert all((PAPER.parent / figure).is_file() for figure in figures)
@@ -99,7 +107,10 @@ def test_six_storeys(fema_record: RecordLoader) -> None:
     case = rpscli.load_case(ROOT / "cases" / "six_storey.yaml")
     record = fema_record("farfield/1/b")
     result = rpscli.time_history(case.structure, record, case.analysis)
-    fixed, acceleration = known(result.fixed_base), known(result.floor_acceleration_over_fixed)
+    fixed, acceleration = (
+        known(result.fixed_base),
+        known(result.floor_acceleration_over_fixed),
+    )
     said(
         "six storeys",
         (
@@ -115,9 +126,13 @@ def test_six_storeys(fema_record: RecordLoader) -> None:
 def test_errors_in_print() -> None:
     said("errors in print", ("1.0", "2.2", "3.9", "0.10", "0.15", "0.20"))
     for tan_alpha, jump in ((0.10, 1.0), (0.15, 2.2), (0.20, 3.9)):
-        at = Bearing(1.5, tan_alpha, 2.0 * tan_alpha, 0.5).critical_curvature_ratio_of_paper
+        at = Bearing(
+            1.5, tan_alpha, 2.0 * tan_alpha, 0.5
+        ).critical_curvature_ratio_of_paper
         below, above = (
-            Bearing(1.5, tan_alpha, 2.0 * tan_alpha, at + shift).critical_rotation_of_paper
+            Bearing(
+                1.5, tan_alpha, 2.0 * tan_alpha, at + shift
+            ).critical_rotation_of_paper
             for shift in (-1e-9, 1e-9)
         )
         assert f"{100.0 * abs(above / below - 1.0):.1f}" == f"{jump:.1f}"
@@ -134,7 +149,10 @@ def test_a_published_pulse() -> None:
 @pytest.mark.long
 def test_second_integrator(fema_record: RecordLoader) -> None:
     row = ROWS[4]
-    structure, record = podium(row.storeys, row.tan_alpha, row.rho), fema_record(row.record)
+    structure, record = (
+        podium(row.storeys, row.tan_alpha, row.rho),
+        fema_record(row.record),
+    )
     other = simulate(oracle_system(structure), record.acceleration, record.dt)
     settings = rpscli.TimeHistorySettings(free_vibration=10.0, accuracy=16.0)
     ours = rpscli.demand(structure, record, settings)
@@ -146,20 +164,29 @@ def test_second_integrator(fema_record: RecordLoader) -> None:
 @needs_compiled_kernels
 @pytest.mark.long
 def test_table_3(tmp_path: Path, fema_record: RecordLoader) -> None:
-    points = rpscli.load_study(ROOT / "cases" / "compdyn2021" / "table_3.yaml").run(tmp_path)
+    points = rpscli.load_study(ROOT / "cases" / "compdyn2021" / "table_3.yaml").run(
+        tmp_path
+    )
     fallen = np.char.startswith(np.asarray(points["outcome"], dtype=str), "overturned")
     counts = fallen.reshape((*PRINTED.shape, 100)).sum(axis=-1)
     difference = np.mean(np.abs(counts - PRINTED)) / 100.0
     creating = np.sum(points["creating_impacts"]) / np.sum(points["impacts"])
     said(
         "Table 3",
-        (f"{PRINTED.size}", f"{fallen.size}", f"{difference:.3f}", f"{100.0 * creating:.0f}"),
+        (
+            f"{PRINTED.size}",
+            f"{fallen.size}",
+            f"{difference:.3f}",
+            f"{100.0 * creating:.0f}",
+        ),
     )
 
 
 def test_what_is_documented() -> None:
     granite = (ROOT / "cases" / "granite" / "README.md").read_text("utf-8")
-    law = " ".join((ROOT / "cases/studies/impact_law/README.md").read_text("utf-8").split())
+    law = " ".join(
+        (ROOT / "cases/studies/impact_law/README.md").read_text("utf-8").split()
+    )
     assert re.search(r"nine runs within 3 % .*\| 89\.5 % \|", granite)
     assert "The same 576 buildings" in law
     assert "under the 44 far-field motions" in law

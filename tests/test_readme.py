@@ -99,7 +99,9 @@ def test_commands_run_in_their_order(
         here = at(tmp_path, monkeypatch)
     else:
         lines = [
-            f"{line.partition('#')[0]} --dry-run" if any(of in line for of in THOUSANDS) else line
+            f"{line.partition('#')[0]} --dry-run"
+            if any(of in line for of in THOUSANDS)
+            else line
             for line in COMMANDS
             if OF_THEM not in line
         ]
@@ -112,11 +114,15 @@ def test_commands_run_in_their_order(
 @pytest.mark.parametrize(
     ("line", "shown"),
     [
-        pytest.param(*told, marks=[pytest.mark.long] * any(of in told[0] for of in THOUSANDS))
+        pytest.param(
+            *told, marks=[pytest.mark.long] * any(of in told[0] for of in THOUSANDS)
+        )
         for told in docs.shown_outputs(BLOCKS)
     ],
 )
-def test_the_output_that_is_shown_is_the_output(here: Path, line: str, shown: str) -> None:
+def test_the_output_that_is_shown_is_the_output(
+    here: Path, line: str, shown: str
+) -> None:
     output = docs.run(f"{line} --figures none").output
     assert not docs.not_printed(shown, output), output
 
@@ -127,21 +133,34 @@ def test_the_gallery_shows_what_its_commands_give(here: Path) -> None:
     """Outputs of all commands, the pictures of the site, and medians that no output shows."""
     outputs = docs.run_all(docs.of_blocks(GALLERY))
     shown = docs.shown_outputs(docs.blocks(GALLERY))
-    assert {line: of for line, told in shown if (of := docs.not_printed(told, outputs[line]))} == {}
-    pictures = re.findall(r"^<!-- picture: (\S+) -->$", GALLERY.read_text("utf-8"), re.MULTILINE)
+    assert {
+        line: of for line, told in shown if (of := docs.not_printed(told, outputs[line]))
+    } == {}
+    pictures = re.findall(
+        r"^<!-- picture: (\S+) -->$", GALLERY.read_text("utf-8"), re.MULTILINE
+    )
     assert len(pictures) >= 10
     assert [picture for picture in pictures if not (here / picture).is_file()] == []
     pairs: dict[str, list[list[float]]] = {}
-    with (here / "results/both_components/sweep/points.csv").open(encoding="utf-8") as file:
+    with (here / "results/both_components/sweep/points.csv").open(
+        encoding="utf-8"
+    ) as file:
         for row in csv.DictReader(file):
             if row["podium.bearing.curvature_ratio [-]"] == "0.5":
                 pair, _, query = row["record [-]"].partition("?")
                 turned = float(row["rotation_ratio [-]"] or "inf")
                 pairs.setdefault(pair, [[], []])["both" in query].append(turned)
-    of_pairs = [(both, max(turned), float(np.median(turned))) for turned, (both,) in pairs.values()]
-    medians = [f"{sorted(each)[len(each) // 2 - 1]:.2f}" for each in zip(*of_pairs, strict=True)]
+    of_pairs = [
+        (both, max(turned), float(np.median(turned)))
+        for turned, (both,) in pairs.values()
+    ]
+    medians = [
+        f"{sorted(each)[len(each) // 2 - 1]:.2f}" for each in zip(*of_pairs, strict=True)
+    ]
     told = " ".join(GALLERY.read_text("utf-8").split())
-    said = re.search(r"columns to ([\d.]+) of.*? against ([\d.]+) in.*? and ([\d.]+) in a", told)
+    said = re.search(
+        r"columns to ([\d.]+) of.*? against ([\d.]+) in.*? and ([\d.]+) in a", told
+    )
     assert said is not None
     assert medians == list(said.groups())
 
@@ -163,7 +182,9 @@ def prepare(page: str, folder: Path) -> Path:
 @pytest.mark.long
 @needs_compiled_kernels
 @pytest.mark.parametrize("page", LONG_PAGES)
-def test_commands_of_a_page_run(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_commands_of_a_page_run(
+    page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Those in blocks that no quick test runs, and those in sentences and comments; what is shown
     on several pages is run once.
     """
@@ -182,13 +203,21 @@ def test_set_up_commands_run(tmp_path: Path) -> None:
     """The first line of the README and the next ones in a copy of the sources; what else is
     installed is looked for and not kept. Needs a package index.
     """
-    left_out = shutil.ignore_patterns(".git", ".venv", "__pycache__", ".*cache", "results", "dist")
+    left_out = shutil.ignore_patterns(
+        ".git", ".venv", "__pycache__", ".*cache", "results", "dist"
+    )
     shutil.copytree(docs.ROOT, tmp_path / "clone", ignore=left_out)
-    variables = {"PYTHONPATH": "", "COLUMNS": "", "RPS_CACHE_DIR": str(tmp_path / "kernels")}
+    variables = {
+        "PYTHONPATH": "",
+        "COLUMNS": "",
+        "RPS_CACHE_DIR": str(tmp_path / "kernels"),
+    }
     first, _, then = SET_UP
     enter = f"cd {tmp_path / 'clone'}; "
     printed = docs.run_in_shell(enter + first, **variables)
-    (shown,) = (text for line, text in docs.shown_outputs(BLOCKS[:2]) if "six_storey" in line)
+    (shown,) = (
+        text for line, text in docs.shown_outputs(BLOCKS[:2]) if "six_storey" in line
+    )
     assert not docs.not_printed(shown, printed), printed
     assert "rps" in docs.run_in_shell(f"{enter}{then}; complete -p rps", **variables)
     seen = set()
@@ -198,7 +227,9 @@ def test_set_up_commands_run(tmp_path: Path) -> None:
             if wanted and name != "tests/example_package/README.md":
                 seen.add(wanted[1])
     for packages in sorted(seen):
-        docs.run_in_shell(f"{enter}.venv/bin/pip install -q --dry-run {packages}", **variables)
+        docs.run_in_shell(
+            f"{enter}.venv/bin/pip install -q --dry-run {packages}", **variables
+        )
     assert len(seen) > 4
 
 
@@ -207,7 +238,9 @@ def test_every_command_that_is_shown_has_a_test() -> None:
     missing, count = [], 0
     for name, page in docs.pages().items():
         others = [line for line in docs.of_blocks(page) if not line.startswith("rps ")]
-        missing += [line for line in others if not any(re.search(o, line) for o in docs.OTHERS)]
+        missing += [
+            line for line in others if not any(re.search(o, line) for o in docs.OTHERS)
+        ]
         lines = docs.rps_lines(page) + docs.of_texts(page)
         missing += [f"{name}: {line}" for line in lines if name not in docs.PAGES]
         count += len(lines)
@@ -253,19 +286,27 @@ def test_the_job_for_a_pipeline_runs(here: Path) -> None:
     ]
     assert docs.run_all(lines)
     assert (here / "results/acceptance/six_storey/summary.json").is_file()
-    (cached,) = (step["with"] for step in job["steps"] if "actions/cache" in step.get("uses", ""))
+    (cached,) = (
+        step["with"] for step in job["steps"] if "actions/cache" in step.get("uses", "")
+    )
     for variable in (VARIABLE, "MPLCONFIGDIR"):
-        assert job["env"][variable].startswith("${{ github.workspace }}/" + cached["path"])
+        assert job["env"][variable].startswith(
+            "${{ github.workspace }}/" + cached["path"]
+        )
 
 
 @pytest.mark.parametrize("line", SET_UP)
 def test_set_up_commands_can_be_parsed(line: str) -> None:
-    made = subprocess.run(["bash", "-n", "-c", line], capture_output=True, text=True, check=False)
+    made = subprocess.run(
+        ["bash", "-n", "-c", line], capture_output=True, text=True, check=False
+    )
     assert made.returncode == 0, made.stderr
     extras = re.search(r"'\.\[(\w+)\]'", line)
     if extras:
         assert re.search(
-            rf"^{extras[1]} = \[", (docs.ROOT / "pyproject.toml").read_text("utf-8"), re.MULTILINE
+            rf"^{extras[1]} = \[",
+            (docs.ROOT / "pyproject.toml").read_text("utf-8"),
+            re.MULTILINE,
         )
 
 
@@ -277,9 +318,15 @@ def test_powershell_lines_say_what_the_others_say() -> None:
         said = line.partition("; eval")[0]
         for old, new in swaps.items():
             said = said.replace(old, new)
-        expected.append(said.replace(". .venv\\Scripts\\activate", ".venv\\Scripts\\Activate.ps1"))
+        expected.append(
+            said.replace(". .venv\\Scripts\\activate", ".venv\\Scripts\\Activate.ps1")
+        )
     assert docs.of_blocks(README, "powershell") == expected
-    assert not [line for line in COMMANDS if re.search(r"[\"`$\\|&]", re.sub(r"'[^']*'", "", line))]
+    assert not [
+        line
+        for line in COMMANDS
+        if re.search(r"[\"`$\\|&]", re.sub(r"'[^']*'", "", line))
+    ]
 
 
 def test_every_command_of_the_program_is_shown() -> None:
@@ -291,7 +338,9 @@ def test_every_command_of_the_program_is_shown() -> None:
 def test_the_citation_is_of_this_version() -> None:
     citation = yaml.safe_load((docs.ROOT / "CITATION.cff").read_text("utf-8"))
     project = tomllib.loads((docs.ROOT / "pyproject.toml").read_text("utf-8"))["project"]
-    assert {"cff-version", "message", "title", "authors"} <= set(citation)  # what the format needs
+    assert {"cff-version", "message", "title", "authors"} <= set(
+        citation
+    )  # what the format needs
     same = ("license", "keywords")
     assert [citation[name] for name in same] == [project[name] for name in same]
     assert citation["repository-code"] == project["urls"]["Source"]
@@ -301,9 +350,15 @@ def test_the_citation_is_of_this_version() -> None:
 
 
 def test_the_tests_run_on_the_systems_of_users() -> None:
-    job = yaml.safe_load((WORKFLOW.parent / "tests.yml").read_text("utf-8"))["jobs"]["test"]
+    job = yaml.safe_load((WORKFLOW.parent / "tests.yml").read_text("utf-8"))["jobs"][
+        "test"
+    ]
     matrix = job["strategy"]["matrix"]
-    assert {name.partition("-")[0] for name in matrix["os"]} == {"ubuntu", "windows", "macos"}
+    assert {name.partition("-")[0] for name in matrix["os"]} == {
+        "ubuntu",
+        "windows",
+        "macos",
+    }
     project = tomllib.loads((docs.ROOT / "pyproject.toml").read_text("utf-8"))["project"]
     assert f">={matrix['python'][0]}" == project["requires-python"]
     lines = [line for step in job["steps"] for line in step.get("run", "").splitlines()]
@@ -317,11 +372,17 @@ def test_the_readme_is_short() -> None:
     assert len(README.read_text("utf-8").splitlines()) < 220
 
 
-@pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: str(path.relative_to(docs.ROOT)))
+@pytest.mark.parametrize(
+    "document", DOCUMENTS, ids=lambda path: str(path.relative_to(docs.ROOT))
+)
 def test_relative_links_exist(document: Path) -> None:
     links = re.findall(r"\]\(([^)#\s]+)[^)]*\)", document.read_text("utf-8"))
     relative = [link for link in links if not re.match(r"https?:", link)]
-    assert relative or document.name == "CHANGELOG.md" or document.parent.name == "compdyn2021"
+    assert (
+        relative
+        or document.name == "CHANGELOG.md"
+        or document.parent.name == "compdyn2021"
+    )
     missing = [link for link in relative if not (document.parent / link).exists()]
     assert not missing
 
@@ -347,5 +408,13 @@ def test_the_notebook_runs(
     ]  # fmt: skip
     assert [len(part.axes) for part in drawn[2].subfigs] == [1, 1]
     written = {file.name for file in Path("results/notebook").iterdir()}
-    assert written >= {"points.csv", "statistics.csv", "overturning.svg", "lines.svg", "run.json"}
-    assert left["study"].layout.study.title in Path("results/notebook/run.json").read_text("utf-8")
+    assert written >= {
+        "points.csv",
+        "statistics.csv",
+        "overturning.svg",
+        "lines.svg",
+        "run.json",
+    }
+    assert left["study"].layout.study.title in Path(
+        "results/notebook/run.json"
+    ).read_text("utf-8")

@@ -24,7 +24,10 @@ def modules() -> Any:
     """Those that make the site, of which none needs Sphinx."""
     sys.path.insert(0, str(DOCS))
     try:
-        yield {name: importlib.import_module(name) for name in ("formulas", "pages", "reference")}
+        yield {
+            name: importlib.import_module(name)
+            for name in ("formulas", "pages", "reference")
+        }
     finally:
         sys.path.remove(str(DOCS))
 
@@ -40,12 +43,16 @@ def test_links_of_pages_lead_to_pages(modules: Any, tmp_path: Path) -> None:
     assert [link for link in linked if not (tmp_path / link).is_file()] == []
 
 
-def test_formulas_have_anchors_and_citations_lead_to_them(modules: Any, tmp_path: Path) -> None:
+def test_formulas_have_anchors_and_citations_lead_to_them(
+    modules: Any, tmp_path: Path
+) -> None:
     stage = modules["pages"].Stage(tmp_path)
     theory = stage.page("rpscli/THEORY.md")
     anchors = re.findall(r'id="(eq-[\d.]+)"', theory)
     assert len(anchors) == len(set(anchors)) > 100
-    numbers = {anchor for anchor in modules["pages"].THEORY.values() if anchor.startswith("eq-")}
+    numbers = {
+        anchor for anchor in modules["pages"].THEORY.values() if anchor.startswith("eq-")
+    }
     assert set(anchors) == numbers
     cited = re.findall(r'href="#(eq-[\d.]+)"', theory)
     assert len(cited) > 20
@@ -77,9 +84,19 @@ def test_formulas_are_set_as_they_read(modules: Any, plain: str, letters: str) -
 
 def test_code_that_is_no_formula_stays_code(modules: Any) -> None:
     is_formula = modules["formulas"].is_formula
-    words = ("podium.plan", "max_events", "loss", "1e-6", "--set a=1", "rps budget", "state.py")
+    words = (
+        "podium.plan",
+        "max_events",
+        "loss",
+        "1e-6",
+        "--set a=1",
+        "rps budget",
+        "state.py",
+    )
     assert [code for code in words if is_formula(code)] == []
-    assert all(map(is_formula, ("e", "tan(alpha)", "u_b", "V_b/V_st", "x < beta", "N m_c R^2")))
+    assert all(
+        map(is_formula, ("e", "tan(alpha)", "u_b", "V_b/V_st", "x < beta", "N m_c R^2"))
+    )
 
 
 def test_the_reference_has_every_command_key_result_and_name(modules: Any) -> None:
@@ -93,7 +110,9 @@ def test_the_reference_has_every_command_key_result_and_name(modules: Any) -> No
         named = f"| `{limit[1]}` |" if len(limit) == 2 else f"confval}} {key.key}\n"
         assert named in keys or len(limit) > 2, key.key
     results = reference.results()["reference/results"]
-    assert [each.name for each in EVERY.values() if f"| `{each.name}` |" not in results] == []
+    assert [
+        each.name for each in EVERY.values() if f"| `{each.name}` |" not in results
+    ] == []
     python = "\n".join(reference.python().values())
     public = {*rpscli.__all__} - {"__version__"}
     assert [name for name in public if f":: rpscli.{name}\n" not in python] == []

@@ -19,7 +19,9 @@ from rpscli.model.contact import Contact, ContactKind
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.superstructure import profile_stiffnesses
 
-TEXT = re.sub(r"^```.*?^```$", "", THEORY.read_text("utf-8"), flags=re.MULTILINE | re.DOTALL)
+TEXT = re.sub(
+    r"^```.*?^```$", "", THEORY.read_text("utf-8"), flags=re.MULTILINE | re.DOTALL
+)
 LABEL = re.compile(r"^(?: {4,6}|\|).* \((\d+)\.(\d+)\)(?: \|)?$", re.MULTILINE)
 """At the right of a formula, or in the last column of a table of formulas."""
 
@@ -55,8 +57,12 @@ PRINTED = {
 def cited_by(text: str, number: str) -> set[str]:
     """Numbers after "Theory", perhaps of sections, also over line ends of docstrings, comments."""
     joined = re.sub(r"\s*\n\s*(?:#:?\s*)?", " ", text)
-    lists = rf"T(?:heory|HEORY\.md),? (?:sections? )?({number}(?:(?:, | and | to ){number})*)"
-    return {each for group in re.findall(lists, joined) for each in re.findall(number, group)}
+    lists = (
+        rf"T(?:heory|HEORY\.md),? (?:sections? )?({number}(?:(?:, | and | to ){number})*)"
+    )
+    return {
+        each for group in re.findall(lists, joined) for each in re.findall(number, group)
+    }
 
 
 SOURCES = sorted(
@@ -93,7 +99,11 @@ def test_what_is_cited_exists(number: str) -> None:
     assert set(re.findall(r"\(\d+\.\d+\)", TEXT)) <= KNOWN[r"\(\d+\.\d+\)"]
     cited = {path: cited_by(path.read_text("utf-8"), number) for path in SOURCES}
     assert sum(path.suffix == ".py" for path, numbers in cited.items() if numbers) > 10
-    missing = {path.name: of for path, numbers in cited.items() if (of := numbers - KNOWN[number])}
+    missing = {
+        path.name: of
+        for path, numbers in cited.items()
+        if (of := numbers - KNOWN[number])
+    }
     assert missing == {}
 
 
@@ -115,7 +125,9 @@ def test_sizes_of_assumptions_are_those_that_are_computed(assumption: str) -> No
     expected, number = PRINTED[assumption]
     (row,) = (line for line in TEXT.splitlines() if line.startswith(f"| {expected}"))
     if number is None:
-        assert {(size.rotation, size.base_shear, size.within) for size in sizes} == {(0, 0, 0.1)}
+        assert {(size.rotation, size.base_shear, size.within) for size in sizes} == {
+            (0, 0, 0.1)
+        }
     else:
         rotations = [size.rotation for size in sizes]
         shears = [size.base_shear for size in sizes]
@@ -137,7 +149,9 @@ def test_edges_that_crush_take_their_share_of_the_moment(share: float) -> None:
 
 @pytest.mark.parametrize("rho", [0.0, 0.25, 1.5])
 @pytest.mark.parametrize(("kind", "share"), [("plane", 3.0), ("edges", 1.0)])
-def test_where_soft_ends_lift_to_first_order(kind: ContactKind, share: float, rho: float) -> None:
+def test_where_soft_ends_lift_to_first_order(
+    kind: ContactKind, share: float, rho: float
+) -> None:
     """The bearing itself has the stiffness (2 rho - 1) W/2H, which joints add to."""
     soft = Contact(kind, period_ratio=1.5)
     structure = replace(podium(6, 0.15, rho, law=ImpactLaw()), contact=soft)

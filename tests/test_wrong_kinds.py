@@ -79,7 +79,9 @@ CALLS: list[tuple[type[Exception], str, Callable[..., Any]]] = [
 
 
 @pytest.mark.parametrize(("error", "said", "call"), CALLS)
-def test_wrong_kinds_or_values(error: type[Exception], said: str, call: Callable[..., Any]) -> None:
+def test_wrong_kinds_or_values(
+    error: type[Exception], said: str, call: Callable[..., Any]
+) -> None:
     with pytest.raises(error, match=said) as refused:
         call(podium(0), rpscli.load_record(PULSE))
     assert "np." not in str(refused.value)

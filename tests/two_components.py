@@ -16,7 +16,11 @@ from rpscli.model.bearing import Bearing
 from rpscli.model.contact import Contact
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import Device, PodiumStructure
-from rpscli.model.superstructure import RayleighDamping, Superstructure, profile_stiffnesses
+from rpscli.model.superstructure import (
+    RayleighDamping,
+    Superstructure,
+    profile_stiffnesses,
+)
 from rpscli.physics.state import PASS, RECONTACT, Record
 from rpscli.records.ground_motion import MotionComponents
 
@@ -72,7 +76,12 @@ def pair(x: Array, y: Array, dt: float, up: Array | None = None) -> MotionCompon
 def part_of_pair(given: Mapping[str, Any], record: RecordLoader) -> MotionComponents:
     """A far-field pair of FEMA P695 times `scale` from `t0` on for `T` seconds, from rest."""
     x, y = (
-        part(record(f"farfield/{given['pair']}/{way}"), given["t0"], given["T"], given["scale"])
+        part(
+            record(f"farfield/{given['pair']}/{way}"),
+            given["t0"],
+            given["T"],
+            given["scale"],
+        )
         for way in "ab"
     )
     at_rest = np.arange(x.npts) > 0
@@ -141,7 +150,13 @@ def followed(
     systems["initial_turning"] = turning
     rows = longest_history(structure, settings, motion) * finer
     run = run_of(
-        systems, [motion], [Request(0, 0)], pairs=True, rows=rows, events=ROOM, finer=finer
+        systems,
+        [motion],
+        [Request(0, 0)],
+        pairs=True,
+        rows=rows,
+        events=ROOM,
+        finer=finer,
     )
     follow(run, lanes=1)
     left, output = run.results[0], run.output

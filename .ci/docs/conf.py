@@ -28,7 +28,10 @@ smartquotes = False  # options have two dashes, derivatives have primes
 toc_object_entries = False
 nitpicky = True
 nitpick_ignore_regex = [
-    ("py:obj", r".*"),  # single backticks of docstrings: a link if there is one, else code
+    (
+        "py:obj",
+        r".*",
+    ),  # single backticks of docstrings: a link if there is one, else code
     (
         "py:.*",
         r"rpscli\.(case|physics|report|sweep|studies\._\w+|records\.(quantities|ground_motion\.Recording)|model\.contact\.Bed)\b.*",
@@ -37,14 +40,21 @@ nitpick_ignore_regex = [
         "py:.*",
         r"(Record|Way|FileName|Standing|Target|Measure|Of|ReportRequest|Bed|tuple\[.*)",
     ),  # names of types
-    ("py:.*", r"(numpy|np|collections|pathlib|typing|types|matplotlib|pandas|pydantic)\..*"),
+    (
+        "py:.*",
+        r"(numpy|np|collections|pathlib|typing|types|matplotlib|pandas|pydantic)\..*",
+    ),
     (
         "py:.*",
         r"(NDArray|Array|(style\.)?(Axes|Figure)|Path|Any|Callable|Mapping|Sequence|Iterable|Iterator|optional)",
     ),
 ]
 default_role = "py:obj"
-autodoc_default_options = {"members": True, "member-order": "bysource", "inherited-members": False}
+autodoc_default_options = {
+    "members": True,
+    "member-order": "bysource",
+    "inherited-members": False,
+}
 autodoc_typehints_format = "short"
 python_use_unqualified_type_names = True
 python_maximum_signature_line_length = 80
@@ -68,9 +78,12 @@ html_theme_options = {
     "footer_end": ["sphinx-version"],
 }
 html_sidebars = {
-    name: [] for name in ("index", "gallery", "guide", "theory", "verification", "changelog")
+    name: []
+    for name in ("index", "gallery", "guide", "theory", "verification", "changelog")
 }
-copybutton_selector = "div.highlight-sh pre, div.highlight-yaml pre, div.highlight-python pre"
+copybutton_selector = (
+    "div.highlight-sh pre, div.highlight-yaml pre, div.highlight-python pre"
+)
 html_math_renderer = "mathml"
 
 

@@ -112,7 +112,8 @@ def is_formula(code: str) -> bool:
     words = re.findall(r"(_?)([A-Za-z]+)", re.sub(r"\d+(\.\d+)?e[+-]?\d+", "1", code))
     known = GREEK.keys() | FUNCTIONS | DIFFERENTIALS
     letters = [
-        len(word) == 1 or word in known or (bool(sub) and len(word) <= 4) for sub, word in words
+        len(word) == 1 or word in known or (bool(sub) and len(word) <= 4)
+        for sub, word in words
     ]
     named = [word in NAMES for _, word in words]
     return any(letters) and all(map(operator.or_, letters, named))
@@ -138,7 +139,9 @@ def _block(found: re.Match[str]) -> str:
             for part in parts
         ]
         if indent > 1:
-            cells[0] = f'<span style="padding-left:{0.4 * indent:.1f}em"></span>{cells[0]}'
+            cells[0] = (
+                f'<span style="padding-left:{0.4 * indent:.1f}em"></span>{cells[0]}'
+            )
         span = width - len(cells) + 1
         body = "".join(f"<td>{cell}</td>" for cell in cells[:-1])
         body += f"<td{f' colspan={span}' if span > 1 else ''}>{cells[-1]}</td>"
@@ -154,12 +157,17 @@ def set_formulas(text: str) -> str:
     """Displayed and inline formulas of a text without fences; what is no formula stays."""
     text = BLOCK.sub(_block, text)
     text = re.sub(
-        r"\| \((\d+\.\d+)\) \|$", lambda n: f"| {_anchor(n[1])} |", text, flags=re.MULTILINE
+        r"\| \((\d+\.\d+)\) \|$",
+        lambda n: f"| {_anchor(n[1])} |",
+        text,
+        flags=re.MULTILINE,
     )
     return re.sub(
         r"`([^`\n]+)`",
         lambda code: (
-            f'<span class="formula">{typeset(code[1])}</span>' if is_formula(code[1]) else code[0]
+            f'<span class="formula">{typeset(code[1])}</span>'
+            if is_formula(code[1])
+            else code[0]
         ),
         text,
     )
@@ -188,7 +196,9 @@ def cite_here(text: str, anchors: Mapping[str, str]) -> str:
 
 def anchors_of(theory: str) -> dict[str, str]:
     """The anchor of each number: of a section, of a formula at its right."""
-    found = {number: slug(f"{number}. {title}") for number, title in HEADING.findall(theory)}
+    found = {
+        number: slug(f"{number}. {title}") for number, title in HEADING.findall(theory)
+    }
     labels = re.findall(r"^(?: {4}|\|).* \((\d+\.\d+)\)(?: \|)?$", theory, re.MULTILINE)
     return found | {number: f"eq-{number}" for number in labels}
 

@@ -40,6 +40,8 @@ def broken(folder: Path) -> list[str]:
                 continue
             there = (path.parent / unquote(parts.path)).resolve() if parts.path else path
             known = pages.get(there)
-            if not there.exists() or (known and unquote(parts.fragment) not in known.anchors):
+            if not there.exists() or (
+                known and unquote(parts.fragment) not in known.anchors
+            ):
                 found.append(f"{path.relative_to(folder.resolve())}: {target}")
     return found

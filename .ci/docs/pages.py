@@ -25,7 +25,9 @@ PAGES = {
     "cases/studies/contact/README.md": "cases/contact",
     "cases/studies/impact_law/README.md": "cases/impact_law",
     **{
-        path.relative_to(ROOT).as_posix(): f"certified/{path.stem.replace('README', 'index')}"
+        path.relative_to(
+            ROOT
+        ).as_posix(): f"certified/{path.stem.replace('README', 'index')}"
         for path in sorted((ROOT / "rpscli/analyses/certified").glob("*.md"))
     },
 }
@@ -43,7 +45,13 @@ THEORY = formulas.anchors_of((ROOT / "rpscli/THEORY.md").read_text(encoding="utf
 """The anchors of its sections and formulas by their numbers."""
 
 PICTURES = {".png", ".svg", ".gif"}
-LANGUAGES = {".py": "python", ".yaml": "yaml", ".yml": "yaml", ".cff": "yaml", ".toml": "toml"}
+LANGUAGES = {
+    ".py": "python",
+    ".yaml": "yaml",
+    ".yml": "yaml",
+    ".cff": "yaml",
+    ".toml": "toml",
+}
 FENCES = re.compile(r"^(```+|~~~+).*?^\1$", re.MULTILINE | re.DOTALL)
 LINK = re.compile(r"\]\((?![a-z]+:)([^)#\s]+)(#[^)\s]*)?\)")
 WORD = re.compile(r"^#.*$|\[[^\]]*\]\([^)]*\)|`([^`\n]+)`", re.MULTILINE)
@@ -91,7 +99,9 @@ class Stage:
                 text, lambda said, at: f'<a href="{theory}#{at}">{said}</a>', THEORY
             )
         text = WORD.sub(self._named, text)
-        return LINK.sub(lambda link: f"]({self._target(link[1], source)}{link[2] or ''})", text)
+        return LINK.sub(
+            lambda link: f"]({self._target(link[1], source)}{link[2] or ''})", text
+        )
 
     def _named(self, word: re.Match[str]) -> str:
         return self.names.get(word[1] or "", word[0])
@@ -132,7 +142,9 @@ class Stage:
                 continue
             said = _first_line(path)
             if name.startswith("cases") and (path.is_dir() or path.suffix in LANGUAGES):
-                target = self._target(path.name, f"{folder.relative_to(ROOT).as_posix()}/x")
+                target = self._target(
+                    path.name, f"{folder.relative_to(ROOT).as_posix()}/x"
+                )
                 lines.append(f"- [`{path.name}`]({target}){said}")
             elif path.is_dir() or said:
                 lines.append(f"- `{path.name}`{said}")

@@ -85,7 +85,9 @@ def commands() -> dict[str, str]:
         rows.append((page, name, command.get_short_help_str(limit=200)))
         pages[f"reference/commands/{page}"] = _command_page(name, command, ctx)
     exits = plain(str(program.epilog))
-    listed = "\n".join(f"| [`{name}`]({page}.md) | {plain(said)} |" for page, name, said in rows)
+    listed = "\n".join(
+        f"| [`{name}`]({page}.md) | {plain(said)} |" for page, name, said in rows
+    )
     toc = "\n".join(page for page, *_ in rows)
     pages["reference/commands/index"] = (
         f"# Commands\n\n| command | |\n|---|---|\n{listed}\n\n{exits}\n\n"
@@ -96,7 +98,9 @@ def commands() -> dict[str, str]:
 
 def _command_page(name: str, command: click.Command, ctx: click.Context) -> str:
     usage = " ".join([name, *command.collect_usage_pieces(ctx)])
-    said = "\n\n".join(" ".join(part.split()) for part in (command.help or "").split("\n\n"))
+    said = "\n\n".join(
+        " ".join(part.split()) for part in (command.help or "").split("\n\n")
+    )
     parts = [f"# {name}\n", f"```text\n{usage}\n```\n", f"{plain(said)}\n"]
     parts.append(f"```{{program}} {name}\n```\n")
     for parameter in command.get_params(ctx):
@@ -114,7 +118,11 @@ def _command_page(name: str, command: click.Command, ctx: click.Context) -> str:
 
 def _symbol(text: str) -> str:
     formula = formulas.is_formula(text)
-    return f'<span class="formula">{formulas.typeset(text)}</span>' if formula else plain(text)
+    return (
+        f'<span class="formula">{formulas.typeset(text)}</span>'
+        if formula
+        else plain(text)
+    )
 
 
 def _key(key: KeyReference, theory: Mapping[str, str], *, index: bool) -> str:
@@ -127,7 +135,9 @@ def _key(key: KeyReference, theory: Mapping[str, str], *, index: bool) -> str:
         f"symbol {_symbol(key.symbol)}" if key.symbol else "",
     )
     known = ", ".join(filter(None, facts))
-    sections = [f"[{n}](/theory.md#{theory[n]})" for n in key.sections.split(", ") if n in theory]
+    sections = [
+        f"[{n}](/theory.md#{theory[n]})" for n in key.sections.split(", ") if n in theory
+    ]
     enters = f" Theory, section {', '.join(sections)}." if sections else ""
     said = plain(key.meaning)
     said = said[:1].upper() + said[1:] + "." * (not said.endswith("."))
@@ -140,7 +150,9 @@ def _key(key: KeyReference, theory: Mapping[str, str], *, index: bool) -> str:
 
 
 def _sections(
-    keys: Iterable[KeyReference], theory: Mapping[str, str], known: Mapping[str, KeyReference]
+    keys: Iterable[KeyReference],
+    theory: Mapping[str, str],
+    known: Mapping[str, KeyReference],
 ) -> Iterator[str]:
     """A heading for each key that holds keys, and below it those that hold none."""
     members = list(keys)
@@ -161,11 +173,18 @@ def _limits(
     rows, below = [], {}
     for key in keys:
         if key.key.count(".") == 1:
-            cells = (f"`{key.key.split('.')[1]}`", plain(key.meaning), key.unit, plain(key.bounds))
+            cells = (
+                f"`{key.key.split('.')[1]}`",
+                plain(key.meaning),
+                key.unit,
+                plain(key.bounds),
+            )
             rows.append("| " + " | ".join(cells) + " |")
         elif key.key.count(".") > 1:
             name = key.key.split(".")[-1]
-            below.setdefault(name, key._replace(key=f"limits.RESULT.{name}", unit="", bounds=""))
+            below.setdefault(
+                name, key._replace(key=f"limits.RESULT.{name}", unit="", bounds="")
+            )
     yield "| limit | of | unit | must be |\n|---|---|---|---|\n" + "\n".join(rows) + "\n"
     yield from (_key(key, theory, index=index) for key in below.values())
 
@@ -174,8 +193,13 @@ def keys(theory: Mapping[str, str]) -> tuple[dict[str, str], dict[str, str]]:
     """Pages of the formats, and of each key a link to what explains it."""
     pages, places, known = {}, {}, {}
     for name, (title, model) in FORMATS.items():
-        parts = [f"# {title}\n", " ".join((model.__doc__ or "").split("\n\n")[0].split()) + "\n"]
-        parts.append("An editor completes and checks them by its [JSON schema](/schemas.md).\n")
+        parts = [
+            f"# {title}\n",
+            " ".join((model.__doc__ or "").split("\n\n")[0].split()) + "\n",
+        ]
+        parts.append(
+            "An editor completes and checks them by its [JSON schema](/schemas.md).\n"
+        )
         shared = []
         groups = groupby(key_references(model), lambda key: key.key.split(".")[0])
         sections = [(section, list(group)) for section, group in groups]
@@ -195,7 +219,8 @@ def keys(theory: Mapping[str, str]) -> tuple[dict[str, str], dict[str, str]]:
                 if "." in key.key:
                     limit = f"[`{key.key}`](/reference/{name}.md#limits)"
                     places.setdefault(
-                        key.key, limit if section == "limits" else f"{{confval}}`{key.key}`"
+                        key.key,
+                        limit if section == "limits" else f"{{confval}}`{key.key}`",
                     )
         if shared:
             parts.insert(
@@ -210,7 +235,10 @@ def keys(theory: Mapping[str, str]) -> tuple[dict[str, str], dict[str, str]]:
 
 def reports(theory: Mapping[str, str]) -> dict[str, str]:
     """The page of all reports of studies and their options."""
-    parts = ["# Reports of studies\n", "What may stand at `reports` of a study, and its options.\n"]
+    parts = [
+        "# Reports of studies\n",
+        "What may stand at `reports` of a study, and its options.\n",
+    ]
     for name in REPORTS:
         options = REPORTS[name].options
         parts.append(f"## {name}\n\n{plain((options.__doc__ or '').split(chr(10))[0])}\n")
@@ -230,7 +258,9 @@ def results() -> dict[str, str]:
     rows = []
     for each in EVERY.values():
         symbol = " " + each.symbol.replace("|", r"\vert ") if each.symbol else ""
-        said = f"{plain(each.label)}{symbol}" + (f": {plain(each.meaning)}" if each.meaning else "")
+        said = f"{plain(each.label)}{symbol}" + (
+            f": {plain(each.meaning)}" if each.meaning else ""
+        )
         least = " at least" if each.from_below else ""
         limit = f"`{each.name}: {each.limit}`{least}" if each.limit else ""
         rows.append(
@@ -249,8 +279,12 @@ def schemas(folder: Path) -> dict[str, str]:
     made = {name: schema_of(name) for name in ("case", "study", "design", "results")}
     folder.mkdir(parents=True, exist_ok=True)
     for name, schema in made.items():
-        (folder / f"{name}.json").write_text(json.dumps(schema, indent=1), encoding="utf-8")
-    rows = "\n".join(f"- {{download}}`{name}.json </schemas/{name}.json>`" for name in made)
+        (folder / f"{name}.json").write_text(
+            json.dumps(schema, indent=1), encoding="utf-8"
+        )
+    rows = "\n".join(
+        f"- {{download}}`{name}.json </schemas/{name}.json>`" for name in made
+    )
     return {
         "schemas": "# JSON schemas\n\n"
         "Of files, for editors and other programs, and of what commands "
@@ -270,13 +304,21 @@ def python() -> dict[str, str]:
     pages = {}
     for layer, (title, more) in PYTHON.items():
         parts = [f"# {title}\n"]
-        for name in sorted(groups[layer], key=lambda name: (not name[0].isupper(), name.lower())):
-            kind = "autoclass" if isinstance(getattr(rpscli, name), type) else "autofunction"
-            parts.append(f"## {name}\n\n```{{eval-rst}}\n.. {kind}:: rpscli.{name}\n```\n")
+        for name in sorted(
+            groups[layer], key=lambda name: (not name[0].isupper(), name.lower())
+        ):
+            kind = (
+                "autoclass" if isinstance(getattr(rpscli, name), type) else "autofunction"
+            )
+            parts.append(
+                f"## {name}\n\n```{{eval-rst}}\n.. {kind}:: rpscli.{name}\n```\n"
+            )
         for path in more:
             name = path.rpartition(".")[2]
             # What a device answers to the rest of the program concerns nobody else.
-            members = "   :no-members:\n" if path.startswith(("devices.", "podium.")) else ""
+            members = (
+                "   :no-members:\n" if path.startswith(("devices.", "podium.")) else ""
+            )
             parts.append(
                 f"## {name}\n\n"
                 f"```{{eval-rst}}\n.. autoclass:: rpscli.{layer}.{path}\n{members}```\n"

@@ -38,7 +38,9 @@ def motion(path: Path) -> GroundMotion:
         raise SystemExit(f"{path}: the times are not those of {RATE:g} Hz")
     sections = butter(4, BAND, "bandpass", fs=RATE, output="sos")
     kept = sosfiltfilt(sections, acceleration - np.median(acceleration))[::KEPT]
-    return GroundMotion(kept * STANDARD_GRAVITY, KEPT / RATE, path.stem, path.name, "table motion")
+    return GroundMotion(
+        kept * STANDARD_GRAVITY, KEPT / RATE, path.stem, path.name, "table motion"
+    )
 
 
 def outcomes(workbook: Path) -> Outcomes:
@@ -90,7 +92,9 @@ def write(tests: Mapping[int, GroundMotion], found: Outcomes, target: Path) -> N
     _write(target / "published.csv", ("record", "model", "overturned"), published)
 
 
-def _write(path: Path, head: tuple[str, ...], rows: Iterable[tuple[str, str, int]]) -> None:
+def _write(
+    path: Path, head: tuple[str, ...], rows: Iterable[tuple[str, str, int]]
+) -> None:
     with path.open("w", newline="", encoding="utf-8") as file:
         csv.writer(file).writerows([head, *rows])
 

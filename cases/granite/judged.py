@@ -57,11 +57,18 @@ def _flags(rows: list[dict[str, str]], name: str) -> Any:
 
 
 def _ways(
-    systems: dict[str, list[dict[str, str]]], points: list[dict[str, str]], fitted: set[str]
+    systems: dict[str, list[dict[str, str]]],
+    points: list[dict[str, str]],
+    fitted: set[str],
 ) -> Iterator[tuple[str, list[dict[str, str]], Any]]:
     """The model with the chosen slenderness, and thresholds: name, pairs, what overturns."""
-    learnt = {choice: [r for r in rows if r[RECORD] in fitted] for choice, rows in systems.items()}
-    worths = [worth(_flags(rows, COMPUTED), _flags(rows, OBSERVED)) for rows in learnt.values()]
+    learnt = {
+        choice: [r for r in rows if r[RECORD] in fitted]
+        for choice, rows in systems.items()
+    }
+    worths = [
+        worth(_flags(rows, COMPUTED), _flags(rows, OBSERVED)) for rows in learnt.values()
+    ]
     choice = list(systems)[best(worths)]
     rows = systems[choice]
     yield f"model with tan(alpha) = {choice}", rows, _flags(rows, COMPUTED)
@@ -78,14 +85,18 @@ def lines(results: Path, published: Path) -> Iterator[str]:
     """Model, thresholds and published models of each specimen, on both halves."""
     pairs, points = _rows(results / "comparison_pairs.csv"), _rows(results / "points.csv")
     records = list(dict.fromkeys(row[RECORD] for row in pairs))
-    drawn = np.random.default_rng(SEED).permutation(len(records))[: round(SHARE * len(records))]
+    drawn = np.random.default_rng(SEED).permutation(len(records))[
+        : round(SHARE * len(records))
+    ]
     fitted = {records[place] for place in drawn}
     for title in dict.fromkeys(row[TITLE] for row in pairs):
         systems: dict[str, list[dict[str, str]]] = {}
         for row in pairs:
             if row[TITLE] == title:
                 systems.setdefault(row[SLENDERNESS], []).append(row)
-        judged = [(f"{title}, {name}", *of) for name, *of in _ways(systems, points, fitted)]
+        judged = [
+            (f"{title}, {name}", *of) for name, *of in _ways(systems, points, fitted)
+        ]
         by_record = {Path(row[RECORD]).stem: row for row in next(iter(systems.values()))}
         models: dict[str, list[dict[str, str]]] = {}
         for row in _rows(published):
@@ -93,11 +104,18 @@ def lines(results: Path, published: Path) -> Iterator[str]:
             if specimen == title and row["record"] in by_record:
                 models.setdefault(row["model"], []).append(row)
         judged += [
-            (model, [by_record[row["record"]] for row in rows], _flags(rows, "overturned"))
+            (
+                model,
+                [by_record[row["record"]] for row in rows],
+                _flags(rows, "overturned"),
+            )
             for model, rows in sorted(models.items())
         ]
         for name, rows, fell in judged:
-            seen, inside = _flags(rows, OBSERVED), np.array([r[RECORD] in fitted for r in rows])
+            seen, inside = (
+                _flags(rows, OBSERVED),
+                np.array([r[RECORD] in fitted for r in rows]),
+            )
             for part, which in (("fitted", inside), ("held out", ~inside)):
                 agreed, fallen = int((fell == seen)[which].sum()), int(fell[which].sum())
                 counts = f"{agreed} of {which.sum()} agree, {fallen} overturned"
@@ -105,5 +123,7 @@ def lines(results: Path, published: Path) -> Iterator[str]:
 
 
 if __name__ == "__main__":
-    for line in lines(Path(sys.argv[1]), Path(__file__).resolve().parent / "published.csv"):
+    for line in lines(
+        Path(sys.argv[1]), Path(__file__).resolve().parent / "published.csv"
+    ):
         sys.stdout.write(f"{line}\n")

@@ -1,7 +1,8 @@
-"""Worst instants of the most loaded column of a history: moment, pressure, crushed edge, force.
+"""Worst instants of the most loaded column of a history: moment,
+pressure, crushed edge, force.
 
-Theory, section 16. Maxima are those of a dense trace. At impacts they leave out the impulse of
-beam and columns, which has no bound between rigid ends.
+Theory, section 16. Maxima are those of a dense trace. At impacts they leave out the
+impulse of beam and columns, which has no bound between rigid ends.
 """
 
 from __future__ import annotations
@@ -21,12 +22,16 @@ from rpscli.physics.laws.geometry import path_along
 Array = NDArray[np.float64]
 
 ENDS = ("bottom", "top")
-WITHOUT_IMPULSE = "the impulse of beam and columns at impacts, infinite between rigid ends"
+WITHOUT_IMPULSE = (
+    "the impulse of beam and columns at impacts, infinite between rigid ends"
+)
 
 
 @dataclass(frozen=True)
 class ColumnInstant:
-    """One end of the most loaded column when something is largest; in the plane of tilt."""
+    """One end of the most loaded column when something is
+    largest; in the plane of tilt.
+    """
 
     largest: str  # name of the result that is
     end: str
@@ -53,19 +58,23 @@ class ColumnDemand:
     shear: float  # largest |F| [N]
     mean_force: float  # N of all columns over their number, at the largest moment [N]
     moments: tuple[tuple[float, float], ...]
-    """Then, in x and in y: that of the podium [N m], and the lever of the rows [m], which give the
-    column more than the mean; empty without rows."""
+    """Then, in x and in y: that of the podium [N m], and the lever of the rows [m], which
+    give the column more than the mean; empty without rows."""
 
 
 def no_line(structure: PodiumStructure, *, both: bool) -> str:
     """The reason why neither pressure nor edge is known; empty if they are."""
     if both and structure.column is not None and structure.column.section == "square":
-        return "a square column that tilts to any side stands on a corner, not along a line"
+        return (
+            "a square column that tilts to any side stands on a corner, not along a line"
+        )
     return ""
 
 
 class _Loads(NamedTuple):
-    """Arrays (samples,), of forces and moments (2, samples) at the bottom and at the top."""
+    """Arrays (samples,), of forces and moments (2, samples) at
+    the bottom and at the top.
+    """
 
     down: NDArray[np.bool_]
     side: Array
@@ -76,7 +85,9 @@ class _Loads(NamedTuple):
     M: Array
 
 
-def _loads(structure: PodiumStructure, trace: Trace, heaviest: dict[str, Array]) -> _Loads:
+def _loads(
+    structure: PodiumStructure, trace: Trace, heaviest: dict[str, Array]
+) -> _Loads:
     b = structure.bearing
     x = np.abs(trace.rotation)
     B = b.half_width
@@ -90,10 +101,15 @@ def _loads(structure: PodiumStructure, trace: Trace, heaviest: dict[str, Array])
     arm = structure.weight_arm(x)
     height = structure.lever_arm(x) / (2.0 * b.semi_diagonal)
     added = N[0] - trace.normal_bottom / structure.columns
-    # In full contact, where only the sum of both moments is known: one eccentricity, as at uplift.
-    upright = np.minimum(b.half_height * np.abs(F[0] + F[1]) / np.maximum(N[0] + N[1], 1e-9), B)
+    # In full contact, where only the sum of both moments is known: one eccentricity, as
+    # at uplift.
+    upright = np.minimum(
+        b.half_height * np.abs(F[0] + F[1]) / np.maximum(N[0] + N[1], 1e-9), B
+    )
     F = F - np.where(down, 0.0, side * added * arm / height)  # (16.3)
-    rigid = arm if structure.bed is None else path_along(b.rolling, b.rocking, b.beta, x)[0]
+    rigid = (
+        arm if structure.bed is None else path_along(b.rolling, b.rocking, b.beta, x)[0]
+    )
     lever = np.where(down, upright, B + r * np.sin(y) - b.semi_diagonal * (rigid - arm))
     rise = np.where(down, 0.0, r * (1.0 - np.cos(y)))
     P = N * np.cos(x) + side * F * np.sin(x)
@@ -108,7 +124,9 @@ def column_demand(
     heaviest: dict[str, Array],
     moments: list[tuple[Array, float]],
 ) -> ColumnDemand:
-    """Worst instants, from axial forces of the most loaded column at the times of a trace."""
+    """Worst instants, from axial forces of the most loaded column
+    at the times of a trace.
+    """
     b = structure.bearing
     t = trace
     x = np.abs(trace.rotation)
@@ -141,12 +159,15 @@ def column_demand(
     ratio = 0.0 if known and not b.is_flat else None
     crushed = 0.0 if known else None
     if rolls.any():
-        # It grows with N and with the tilt: the others lie below one that has more of both.
+        # It grows with N and with the tilt: the others lie below one that has more of
+        # both.
         order = np.argsort(-x)
         most = np.where(rolls, N.max(axis=0), 0.0)[order]
         rows = order[(most >= np.maximum.accumulate(most)) & rolls[order]]
         values = np.zeros_like(N)
-        values[:, rows] = design.pressed(b, np.broadcast_to(x[rows], (2, len(rows))), N[:, rows])[0]
+        values[:, rows] = design.pressed(
+            b, np.broadcast_to(x[rows], (2, len(rows))), N[:, rows]
+        )[0]
         found.append(worst("contact_pressure_ratio", values))
         ratio = (found[-1].contact_pressure or 0.0) / design.contact_strength
     if edges.any():
@@ -163,7 +184,9 @@ def column_demand(
 
 
 def _along_tilt(trace: Trace, down: NDArray[np.bool_]) -> Array:
-    """Shears at both ends in the plane of tilt (2, samples) [N]; of upright columns, the sum's."""
+    """Shears at both ends in the plane of tilt (2, samples) [N]; of
+    upright columns, the sum's.
+    """
     x = np.array([trace.shear_bottom, trace.shear_top])
     if trace.y is None or trace.azimuth is None:
         return x

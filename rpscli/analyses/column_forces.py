@@ -25,7 +25,8 @@ OF_COLUMNS = (
 
 
 AMPLE = 1.3
-"""Of tan(alpha): a friction with which rigid floors on the beam would not let columns slide."""
+"""Of tan(alpha): a friction with which rigid floors on the beam
+would not let columns slide."""
 
 
 @dataclass(frozen=True)
@@ -39,19 +40,22 @@ class AxialForces:
     least: dict[str, float]
     """At the `top` and at the `bottom` of a column, compression positive [N]."""
     overturning_ratio: float | None
-    """Largest r: what the moment of the floors' inertia about the cap beam adds to an outer column,
-    over the mean force; None without rows."""
+    """Largest r: what the moment of the floors' inertia about the cap beam adds to an
+    outer column, over the mean force; None without rows."""
     lift_off: float | None  # Time at which one would first lift off [s]; None if never
     sliding_time: float
     """Time during which columns would slide with a friction of `AMPLE` tan(alpha) [s]."""
     heaviest: dict[str, Array]
     """Of the most loaded column at each time of the trace, at both ends [N]."""
     moments: list[tuple[Array, float]]
-    """In x and in y: that of the podium at each time [N m], and mean(x^2)/max(x) of rows [m]."""
+    """In x and in y: that of the podium at each time [N m], and
+    mean(x^2)/max(x) of rows [m]."""
 
 
 def no_bound(name: str, structure: PodiumStructure) -> str:
-    """The reason why a result of both components bounds no force of a column; empty if it does."""
+    """The reason why a result of both components bounds no force of a
+    column; empty if it does.
+    """
     if name not in OF_COLUMNS:
         return ""
     on_end = name in ("contact_pressure_ratio", "crushed_width_ratio")
@@ -63,14 +67,16 @@ def no_bound(name: str, structure: PodiumStructure) -> str:
     if not left_out:
         return ""
     return (
-        f"{name} cannot be a limit under both components: it lacks {listed(left_out, 'and')}, which"
-        f" may multiply it; remove it (--set limits.{name}=null) and judge columns under single"
-        " components"
+        f"{name} cannot be a limit under both components: it lacks"
+        f" {listed(left_out, 'and')}, which may multiply it; remove it (--set"
+        f" limits.{name}=null) and judge columns under single components"
     )
 
 
 def axial_forces(structure: PodiumStructure, trace: Trace) -> AxialForces:
-    """Axial forces of single columns from a trace that is dense beside the vertical period."""
+    """Axial forces of single columns from a trace that is dense
+    beside the vertical period.
+    """
     normal = {"top": trace.normal_top, "bottom": trace.normal_bottom}
     uneven = np.zeros_like(trace.time)
     ratio = None
@@ -105,33 +111,48 @@ def axial_forces(structure: PodiumStructure, trace: Trace) -> AxialForces:
 
 
 def sliding_time(structure: PodiumStructure, trace: Trace) -> float:
-    """Time during which the friction demand is above `AMPLE` tan(alpha), shocks left out [s]."""
+    """Time during which the friction demand is above `AMPLE`
+    tan(alpha), shocks left out [s].
+    """
     limit = AMPLE * structure.bearing.slenderness
     slides = np.zeros(len(trace.time), dtype=bool)
     for end, normal in (("top", trace.normal_top), ("bottom", trace.normal_bottom)):
         slides |= trace.size(f"shear_{end}") > limit * np.maximum(normal, 0.0)
-    share = np.count_nonzero(slides & ~in_shocks(structure, trace)) / max(len(slides) - 1, 1)
+    share = np.count_nonzero(slides & ~in_shocks(structure, trace)) / max(
+        len(slides) - 1, 1
+    )
     return float(share * trace.time[-1])
 
 
 def _directions(trace: Trace) -> list[tuple[Direction, Array]]:
-    """What a history has in x and, of both components, in y, with the part of the tilt to there."""
+    """What a history has in x and, of both components, in y, with the
+    part of the tilt to there.
+    """
     if trace.y is None or trace.azimuth is None:
         return [(trace, np.sign(trace.rotation))]
     return [(trace, np.cos(trace.azimuth)), (trace.y, np.sin(trace.azimuth))]
 
 
 def overturning_moment(structure: PodiumStructure, of: Direction) -> Array:
-    """Moment of the floors' inertia about the cap beam (samples,) [N m], positive to the right."""
+    """Moment of the floors' inertia about the cap beam (samples,) [N
+    m], positive to the right.
+    """
     building = structure.superstructure
     if building is None or building.storey_heights is None:
         return np.zeros(len(of.shear_top))
-    return -(of.floor_accelerations @ (building.masses * np.cumsum(building.storey_heights)))
+    return -(
+        of.floor_accelerations @ (building.masses * np.cumsum(building.storey_heights))
+    )
 
 
-def thrust_moment(structure: PodiumStructure, t: Trace, of: Direction, towards: Array) -> Array:
-    """Moment of leaning thrust lines and drifts, beside that of inertia (samples,) [N m]."""
-    # Columns bear on the beam at the edge they turn about, or where one at rest is in equilibrium.
+def thrust_moment(
+    structure: PodiumStructure, t: Trace, of: Direction, towards: Array
+) -> Array:
+    """Moment of leaning thrust lines and drifts, beside that of
+    inertia (samples,) [N m].
+    """
+    # Columns bear on the beam at the edge they turn about, or where one at rest is in
+    # equilibrium.
     b = structure.bearing
     B = structure.weight_arm(np.abs(t.rotation))
     edge = towards * b.semi_diagonal * B + 0.5 * of.cap_beam_displacement
@@ -151,7 +172,9 @@ def thrust_moment(structure: PodiumStructure, t: Trace, of: Direction, towards: 
 
 
 def in_shocks(structure: PodiumStructure, trace: Trace) -> NDArray[np.bool_]:
-    """Samples of passes that floors cannot follow (13.19), none of one component (samples,)."""
+    """Samples of passes that floors cannot follow (13.19), none of
+    one component (samples,).
+    """
     if trace.azimuth_rate is None or structure.passes_smoothly:
         return np.zeros(len(trace.time), dtype=bool)
     rate = np.hypot(trace.rotation_rate, trace.rotation * trace.azimuth_rate)

@@ -24,7 +24,9 @@ Motion: TypeAlias = GroundMotion | MotionComponents
 
 @dataclass(frozen=True, eq=False)
 class Request:
-    """One history to run: a structure under a motion, all of its components times `scale`."""
+    """One history to run: a structure under a motion, all of its
+    components times `scale`.
+    """
 
     structure: PodiumStructure
     motion: MotionComponents
@@ -33,15 +35,18 @@ class Request:
 
 
 WORTH_LANES = 8
-"""Histories with the same number of storeys that are followed side by side; fewer run one by one,
-with the same results. A step of all lanes takes as long as some five of one."""
+"""Histories with the same number of storeys that are followed side by side; fewer run one
+by one, with the same results. A step of all lanes takes as long as some five of one."""
 
 
 def histories(
     requests: Sequence[Request], *, worth_lanes: int = WORTH_LANES
 ) -> Iterator[tuple[list[int], Demands]]:
-    """Numbers of requests alike in storeys and contact, and their results; without the GIL."""
-    # From `worth_lanes` on they run side by side; no result depends on the others, or on the order.
+    """Numbers of requests alike in storeys and contact, and their
+    results; without the GIL.
+    """
+    # From `worth_lanes` on they run side by side; no result depends on the others, or on
+    # the order.
     groups: dict[tuple[int, bool, bool, bool], list[int]] = {}
     for i, request in enumerate(requests):
         pair = request.motion.y is not None
@@ -53,7 +58,9 @@ def histories(
         yield members, _run([requests[i] for i in members], worth_lanes)
 
 
-def demands(requests: Sequence[Request], *, worth_lanes: int = WORTH_LANES) -> list[Demand]:
+def demands(
+    requests: Sequence[Request], *, worth_lanes: int = WORTH_LANES
+) -> list[Demand]:
     """Largest demands of each of many histories, in their order; see `histories`."""
     by_number: dict[int, Demand] = {}
     for members, together in histories(requests, worth_lanes=worth_lanes):
@@ -90,28 +97,32 @@ def demand(
     structure
         Podium, bearings and building.
     record
-        Horizontal ground acceleration, or all components of it; or a sequence of such motions,
-        whose histories are followed side by side.
+        Horizontal ground acceleration, or all components of it; or a sequence of such
+        motions, whose histories are followed side by side.
     settings
         Accuracy, tolerance, limits.
     vertical
-        Vertical ground acceleration with the same time step, positive upwards, of a single record.
+        Vertical ground acceleration with the same time step, positive
+        upwards, of a single record.
 
-    Returns
-    -------
-    The demands, or a list of them in the order of the motions. No history depends on the others.
+    Returns ------- The demands, or a list of them in the order of the motions. No
+    history depends on the others.
 
     Raises
     ------
     UsageError
-        If `vertical` comes with several motions: `MotionComponents(x, vertical=...)` holds both.
+        If `vertical` comes with several motions: `MotionComponents(x,
+        vertical=...)` holds both.
     """
-    if isinstance(record, GroundMotion | MotionComponents) or not isinstance(record, Sequence):
+    if isinstance(record, GroundMotion | MotionComponents) or not isinstance(
+        record, Sequence
+    ):
         chosen, motion = require_inputs(structure, record, settings, vertical)
         return demands([Request(structure, motion, chosen)])[0]
     if vertical is not None:
         raise UsageError(
-            "vertical goes with a single record; give MotionComponents(x, vertical=...) for each"
+            "vertical goes with a single record; give MotionComponents(x, vertical=...)"
+            " for each"
         )
     inputs = [require_inputs(structure, each, settings, None) for each in record]
     return demands([Request(structure, motion, chosen) for chosen, motion in inputs])
@@ -133,7 +144,9 @@ def _run(requests: Sequence[Request], worth_lanes: int) -> Demands:
     given = [*map(HistoryRequest, of_system, of_motion, scales)]
     run = run_of(stacked, motions, given, pairs=pairs)
     follow(run, LANES if len(requests) >= worth_lanes else 1)
-    return Demands([requests[i].structure for i in structures], of_structure, frozen(run.results))
+    return Demands(
+        [requests[i].structure for i in structures], of_structure, frozen(run.results)
+    )
 
 
 def _distinct(ids: Sequence[Any]) -> tuple[list[int], list[int]]:

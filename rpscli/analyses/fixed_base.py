@@ -25,12 +25,16 @@ class FixedBaseResponse(Shown):
     storey_shears: Array  # (n,) largest k_i d_i [N], from the bottom
     floor_accelerations: Array  # (n,) largest absolute accelerations [m/s2]
     floor_velocities: Array
-    """(n,) largest absolute velocities [m/s], see `TimeHistoryResult.floor_velocities`."""
+    """(n,) largest absolute velocities [m/s], see
+    `TimeHistoryResult.floor_velocities`."""
     floor_displacements: Array  # (samples, n) relative to the ground [m]
     drifts: Array  # (n,) largest storey drifts [m]
-    acceleration_histories: Array  # (samples, n) absolute accelerations of the floors [m/s2]
+    acceleration_histories: (
+        Array  # (samples, n) absolute accelerations of the floors [m/s2]
+    )
     y: FixedBaseResponse | None = None
-    """In y, where both components act: largest values above are then resultants, histories in x."""
+    """In y, where both components act: largest values above are then
+    resultants, histories in x."""
 
     @property
     def base_shear(self) -> float:
@@ -43,8 +47,8 @@ def fixed_base_response(
 ) -> FixedBaseResponse:
     """Run the building of a structure on a fixed base for a number of sampling intervals.
 
-    Under both components the largest values are resultants of cubics through the samples, looked at
-    in `PARTS` of each interval: 0.3 % low at most for periods from 5 dt.
+    Under both components the largest values are resultants of cubics through the samples,
+    looked at in `PARTS` of each interval: 0.3 % low at most for periods from 5 dt.
     """
     if structure.superstructure is None:
         raise ValueError("a structure without superstructure has no fixed-base response")
@@ -73,7 +77,9 @@ Moving: TypeAlias = tuple[Array, Array]
 def _in_direction(
     building: Superstructure, record: GroundMotion, intervals: int
 ) -> tuple[FixedBaseResponse, list[Moving]]:
-    """Response in one direction; drifts, shears, accelerations and velocities with their rates."""
+    """Response in one direction; drifts, shears, accelerations and
+    velocities with their rates.
+    """
     shears, accelerations, floors = _followed(building, record, intervals)
     histories = _accelerations(building, floors)
     response = FixedBaseResponse(
@@ -113,7 +119,9 @@ def reference_shears(structure: PodiumStructure, motion: MotionComponents) -> Ar
     assert building is not None, "only buildings have a response"
     across = structure.superstructure_y or building
     # The largest shear after the end of the record comes within a period.
-    after = math.ceil(max(float(each.periods[0]) for each in (building, across)) / motion.dt)
+    after = math.ceil(
+        max(float(each.periods[0]) for each in (building, across)) / motion.dt
+    )
     shaken = [each.npts for name, each in motion.named.items() if name != "vertical"]
     intervals = max(shaken) - 1 + after
     if motion.y is not None:
@@ -122,7 +130,8 @@ def reference_shears(structure: PodiumStructure, motion: MotionComponents) -> Ar
 
 
 STEP_ANGLE = 0.5
-"""Largest step times the highest frequency: cubics between its ends then keep 2e-4 of that mode."""
+"""Largest step times the highest frequency: cubics between its ends
+then keep 2e-4 of that mode."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -130,7 +139,8 @@ class _Moved:
     """Modes of a building in steps that are fine enough for cubics between their ends."""
 
     building: Superstructure
-    modes: Array  # (n, 2, steps + 1) displacements [m] and velocities [m/s] of unit participation
+    # (n, 2, steps + 1) displacements [m] and velocities [m/s] of unit participation
+    modes: Array
     ground: Array  # (steps + 1,) acceleration [m/s2]
     dt: float  # step [s]
     parts: int  # steps in a sampling interval
@@ -144,7 +154,9 @@ class _Moved:
     def shears(self) -> Array:
         """Of the storeys [N] and their rates [N/s], (n, 2, steps + 1)."""
         of_modes = np.diff(self._shapes, axis=0, prepend=0.0)
-        return np.tensordot(self.building.stiffnesses[:, None] * of_modes, self.modes, axes=1)
+        return np.tensordot(
+            self.building.stiffnesses[:, None] * of_modes, self.modes, axes=1
+        )
 
     @property
     def _shapes(self) -> Array:
@@ -159,14 +171,18 @@ def _moved(building: Superstructure, record: GroundMotion, intervals: int) -> _M
     ground = prolonged(fine, intervals * parts + 1)
     modes = np.empty((building.storeys, 2, len(ground)))
     for r, mode in enumerate(modes):
-        mode[:] = oscillator(ground, dt, building.frequencies[r], building.damping_ratios[r])
+        mode[:] = oscillator(
+            ground, dt, building.frequencies[r], building.damping_ratios[r]
+        )
     return _Moved(building, modes, ground, dt, parts)
 
 
 def _followed(
     building: Superstructure, record: GroundMotion, intervals: int
 ) -> tuple[Array, Array, Array]:
-    """Largest shears and accelerations (n,); displacements, velocities (samples, 2, n)."""
+    """Largest shears and accelerations (n,); displacements,
+    velocities (samples, 2, n).
+    """
     moved = _moved(building, record, intervals)
     shears = _largest_shears(moved)
     fine = moved.floors.T
@@ -174,12 +190,18 @@ def _followed(
     dt = moved.dt
     parts = moved.parts
     del moved  # of a long record its modes are much memory
-    return shears, _largest_accelerations(building, fine, ground, dt), fine[::parts].copy()
+    return (
+        shears,
+        _largest_accelerations(building, fine, ground, dt),
+        fine[::parts].copy(),
+    )
 
 
 def _largest_shears(moved: _Moved) -> Array:
     """Of the storeys (n,) [N], from the bottom."""
-    return np.array([largest_of_cubics(shear, rate, moved.dt) for shear, rate in moved.shears])
+    return np.array(
+        [largest_of_cubics(shear, rate, moved.dt) for shear, rate in moved.shears]
+    )
 
 
 def _largest_accelerations(
@@ -195,7 +217,9 @@ def _largest_accelerations(
 
 @lru_cache(maxsize=4096)  # records of a study share their time step
 def _grown(k: float, xi: float) -> Array:
-    """Displacement, velocity, ground and its slope after a step, from those before, (4, 4)."""
+    """Displacement, velocity, ground and its slope after a step,
+    from those before, (4, 4).
+    """
     from scipy.linalg import expm
 
     # The step is the unit of time: formulae would lose all digits where k is small.
@@ -206,10 +230,11 @@ def _grown(k: float, xi: float) -> Array:
 
 
 def oscillator(ground: Array, dt: float, omega: float, xi: float) -> tuple[Array, Array]:
-    """Exact displacement and velocity from rest, the ground (samples,) [m/s2] linear in each step.
+    """Exact displacement and velocity from rest, the ground (samples,)
+    [m/s2] linear in each step.
 
-    N. C. Nigam and P. C. Jennings, BSSA 59 (1969) 909-922: the state obeys a recurrence, each of
-    its components alone one of second order, which is a digital filter.
+    N. C. Nigam and P. C. Jennings, BSSA 59 (1969) 909-922: the state obeys a recurrence,
+    each of its components alone one of second order, which is a digital filter.
     """
     from scipy.signal import lfilter
 
@@ -236,20 +261,29 @@ def _accelerations(building: Superstructure, floors: Array) -> Array:
     return accelerations
 
 
-def largest_velocities(relative: Array, accelerations: Array, record: GroundMotion) -> Array:
-    """Largest absolute velocities of floors (n,) [m/s], from those to the ground at the samples."""
+def largest_velocities(
+    relative: Array, accelerations: Array, record: GroundMotion
+) -> Array:
+    """Largest absolute velocities of floors (n,) [m/s], from those to
+    the ground at the samples.
+    """
     floors = zip(floor_speeds(relative, record).T, accelerations.T, strict=True)
     return np.array([largest_of_cubics(floor, rate, record.dt) for floor, rate in floors])
 
 
 def floor_speeds(relative: Array, record: GroundMotion) -> Array:
-    """Absolute velocities of floors (samples, n) [m/s], from those relative to the ground."""
+    """Absolute velocities of floors (samples, n) [m/s], from
+    those relative to the ground.
+    """
     ground = velocity(record.acceleration, record.dt)[: len(relative)]
-    return relative + np.pad(ground, (0, len(relative) - len(ground)), mode="edge")[:, None]
+    return (
+        relative + np.pad(ground, (0, len(relative) - len(ground)), mode="edge")[:, None]
+    )
 
 
 BEYOND = 4.0 / 27.0 * (1.0 + 1e-9)
-"""Of h |x'|: what a cubic passes the ends of its step by at most, and a margin for rounding."""
+"""Of h |x'|: what a cubic passes the ends of its step by at most,
+and a margin for rounding."""
 
 
 def largest_of_cubics(values: Array, rates: Array, dt: float) -> float:
@@ -257,7 +291,8 @@ def largest_of_cubics(values: Array, rates: Array, dt: float) -> float:
     at = np.abs(values)
     slopes = np.abs(rates)
     largest = np.max(at)
-    # The polynomials that take up the rates reach 4/27: most steps cannot pass the largest end.
+    # The polynomials that take up the rates reach 4/27: most steps cannot pass the
+    # largest end.
     reach = np.maximum(at[1:], at[:-1]) + BEYOND * dt * (slopes[1:] + slopes[:-1])
     passing = np.flatnonzero(reach >= largest)
     values, after = values[passing], values[passing + 1]
@@ -270,6 +305,8 @@ def largest_of_cubics(values: Array, rates: Array, dt: float) -> float:
     for divisor in (-square - root, root - square):  # where the slope is zero, if within
         within = np.flatnonzero(np.abs(first) < np.abs(divisor))
         t = first[within] / divisor[within]
-        turned = values[within] + t * (first[within] + t * (square[within] + t * cube[within]))
+        turned = values[within] + t * (
+            first[within] + t * (square[within] + t * cube[within])
+        )
         largest = np.max(np.abs(turned), where=t > 0.0, initial=largest)
     return float(largest)

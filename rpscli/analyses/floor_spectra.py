@@ -23,12 +23,12 @@ PERIODS = frozen(np.geomspace(0.05, 4.0, 50))
 DAMPING = 0.05
 
 STEP = 1e-3
-"""Between instants at which floors are looked at [s], or less: 1/50 of the shortest period, which
-leaves 0.1 % there."""
+"""Between instants at which floors are looked at [s], or less: 1/50 of the shortest
+period, which leaves 0.1 % there."""
 
 RINGING = 10.0
-"""First periods of the building for which equipment is followed beyond the end of a history: at
-resonance it is shaken most some three of them later."""
+"""First periods of the building for which equipment is followed beyond the end of a
+history: at resonance it is shaken most some three of them later."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -55,18 +55,17 @@ def isolated_floor_spectra(
     damping : float
         Share of critical damping.
 
-    Notes
-    -----
-    From the absolute floor accelerations every `STEP` or less, linear between them, and for ten
-    first periods of the building after the history. Where floors keep their own velocities impacts
-    make the forces of dampers jump: between two instants that is told by a ramp with the impulse of
-    the jump. The same motion written ten times denser moves pseudo-accelerations by less than
-    0.5 % at 0.1 s, and by less than 1 % at 0.05 s.
+    Notes ----- From the absolute floor accelerations every `STEP` or less, linear
+    between them, and for ten first periods of the building after the history. Where
+    floors keep their own velocities impacts make the forces of dampers jump: between
+    two instants that is told by a ramp with the impulse of the jump. The same motion
+    written ten times denser moves pseudo-accelerations by less than 0.5 % at 0.1 s, and
+    by less than 1 % at 0.05 s.
     """
     if result.both_components:
         raise CaseError(
-            f"{result.record.source}: floor spectra are those of one horizontal component at a"
-            " time; give each component by itself, without ?both"
+            f"{result.record.source}: floor spectra are those of one horizontal component"
+            " at a time; give each component by itself, without ?both"
         )
     trace = denser_trace(result, STEP, _ringing(result))
     accelerations = trace.floor_accelerations + jumps_left_out(result, trace)
@@ -83,7 +82,9 @@ def _ringing(result: TimeHistoryResult) -> float:
 
 
 def jumps_left_out(result: TimeHistoryResult, trace: Trace) -> Array:
-    """Ramps with the impulse of each jump of the accelerations, at the instants beside it (n,)."""
+    """Ramps with the impulse of each jump of the accelerations, at the
+    instants beside it (n,).
+    """
     structure = result.structure
     building = result.structure.superstructure
     ramps = np.zeros_like(trace.floor_accelerations)
@@ -126,10 +127,14 @@ def fixed_base_floor_spectra(
     return floor_spectra(fixed.acceleration_histories, denser.dt, periods, damping)
 
 
-def floor_spectra(accelerations: Array, dt: float, periods: Array, damping: float) -> FloorSpectra:
+def floor_spectra(
+    accelerations: Array, dt: float, periods: Array, damping: float
+) -> FloorSpectra:
     """Spectra of histories side by side."""
     spectra = [
-        response_spectrum(GroundMotion(floor, dt, "floor", "floor", "response"), periods, damping)
+        response_spectrum(
+            GroundMotion(floor, dt, "floor", "floor", "response"), periods, damping
+        )
         for floor in accelerations.T
     ]
     return FloorSpectra(

@@ -1,10 +1,11 @@
 """Measurements on a standing structure, and what they say about its case, with intervals.
 
-Restitution and rolling resistance come from free rocking, by times and amplitudes of its swings.
-The model is read as the measurement is, so that what the reading does to a swing does not count.
-Where releases within the error of measurement part ways, as under buildings that vibrate, means of
-ensembles are fitted, and what swings scatter about them, together, counts as error. First period
-and damping before uplift come from accelerations of a floor.
+Restitution and rolling resistance come from free rocking, by times and amplitudes of its
+swings. The model is read as the measurement is, so that what the reading does to a swing
+does not count. Where releases within the error of measurement part ways, as under
+buildings that vibrate, means of ensembles are fitted, and what swings scatter about
+them, together, counts as error. First period and damping before uplift come from
+accelerations of a floor.
 """
 
 from __future__ import annotations
@@ -79,23 +80,31 @@ class Vibration(NamedTuple):
 
     period: Estimate
     damping: Estimate
-    misfit: float  # scatter about the spectrum, 1 where it holds; or the part that is not fitted
+    # scatter about the spectrum, 1 where it holds; or the part that is not fitted
+    misfit: float
 
 
-@np.errstate(divide="ignore", over="ignore", invalid="ignore")  # where a search may go astray
+@np.errstate(
+    divide="ignore", over="ignore", invalid="ignore"
+)  # where a search may go astray
 def vibration(
-    expected: float, dt: float, floor: Array, ground: Array | None = None, *, free: bool = False
+    expected: float,
+    dt: float,
+    floor: Array,
+    ground: Array | None = None,
+    *,
+    free: bool = False,
 ) -> Vibration:
     """First period and damping before uplift from a floor's acceleration, in any unit.
 
-    With the ground's in the same unit the floor's answer to it is fitted; else a free decay if
-    `free`, else the spectrum. `expected` is the first period on a fixed base [s].
+    With the ground's in the same unit the floor's answer to it is fitted;
+    else a free decay if `free`, else the spectrum. `expected` is the first
+    period on a fixed base [s].
 
-    Notes
-    -----
-    Ambient: Whittle's likelihood of the periodogram, S = a f^c/((f^2 - f1^2)^2 + (2 zeta f1 f)^2) +
-    b, P. Whittle, Ark. Mat. 2, 1953; intervals from Fisher's information. Else least squares of the
-    transform in the band, linear in all but period and damping.
+    Notes ----- Ambient: Whittle's likelihood of the periodogram, S = a f^c/((f^2 -
+    f1^2)^2 + (2 zeta f1 f)^2) + b, P. Whittle, Ark. Mat. 2, 1953; intervals from
+    Fisher's information. Else least squares of the transform in the band, linear in
+    all but period and damping.
     """
     _require_samples(expected, dt, floor, ground)
     n = len(floor)
@@ -107,13 +116,17 @@ def vibration(
         power /= np.abs(X) ** 2 + np.median(np.abs(X) ** 2)
     width = max(3, round(0.05 * n * dt / expected))
     smooth = np.convolve(power, np.ones(width) / width, "same")
-    looked = (f > 1.0 / (LOOKED_FOR[1] * expected)) & (f < 1.0 / (LOOKED_FOR[0] * expected))
+    looked = (f > 1.0 / (LOOKED_FOR[1] * expected)) & (
+        f < 1.0 / (LOOKED_FOR[0] * expected)
+    )
     peak = float(f[looked][np.argmax(smooth[looked])])
     inside = (f > BAND[0] * peak) & (f < BAND[1] * peak)
     f = f[inside]
     Y = Y[inside]
     if len(f) < 12:
-        raise AnalysisError(f"{len(f)} frequencies about {peak:.3g} Hz; a longer record is needed")
+        raise AnalysisError(
+            f"{len(f)} frequencies about {peak:.3g} Hz; a longer record is needed"
+        )
     if X is None and not free:
         return _ambient(f, np.abs(Y) ** 2 / n, peak, expected)
     time = np.arange(n) * dt
@@ -123,7 +136,8 @@ def vibration(
         w, zeta = np.exp(q)
         decay = np.exp((-zeta + 1j * math.sqrt(1.0 - min(zeta, 0.9) ** 2)) * w * time)
         made = [np.fft.rfft(part)[inside] for part in (decay.real, decay.imag)]
-        # Higher modes are slow and smooth here: what begins in them, and what the ground does.
+        # Higher modes are slow and smooth here: what begins in them, and what the ground
+        # does.
         s = 2j * np.pi * f / w
         made += [np.ones_like(s), s]
         if X is not None:
@@ -133,37 +147,47 @@ def vibration(
 
     def misses(q: Array) -> Array:
         C = columns(q)
-        return _unexplained(np.concatenate([C.real, C.imag]), np.concatenate([Y.real, Y.imag]))
+        return _unexplained(
+            np.concatenate([C.real, C.imag]), np.concatenate([Y.real, Y.imag])
+        )
 
     from scipy.optimize import least_squares
 
-    best = least_squares(misses, [math.log(2.0 * math.pi * peak), math.log(0.03)], x_scale=0.01)
+    best = least_squares(
+        misses, [math.log(2.0 * math.pi * peak), math.log(0.03)], x_scale=0.01
+    )
     freedoms = 2 * len(f) - (6 if X is None else 9)
     variance = 2.0 * float(best.cost) / freedoms
     J = np.asarray(best.jac)
     covariance = variance * _inverse(J.T @ J)
-    share = 2.0 * float(best.cost) / max(float(np.sum(np.abs(Y) ** 2)), np.finfo(float).tiny)
+    share = (
+        2.0 * float(best.cost) / max(float(np.sum(np.abs(Y) ** 2)), np.finfo(float).tiny)
+    )
     return _of_logarithms(best.x, covariance, freedoms, math.sqrt(share), expected, LEFT)
 
 
-def _require_samples(expected: float, dt: float, floor: Array, ground: Array | None) -> None:
+def _require_samples(
+    expected: float, dt: float, floor: Array, ground: Array | None
+) -> None:
     """Refuse accelerations that cannot show a period."""
     for name, record in (("floor", floor), ("ground", ground)):
         if record is not None and not np.ptp(record) > 0.0:
             raise AnalysisError(f"the acceleration of the {name} is constant")
     if (span := len(floor) * dt) < 10.0 * expected:
         raise AnalysisError(
-            f"{span:.3g} s are fewer than ten periods of {expected:.3g} s; a longer record is"
-            " needed"
+            f"{span:.3g} s are fewer than ten periods of {expected:.3g} s; a longer"
+            " record is needed"
         )
     if dt >= 0.5 * LOOKED_FOR[1] * expected:  # where all that is looked for is too fast
         raise AnalysisError(
-            f"samples every {dt:.3g} s do not show a period of {expected:.3g} s; a record with"
-            " more samples a second is needed"
+            f"samples every {dt:.3g} s do not show a period of {expected:.3g} s; a record"
+            " with more samples a second is needed"
         )
 
 
-def _ambient(f: NDArray[Any], power: NDArray[Any], peak: float, expected: float) -> Vibration:
+def _ambient(
+    f: NDArray[Any], power: NDArray[Any], peak: float, expected: float
+) -> Vibration:
     """From the periodogram, whose values are exponential about the spectrum."""
 
     def spectrum(p: Array) -> Array:
@@ -188,7 +212,9 @@ def _ambient(f: NDArray[Any], power: NDArray[Any], peak: float, expected: float)
     p = np.asarray(minimize(unlikely, start, method="Nelder-Mead", options=options).x)
     S = spectrum(p)
     h = 1e-5
-    J = np.array([(spectrum(p + h * d) - spectrum(p - h * d)) / (2.0 * h * S) for d in np.eye(5)])
+    J = np.array(
+        [(spectrum(p + h * d) - spectrum(p - h * d)) / (2.0 * h * S) for d in np.eye(5)]
+    )
     covariance = _inverse(J @ J.T)
     misfit = float((power / S).std())
     q = np.array([p[0] + math.log(2.0 * math.pi), p[1]])
@@ -196,7 +222,9 @@ def _ambient(f: NDArray[Any], power: NDArray[Any], peak: float, expected: float)
 
 
 def _unexplained(columns: Array, y: Array) -> Array:
-    """The part of y that no sum of the columns is; infinite where the search went astray."""
+    """The part of y that no sum of the columns is; infinite
+    where the search went astray.
+    """
     if np.isfinite(columns).all():  # LAPACK prints a line on the terminal of what is not
         return np.asarray(y - columns @ np.linalg.lstsq(columns, y, rcond=None)[0])
     return np.full_like(y, math.inf)
@@ -217,7 +245,9 @@ def _of_logarithms(
     expected: float,
     usual: tuple[float, float],
 ) -> Vibration:
-    """Period and damping from logarithms of circular frequency and damping; refuse a bad fit."""
+    """Period and damping from logarithms of circular frequency and
+    damping; refuse a bad fit.
+    """
     T = 2.0 * math.pi * np.exp(-q[0])
     zeta = np.exp(q[1])
     errors = np.sqrt(np.diag(covariance)[:2])
@@ -233,11 +263,15 @@ def _of_logarithms(
         why = "the motion does not determine it"
     if why:
         raise AnalysisError(
-            f"no vibration before uplift fits: {why}; choose a part of the motion by --from and"
-            " --to, or check the case and the units"
+            f"no vibration before uplift fits: {why}; choose a part of the motion by"
+            " --from and --to, or check the case and the units"
         )
-    w, ratio = (estimate(value, error, freedoms) for value, error in zip(q, errors, strict=False))
-    period = Estimate(*(2.0 * math.pi * math.exp(-value) for value in (w.value, w.high, w.low)))
+    w, ratio = (
+        estimate(value, error, freedoms) for value, error in zip(q, errors, strict=False)
+    )
+    period = Estimate(
+        *(2.0 * math.pi * math.exp(-value) for value in (w.value, w.high, w.low))
+    )
     return Vibration(period, Estimate(*(math.exp(value) for value in ratio)), misfit)
 
 
@@ -249,22 +283,27 @@ NEAR_TOP = 0.7
 ENSEMBLE = 9
 """Releases within three standard errors of the amplitude."""
 SETTLED = 0.02
-"""Move at which a fit ends, over the steps of differences: the next one would be its square."""
+"""Move at which a fit ends, over the steps of differences: the next
+one would be its square."""
 WIDE = 4.0
 """Steps of differences of ensembles, over the standard errors."""
 SHARED = tuple((part, lever) for part in (0.9, 0.6, 0.3) for lever in (0.003, 0.01))
-"""Parts of what is lost at impacts, and levers over B that take the rest: where fits begin."""
+"""Parts of what is lost at impacts, and levers over B that take
+the rest: where fits begin."""
 AS_GOOD = 1.26
-"""Squared misfits over the least one of fits that are as good: 90 % fractile of F, for two values
-that are fitted together and some twenty freedoms."""
+"""Squared misfits over the least one of fits that are as good: 90 % fractile of F, for
+two values that are fitted together and some twenty freedoms."""
 PARTING = 0.3
 """Scatter of an ensemble over the error of measurement from which it counts."""
 WORST_MISFIT = 10.0
-"""Of a model that rocks like the structure; what a model lacks leaves a few times the noise."""
+"""Of a model that rocks like the structure; what a model lacks
+leaves a few times the noise."""
 
 
 class Swing(NamedTuple):
-    """Top of an excursion to one side: time [s], |theta| [rad], and their standard errors."""
+    """Top of an excursion to one side: time [s], |theta| [rad],
+    and their standard errors.
+    """
 
     time: float
     amplitude: float
@@ -274,7 +313,9 @@ class Swing(NamedTuple):
 
 @dataclass(frozen=True)
 class _Release:
-    """A structure that is let go; q is its rotation, a delay, its loss or e, and its lever."""
+    """A structure that is let go; q is its rotation, a delay, its
+    loss or e, and its lever.
+    """
 
     structure: PodiumStructure
     dt: float
@@ -290,14 +331,18 @@ class _Release:
     @property
     def place(self) -> int | None:
         devices = enumerate(self.structure.devices)
-        return next((i for i, each in devices if isinstance(each, RollingResistance)), None)
+        return next(
+            (i for i, each in devices if isinstance(each, RollingResistance)), None
+        )
 
     def changed(self, q: Array) -> PodiumStructure:
         """With what is looked for."""
         law = self.structure.impact_law
         value = float(q[2])
         changed = (
-            replace(law, restitution=value) if law.kind == "value" else replace(law, loss=value)
+            replace(law, restitution=value)
+            if law.kind == "value"
+            else replace(law, loss=value)
         )
         made = replace(self.structure, impact_law=changed)
         if self.place is None:
@@ -311,8 +356,12 @@ class _Release:
         start = self.side * float(q[0]) * release
         settings = TimeHistorySettings(free_vibration=self.span, initial_rotation=start)
         still = GroundMotion(np.zeros(2), self.dt, "still", "still", "")
-        trace = time_history(self.changed(q), still, settings, with_fixed_base=False).trace
-        found = swings_of(trace.time, trace.rotation, self.noise, 0.25 * SEEN * self.noise)[1:]
+        trace = time_history(
+            self.changed(q), still, settings, with_fixed_base=False
+        ).trace
+        found = swings_of(
+            trace.time, trace.rotation, self.noise, 0.25 * SEEN * self.noise
+        )[1:]
         values = self.measured
         values[1::2] = 0.0
         for i, swing in enumerate(found[: len(self.swings)]):
@@ -321,11 +370,14 @@ class _Release:
 
 
 def rocking(structure: PodiumStructure, time: Array, rotation: Array) -> Identified:
-    """Restitution and lever from rotations (n,) [rad] after a release of the unstrained case."""
+    """Restitution and lever from rotations (n,) [rad] after a
+    release of the unstrained case.
+    """
     if (largest := float(np.abs(rotation).max())) >= structure.critical_rotation:
         raise AnalysisError(
             f"the rotation of {largest:.4g} rad is beyond the critical one of"
-            f" {structure.critical_rotation:.4g} rad, where it would overturn; check its unit"
+            f" {structure.critical_rotation:.4g} rad, where it would overturn; check its"
+            " unit"
         )
     time = time - time[0]
     # Third differences of a smooth motion are small against those of noise, 20 sigma^2.
@@ -334,11 +386,14 @@ def rocking(structure: PodiumStructure, time: Array, rotation: Array) -> Identif
     every = swings_of(time, rotation, noise, SEEN * noise)
     if len(every) < 4:
         raise AnalysisError(
-            f"{len(every)} whole swings exceed the noise of {noise:.2g} rad, and four are needed:"
-            " release it from a larger rotation, or choose a part of the motion by --from and --to"
+            f"{len(every)} whole swings exceed the noise of {noise:.2g} rad, and four are"
+            " needed: release it from a larger rotation, or choose a part of the motion"
+            " by --from and --to"
         )
     if structure.bearing.is_spherical:
-        raise AnalysisError("columns without a flat part roll without impacts; use another test")
+        raise AnalysisError(
+            "columns without a flat part roll without impacts; use another test"
+        )
     first, *swings = every[: MOST_SWINGS + 1]
     dt = float(time[1] - time[0])
     side = math.copysign(1.0, rotation[np.argmax(time >= first.time)])
@@ -362,7 +417,11 @@ def rocking(structure: PodiumStructure, time: Array, rotation: Array) -> Identif
             """Of the ensemble, and what the size of the release does not explain."""
             many = np.array([of.tops(q, release) for release in releases])
             away = (releases - 1.0)[:, None]
-            left = many - many.mean(axis=0) - away * ((away * many).sum(axis=0) / (away**2).sum())
+            left = (
+                many
+                - many.mean(axis=0)
+                - away * ((away * many).sum(axis=0) / (away**2).sum())
+            )
             return many.mean(axis=0), left
 
         left = means(q)[1]
@@ -372,11 +431,15 @@ def rocking(structure: PodiumStructure, time: Array, rotation: Array) -> Identif
         if ensembles:
             wide = np.sqrt(errors**2 + np.diag(scatter))
             steps = WIDE * np.sqrt(np.diag(covariance))
-            q, gain, misfit = _fitted(lambda q: means(q)[0], q, steps, bounds, of.measured, wide)
+            q, gain, misfit = _fitted(
+                lambda q: means(q)[0], q, steps, bounds, of.measured, wide
+            )
             # Swings that part ways do so together, which the gain adds up.
             covariance = (gain * errors**2) @ gain.T + gain @ scatter @ gain.T
     except (ValueError, np.linalg.LinAlgError) as error:
-        raise AnalysisError(f"no structure of this kind rocks in this way: {error}") from None
+        raise AnalysisError(
+            f"no structure of this kind rocks in this way: {error}"
+        ) from None
     model = of.tops(q).reshape(-1, 2)
     _refuse_bad_fit(q, bounds, model, misfit)
     spread = np.sqrt(max(1.0, misfit) ** 2 * np.diag(covariance) + valley)
@@ -401,17 +464,24 @@ def _told(
     if of.place is not None:
         estimates["lever", "m"] = found[2]
         written.append((f"podium.devices.{of.place}.lever", found[2], 4))
-    keys = {key: f"{value.value:.{digits}g}" for key, value, digits in written if value.determined}
+    keys = {
+        key: f"{value.value:.{digits}g}"
+        for key, value, digits in written
+        if value.determined
+    }
     names = (*Swing._fields, "model_time", "model_amplitude")
     rows = zip(of.swings, model.tolist(), strict=True)
     residuals = tuple(dict(zip(names, (*swing, *at), strict=True)) for swing, at in rows)
     remarks = f"residuals are {misfit:.3g} times what noise alone would leave"
     if misfit > 1.4:  # which noise leaves in one of a hundred, with twenty freedoms
-        remarks += ": the model lacks something, such as rolling resistance; intervals include that"
+        remarks += (
+            ": the model lacks something, such as rolling resistance; intervals include"
+            " that"
+        )
     if of.place is not None:
         remarks += (
-            "; loss and lever make up for each other: intervals include fits as good as this one"
-            " that were found from other starts, and not those that were not"
+            "; loss and lever make up for each other: intervals include fits as good as"
+            " this one that were found from other starts, and not those that were not"
         )
     if ensembles:
         remarks += "; neighbouring releases diverge, so means of ensembles were fitted"
@@ -419,7 +489,9 @@ def _told(
 
 
 def _refuse_bad_fit(q: Array, bounds: Array, model: Array, misfit: float) -> None:
-    """What least squares end at is no answer if the model does not rock like the structure."""
+    """What least squares end at is no answer if the model does not
+    rock like the structure.
+    """
     away = f"{misfit:.3g} times the noise from those measured"
     if not misfit <= WORST_MISFIT:
         seen = int((model[:, 1] > 0.0).sum())
@@ -432,8 +504,8 @@ def _refuse_bad_fit(q: Array, bounds: Array, model: Array, misfit: float) -> Non
     else:
         return
     raise AnalysisError(
-        f"no structure of this kind rocks in this way: {why}; check the units, the geometry of the"
-        " case, and that the structure was let go from rest"
+        f"no structure of this kind rocks in this way: {why}; check the units, the"
+        " geometry of the case, and that the structure was let go from rest"
     )
 
 
@@ -464,7 +536,9 @@ def _starts(of: _Release, first: Swing) -> tuple[list[Array], Array, Array]:
 
 
 def swings_of(time: Array, rotation: Array, noise: float, least: float) -> list[Swing]:
-    """Excursions above a least amplitude: a parabola through what is near the top of each."""
+    """Excursions above a least amplitude: a parabola through what
+    is near the top of each.
+    """
     places = np.flatnonzero(np.abs(rotation) > max(0.25 * least, 4.0 * noise))
     turns = np.flatnonzero(np.diff(np.sign(rotation[places]))) + 1
     found: list[Swing] = []
@@ -493,7 +567,9 @@ def _fitted(
     model: Callable[[Array], Array], q: Array, steps: Array, bounds: Array, measured: Array,
     errors: Array,
 ) -> tuple[Array, Array, float]:  # fmt: skip
-    """Least squares by Gauss and Newton: q, its change by each measurement, misfit over errors."""
+    """Least squares by Gauss and Newton: q, its change by each
+    measurement, misfit over errors.
+    """
 
     def misses(q: Array) -> Array:
         return np.asarray((measured - model(np.clip(q, *bounds))) / errors)
@@ -501,10 +577,14 @@ def _fitted(
     for _ in range(12):
         r = misses(q)
         sides = [(misses(q - step), misses(q + step)) for step in np.diag(steps)]
-        J = np.column_stack([(a - b) / (2.0 * h) for (a, b), h in zip(sides, steps, strict=True)])
+        J = np.column_stack(
+            [(a - b) / (2.0 * h) for (a, b), h in zip(sides, steps, strict=True)]
+        )
         inverse = np.linalg.pinv((J * steps).T @ (J * steps)) * steps[:, None]
         move = inverse @ (J * steps).T @ r
-        parts = ((part, np.clip(q + part * move, *bounds)) for part in (1.0, 0.5, 0.25, 0.1))
+        parts = (
+            (part, np.clip(q + part * move, *bounds)) for part in (1.0, 0.5, 0.25, 0.1)
+        )
         better = (each for each in parts if np.sum(misses(each[1]) ** 2) < np.sum(r**2))
         part, tried = next(better, (0.0, q))
         q = tried
@@ -523,11 +603,16 @@ TESTS = {
     "release": (_FLOOR,),
     "earthquake": (_FLOOR, _GROUND),
 }
-"""Columns that each test needs besides the time, one of each group, and their SI units."""
+"""Columns that each test needs besides the time, one of each
+group, and their SI units."""
 
 
-def identified(structure: PodiumStructure, test: str, columns: Mapping[str, Array]) -> Identified:
-    """What one of the `TESTS` says of a structure, from columns (n,) in SI units by name."""
+def identified(
+    structure: PodiumStructure, test: str, columns: Mapping[str, Array]
+) -> Identified:
+    """What one of the `TESTS` says of a structure, from columns
+    (n,) in SI units by name.
+    """
     if test == "rocking":
         if (rotation := columns.get("rotation")) is None:
             beam = columns["cap_beam_displacement"]
@@ -538,26 +623,38 @@ def identified(structure: PodiumStructure, test: str, columns: Mapping[str, Arra
         found = _vibration(structure, test, columns)
     for (name, _), value in found.estimates.items():
         if not value.determined:
-            unknown = f"; {name} is not determined: its interval is not narrower than its value"
+            unknown = (
+                f"; {name} is not determined: its interval is not narrower than its value"
+            )
             found = found._replace(remarks=found.remarks + unknown)
     return found
 
 
-def _vibration(structure: PodiumStructure, test: str, columns: Mapping[str, Array]) -> Identified:
+def _vibration(
+    structure: PodiumStructure, test: str, columns: Mapping[str, Array]
+) -> Identified:
     building = structure.superstructure
     if building is None:
-        raise UsageError(f"{test}: without storeys there is no period before uplift; use rocking")
+        raise UsageError(
+            f"{test}: without storeys there is no period before uplift; use rocking"
+        )
     time = columns["time"]
     fixed = float(building.periods[0])
     step = float(time[-1] - time[0]) / (len(time) - 1)
     ground = columns.get("ground_acceleration")
-    found = vibration(fixed, step, columns["floor_acceleration"], ground, free=test == "release")
+    found = vibration(
+        fixed, step, columns["floor_acceleration"], ground, free=test == "release"
+    )
     ratio = Estimate(*(value / fixed for value in found.period))
     estimates = {("period", "s"): found.period, ("damping", "-"): found.damping}
     estimates["period_ratio", "-"] = ratio
-    remarks = f"period_ratio is over {fixed:.4g} s, the period of the case on a fixed base"
+    remarks = (
+        f"period_ratio is over {fixed:.4g} s, the period of the case on a fixed base"
+    )
     if ground is not None:
-        remarks += "; noise in the record of the ground is not in the intervals, which are too"
+        remarks += (
+            "; noise in the record of the ground is not in the intervals, which are too"
+        )
         remarks += " narrow by it"
     keys: dict[str, str] = {}
     if not ratio.low > 1.0:
@@ -570,12 +667,19 @@ def _vibration(structure: PodiumStructure, test: str, columns: Mapping[str, Arra
     best, stiffest, softest = (bed for bed in soft if bed is not None)
     both = (best.stiffness, softest.stiffness, stiffest.stiffness)
     estimates["stiffness", "N/m"] = Estimate(*both)
-    sunk = [bed.settlement for bed in (best, stiffest, softest) if bed.settlement is not None]
+    sunk = [
+        bed.settlement for bed in (best, stiffest, softest) if bed.settlement is not None
+    ]
     if len(sunk) == 3:
         estimates["settlement", "m"] = Estimate(*sunk)
-    digits = 4 if ratio.value > 1.001 else 9  # 1 itself is no ratio of a compliant contact
+    digits = (
+        4 if ratio.value > 1.001 else 9
+    )  # 1 itself is no ratio of a compliant contact
     keys["podium.contact.period_ratio"] = f"{ratio.value:.{digits}g}"
     keys["podium.contact.kind"] = "plane"
-    remarks += "; stiffness of the podium in full contact; a period does not show whether ends are"
+    remarks += (
+        "; stiffness of the podium in full contact; a period does not show whether ends"
+        " are"
+    )
     remarks += " `plane`, which the settlement is for, or `edges`: try both"
     return Identified(estimates, keys, found.misfit, remarks)

@@ -39,13 +39,15 @@ _PLAIN = record_type(state.RESULT)
 class Demands:
     """Results of histories as columns (histories, ...), NaN where a history has none.
 
-    The structures have one number of storeys; `number` says which of them a history belongs to.
+    The structures have one number of storeys; `number` says which of
+    them a history belongs to.
     """
 
     def __init__(
         self, structures: Sequence[PodiumStructure], number: Sequence[int], left: Record
     ) -> None:
-        # Fields by attribute, which records of the kernels have, take numpy ten times as long.
+        # Fields by attribute, which records of the kernels have, take numpy ten times as
+        # long.
         self.left = left.view(_PLAIN, np.ndarray)
         self.structures = structures
         self.number = np.array(number)
@@ -59,7 +61,9 @@ class Demands:
     def column(self, name: str) -> Array:
         """The values of the attribute of `Demand` with this name."""
         result = vars(Demand)[name]
-        return np.asarray(result.made(self) if result.made else self.left[KERNEL_FIELDS[name]])
+        return np.asarray(
+            result.made(self) if result.made else self.left[KERNEL_FIELDS[name]]
+        )
 
     def columns(self, quantities: Iterable[ResultQuantity]) -> dict[str, Array]:
         """Finite values by name; NaN where there is none."""
@@ -71,10 +75,14 @@ class Demands:
 
     def each(self, constant: Callable[[PodiumStructure], Any]) -> Array:
         """Of the structure of each history; NaN for None."""
-        values = np.array([constant(structure) for structure in self.structures], np.float64)
+        values = np.array(
+            [constant(structure) for structure in self.structures], np.float64
+        )
         return np.asarray(values[self.number])
 
-    def of_building(self, constant: Callable[[Superstructure], Any], *, y: bool = False) -> Array:
+    def of_building(
+        self, constant: Callable[[Superstructure], Any], *, y: bool = False
+    ) -> Array:
         """Of each storey of the building of each history (histories, n); NaN for None."""
         unknown = np.full(self.storeys, np.nan)
 
@@ -92,7 +100,9 @@ class Demands:
 
     @cached_property
     def path(self) -> tuple[Array, Array]:
-        """u_b, v_b (3, histories) at the largest rotation, the largest up to theta_cr, the end."""
+        """u_b, v_b (3, histories) at the largest rotation, the largest
+        up to theta_cr, the end.
+        """
         largest = self.left["max_theta"]
         highest = np.minimum(largest, self.critical_rotation)
         bearings = [structure.bearing for structure in self.structures]
@@ -114,13 +124,19 @@ class Demands:
 
     def on_bed(self, values: Array) -> Array:
         """The values on compliant ends; NaN on rigid ones."""
-        return np.asarray(np.where(self.each(lambda st: st.bed is not None) > 0.0, values, np.nan))
+        return np.asarray(
+            np.where(self.each(lambda st: st.bed is not None) > 0.0, values, np.nan)
+        )
 
     def of_passes(self, field: str) -> Array:
-        """A field of histories with passes near upright; NaN of others, which have none."""
+        """A field of histories with passes near upright; NaN of
+        others, which have none.
+        """
         smooth = self.each(lambda structure: structure.passes_smoothly) > 0.0
         values = self.known(field)
-        return np.asarray(np.where(smooth.reshape(-1, *(1,) * (values.ndim - 1)), np.nan, values))
+        return np.asarray(
+            np.where(smooth.reshape(-1, *(1,) * (values.ndim - 1)), np.nan, values)
+        )
 
     def of_storeys(self, field: str) -> Array:
         """(histories, n)."""
@@ -133,7 +149,9 @@ class Demands:
         return any(structure.yields for structure in self.structures)
 
     def yielding(self, field: str) -> Array:
-        """A field by direction and storey (histories, ways, n); NaN where storeys stay elastic."""
+        """A field by direction and storey (histories, ways, n); NaN
+        where storeys stay elastic.
+        """
         values = np.asarray(self.left[field], np.float64)[:, : self.ways, : self.storeys]
         return np.where(np.isfinite(self.of_ways(lambda b: b.strengths)), values, np.nan)
 
@@ -147,13 +165,20 @@ class Demands:
         ways = (self.of_building(constant, y=bool(way)) for way in range(self.ways))
         return np.stack([*ways], axis=1)
 
-    def of_devices(self, value: Callable[[Device, dict[str, Array]], Array | None]) -> Array:
-        """Largest value of the devices of each history, of what it left in their slots."""
+    def of_devices(
+        self, value: Callable[[Device, dict[str, Array]], Array | None]
+    ) -> Array:
+        """Largest value of the devices of each history, of
+        what it left in their slots.
+        """
         largest = np.full((len(self.left), state.SLOTS), np.nan)
         for number, structure in enumerate(self.structures):
             rows = np.flatnonzero(self.number == number)
             for i, device in enumerate(structure.devices):
-                left = {name: self.left[name][rows, i] for name in ("device_force", "permanent")}
+                left = {
+                    name: self.left[name][rows, i]
+                    for name in ("device_force", "permanent")
+                }
                 if (values := value(device, left)) is not None:
                     largest[rows, i] = values
         return np.asarray(np.fmax.reduce(largest, axis=1))
@@ -171,14 +196,18 @@ class Demands:
     def largest_force(self, result: str) -> Array:
         """Of the devices whose laws name a result."""
         return self.of_devices(
-            lambda device, left: left["device_force"] if result in device.results else None
+            lambda device, left: (
+                left["device_force"] if result in device.results else None
+            )
         )
 
 
 class _Result(Generic[T]):
-    """An attribute of `Demand`, and a column of `Demands`: a field of the kernel's, or made.
+    """An attribute of `Demand`, and a column of `Demands`: a field
+    of the kernel's, or made.
 
-    The table of results has its meaning and its unit. Numbers that are not `kept` are None.
+    The table of results has its meaning and its unit. Numbers that
+    are not `kept` are None.
     """
 
     def __init__(
@@ -214,21 +243,28 @@ _Optional = partial(_Result[float | None], kept=np.isfinite)
 
 def _largest(values: Array) -> Array:
     """The largest of each row; NaN of empty ones."""
-    return np.asarray(values.max(axis=1)) if values.shape[1] else np.full(len(values), np.nan)
+    return (
+        np.asarray(values.max(axis=1))
+        if values.shape[1]
+        else np.full(len(values), np.nan)
+    )
 
 
 def _drifts(h: Demands) -> Array:
     """Of elastic storeys from their shears, of those that yield from their ductility."""
     if not h.yields:
         return _elastic_drifts(h)
-    # Both directions of a yielding storey as if they were largest together, an upper bound.
+    # Both directions of a yielding storey as if they were largest together, an upper
+    # bound.
     yields_at = h.of_ways(lambda b: b.strengths) / h.of_ways(lambda b: b.stiffnesses)
     drifts = np.linalg.norm(h.yielding("ductility") * yields_at, axis=1)
     return np.where(np.isfinite(drifts), drifts, _elastic_drifts(h))
 
 
 def _elastic_drifts(h: Demands) -> Array:
-    """Resultants over the stiffness; where that differs in y, the lesser of two upper bounds."""
+    """Resultants over the stiffness; where that differs in y, the
+    lesser of two upper bounds.
+    """
     shears = h.column("storey_shears")
     k = h.of_building(lambda b: b.stiffnesses)
     in_y = [structure.superstructure_y for structure in h.structures]
@@ -246,9 +282,13 @@ def _uplift_shear(structure: PodiumStructure) -> float | None:
 
 
 def _edge_pressure(histories: Demands) -> Array:
-    """Of plane flat ends: it grows with the root of the rotation once an edge has lifted."""
+    """Of plane flat ends: it grows with the root of the rotation
+    once an edge has lifted.
+    """
     plane = [
-        st.bed.uplift_rotation if st.bed and st.bed.root and st.bearing.is_flat else np.nan
+        st.bed.uplift_rotation
+        if st.bed and st.bed.root and st.bearing.is_flat
+        else np.nan
         for st in histories.structures
     ]
     ratio = histories.left["max_theta"] / np.array(plane)[histories.number]
@@ -259,7 +299,9 @@ def _lost(device: Device, left: dict[str, Array]) -> Array | None:
     """The share of its prestress that a device has lost."""
     if not (prestress := device.remaining_prestress(0.0)):
         return None
-    remaining = [device.remaining_prestress(length) for length in left["permanent"].tolist()]
+    remaining = [
+        device.remaining_prestress(length) for length in left["permanent"].tolist()
+    ]
     return 1.0 - np.array(remaining, np.float64) / prestress
 
 
@@ -289,7 +331,9 @@ class Demand(Shown):
 
     @property
     def failure(self) -> str | None:
-        """The reason why the history could not be carried to its end; None if it could."""
+        """The reason why the history could not be carried to
+        its end; None if it could.
+        """
         return failure_text(self.history, self.structure)
 
     @property
@@ -309,7 +353,9 @@ class Demand(Shown):
     rotation_ratio = _Result[float](lambda h: h.left["max_theta"] / h.critical_rotation)
     critical_rotation = _Result[float](lambda h: h.critical_rotation)
     critical_passage_time = _Optional(
-        lambda h: np.where(h.left["critical_time"] >= 0.0, h.left["critical_time"], np.nan)
+        lambda h: np.where(
+            h.left["critical_time"] >= 0.0, h.left["critical_time"], np.nan
+        )
     )
     max_cap_beam_displacement = _Result[float](lambda h: h.path[0][0])
     max_lift = _Result[float](lambda h: h.path[1][1])
@@ -321,21 +367,29 @@ class Demand(Shown):
     energy_devices = _Result[float](lambda h: h.left["device_energy"].sum(axis=1))
     storey_shears = _Result[Array](lambda h: h.of_storeys("storey_shear"))
     floor_accelerations = _Result[Array](lambda h: h.of_storeys("floor_acceleration"))
-    max_floor_acceleration = _Optional(lambda h: _largest(h.column("floor_accelerations")))
+    max_floor_acceleration = _Optional(
+        lambda h: _largest(h.column("floor_accelerations"))
+    )
     max_base_shear = _Result[float](
         lambda h: h.column("storey_shears")[:, 0] if h.storeys else np.zeros(len(h.left))
     )
     base_shear_ratio = _Optional(
-        lambda h: h.column("max_base_shear") / h.each(lambda s: s.static_base_shear or None)
+        lambda h: (
+            h.column("max_base_shear") / h.each(lambda s: s.static_base_shear or None)
+        )
     )
-    uplift_shear_ratio = _Optional(lambda h: h.column("max_base_shear") / h.each(_uplift_shear))
+    uplift_shear_ratio = _Optional(
+        lambda h: h.column("max_base_shear") / h.each(_uplift_shear)
+    )
     max_drifts = _Result[Array](
         _drifts,
-        "largest storey drifts [m]; of both directions resultants, of the largest of each where the"
-        " directions differ or storeys yield: a bound",
+        "largest storey drifts [m]; of both directions resultants, of the largest of"
+        " each where the directions differ or storeys yield: a bound",
     )
     drift_ratio = _Optional(
-        lambda h: _largest(h.column("max_drifts") / h.of_building(lambda b: b.storey_heights))
+        lambda h: _largest(
+            h.column("max_drifts") / h.of_building(lambda b: b.storey_heights)
+        )
     )
     ductilities = _Result[Array](lambda h: h.yielding("ductility").max(axis=1))
     plastic_drifts = _Result[Array](
@@ -350,20 +404,26 @@ class Demand(Shown):
     plastic_drift = _Optional(lambda h: _largest(h.column("plastic_drifts")))
     residual_drift = _Optional(lambda h: _largest(h.column("residual_drifts")))
     residual_drift_ratio = _Optional(
-        lambda h: _largest(h.column("residual_drifts") / h.of_building(lambda b: b.storey_heights))
+        lambda h: _largest(
+            h.column("residual_drifts") / h.of_building(lambda b: b.storey_heights)
+        )
     )
     energy_yielded = _Optional(lambda h: h.column("energies_yielded").sum(axis=1))
     friction_demand = _Result[float](
         lambda h: np.maximum(h.left["friction_top"], h.left["friction_bottom"])
     )
     friction_ratio = _Optional(  # which may be infinite
-        lambda h: h.column("friction_demand") / h.each(lambda structure: structure.friction),
+        lambda h: (
+            h.column("friction_demand") / h.each(lambda structure: structure.friction)
+        ),
         kept=lambda value: not np.isnan(value),
     )
     uplifts = _Result[int](lambda h: h.left["events"][:, state.UPLIFT])
     impacts = _Result[int](lambda h: h.left["events"][:, state.IMPACT])
     reentries = _Optional(lambda h: h.on_bed(h.left["events"][:, state.IMPACT]))
-    full_contact_share = _Optional(lambda h: h.on_bed(h.left["bedded_time"] / h.left["time"]))
+    full_contact_share = _Optional(
+        lambda h: h.on_bed(h.left["bedded_time"] / h.left["time"])
+    )
     max_impact_number = _Optional(lambda h: h.on_bed(h.left["impact_number"]))
     edge_pressure_ratio = _Optional(_edge_pressure)
     duration = _Result[float]()
@@ -375,15 +435,21 @@ class Demand(Shown):
         lambda h: np.where(h.left["max_theta"] > 0.0, h.known("max_azimuth"), np.nan)
     )
     critical_azimuth = _Optional(
-        lambda h: np.where(h.left["critical_time"] >= 0.0, h.known("critical_azimuth"), np.nan)
+        lambda h: np.where(
+            h.left["critical_time"] >= 0.0, h.known("critical_azimuth"), np.nan
+        )
     )
     residual_azimuth = _Optional(
         lambda h: np.where(h.left["rotation"] != 0.0, h.known("azimuth"), np.nan)
     )
     max_cap_beam_displacement_x = _Optional(lambda h: h.known("max_x"))
     max_cap_beam_displacement_y = _Optional(lambda h: h.known("max_y"))
-    max_base_shear_x = _Optional(lambda h: _largest(h.of_storeys_in("x", "storey_shear")[:, :1]))
-    max_base_shear_y = _Optional(lambda h: _largest(h.of_storeys_in("y", "storey_shear")[:, :1]))
+    max_base_shear_x = _Optional(
+        lambda h: _largest(h.of_storeys_in("x", "storey_shear")[:, :1])
+    )
+    max_base_shear_y = _Optional(
+        lambda h: _largest(h.of_storeys_in("y", "storey_shear")[:, :1])
+    )
     max_floor_acceleration_x = _Optional(
         lambda h: _largest(h.of_storeys_in("x", "floor_acceleration"))
     )
@@ -429,10 +495,14 @@ class Demand(Shown):
 
     @property
     def driven_back(self) -> NDArray[np.bool_]:
-        """(n,) storeys that less than the residual drift remains of at rest, by hardening."""
+        """(n,) storeys that less than the residual drift remains
+        of at rest, by hardening.
+        """
         h = self._alone
         back = np.abs(h.yielding("slip")) * h.of_ways(lambda b: b.back_stiffness)
-        return frozen(np.asarray((back > h.of_ways(lambda b: b.strengths)).any(axis=(0, 1))))
+        return frozen(
+            np.asarray((back > h.of_ways(lambda b: b.strengths)).any(axis=(0, 1)))
+        )
 
     def facts(self) -> dict[str, Any]:
         """Outcome and scalar results with their units, the main demands first."""
@@ -452,7 +522,12 @@ class Demand(Shown):
 
 
 Outcome = Literal[
-    "at_rest", "survived", "stays_tilted", "overturned_rolling", "overturned_rocking", "failed"
+    "at_rest",
+    "survived",
+    "stays_tilted",
+    "overturned_rolling",
+    "overturned_rocking",
+    "failed",
 ]
 
 OUTCOMES: dict[int, Outcome] = {
@@ -481,18 +556,21 @@ PHASE_NAMES = {
 
 REASONS = {
     state.FAILED_NOT_FINITE: (
-        "the motion is no longer finite; check masses and stiffnesses, or raise analysis.accuracy"
+        "the motion is no longer finite; check masses and stiffnesses, or raise"
+        " analysis.accuracy"
     ),
     state.FAILED_TOO_MANY_EVENTS: (
         "there are more events than analysis.max_events allows; raise it,"
         " or raise analysis.recontact_tolerance"
     ),
     state.FAILED_STEP_TOO_SMALL: (
-        "events follow each other without time passing; raise analysis.recontact_tolerance"
+        "events follow each other without time passing; raise"
+        " analysis.recontact_tolerance"
     ),
     state.FAILED_TOO_MANY_STEPS: (
-        "a viscous damper whose exponent is below 1 holds the cap beam so firmly that steps become"
-        " too many; use a friction damper, a larger exponent or a smaller coefficient"
+        "a viscous damper whose exponent is below 1 holds the cap beam so firmly that"
+        " steps become too many; use a friction damper, a larger exponent or a smaller"
+        " coefficient"
     ),
     state.FAILED_RESTITUTION: "a restitution is not above 0 and at most 1",
 }
@@ -506,7 +584,9 @@ def outcomes_of(left: Record) -> NDArray[np.str_]:
 
 
 def refusals(law: OwnLaw) -> Iterator[str]:
-    """What the functions of a law of another package said where they gave no finite number."""
+    """What the functions of a law of another package said where
+    they gave no finite number.
+    """
     from rpscli.physics.own_laws import said_of
 
     for function, taken in law.taken().items():

@@ -53,24 +53,28 @@ class UpliftedModes(Shown):
     linearised_at: float  # |theta| where that is [rad]: 0, or beta rocking on curved ends
 
     eigenvalues: Complex
-    """(2 n + 2,) the podium's own pair first, then the pairs of the vibration modes [1/s];
-    (4 n + 2,) with vertical springs, whose modes are the last."""
+    """(2 n + 2,) the podium's own pair first, then the pairs of the vibration modes
+    [1/s]; (4 n + 2,) with vertical springs, whose modes are the last."""
     frequencies: Array  # (n,) omega_u = |lambda| of the vibration modes [rad/s]
     damping: Array  # (n,) xi_u = -Re(lambda)/|lambda|
     frequency_ratio: Array  # (n,) omega_u/omega_0, mode by mode
     damping_ratio: Array  # (n,) xi_u/xi_0; not a number where the building is undamped
     frequency_parameter: float
-    """p_ext of the podium's own mode [rad/s]; growth rate if the stiffness is negative."""
+    """p_ext of the podium's own mode [rad/s]; growth rate if
+    the stiffness is negative."""
     frequency_parameter_rigid: float
     """That of the rigid frame [rad/s]; to first order p_hat sqrt|kappa|."""
     shapes: Array
-    """(n + 1, n + 1): podium's own mode first, then the vibration modes, one a column;
-    u_b first, then the floors, relative to the ground, scaled to 1 at the largest component."""
+    """(n + 1, n + 1): podium's own mode first, then the vibration modes, one
+    a column; u_b first, then the floors, relative to the ground, scaled to 1
+    at the largest component."""
     vertical_frequencies: Array
-    """(n,) |lambda| of the modes that strain the vertical springs most [rad/s]; (0,) without."""
+    """(n,) |lambda| of the modes that strain the vertical springs
+    most [rad/s]; (0,) without."""
     vertical_damping: Array
     first_order: UpliftedModes | None = None
-    """The paper's: to first order in alpha, rocking continued to theta = 0. None of those."""
+    """The paper's: to first order in alpha, rocking continued to
+    theta = 0. None of those."""
 
     @property
     def own_period(self) -> float | None:
@@ -80,7 +84,9 @@ class UpliftedModes(Shown):
 
     @property
     def own_growth_time(self) -> float | None:
-        """Time in which a tilt that falls away grows e-fold [s]; None if it does not grow."""
+        """Time in which a tilt that falls away grows e-fold [s];
+        None if it does not grow.
+        """
         rate = float(self.eigenvalues[0].real)
         return 1.0 / rate if self.own_period is None and rate > 0.0 else None
 
@@ -91,7 +97,9 @@ class UpliftedModes(Shown):
             return f"swings with T = {self.own_period:.4g} s"
         if self.own_growth_time is not None:
             return f"diverges, e-fold in {self.own_growth_time:.4g} s"
-        return "creeps back" if self.eigenvalues[0] != 0.0 else "is in neutral equilibrium"
+        return (
+            "creeps back" if self.eigenvalues[0] != 0.0 else "is in neutral equilibrium"
+        )
 
     @property
     def elastic_shapes(self) -> Array:
@@ -100,7 +108,10 @@ class UpliftedModes(Shown):
 
     def profiles(self) -> dict[str, Array]:
         """Shapes and elastic shapes, one a row, from the cap beam up (n + 1, n + 1)."""
-        return {"shapes": self.shapes.T, "elastic_shapes": _from_cap_beam(self.elastic_shapes)}
+        return {
+            "shapes": self.shapes.T,
+            "elastic_shapes": _from_cap_beam(self.elastic_shapes),
+        }
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -114,11 +125,11 @@ class ModalResult(Shown):
     fixed_base
         None without a building.
     rolling, rocking
-        After uplift, on the arcs and on the edges of the columns; of compliant ends as if they
-        were rigid, at 0+.
+        After uplift, on the arcs and on the edges of the columns; of compliant ends as
+        if they were rigid, at 0+.
     full_contact
-        Of compliant ends: n + 1 modes, shapes from the cap beam up; None on rigid ends, where
-        it is `fixed_base`.
+        Of compliant ends: n + 1 modes, shapes from the cap beam up; None on rigid ends,
+        where it is `fixed_base`.
     vertical
         Of the floors on vertical springs in full contact; None without.
     """
@@ -145,12 +156,15 @@ class ModalResult(Shown):
 
     @property
     def fixed_base_state(self) -> str:
-        """Name of the state of the building on its fixed base: full contact of rigid ends."""
+        """Name of the state of the building on its fixed base:
+        full contact of rigid ends.
+        """
         return "fixed_base" if self.full_contact else "full_contact"
 
     @property
     def first_yield(self) -> dict[str, dict[str, float]]:
-        """By state the storey that its first mode brings to yield first, and the base shear then.
+        """By state the storey that its first mode brings to yield first,
+        and the base shear then.
 
         Storeys count from 1, shears are in N. Empty of elastic buildings.
         """
@@ -159,7 +173,9 @@ class ModalResult(Shown):
         if building is None or building.strengths is None or fixed is None:
             return {}
         found = {}
-        shapes = {name: modes.elastic_shapes[:, 1] for name, modes in self.uplifted.items()}
+        shapes = {
+            name: modes.elastic_shapes[:, 1] for name, modes in self.uplifted.items()
+        }
         for name, shape in {self.fixed_base_state: fixed.shapes[:, 0], **shapes}.items():
             shears = np.abs(building.stiffnesses * np.diff(shape, prepend=0.0))
             base_shears = shears[0] * building.strengths / shears
@@ -170,17 +186,26 @@ class ModalResult(Shown):
     @property
     def both_orders(self) -> dict[str, tuple[UpliftedModes, UpliftedModes]]:
         """The uplifted states, exact and to first order."""
-        orders = {name: (modes, modes.first_order) for name, modes in self.uplifted.items()}
+        orders = {
+            name: (modes, modes.first_order) for name, modes in self.uplifted.items()
+        }
         return {name: (exact, paper) for name, (exact, paper) in orders.items() if paper}
 
     def vibrations(self) -> Iterator[tuple[str, Array]]:
         """Modes of each uplifted state, one a row, and of its vertical springs.
 
-        Frequency and damping, both over those in full contact, both to first order (n, 6).
+        Frequency and damping, both over those in full contact,
+        both to first order (n, 6).
         """
         for name, (exact, first) in self.both_orders.items():
             ratios = exact.frequency_ratio, exact.damping_ratio
-            orders = exact.frequencies, exact.damping, *ratios, first.frequencies, first.damping
+            orders = (
+                exact.frequencies,
+                exact.damping,
+                *ratios,
+                first.frequencies,
+                first.damping,
+            )
             yield name, np.transpose(orders)
             if (upright := self.vertical) is not None:
                 w = exact.vertical_frequencies
@@ -194,11 +219,16 @@ class ModalResult(Shown):
         fixed = self.fixed_base
         return {
             "fixed-base periods [s]": None if fixed is None else fixed.periods[:3],
-            **{f"podium, {name}": modes.own_motion for name, modes in self.uplifted.items()},
+            **{
+                f"podium, {name}": modes.own_motion
+                for name, modes in self.uplifted.items()
+            },
         }
 
     def results(self) -> dict[str, Any]:
-        """Lists by mode and the parameters of each state; None for one that does not exist."""
+        """Lists by mode and the parameters of each state; None for
+        one that does not exist.
+        """
         fixed = self.fixed_base
         full = self.full_contact
         vertical = VERTICAL_MODES if self.structure.upwards else ()
@@ -210,7 +240,11 @@ class ModalResult(Shown):
         return {
             "fixed_base": None if fixed is None else values_of(fixed, FIXED_BASE_MODES),
             **({"full_contact": values_of(full, FIXED_BASE_MODES)} if full else {}),
-            **({"vertical": values_of(self.vertical, FIXED_BASE_MODES)} if vertical else {}),
+            **(
+                {"vertical": values_of(self.vertical, FIXED_BASE_MODES)}
+                if vertical
+                else {}
+            ),
             "rolling": None,
             **states,
             "left_out": list(self.left_out),
@@ -219,16 +253,20 @@ class ModalResult(Shown):
 
 
 def modal(structure: PodiumStructure) -> ModalResult:
-    """Modal analysis in full contact, rolling and rocking (Theory (6.1) to (6.7); paper, 3).
+    """Modal analysis in full contact, rolling and rocking (Theory
+    (6.1) to (6.7); paper, 3).
 
-    Exact where a state begins; the paper's first-order values are in `first_order` of each state.
+    Exact where a state begins; the paper's first-order values are in
+    `first_order` of each state.
     """
     require_structure(structure)
     building = structure.superstructure
     return ModalResult(
         structure=structure,
         fixed_base=_on_its_base(building),
-        rolling=None if structure.bearing.is_flat else _both_orders(structure, rolling=True),
+        rolling=None
+        if structure.bearing.is_flat
+        else _both_orders(structure, rolling=True),
         rocking=_both_orders(structure, rolling=False),
         full_contact=_full_contact(structure),
         vertical=_on_its_base(building.upwards if building else None),
@@ -259,7 +297,9 @@ def _full_contact(structure: PodiumStructure) -> FixedBaseModes | None:
 
 
 def _eigen(M: Array, C: Array, K: Array, height: float) -> tuple[Complex, Complex]:
-    """Eigenvalues (2 n + 2,) and their vectors [u_b, u_t] (n + 1, 2 n + 2); `height` is C."""
+    """Eigenvalues (2 n + 2,) and their vectors [u_b, u_t] (n + 1,
+    2 n + 2); `height` is C.
+    """
     size = len(M)  # dividing rows is exact where a solver would round
     mass = np.diag(M)[:, None]
     values, vectors = np.linalg.eig(
@@ -276,7 +316,9 @@ def _eigen(M: Array, C: Array, K: Array, height: float) -> tuple[Complex, Comple
 
 def _both_orders(structure: PodiumStructure, *, rolling: bool) -> UpliftedModes:
     exact, paper = (
-        _uplifted(structure, uplifted_state(structure.bearing, rolling=rolling, exact=order))
+        _uplifted(
+            structure, uplifted_state(structure.bearing, rolling=rolling, exact=order)
+        )
         for order in (True, False)
     )
     return replace(exact, first_order=paper)
@@ -287,18 +329,22 @@ def linearised_matrices(
 ) -> tuple[Array, Array, Array]:
     """M_L, C_L, K_L in [2 R theta, u_t], each (n + 1, n + 1), about a state at rest.
 
-    With vertical springs in [2 R theta, u_t, y] of the floors' lifts y, each (2 n + 1, 2 n + 1)
-    (Theory (14.8)).
+    With vertical springs in [2 R theta, u_t, y] of the floors' lifts y, each (2 n + 1,
+    2 n + 1) (Theory (14.8)).
     """
-    # Paper, Table 2, where the sign of the (2 rho - 1) term must be +: as printed, a larger radius
-    # would soften the podium (Theory (6.3)). Dampers, elastic tendons: Theory, section 11.
+    # Paper, Table 2, where the sign of the (2 rho - 1) term must be +: as printed, a
+    # larger radius would soften the podium (Theory (6.3)). Dampers, elastic tendons:
+    # Theory, section 11.
     vibrating = _vibrating(structure, state)
     riding = structure.superstructure_mass * state.arm**2
     size = 1 + structure.storeys * len(vibrating)
     M, C, K = (np.zeros((size, size)) for _ in range(3))
     M[0, 0] = _base_mass(structure, state) + (riding if len(vibrating) < 2 else 0.0)
     stiffness, C[0, 0] = _of_devices(structure, state)
-    K[0, 0] = structure.weight * state.kappa / (2.0 * structure.bearing.semi_diagonal) + stiffness
+    K[0, 0] = (
+        structure.weight * state.kappa / (2.0 * structure.bearing.semi_diagonal)
+        + stiffness
+    )
     for rows, building, lever in vibrating:
         M[rows, rows] = building.mass_matrix
         for whole, part in ((C, building.damping_matrix), (K, building.stiffness_matrix)):
@@ -311,10 +357,14 @@ def linearised_matrices(
 def _vibrating(
     structure: PodiumStructure, state: UpliftedState
 ) -> list[tuple[slice, Superstructure, float]]:
-    """Floors on their columns and on vertical springs: rows, and how 2 R theta moves their base."""
+    """Floors on their columns and on vertical springs: rows, and how 2
+    R theta moves their base.
+    """
     if (building := structure.superstructure) is None:
         return []
-    upwards = building.upwards if structure.bed is None or state.arm else None  # not on a bed
+    upwards = (
+        building.upwards if structure.bed is None or state.arm else None
+    )  # not on a bed
     n = structure.storeys
     across = (building, state.height)
     both = [across, (upwards, state.arm)] if upwards else [across]
@@ -349,7 +399,8 @@ def _uplifted(structure: PodiumStructure, state: UpliftedState) -> UpliftedModes
     values = values[order]
     vectors = vectors[:, order]
     if kappa == 0.0:
-        # Zero, twice without dampers: rounding makes it a rate, and splits two into +-sqrt(eps).
+        # Zero, twice without dampers: rounding makes it a rate, and splits two into
+        # +-sqrt(eps).
         values[:2] = 0.0, (values[0] + values[1]).real if coefficient else 0.0
         vectors[:, : 1 if coefficient else 2] = 1.0
     pairs, frequencies, damping = _vibrations(values[2:])
@@ -371,7 +422,10 @@ def _uplifted(structure: PodiumStructure, state: UpliftedState) -> UpliftedModes
         frequency_parameter_rigid=parameter,
         shapes=_scaled(
             np.column_stack(
-                [_real_shape(vectors[: 1 + structure.storeys, i]) for i in (0, *indices[across])]
+                [
+                    _real_shape(vectors[: 1 + structure.storeys, i])
+                    for i in (0, *indices[across])
+                ]
             )
         ),
     )
@@ -385,24 +439,30 @@ def _over(damping: Array, xi: Array) -> Array:
 def _across_and_up(
     structure: PodiumStructure, state: UpliftedState, vectors: Complex
 ) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Vibration modes that strain columns most, and those that strain vertical springs."""
+    """Vibration modes that strain columns most, and those that
+    strain vertical springs.
+    """
     n = structure.storeys
     strains = []
     for rows, part, lever in _vibrating(structure, state):
         drift = vectors[rows] - lever / state.height * vectors[0]
-        strains.append(np.sum(drift.conj() * (part.stiffness_matrix @ drift), axis=0).real)
+        strains.append(
+            np.sum(drift.conj() * (part.stiffness_matrix @ drift), axis=0).real
+        )
     if len(strains) < 2:
         return np.arange(n), np.arange(0)
     order = np.argsort(strains[1] / (strains[0] + strains[1]), kind="stable")
     return np.sort(order[:n]), np.sort(order[n:])
 
 
-def _own_pair(values: Complex, kappa: float, decay: float, rate: float) -> tuple[int, int]:
+def _own_pair(
+    values: Complex, kappa: float, decay: float, rate: float
+) -> tuple[int, int]:
     """Indices of the podium's own eigenvalues, the growing or the slowest one first."""
-    # With negative stiffness one root grows; its partner is the real one nearest to its mirror
-    # image shifted by damping, as tall buildings have slower modes. Else it is the slow pair, but
-    # dampers may make one of its roots fast. Where it swings, slower real roots are of overdamped
-    # vibrations.
+    # With negative stiffness one root grows; its partner is the real one nearest to its
+    # mirror image shifted by damping, as tall buildings have slower modes. Else it is the
+    # slow pair, but dampers may make one of its roots fast. Where it swings, slower real
+    # roots are of overdamped vibrations.
     slow = np.argsort(np.abs(values), kind="stable")
     if kappa > 0.0 and decay < 2.0 * rate and values.imag.any():
         slow = slow[values[slow].imag != 0.0]
@@ -413,13 +473,19 @@ def _own_pair(values: Complex, kappa: float, decay: float, rate: float) -> tuple
     return first, min(real, key=lambda i: abs(values[i] + values[first] + decay))
 
 
-def _vibrations(values: Complex) -> tuple[list[tuple[complex, complex, int]], Array, Array]:
-    """Pairs ascending in frequency, with the index of each first; their frequencies and damping."""
-    # Real ones are of overdamped modes, higher ones with the larger fast and smaller slow root: the
-    # outermost two belong together, and so inwards.
+def _vibrations(
+    values: Complex,
+) -> tuple[list[tuple[complex, complex, int]], Array, Array]:
+    """Pairs ascending in frequency, with the index of each first; their
+    frequencies and damping.
+    """
+    # Real ones are of overdamped modes, higher ones with the larger fast and smaller slow
+    # root: the outermost two belong together, and so inwards.
     oscillating = [i for i, v in enumerate(values) if v.imag > 0.0]
     pairs = [(values[i], values[i].conjugate(), i) for i in oscillating]
-    real = sorted((i for i, v in enumerate(values) if v.imag == 0.0), key=lambda i: abs(values[i]))
+    real = sorted(
+        (i for i, v in enumerate(values) if v.imag == 0.0), key=lambda i: abs(values[i])
+    )
     half = len(real) // 2
     pairs += [(values[real[j]], values[real[-1 - j]], real[j]) for j in range(half)]
     pairs.sort(key=lambda pair: abs(pair[0] * pair[1]))

@@ -1,4 +1,6 @@
-"""Static behaviour: the podium alone, and the whole structure under lateral floor forces."""
+"""Static behaviour: the podium alone, and the whole structure
+under lateral floor forces.
+"""
 
 from __future__ import annotations
 
@@ -23,21 +25,25 @@ PATTERNS: tuple[PatternName, ...] = ("uniform", "triangular", "first_mode")
 
 @dataclass(frozen=True, eq=False, repr=False)
 class StoreyCurve(Shown):
-    """Restoring force of the podium against its motion, from 0+ to the end of the curve."""
+    """Restoring force of the podium against its motion, from 0+
+    to the end of the curve.
+    """
 
     rotation: Array  # (points,) |theta| [rad]
     displacement: Array  # (points,) u_b [m]
     force: Array
-    """(points,) that holds it on the way out: F = W B/C, stops, tendons and friction [N]."""
+    """(points,) that holds it on the way out: F = W B/C, stops,
+    tendons and friction [N]."""
     lift: Array  # (points,) v_b [m]
     unloading_force: Array
-    """(points,) on the way back from the end, negative where it must be drawn back; without
-    friction and yielding tendons the same as `force` [N]."""
+    """(points,) on the way back from the end, negative where it must be drawn back;
+    without friction and yielding tendons the same as `force` [N]."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class CapacityCurve(Shown):
-    """Whole structure under floor forces lambda p: elastic to the uplift, rigid storey above.
+    """Whole structure under floor forces lambda p: elastic to the
+    uplift, rigid storey above.
 
     Where storeys yield without hardening it ends with the first of them, a mechanism.
     """
@@ -49,11 +55,14 @@ class CapacityCurve(Shown):
     sum_of_floor_forces: Array  # (points,) lambda [N]
     roof_displacement_at_uplift: float  # [m]; not a number where a mechanism comes first
     yield_forces: Array | None = None
-    """(n,) lambda at which each storey yields [N], infinite if never; None of elastic buildings."""
+    """(n,) lambda at which each storey yields [N], infinite if never;
+    None of elastic buildings."""
 
     @property
     def yielding(self) -> dict[int, float]:
-        """Storeys that yield on the way, counted from 1, and lambda where each begins [N]."""
+        """Storeys that yield on the way, counted from 1, and
+        lambda where each begins [N].
+        """
         if self.yield_forces is None:
             return {}
         reached = NEARLY * self.sum_of_floor_forces.max()
@@ -93,12 +102,17 @@ class PushoverResult(Shown):
         return {q.name: with_unit(getattr(self, q.name), q.unit) for q in PUSHOVER}
 
     def results(self) -> dict[str, Any]:
-        """Scalars, the podium's curve and one entry a load pattern; forces in N, lengths in m."""
+        """Scalars, the podium's curve and one entry a load pattern;
+        forces in N, lengths in m.
+        """
         curves = [asdict(curve) for curve in self.capacity]
         for curve in curves:
             if curve["yield_forces"] is None:  # elastic buildings have none
                 del curve["yield_forces"]
-        scalars = {**values_of(self, PUSHOVER), "curve": values_of(self.curve, STOREY_CURVE)}
+        scalars = {
+            **values_of(self, PUSHOVER),
+            "curve": values_of(self.curve, STOREY_CURVE),
+        }
         return {**scalars, "capacity": curves}
 
     @property
@@ -112,9 +126,15 @@ class PushoverResult(Shown):
                     weak.setdefault(storey, []).append(curve.pattern)
         if not weak:
             return ()
-        told = listed((f"storey {i} ({', '.join(of)})" for i, of in sorted(weak.items())), "and")
-        late = [str(storey) for storey in sorted(weak) if strengths[storey - 1].uplift_first]
-        slowly = f"; under slow ground motion they lift before storey {', '.join(late)} yields"
+        told = listed(
+            (f"storey {i} ({', '.join(of)})" for i, of in sorted(weak.items())), "and"
+        )
+        late = [
+            str(storey) for storey in sorted(weak) if strengths[storey - 1].uplift_first
+        ]
+        slowly = (
+            f"; under slow ground motion they lift before storey {', '.join(late)} yields"
+        )
         text = "under these floor forces yielding comes before the columns lift"
         return (f"the podium does not protect {told}: {text}{slowly * bool(late)}",)
 
@@ -139,8 +159,9 @@ def pushover(
     structure
         Podium, bearings and building; without a building there are no capacity curves.
     patterns
-        ``uniform`` (forces as the masses), ``triangular`` (mass times height), ``first_mode``
-        (mass times fixed-base first mode), or floor forces from the bottom.
+        ``uniform`` (forces as the masses), ``triangular`` (mass times
+        height), ``first_mode`` (mass times fixed-base first mode), or
+        floor forces from the bottom.
     points
         Points of each curve, beta being one of them where the podium rolls.
 
@@ -149,11 +170,9 @@ def pushover(
     ValueError
         If a given pattern has the wrong length or does not push.
 
-    Notes
-    -----
-    F(theta) = W B/C, to which devices add; after uplift lambda sum(p) = F(theta) and the floors
-    stand at 1 u_b + lambda K^-1 p (Theory (5.5); paper, Figure 1c). Storeys that yield add their
-    plastic drifts (Theory, section 15).
+    Notes ----- F(theta) = W B/C, to which devices add; after uplift lambda sum(p) =
+    F(theta) and the floors stand at 1 u_b + lambda K^-1 p (Theory (5.5); paper, Figure
+    1c). Storeys that yield add their plastic drifts (Theory, section 15).
     """
     require_structure(structure)
     end = structure.critical_rotation
@@ -186,7 +205,9 @@ def pushover(
         critical_displacement=float(displacement[-1]),
         initial_stiffness=stiffness + added,
         curve=curve,
-        capacity=tuple(_capacity(building, curve, p, uplift) for p in patterns) if building else (),
+        capacity=tuple(_capacity(building, curve, p, uplift) for p in patterns)
+        if building
+        else (),
     )
 
 
@@ -225,7 +246,8 @@ def _capacity(
 
 
 def _with_kinks(path: Array, yield_forces: Array, *, hardens: bool) -> Array:
-    """Rotation, u_b and lambda (3, points) with a point where each storey begins to yield.
+    """Rotation, u_b and lambda (3, points) with a point where
+    each storey begins to yield.
 
     Without hardening the first of them ends the path.
     """
@@ -234,7 +256,9 @@ def _with_kinks(path: Array, yield_forces: Array, *, hardens: bool) -> Array:
         for i in np.flatnonzero(below[:-1] & ~below[1:])[:1]:
             before = path[:, i]
             after = path[:, i + 1]
-            point = before + (force - before[2]) / (after[2] - before[2]) * (after - before)
+            point = before + (force - before[2]) / (after[2] - before[2]) * (
+                after - before
+            )
             point[2] = force
             path = np.insert(path, i + 1, point, axis=1)
             if not hardens:
@@ -243,7 +267,9 @@ def _with_kinks(path: Array, yield_forces: Array, *, hardens: bool) -> Array:
 
 
 def _plastic_drifts(building: Superstructure, shears: Array) -> Array:
-    """Of storeys under shears one after the other (points, n), from rest [m] (Theory (15.1))."""
+    """Of storeys under shears one after the other (points, n), from
+    rest [m] (Theory (15.1)).
+    """
     back = np.zeros_like(shears)
     F = building.strengths
     for point, shear in enumerate(shears[1:], 1):
@@ -251,21 +277,29 @@ def _plastic_drifts(building: Superstructure, shears: Array) -> Array:
     return np.asarray(back / building.back_stiffness)
 
 
-def load_pattern(building: Superstructure, pattern: PatternName | Sequence[float]) -> Array:
+def load_pattern(
+    building: Superstructure, pattern: PatternName | Sequence[float]
+) -> Array:
     """Floor forces (n,) of sum 1, from the bottom; a given pattern has any unit."""
     if isinstance(pattern, str):
         n = building.storeys
         heights = building.storey_heights
         height = np.arange(1.0, n + 1.0) if heights is None else np.cumsum(heights)
-        shape = {"uniform": np.ones(n), "triangular": height, "first_mode": building.shapes[:, 0]}[
-            pattern
-        ]
+        shape = {
+            "uniform": np.ones(n),
+            "triangular": height,
+            "first_mode": building.shapes[:, 0],
+        }[pattern]
         forces = building.masses * shape
     else:
         forces = np.asarray(pattern, dtype=float)
-    if forces.shape != (building.storeys,) or not np.isfinite(forces).all() or forces.sum() <= 0.0:
+    if (
+        forces.shape != (building.storeys,)
+        or not np.isfinite(forces).all()
+        or forces.sum() <= 0.0
+    ):
         raise ValueError(
-            f"the load pattern must be {building.storeys} floor forces from the bottom with a"
-            f" sum > 0, not {forces.tolist()}"
+            f"the load pattern must be {building.storeys} floor forces from the bottom"
+            f" with a sum > 0, not {forces.tolist()}"
         )
     return np.asarray(forces / forces.sum())

@@ -1,11 +1,13 @@
-"""The table of results: each quantity's name, unit, label and symbol, and what it is used for.
+"""The table of results: each quantity's name, unit, label and symbol,
+and what it is used for.
 
-A quantity has its value in the attribute of its name: those of modes in `FixedBaseModes` and
-`UpliftedModes`, those of the static curves in `PushoverResult` and `StoreyCurve`. Those of
-histories are a field of the kernel's record, which `kernel` names, or an attribute of `Histories`,
-for many of them at once; `Demand` has the same for one. JSON documents, headers of CSV files,
-stores of studies, tables for the terminal, limits, reports and figures all read this table, which
-imports nothing, so that the schema of a case can.
+A quantity has its value in the attribute of its name: those of modes in
+`FixedBaseModes` and `UpliftedModes`, those of the static curves in `PushoverResult` and
+`StoreyCurve`. Those of histories are a field of the kernel's record, which `kernel`
+names, or an attribute of `Histories`, for many of them at once; `Demand` has the same
+for one. JSON documents, headers of CSV files, stores of studies, tables for the
+terminal, limits, reports and figures all read this table, which imports nothing, so
+that the schema of a case can.
 """
 
 from __future__ import annotations
@@ -19,19 +21,27 @@ class ResultQuantity(NamedTuple):
     """One quantity that an analysis finds."""
 
     name: str  # in the Python interface, JSON and CSV
-    unit: str  # SI; ``-`` for a plain number, nothing for one that needs no unit on an axis
+    unit: (
+        str  # SI; ``-`` for a plain number, nothing for one that needs no unit on an axis
+    )
     label: str  # in words, for tables and figures
     symbol: str = ""  # the paper's letters as a formula for figures, where there are any
-    # An example of a limit; empty where none makes sense. What has one may be limited in a case, a
-    # study, a fragility and by `--fail-on`.
+    # An example of a limit; empty where none makes sense. What has one may be limited in
+    # a case, a study, a fragility and by `--fail-on`.
     limit: str = ""
-    demand: bool = False  # one of the main demands, which tables of studies show in the terminal
+    demand: bool = (
+        False  # one of the main demands, which tables of studies show in the terminal
+    )
     whole: bool = False  # a count
     needs: str = ""  # what a structure must have to have it, one of `NEEDS`
     meaning: str = ""  # what a ratio is made of, for the schemas of limits
-    from_below: bool = False  # small values are bad: a limit is the least that is admissible
+    from_below: bool = (
+        False  # small values are bad: a limit is the least that is admissible
+    )
     column: str = ""  # its head in a table of storeys, where that is not the name
-    kernel: str = ""  # the field of `physics.state.RESULT` that holds it; empty where computed
+    kernel: str = (
+        ""  # the field of `physics.state.RESULT` that holds it; empty where computed
+    )
 
     @property
     def described(self) -> str:
@@ -57,17 +67,20 @@ _DESIGNED = "podium.column, podium.plan and superstructure.vertical_period in th
 
 NEEDS = {
     "superstructure": "a superstructure",
-    "superstructure, flat part": "a superstructure on columns with a flat part, so that V_st > 0",
+    "superstructure,"
+    " flat part": "a superstructure on columns with a flat part, so that V_st > 0",
     "superstructure.storey_height": "superstructure.storey_height in the case",
     "superstructure, devices": "a superstructure and podium.devices",
     "superstructure.yield": "superstructure.yield in the case",
-    "superstructure.yield, storey_height": "superstructure.yield and superstructure.storey_height"
-    " in the case",
+    "superstructure.yield,"
+    " storey_height": "superstructure.yield and superstructure.storey_height in the case",
     "podium.friction": "podium.friction in the case",
     "contact": "a compliant podium.contact: kind plane or edges",
     "plane contact": "podium.contact of the kind plane under flat ends",
-    "columns": "podium.plan and superstructure.vertical_period in the case, without which it leaves"
-    " out the overturning moment and the shock of impacts",
+    "columns": (
+        "podium.plan and superstructure.vertical_period in the case, without which it"
+        " leaves out the overturning moment and the shock of impacts"
+    ),
     "designed columns": _DESIGNED,
     "columns on arcs": f"curved ends, {_DESIGNED}",
     "damper": "a damper in podium.devices",
@@ -78,12 +91,18 @@ NEEDS = {
 
 
 def values_of(result: object, quantities: Iterable[ResultQuantity]) -> dict[str, Any]:
-    """Values of quantities by name: numbers, lists of them, and None for what is not finite."""
-    return {quantity.name: plain(getattr(result, quantity.name)) for quantity in quantities}
+    """Values of quantities by name: numbers, lists of them, and
+    None for what is not finite.
+    """
+    return {
+        quantity.name: plain(getattr(result, quantity.name)) for quantity in quantities
+    }
 
 
 def plain(value: Any) -> Any:
-    """A value as JSON knows it: arrays as lists, complex numbers as [re, im], NaN as null."""
+    """A value as JSON knows it: arrays as lists, complex numbers
+    as [re, im], NaN as null.
+    """
     if type(value) is not float and hasattr(value, "tolist"):
         value = value.tolist()
     if isinstance(value, float):
@@ -109,14 +128,19 @@ HISTORY = (
     _Q("max_lift", "m", "lift of the building", "$v_b$", limit="0.03", demand=True),
     _Q("max_base_shear", "N", "base shear", "$V_b$", limit="2e6", demand=True),
     _Q("base_shear_ratio", "-", "base shear ratio", "$V_b/V_{st}$", limit="2", demand=True,
-        needs="superstructure, flat part", meaning="largest base shear over M_tot g tan(alpha)"),
+        needs=(
+            "superstructure,"
+            " flat part"
+        ), meaning="largest base shear over M_tot g tan(alpha)"),
     _Q("uplift_shear_ratio", "-", "base shear over uplift with devices", limit="2",
         needs="superstructure, devices",
         meaning="largest base shear over that at uplift, V_st with what devices add"),
     _Q("drift_ratio", "-", "drift ratio", limit="0.005", demand=True,
         needs="superstructure.storey_height",
-        meaning="largest storey drift over storey height; of pairs a bound, where storeys yield or"
-        " differ in x and y"),
+        meaning=(
+            "largest storey drift over storey height; of pairs a bound, where storeys"
+            " yield or differ in x and y"
+        )),
     _Q("max_floor_acceleration", "m/s2", "floor acceleration", limit="5", demand=True,
         needs="superstructure"),
     _Q("residual_rotation", "rad", "residual rotation", limit="0.001"),
@@ -136,8 +160,10 @@ HISTORY = (
         meaning="largest pressure at an edge over the mean under permanent load"),
     _Q("duration", "s", "duration", kernel="time"),
     _Q("friction_demand", "-", "friction demand |F|/N", limit="0.3", demand=True,
-        meaning="largest shear over axial force of columns; of pairs without the shortest passes"
-        " near upright, as the output says"),
+        meaning=(
+            "largest shear over axial force of columns; of pairs without the shortest"
+            " passes near upright, as the output says"
+        )),
     _Q("friction_ratio", "-", "friction ratio", limit="1", needs="podium.friction",
         meaning="friction demand over podium.friction; columns slide above 1"),
 )  # fmt: skip
@@ -151,7 +177,10 @@ YIELDING = (
     _Q("residual_drift", "m", "residual drift", limit="0.005", needs="superstructure.yield",
         meaning="largest plastic drift at the end, of both components together"),
     _Q("residual_drift_ratio", "-", "residual drift ratio", limit="0.005", demand=True,
-        needs="superstructure.yield, storey_height", meaning="residual drift over storey height"),
+        needs=(
+            "superstructure.yield,"
+            " storey_height"
+        ), meaning="residual drift over storey height"),
     _Q("energy_yielded", "J", "energy yielded", needs="superstructure.yield"),
 )  # fmt: skip
 """Scalars of a time history of storeys that yield; elastic buildings do not list them."""
@@ -170,8 +199,10 @@ SAMPLED = (
     _Q("min_column_force", "N", "minimum axial force of a column", limit="1e4", from_below=True,
         needs="columns"),
     _Q("overturning_ratio", "-", "overturning ratio, of floors' inertia",
-        meaning="what it adds to the mean force of an outer column; its forces hold the shift of"
-        " contacts and drifts too"),
+        meaning=(
+            "what it adds to the mean force of an outer column; its forces hold the"
+            " shift of contacts and drifts too"
+        )),
     _Q("column_moment", "N m", "moment at an end of a column", "$M_{end}$", limit="2e5",
         needs="designed columns"),
     _Q("contact_pressure_ratio", "-", "contact pressure ratio", "$p_0/f$", limit="1",
@@ -181,8 +212,8 @@ SAMPLED = (
         meaning="largest depth of a plastic edge over the width of the end"),
     _Q("sliding_time", "s", "columns slide at", needs="podium.friction"),
 )  # fmt: skip
-"""Scalars of a history that is followed with all its samples: a single one, or those of a study
-with `whole_histories: true`."""
+"""Scalars of a history that is followed with all its samples: a single one, or those of a
+study with `whole_histories: true`."""
 
 IMPACTS = (
     _Q("energy_devices", "J", "energy dissipated in devices"),
@@ -223,16 +254,23 @@ resultants, largest sqrt(x^2 + y^2)."""
 KERNEL_FIELDS = {q.name: q.kernel for q in (*HISTORY, *IMPACTS, *PAIR) if q.kernel}
 
 _WHICH = "of the scaled motion; in a study of pairs as `scale: of` says"
-INTENSITIES = (_Q("pga", "m/s2", "PGA", meaning=_WHICH), _Q("pgv", "m/s", "PGV", meaning=_WHICH))
+INTENSITIES = (
+    _Q("pga", "m/s2", "PGA", meaning=_WHICH),
+    _Q("pgv", "m/s", "PGV", meaning=_WHICH),
+)
 """Peaks of the scaled motion of a history, in the table of a study."""
 
 STOREY_SHEARS = _Q("storey_shears", "N", "storey shear", "$V_i$", column="max_shear")
 STOREY_DRIFTS = _Q("storey_drifts", "m", "storey drift", column="max_drift")
-STOREY_DRIFT_RATIOS = _Q("storey_drift_ratios", "-", "storey drift ratio", column="drift_ratio")
+STOREY_DRIFT_RATIOS = _Q(
+    "storey_drift_ratios", "-", "storey drift ratio", column="drift_ratio"
+)
 FLOOR_ACCELERATIONS = _Q(
     "floor_accelerations", "m/s2", "floor acceleration", column="floor_acceleration"
 )
-FLOOR_VELOCITIES = _Q("floor_velocities", "m/s", "floor velocity", column="floor_velocity")
+FLOOR_VELOCITIES = _Q(
+    "floor_velocities", "m/s", "floor velocity", column="floor_velocity"
+)
 
 STOREYS_YIELDING = (
     _Q("ductilities", "-", "ductility", column="ductility"),
@@ -243,10 +281,18 @@ STOREYS_YIELDING = (
 )
 """What yielding does to each storey from the bottom."""
 
-STOREYS = (STOREY_DRIFTS, STOREY_DRIFT_RATIOS, STOREY_SHEARS, FLOOR_ACCELERATIONS, FLOOR_VELOCITIES)
+STOREYS = (
+    STOREY_DRIFTS,
+    STOREY_DRIFT_RATIOS,
+    STOREY_SHEARS,
+    FLOOR_ACCELERATIONS,
+    FLOOR_VELOCITIES,
+)
 """Largest values in each storey from the bottom, on bearings and on a fixed base."""
 
-LIMITED = tuple(quantity for quantity in (*HISTORY, *YIELDING, *SAMPLED) if quantity.limit)
+LIMITED = tuple(
+    quantity for quantity in (*HISTORY, *YIELDING, *SAMPLED) if quantity.limit
+)
 """Results that limits, `--fail-on` and fragilities may name."""
 
 DEMANDS = tuple(quantity for quantity in LIMITED if not quantity.from_below)
@@ -272,7 +318,13 @@ UPLIFTED_RATIOS = (
 
 FREQUENCY_PARAMETERS = (
     _Q("frequency_parameter", "rad/s", "frequency parameter", "$p_{ext}$", meaning=ORDER),
-    _Q("frequency_parameter_rigid", "rad/s", "rigid estimate", r"$\hat{p}_{ext}$", meaning=ORDER),
+    _Q(
+        "frequency_parameter_rigid",
+        "rad/s",
+        "rigid estimate",
+        r"$\hat{p}_{ext}$",
+        meaning=ORDER,
+    ),
 )
 """Of the podium's own mode."""
 

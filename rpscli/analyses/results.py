@@ -1,4 +1,6 @@
-"""Result of a time history: beside its largest demands samples, events, energies, warnings."""
+"""Result of a time history: beside its largest demands samples,
+events, energies, warnings.
+"""
 
 from __future__ import annotations
 
@@ -29,10 +31,12 @@ from rpscli.records.ground_motion import GroundMotion, MotionComponents
 from rpscli.shown import data_frame, frozen
 
 NEAR_CRITICAL = 0.8
-"""Rotations above this part of the critical one are near it: a little more may overturn."""
+"""Rotations above this part of the critical one are near it: a
+little more may overturn."""
 
 LARGEST_TRIED = 8.0
-"""chi of impacts, up to which records were followed on a resolved bed (VERIFICATION.md)."""
+"""chi of impacts, up to which records were followed on a
+resolved bed (VERIFICATION.md)."""
 
 CRUSHING = 10.0
 """Edge pressure over the mean: 30 MPa where the permanent load presses with 3 MPa."""
@@ -49,7 +53,9 @@ RESTING = (state.FULL_CONTACT, state.STUCK, state.BEDDED)
 
 @dataclass(frozen=True)
 class Energy:
-    """Balance of the energy [J]: the input is damped, dissipated, lost, stored, or the residual."""
+    """Balance of the energy [J]: the input is damped, dissipated, lost,
+    stored, or the residual.
+    """
 
     input: float  # by the ground
     damped: float  # in the building
@@ -74,7 +80,8 @@ class ColumnForces:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class TimeHistoryResult(Demand):
-    """Response of a structure to a record: its largest demands, samples and events; SI units.
+    """Response of a structure to a record: its largest demands,
+    samples and events; SI units.
 
     Parameters
     ----------
@@ -91,8 +98,8 @@ class TimeHistoryResult(Demand):
     motion
         All components of the ground's motion.
     axial
-        Axial forces of single columns; None where neither rows of columns nor the vertical period
-        of the building are given.
+        Axial forces of single columns; None where neither rows of columns nor the
+        vertical period of the building are given.
     column_demand
         What the most loaded column has to carry; None where `podium.column` is not given.
     """
@@ -107,7 +114,8 @@ class TimeHistoryResult(Demand):
     column_demand: ColumnDemand | None = None
 
     def to_dataframe(self) -> Any:
-        """The samples as a table of pandas, which must be installed: columns of `timehistory.csv`.
+        """The samples as a table of pandas, which must be installed:
+        columns of `timehistory.csv`.
 
         SI units, which are its `attrs["units"]` by column.
         """
@@ -122,7 +130,9 @@ class TimeHistoryResult(Demand):
 
     @property
     def sampling(self) -> str:
-        """Of the trace, its CSV file and figures; other results hold what lies between as well."""
+        """Of the trace, its CSV file and figures; other results hold
+        what lies between as well.
+        """
         return f"samples every {self.record.dt:g} s, between which maxima may lie"
 
     @property
@@ -131,7 +141,8 @@ class TimeHistoryResult(Demand):
         history = self.history
         devices = self.energy_devices
         supplied, damped, lost, stored = (
-            float(history[f"energy_{name}"]) for name in ("input", "damped", "lost", "stored")
+            float(history[f"energy_{name}"])
+            for name in ("input", "damped", "lost", "stored")
         )
         stored = stored + float(history["device_stored"].sum())
         bed = float(history["bed_energy"])
@@ -143,7 +154,14 @@ class TimeHistoryResult(Demand):
             damped=damped,
             impact=lost,
             stored=stored,
-            residual=available - damped - vertical - devices - bed - lost - stored - yielded,
+            residual=available
+            - damped
+            - vertical
+            - devices
+            - bed
+            - lost
+            - stored
+            - yielded,
             created=self.energy_created,
             devices=devices,
             bed=bed,
@@ -152,10 +170,11 @@ class TimeHistoryResult(Demand):
         )
 
     def restoring_moment(self, rotation: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Static moment 2 R W s B(x) at rotations theta [N m], on a bed with its arm in place of B.
+        """Static moment 2 R W s B(x) at rotations theta [N m], on a bed
+        with its arm in place of B.
 
-        What `Trace.driving_moment` equals in slow motion; positive where the weight restores a
-        positive rotation.
+        What `Trace.driving_moment` equals in slow motion; positive where the weight
+        restores a positive rotation.
         """
         st = self.structure
         theta = np.asarray(rotation)
@@ -166,16 +185,21 @@ class TimeHistoryResult(Demand):
     def floor_velocities(self) -> NDArray[np.float64]:
         """(n,) largest absolute velocities [m/s], from the bottom.
 
-        Of cubics through the samples and the accelerations there: 0.3 % low at most, 2 % where
-        floors jump with the cap beam, dt up to 0.02 s and periods from 0.1 s.
+        Of cubics through the samples and the accelerations there: 0.3 % low at most, 2 %
+        where floors jump with the cap beam, dt up to 0.02 s and periods from 0.1 s.
         """
         t = self.trace
         x = self.motion.horizontal
         ground = self.motion.y
         if t.y is None or ground is None:
-            return frozen(largest_velocities(t.floor_velocities, t.floor_accelerations, x))
+            return frozen(
+                largest_velocities(t.floor_velocities, t.floor_accelerations, x)
+            )
         both = (t, x), (t.y, ground)
-        moving = [(floor_speeds(of.floor_velocities, g), of.floor_accelerations) for of, g in both]
+        moving = [
+            (floor_speeds(of.floor_velocities, g), of.floor_accelerations)
+            for of, g in both
+        ]
         return frozen(largest_resultants(moving, self.record.dt))
 
     @property
@@ -185,7 +209,8 @@ class TimeHistoryResult(Demand):
 
     @property
     def max_roof_displacement(self) -> float | None:
-        """Largest displacement of the roof to the ground [m], of cubics through the samples.
+        """Largest displacement of the roof to the ground [m], of
+        cubics through the samples.
 
         If the structure overturns, up to the last sample before that.
         """
@@ -200,7 +225,9 @@ class TimeHistoryResult(Demand):
         ]
         if len(roofs) == 2:
             return float(largest_resultants(roofs, dt)[0])
-        return largest_of_cubics(t.floor_displacements[:, -1], t.floor_velocities[:, -1], dt)
+        return largest_of_cubics(
+            t.floor_displacements[:, -1], t.floor_velocities[:, -1], dt
+        )
 
     @property
     def fixed_base_ratio(self) -> float | None:
@@ -210,7 +237,8 @@ class TimeHistoryResult(Demand):
 
     @property
     def floor_acceleration_over_fixed(self) -> float | None:
-        """Largest floor acceleration over the largest on the fixed base, maybe of another floor.
+        """Largest floor acceleration over the largest on the fixed
+        base, maybe of another floor.
 
         None where `fixed_base_ratio` is.
         """
@@ -223,9 +251,9 @@ class TimeHistoryResult(Demand):
     def column_forces(self) -> dict[str, ColumnForces]:
         """Envelopes at the `top` and at the `bottom` of a column.
 
-        All columns carry alike, but for the overturning moment where their rows are given; where
-        the case does not give their number, these are the forces of all columns together. What
-        axial forces do not hold: `left_out_of_columns`.
+        All columns carry alike, but for the overturning moment where their rows are
+        given; where the case does not give their number, these are the forces of all
+        columns together. What axial forces do not hold: `left_out_of_columns`.
         """
         st = self.structure
         history = self.history
@@ -234,14 +262,18 @@ class TimeHistoryResult(Demand):
         envelopes = {}
         for end, mass in (("top", upper), ("bottom", upper + st.columns_mass)):
             weight = st.gravity * mass
-            forces = (float(history[f"{of}_{end}"]) * weight for of in ("heavy", "normal"))
+            forces = (
+                float(history[f"{of}_{end}"]) * weight for of in ("heavy", "normal")
+            )
             largest, least = (force / st.columns for force in forces)
             if axial is not None:
                 largest = axial.largest[end]
                 least = axial.least[end]
             shear = float(history[f"shear_{end}"]) / st.columns
             envelopes[end] = ColumnForces(shear, largest, least)
-        return envelopes if upper > 0.0 else envelopes | {"top": ColumnForces(0.0, 0.0, 0.0)}
+        return (
+            envelopes if upper > 0.0 else envelopes | {"top": ColumnForces(0.0, 0.0, 0.0)}
+        )
 
     @property
     def left_out_of_columns(self) -> tuple[str, ...]:
@@ -250,14 +282,20 @@ class TimeHistoryResult(Demand):
 
     @property
     def overturning_ratio(self) -> float | None:
-        """Force of the floors' inertia in an outer column over the mean; None without rows."""
+        """Force of the floors' inertia in an outer column over the
+        mean; None without rows.
+        """
         return self.axial.overturning_ratio if self.axial else None
 
     @property
     def max_column_shear(self) -> float:
-        """Largest horizontal force of a column [N]: of the most loaded, with `podium.column`."""
+        """Largest horizontal force of a column [N]: of the most
+        loaded, with `podium.column`.
+        """
         shears = [forces.shear for forces in self.column_forces.values()]
-        return max(*shears, 0.0 if self.column_demand is None else self.column_demand.shear)
+        return max(
+            *shears, 0.0 if self.column_demand is None else self.column_demand.shear
+        )
 
     @property
     def max_column_force(self) -> float:
@@ -271,8 +309,14 @@ class TimeHistoryResult(Demand):
 
     @property
     def column_moment(self) -> float | None:
-        """Largest moment at an end of a column [N m]; None without `podium.column`, as below."""
-        return None if self.column_demand is None else abs(self.column_demand.instants[0].moment)
+        """Largest moment at an end of a column [N m]; None without
+        `podium.column`, as below.
+        """
+        return (
+            None
+            if self.column_demand is None
+            else abs(self.column_demand.instants[0].moment)
+        )
 
     @property
     def contact_pressure_ratio(self) -> float | None:
@@ -291,12 +335,15 @@ class TimeHistoryResult(Demand):
 
     @property
     def slides(self) -> bool | None:
-        """True if the friction demand exceeds the coefficient; None where that is not given."""
+        """True if the friction demand exceeds the coefficient; None
+        where that is not given.
+        """
         return None if self.friction_ratio is None else self.friction_ratio > 1.0
 
     @property
     def sliding_time(self) -> float | None:
-        """Time of the first sample at which |F|/N exceeds the coefficient [s]; None if at none.
+        """Time of the first sample at which |F|/N exceeds the
+        coefficient [s]; None if at none.
 
         `slides` tells what lies between samples too.
         """
@@ -316,58 +363,67 @@ class TimeHistoryResult(Demand):
         least = min(self.history["normal_top"], self.history["normal_bottom"])
         if least <= 0.0:
             notes.append(
-                "contact is lost: the normal force between columns and beam or ground falls to"
-                f" {least:.3g} of the weight; the model assumes contact throughout"
+                "contact is lost: the normal force between columns and beam or ground"
+                f" falls to {least:.3g} of the weight; the model assumes contact"
+                " throughout"
             )
         if self.axial and self.axial.lift_off is not None:
             notes.append(
                 f"an outer column would lift off at t = {self.axial.lift_off:.4g} s: the"
-                " overturning moment takes more than its share of the weight; the model assumes"
-                " that all columns stand"
+                " overturning moment takes more than its share of the weight; the model"
+                " assumes that all columns stand"
             )
         elif self.axial and self.min_column_force < 0.0:
             notes.append(
-                "the shock of impacts or passes (and the overturning moment) exceeds the weight on"
-                " a column, whose axial force would be negative; the model assumes that all columns"
-                " stand"
+                "the shock of impacts or passes (and the overturning moment) exceeds the"
+                " weight on a column, whose axial force would be negative; the model"
+                " assumes that all columns stand"
             )
         notes += [*self._beyond(), *self._of_column()]
         supplied = abs(self.energy.input) + float(self.trace.energy_stored[0])
         if self.energy.created > 0.02 * supplied:
             share = self.energy.created / supplied
             notes.append(
-                f"the rigid impact law created {share:.1%} of the energy supplied at impacts;"
-                " compare with `impact: {law: flexible}`"
+                f"the rigid impact law created {share:.1%} of the energy supplied at"
+                " impacts; compare with `impact: {law: flexible}`"
             )
         if (
             self.both_components
             and self.outcome == "survived"
-            and (self.history["phase"] not in RESTING and self.settings.free_vibration is None)
+            and (
+                self.history["phase"] not in RESTING
+                and self.settings.free_vibration is None
+            )
         ):
             brake = "but its joints" if self.structure.bed is not None else "at its ends"
             notes.append(
-                f"at the end the podium still swings or circles, and nothing {brake} dissipates:"
-                " the residual rotation is that of this instant; no larger rotation can occur, but"
-                " forces and plastic drifts may still grow"
+                f"at the end the podium still swings or circles, and nothing {brake}"
+                " dissipates: the residual rotation is that of this instant; no larger"
+                " rotation can occur, but forces and plastic drifts may still grow"
                 " (friction dampers or rolling resistance would bring it to rest)"
             )
         elif self.outcome == "survived" and self.history["phase"] not in RESTING:
             if self.structure.bearing.is_spherical:
                 notes.append(
-                    "columns without a flat part still roll at the end, as nothing but dampers and"
-                    " friction stops them: the residual rotation is that of this instant"
+                    "columns without a flat part still roll at the end, as nothing but"
+                    " dampers and friction stops them: the residual rotation is that of"
+                    " this instant"
                 )
             elif self.settings.free_vibration is not None:
                 notes.append(
-                    "the podium still moves at the end; a longer `analysis.free_vibration`"
-                    " may bring larger maxima"
+                    "the podium still moves at the end; a longer"
+                    " `analysis.free_vibration` may bring larger maxima"
                 )
             elif self.duration >= self.record.duration + LONGEST_FREE_VIBRATION:
-                notes.append(f"not at rest {LONGEST_FREE_VIBRATION:g} s after the record's end")
+                notes.append(
+                    f"not at rest {LONGEST_FREE_VIBRATION:g} s after the record's end"
+                )
         return tuple(notes)
 
     def _beyond(self) -> Iterator[str]:
-        """Demands for which compliant ends were not tried, and storeys that still yield back."""
+        """Demands for which compliant ends were not tried, and
+        storeys that still yield back.
+        """
         if self.driven_back.any():
             storeys = listed(map(str, np.flatnonzero(self.driven_back) + 1), "and")
             yield (
@@ -377,16 +433,20 @@ class TimeHistoryResult(Demand):
             )
         chi = self.max_impact_number
         pressure = self.edge_pressure_ratio
-        if chi is not None and chi > LARGEST_TRIED and self.structure.contact.kind == "plane":
+        if (
+            chi is not None
+            and chi > LARGEST_TRIED
+            and self.structure.contact.kind == "plane"
+        ):
             yield (
                 f"the strongest re-contact has chi = {chi:.3g}, records with more than"
                 f" {LARGEST_TRIED:g} were not tested; vary `podium.impact.loss`"
             )
         if pressure is not None and pressure > CRUSHING:
             yield (
-                f"the pressure at an edge reaches {pressure:.3g} times the mean under permanent"
-                " load, at which concrete crushes under usual loads: it loses more at impacts and"
-                " restores less than an elastic bed"
+                f"the pressure at an edge reaches {pressure:.3g} times the mean under"
+                " permanent load, at which concrete crushes under usual loads: it loses"
+                " more at impacts and restores less than an elastic bed"
             )
 
     def _of_column(self) -> Iterator[str]:
@@ -395,35 +455,43 @@ class TimeHistoryResult(Demand):
         crushed = self.crushed_width_ratio or 0.0
         if crushed > LARGEST_EDGE:
             yield (
-                f"an edge crushes over {crushed:.3g} of the width of a column, above a third: it is"
-                " no longer a line about which the column turns, and the weight restores less"
+                f"an edge crushes over {crushed:.3g} of the width of a column, above a"
+                " third: it is no longer a line about which the column turns, and the"
+                " weight restores less"
             )
         if design and design.modulus > STEEL and self.max_rotation > STEEL_ROTATION:
             yield (
                 f"the largest rotation of {self.max_rotation:.3g} rad is beyond"
-                f" {STEEL_ROTATION:g} rad, up to which EN 1337-4 gives the strength of steel on"
-                " steel"
+                f" {STEEL_ROTATION:g} rad, up to which EN 1337-4 gives the strength of"
+                " steel on steel"
             )
 
     def _near_the_limit(self) -> Iterator[str]:
-        """Nearness to overturning of a structure that survived, and sliding of columns."""
+        """Nearness to overturning of a structure that
+        survived, and sliding of columns.
+        """
         ratio = self.rotation_ratio
         passed = self.critical_passage_time
         if self.is_near_critical and passed is not None:
             yield (
-                f"the critical rotation was passed at t = {passed:.4g} s (largest {ratio:.3g}"
-                " theta_cr): the weight no longer restored, only the ground motion"
-                " reversed it; judge by many records"
+                f"the critical rotation was passed at t = {passed:.4g} s (largest"
+                f" {ratio:.3g} theta_cr): the weight no longer restored, only the ground"
+                " motion reversed it; judge by many records"
             )
         elif self.is_near_critical:
             yield (
-                f"the largest rotation is {ratio:.3g} of the critical one, above {NEAR_CRITICAL:g}:"
-                " a little more may overturn the structure; judge by many records"
+                f"the largest rotation is {ratio:.3g} of the critical one, above"
+                f" {NEAR_CRITICAL:g}: a little more may overturn the structure; judge by"
+                " many records"
             )
         if self.slides:
-            when = "" if self.sliding_time is None else f" from t = {self.sliding_time:.4g} s"
+            when = (
+                ""
+                if self.sliding_time is None
+                else f" from t = {self.sliding_time:.4g} s"
+            )
             yield (
-                f"the columns slide{when}: the friction demand {self.friction_demand:.3g} exceeds"
-                f" podium.friction = {self.structure.friction:g}; the model assumes that they do"
-                " not, so the motion is unreliable from then on"
+                f"the columns slide{when}: the friction demand {self.friction_demand:.3g}"
+                f" exceeds podium.friction = {self.structure.friction:g}; the model"
+                " assumes that they do not, so the motion is unreliable from then on"
             )

@@ -20,10 +20,11 @@ class TimeHistorySettings:
         Time after the record [s]; None goes on until no new maximum is possible (Theory,
         section 3), for at most `LONGEST_FREE_VIBRATION`.
     recontact_tolerance
-        After an impact the podium locks when the next excursion stays below this times alpha.
+        After an impact the podium locks when the next excursion
+        stays below this times alpha.
     overturning_limit
-        The structure counts as overturned at this times theta_cr, at most where the columns lie
-        down and the model ends (`Bearing.largest_rotation`).
+        The structure counts as overturned at this times theta_cr, at most where the
+        columns lie down and the model ends (`Bearing.largest_rotation`).
     accuracy
         Divides the default time step; 2 gives steps half as long.
     max_events
@@ -49,9 +50,18 @@ class TimeHistorySettings:
         require_fields(self)
         free = self.free_vibration
         rules = {
-            "free_vibration": (free is None or 0.0 <= free < math.inf, "None or finite and >= 0"),
-            "recontact_tolerance": (0.0 <= self.recontact_tolerance < 1.0, "from 0 to below 1"),
-            "overturning_limit": (0.0 < self.overturning_limit < math.inf, "finite and > 0"),
+            "free_vibration": (
+                free is None or 0.0 <= free < math.inf,
+                "None or finite and >= 0",
+            ),
+            "recontact_tolerance": (
+                0.0 <= self.recontact_tolerance < 1.0,
+                "from 0 to below 1",
+            ),
+            "overturning_limit": (
+                0.0 < self.overturning_limit < math.inf,
+                "finite and > 0",
+            ),
             "accuracy": (0.0 < self.accuracy < math.inf, "finite and > 0"),
             "max_events": (
                 1 <= self.max_events <= 10**9 and self.max_events % 1 == 0,
@@ -70,7 +80,9 @@ LONGEST_FREE_VIBRATION = 120.0
 
 def require_structure(structure: object) -> None:
     """Refuse a case, a name or anything else in place of a structure."""
-    require_kind(structure, PodiumStructure, "the structure", "load_case(...).structure is one")
+    require_kind(
+        structure, PodiumStructure, "the structure", "load_case(...).structure is one"
+    )
 
 
 def require_inputs(

@@ -36,17 +36,15 @@ def time_history(
     record
         Horizontal ground acceleration, or all components; zero after its last sample.
     settings
-        Accuracy, tolerance, limits; the defaults keep maxima within 1e-4 of the converged values
-        where the motion is not near overturning.
+        Accuracy, tolerance, limits; the defaults keep maxima within 1e-4 of the converged
+        values where the motion is not near overturning.
     vertical
         Vertical ground acceleration with the same time step, positive upwards.
     with_fixed_base
         Also run the same building on a fixed base.
 
-    Returns
-    -------
-    TimeHistoryResult. A step that could not be taken gives the outcome ``failed`` with a reason,
-    not an exception; overturning is a result like any other.
+    Returns ------- TimeHistoryResult. A step that could not be taken gives the outcome
+    ``failed`` with a reason, not an exception; overturning is a result like any other.
 
     Raises
     ------
@@ -57,7 +55,9 @@ def time_history(
     run = sampled_history(structure, motion, settings)
     fixed = None
     if with_fixed_base and structure.superstructure is not None:
-        horizontal = [each.npts for name, each in motion.named.items() if name != "vertical"]
+        horizontal = [
+            each.npts for name, each in motion.named.items() if name != "vertical"
+        ]
         intervals = max(int(run.history.intervals), max(horizontal) - 1)
         fixed = fixed_base_response(structure, motion, intervals)
     result = TimeHistoryResult(
@@ -85,12 +85,14 @@ def time_history(
 AXIAL_STEP = 5e-4
 """Between instants at which the forces of single columns are looked at [s], or less.
 
-Of nine storeys with 0.05 s vertically the largest is then 0.3 % low, and the least 1 % of the
-weight high."""
+Of nine storeys with 0.05 s vertically the largest is then 0.3 % low, and the
+least 1 % of the weight high."""
 
 
 def denser_trace(result: TimeHistoryResult, step: float, beyond: float = 0.0) -> Trace:
-    """Trace of a result at even parts of the sampling interval, up to `step`, so long on [s]."""
+    """Trace of a result at even parts of the sampling interval, up
+    to `step`, so long on [s].
+    """
     parts = max(math.ceil(result.record.dt / step - 1e-9), 1)
     settings = result.settings
     if beyond > 0.0:
@@ -99,7 +101,8 @@ def denser_trace(result: TimeHistoryResult, step: float, beyond: float = 0.0) ->
     elif parts == 1:
         return result.trace
     return trace_of(
-        result.structure, sampled_history(result.structure, result.motion, settings, parts)
+        result.structure,
+        sampled_history(result.structure, result.motion, settings, parts),
     )
 
 
@@ -140,9 +143,12 @@ def neighbours(result: TimeHistoryResult) -> list[Neighbour]:
         # Columns are round: of a building alike in x and y all turns with the motion.
         beside += [(structure, 1.0, angle) for angle in TURNS]
     if structure.restitution < 1.0 and law.kind != "value" and law.loss > OTHER_LOSS:
-        beside.append((replace(structure, impact_law=replace(law, loss=OTHER_LOSS)), 1.0, 0.0))
+        beside.append(
+            (replace(structure, impact_law=replace(law, loss=OTHER_LOSS)), 1.0, 0.0)
+        )
     requests = [
-        Request(of, result.motion.turned(angle), settings, factor) for of, factor, angle in beside
+        Request(of, result.motion.turned(angle), settings, factor)
+        for of, factor, angle in beside
     ]
     # One by one: the kernel for many at a time would have to be compiled first.
     results = demands(requests, worth_lanes=len(requests) + 1)

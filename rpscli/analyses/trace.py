@@ -1,4 +1,5 @@
-"""Samples and events of a history, and what its devices saw: the kernel's records in words.
+"""Samples and events of a history, and what its devices saw: the
+kernel's records in words.
 
 >>> from rpscli.physics import state
 >>> EVENT_NAMES[state.UPLIFT], EVENT_NAMES[state.OVERTURNING], EVENT_NAMES[state.TENDON_TAUT]
@@ -58,9 +59,12 @@ class Event:
     energy_lost: float  # [J], negative where an impact created energy
     azimuth: float | None = None
     """Of the tilt, from x towards y [rad]; None where one component acts."""
-    least_tilt: float | None = None  # Of a pass near upright: theta_min [rad]; of others 0
+    least_tilt: float | None = (
+        None  # Of a pass near upright: theta_min [rad]; of others 0
+    )
     nearness: float | None = None
-    """Of a pass: s, the time it takes over that of an impact; infinite if that takes none."""
+    """Of a pass: s, the time it takes over that of an impact;
+    infinite if that takes none."""
     loss_share: float | None = None  # Of a pass: l, how much of what an impact would lose
 
 
@@ -75,17 +79,20 @@ def event_list(log: Record, *, both: bool) -> tuple[Event, ...]:
 class DeviceDemand:
     """Largest demands of one device.
 
-    Looked at within steps and on both sides of events: the samples of a `DeviceTrace` may be less.
+    Looked at within steps and on both sides of events: the samples of a
+    `DeviceTrace` may be less.
     """
 
     kind: str  # Name of its law
     force: float
-    """At the cap beam [N]: of a tendon the tension of one, of rolling resistance the horizontal
-    force that does the same."""
+    """At the cap beam [N]: of a tendon the tension of one, of rolling resistance the
+    horizontal force that does the same."""
     stroke: float  # |u_b| [m]; of a tendon its elongation
     velocity: float  # Rate of the stroke [m/s]
     energy: float  # Dissipated, by all tendons together [J]
-    remaining_prestress: float | None  # Of a tendon at the end, upright [N]; None of others
+    remaining_prestress: (
+        float | None
+    )  # Of a tendon at the end, upright [N]; None of others
 
 
 class _Sampled:
@@ -95,7 +102,11 @@ class _Sampled:
         """Only some samples."""
         values = {each.name: getattr(self, each.name) for each in fields(self)}  # type: ignore[arg-type]
         parts = {
-            name: of.at(rows) if isinstance(of, _Sampled) else of if of is None else of[rows]
+            name: of.at(rows)
+            if isinstance(of, _Sampled)
+            else of
+            if of is None
+            else of[rows]
             for name, of in values.items()
         }
         return type(self)(**parts)
@@ -103,16 +114,23 @@ class _Sampled:
 
 @dataclass(frozen=True, eq=False)
 class DeviceTrace(_Sampled, Frozen):
-    """Forces, displacements and energies of devices at the samples: arrays (samples, devices)."""
+    """Forces, displacements and energies of devices at the samples:
+    arrays (samples, devices).
+    """
 
     force: Array
-    """On the cap beam, positive to the right, of pairs outwards [N]; of a tendon the tension."""
-    displacement: Array  # u_b [m], under both components |u_b|; of a tendon the elongation of one
+    """On the cap beam, positive to the right, of pairs outwards [N];
+    of a tendon the tension."""
+    displacement: (
+        Array  # u_b [m], under both components |u_b|; of a tendon the elongation of one
+    )
     energy: Array
-    """Dissipated so far [J]. A damped stop that has let go dissipates what its spring still holds
-    as the cap beam moves back to the gap, not at once: sums over an excursion are exact."""
+    """Dissipated so far [J]. A damped stop that has let go dissipates what its
+    spring still holds as the cap beam moves back to the gap, not at once: sums
+    over an excursion are exact."""
     stored: Array
-    """Energy over what was stored at rest [J]; of a stop `k_s (|u_b| - d)^2/2`, let go or not."""
+    """Energy over what was stored at rest [J]; of a stop `k_s (|u_b|
+    - d)^2/2`, let go or not."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -127,8 +145,12 @@ class Direction(_Sampled, Shown):
     drifts: Array  # d_i [m]
     plastic_drifts: Array | None  # delta_i [m]; None of elastic storeys
     storey_shears: Array  # k_i (d_i - delta_i) [N]
-    driving_moment: Array  # 2 R C (V - (N m_c/2 + m_b) a_g) [N m]; in slow motion 2 R W s B(x)
-    shear_top: Array  # of all columns together [N], to the right on what is above (Theory (8.4))
+    driving_moment: (
+        Array  # 2 R C (V - (N m_c/2 + m_b) a_g) [N m]; in slow motion 2 R W s B(x)
+    )
+    shear_top: (
+        Array  # of all columns together [N], to the right on what is above (Theory (8.4))
+    )
     shear_bottom: Array  # [N]
 
 
@@ -136,10 +158,10 @@ class Direction(_Sampled, Shown):
 class Trace(Direction):
     """Histories at the record's samples and on through the free vibration, SI units.
 
-    Arrays are (samples,), those of floors and storeys (samples, n) from the bottom. What was
-    largest between samples, and on both sides of impacts, is in the largest demands. Forces of
-    columns are those of the smooth motion, which in a pass near upright that is shorter than an
-    impact may be large for an instant.
+    Arrays are (samples,), those of floors and storeys (samples, n) from the bottom. What
+    was largest between samples, and on both sides of impacts, is in the largest demands.
+    Forces of columns are those of the smooth motion, which in a pass near upright that is
+    shorter than an impact may be large for an instant.
     """
 
     time: Array  # since the start of the record [s]
@@ -147,7 +169,9 @@ class Trace(Direction):
     rotation_rate: Array  # theta' [rad/s]
     phase: NDArray[np.int8]  # 0 in full contact, 1 rolling, 2 rocking, 3 held, 4 on a bed
     lift: Array  # v_b [m]
-    normal_top: Array  # of all columns together [N], upwards on what is above (Theory (8.5))
+    normal_top: (
+        Array  # of all columns together [N], upwards on what is above (Theory (8.5))
+    )
     normal_bottom: Array  # [N]
     energy_input: Array  # [J], as all energies (Theory, sections 8 and 12)
     energy_damped: Array
@@ -159,13 +183,17 @@ class Trace(Direction):
     devices: DeviceTrace
     azimuth: Array | None = None  # of the tilt of both components, from x towards y [rad]
     azimuth_rate: Array | None = None  # [rad/s]
-    y: Direction | None = None  # what a history of both components has in y; the rest is in x
+    y: Direction | None = (
+        None  # what a history of both components has in y; the rest is in x
+    )
     vertical_accelerations: Array | None = None  # absolute, of floors on springs [m/s2]
 
     def size(self, name: str) -> Array:
         """Of what has a direction: its absolute value, or sqrt(x^2 + y^2)."""
         in_x = getattr(self, name)
-        return np.asarray(np.abs(in_x) if self.y is None else np.hypot(in_x, getattr(self.y, name)))
+        return np.asarray(
+            np.abs(in_x) if self.y is None else np.hypot(in_x, getattr(self.y, name))
+        )
 
 
 ENERGIES = ("energy_input", "energy_damped", "energy_impact", "energy_stored")
@@ -176,12 +204,15 @@ Sampled: TypeAlias = tuple[str, str, NDArray[Any]]
 
 def sampled(structure: PodiumStructure, t: Trace) -> Iterator[Sampled]:
     """Name, SI unit and samples of each quantity, for tables."""
-    # Largest results may lie between the rows. Displacements are relative to the ground, floor
-    # accelerations absolute. Forces are those of one column, F to the right and N upwards on what
-    # is above; of all columns together where the case does not give their number. Devices' energy
-    # is what they dissipated so far, of a damped stop that has let go as the cap beam moves back to
-    # the gap. Where both components act, what has a direction stands in x and in y.
-    ways: list[tuple[str, Direction]] = [("", t)] if t.y is None else [("_x", t), ("_y", t.y)]
+    # Largest results may lie between the rows. Displacements are relative to the ground,
+    # floor accelerations absolute. Forces are those of one column, F to the right and N
+    # upwards on what is above; of all columns together where the case does not give their
+    # number. Devices' energy is what they dissipated so far, of a damped stop that has
+    # let go as the cap beam moves back to the gap. Where both components act, what has a
+    # direction stands in x and in y.
+    ways: list[tuple[str, Direction]] = (
+        [("", t)] if t.y is None else [("_x", t), ("_y", t.y)]
+    )
 
     def directed(name: str, unit: str, field: str, over: int = 1) -> Iterator[Sampled]:
         for way, of in ways:
@@ -260,7 +291,9 @@ def trace_of(structure: PodiumStructure, run: SampledHistory) -> Trace:
     )
 
 
-def _in_direction(structure: PodiumStructure, run: SampledHistory, axis: int) -> dict[str, Array]:
+def _in_direction(
+    structure: PodiumStructure, run: SampledHistory, axis: int
+) -> dict[str, Array]:
     """By the names of `Direction`, in x or in y."""
     n = structure.storeys
     samples = run.samples
@@ -284,7 +317,8 @@ def _in_direction(structure: PodiumStructure, run: SampledHistory, axis: int) ->
         "drifts": drifts,
         "plastic_drifts": plastic,
         "storey_shears": elastic if building is None else building.stiffnesses * elastic,
-        "driving_moment": samples.height * (samples.base_shear[:, axis] - base_mass * a_g),
+        "driving_moment": samples.height
+        * (samples.base_shear[:, axis] - base_mass * a_g),
         "shear_top": samples.shear_top[:, axis],
         "shear_bottom": samples.shear_bottom[:, axis],
     }

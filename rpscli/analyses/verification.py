@@ -1,7 +1,9 @@
-"""Certified problems, which come as data: their answers by rps, and correct digits of any answers.
+"""Certified problems, which come as data: their answers by rps, and
+correct digits of any answers.
 
-Each problem was solved by two roads that share nothing; `rpscli/analyses/certified` has a page and
-a case for each. Where motions part the answers are a sample, and its distribution is what counts.
+Each problem was solved by two roads that share nothing; `rpscli/analyses/certified` has a
+page and a case for each. Where motions part the answers are a sample, and its
+distribution is what counts.
 """
 
 from __future__ import annotations
@@ -33,11 +35,12 @@ Key = tuple[str, str]
 """Problem and quantity."""
 
 LEFT_OUT = ("free_wobble", "parting_motions")
-"""Problems that rps does not compute for `rps verify`: the first turns at its start, which no case
-says, the second has a hundred histories of 90 s."""
+"""Problems that rps does not compute for `rps verify`: the first turns at its start,
+which no case says, the second has a hundred histories of 90 s."""
 
 ONE_PERCENT = 1.628
-"""Kolmogorov's distance of two large samples of one distribution, over sqrt(1/n + 1/m)."""
+"""Kolmogorov's distance of two large samples of one
+distribution, over sqrt(1/n + 1/m)."""
 
 
 @dataclass(frozen=True)
@@ -57,12 +60,16 @@ class Comparison:
 
     @property
     def holds(self) -> bool:
-        """True if the computed value is close enough; one that is not a number never is."""
+        """True if the computed value is close enough; one that
+        is not a number never is.
+        """
         return abs(self.computed - self.expected) <= self.tolerance
 
     @property
     def digits(self) -> float | None:
-        """Correct ones, at most those that are certified; None of samples and missing answers."""
+        """Correct ones, at most those that are certified; None of
+        samples and missing answers.
+        """
         if not self.certified_digits or math.isnan(self.computed):
             return None
         off = abs(self.computed / self.expected - 1.0)
@@ -73,7 +80,13 @@ class Comparison:
         """In a word, or how many digits are correct."""
         if self.digits is not None:
             return f"{self.digits:.1f} digits"
-        return "agrees" if self.holds else "missing" if math.isnan(self.computed) else "DIFFERS"
+        return (
+            "agrees"
+            if self.holds
+            else "missing"
+            if math.isnan(self.computed)
+            else "DIFFERS"
+        )
 
 
 def _rows(text: str, source: str) -> Iterator[tuple[int, Key, dict[str, str]]]:
@@ -81,7 +94,8 @@ def _rows(text: str, source: str) -> Iterator[tuple[int, Key, dict[str, str]]]:
     (_, heads), *rows = csv_rows(text, source) or [(1, [])]
     if lacking := {"problem", "quantity", "value"} - {*heads}:
         raise CaseError(
-            f"{source}: line 1 names no column {min(lacking)}; begin with `{','.join(COLUMNS)}`"
+            f"{source}: line 1 names no column {min(lacking)}; begin with"
+            f" `{','.join(COLUMNS)}`"
         )
     for line, cells in rows:
         row = dict.fromkeys(heads, "") | dict(zip(heads, cells, strict=False))
@@ -89,10 +103,14 @@ def _rows(text: str, source: str) -> Iterator[tuple[int, Key, dict[str, str]]]:
 
 
 def certified() -> dict[Key, tuple[str, int, list[float]]]:
-    """Of each quantity the unit, how many digits are certified, and its value or sample."""
+    """Of each quantity the unit, how many digits are certified,
+    and its value or sample.
+    """
     known: dict[Key, tuple[str, int, list[float]]] = {}
     for _, key, row in _rows((FOLDER / ANSWERS).read_text(encoding="utf-8"), ANSWERS):
-        known.setdefault(key, (row["unit"], int(row["digits"]), []))[2].append(float(row["value"]))
+        known.setdefault(key, (row["unit"], int(row["digits"]), []))[2].append(
+            float(row["value"])
+        )
     return known
 
 
@@ -118,7 +136,9 @@ def answers_of_file(text: str, source: str) -> dict[Key, list[float]]:
             except ValueError:
                 number = math.nan
             if not math.isfinite(number):
-                raise CaseError(f"{place}: the value {written[:40]!r} must be a finite number")
+                raise CaseError(
+                    f"{place}: the value {written[:40]!r} must be a finite number"
+                )
             given.setdefault(key, []).append(number)
     return given
 
@@ -126,7 +146,9 @@ def answers_of_file(text: str, source: str) -> dict[Key, list[float]]:
 def scored(
     given: Mapping[Key, Sequence[float]], digits: float
 ) -> tuple[list[Comparison], list[str]]:
-    """Answers of which so many digits should be right; and the problems that have none."""
+    """Answers of which so many digits should be right; and the
+    problems that have none.
+    """
     known = certified()
     begun = {problem for problem, _ in given}
     compared = [
@@ -134,11 +156,18 @@ def scored(
         for key, answer in known.items()
         if key[0] in begun
     ]
-    return compared, [*dict.fromkeys(problem for problem, _ in known if problem not in begun)]
+    return compared, [
+        *dict.fromkeys(problem for problem, _ in known if problem not in begun)
+    ]
 
 
 def _compared(
-    key: Key, unit: str, certain: int, values: list[float], given: Sequence[float], digits: float
+    key: Key,
+    unit: str,
+    certain: int,
+    values: list[float],
+    given: Sequence[float],
+    digits: float,
 ) -> Comparison:
     if certain:
         value = values[0]
@@ -178,7 +207,9 @@ def answers(
 
 
 def _capacity(structure: PodiumStructure) -> Iterable[float]:
-    """Uplift; rotation, displacement and lift at the critical; force at 0.1 rad; energy."""
+    """Uplift; rotation, displacement and lift at the critical;
+    force at 0.1 rad; energy.
+    """
     static = pushover(structure)
     forces, moved, lifts = structure.path(np.array([0.1, static.critical_rotation]))
     critical = static.critical_rotation, moved[1], lifts[1]
@@ -223,7 +254,9 @@ SAMPLED: dict[str, Callable[[Trace], Array]] = {
 
 
 def of_history(result: TimeHistoryResult, quantity: str) -> float:
-    """A quantity of a history, by its name, as in ``tilt at 2 s`` or ``time of impact 3``."""
+    """A quantity of a history, by its name, as in ``tilt at 2 s``
+    or ``time of impact 3``.
+    """
     what, _, when = quantity.removesuffix(" s").partition(" at ")
     if when:
         samples = SAMPLED[what](result.trace)

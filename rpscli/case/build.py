@@ -1,6 +1,8 @@
-"""A valid case file -> its structure, and the settings of its analysis; what keys say together.
+"""A valid case file -> its structure, and the settings of its
+analysis; what keys say together.
 
-Rules join keys of sections that are valid; they come before the model, which refuses the rest.
+Rules join keys of sections that are valid; they come before the
+model, which refuses the rest.
 """
 
 from __future__ import annotations
@@ -82,7 +84,10 @@ def too_weak(structure: PodiumStructure) -> Iterator[Fault]:
         least = float(above.strengths.min())
         weight = above.mass * structure.gravity
         if least < LEAST_STRENGTH * weight:
-            text = f": a strength of {least:.3g} N is less than a ten-thousandth of the weight of"
+            text = (
+                f": a strength of {least:.3g} N is less than a ten-thousandth of the"
+                " weight of"
+            )
             yield _at_key(YIELD, f"{text} the floors, {weight:.3g} N; check its unit")
 
 
@@ -100,7 +105,9 @@ def bearing_of(section: BearingSection) -> Bearing:
     slenderness = section.slenderness
     rho = section.curvature_ratio
     assert R is not None and slenderness is not None and rho is not None, COMPLETE  # noqa: PT018
-    wedge = slenderness if section.wedge_slenderness is None else section.wedge_slenderness
+    wedge = (
+        slenderness if section.wedge_slenderness is None else section.wedge_slenderness
+    )
     if isinstance(rho, str):
         rho = first_order_critical_curvature_ratio(slenderness, wedge)
     return Bearing(R, slenderness, wedge, rho, **given)
@@ -113,17 +120,24 @@ def _impact_law(section: PodiumSection) -> ImpactLaw:
     loss = section.impact.loss
     own = IMPACT_LAWS[section.impact.law]
     if own is not None:
-        given |= {"own": own, "constants": tuple(given.pop(each) for each in own.constants)}
+        given |= {
+            "own": own,
+            "constants": tuple(given.pop(each) for each in own.constants),
+        }
         loss = 1.0 if loss is None else loss
     loss = USUAL_LOSS[section.contact.kind] if loss is None else loss
     return ImpactLaw(name, loss=loss, **given)
 
 
 def _masses(file: CaseFile) -> tuple[float, float, float]:
-    """N m_c, m_b and M_tot [kg], from those and the ratios that are given (Theory, section 2)."""
+    """N m_c, m_b and M_tot [kg], from those and the ratios that are
+    given (Theory, section 2).
+    """
     podium = file.podium
     floors = file.superstructure
-    building = sum(each_storey(floors.storey_mass, floors.storeys)) if floors.storeys else 0.0
+    building = (
+        sum(each_storey(floors.storey_mass, floors.storeys)) if floors.storeys else 0.0
+    )
     gamma = podium.cap_beam_mass_ratio
     eta = podium.superstructure_mass_ratio
     columns = None
@@ -152,7 +166,9 @@ def _built(bearing: Bearing, file: CaseFile) -> PodiumStructure:
     if (of := podium.column) is not None:
         own = of.model_dump(exclude={"on"})
         plate = of.on
-        column = ColumnDesign(**own, plate_modulus=plate.modulus, plate_poisson=plate.poisson)
+        column = ColumnDesign(
+            **own, plate_modulus=plate.modulus, plate_poisson=plate.poisson
+        )
     across = None if floors.y is None else floors.model_copy(update=floors.y.model_dump())
     columns, beam, floors_mass = _masses(file)
     at_uplift = floors_mass * file.analysis.gravity * bearing.slenderness
@@ -188,7 +204,9 @@ def _device(section: DeviceSection) -> Device:
 
 
 def _building(section: SuperstructureSection, at_uplift: float) -> Superstructure | None:
-    """The shear building; None for no storeys. V_st is what ratios of strengths refer to."""
+    """The shear building; None for no storeys. V_st is what
+    ratios of strengths refer to.
+    """
     n = section.storeys
     given = section.damping
     height = section.storey_height
@@ -199,7 +217,9 @@ def _building(section: SuperstructureSection, at_uplift: float) -> Superstructur
     if section.period is None:
         stiffnesses = np.array(each_storey(section.stiffness, n))
     else:
-        stiffnesses = profile_stiffnesses(masses, section.period, section.profile or "sine")
+        stiffnesses = profile_stiffnesses(
+            masses, section.period, section.profile or "sine"
+        )
     heights = None if height is None else np.array(each_storey(height, n))
     damping: RayleighDamping | ModalDamping = ModalDamping(given.ratio)
     if given.modes is not None:
@@ -211,14 +231,18 @@ def _building(section: SuperstructureSection, at_uplift: float) -> Superstructur
         if yields.ratio is None:
             strengths = np.array(each_storey(yields.shears, n))
         else:
-            strengths = first_mode_strengths(masses, stiffnesses, yields.ratio * at_uplift)
+            strengths = first_mode_strengths(
+                masses, stiffnesses, yields.ratio * at_uplift
+            )
     return Superstructure(
         masses,
         stiffnesses,
         damping,
         heights,
         section.vertical_period,
-        VERTICAL_DAMPING if section.vertical_damping is None else section.vertical_damping,
+        VERTICAL_DAMPING
+        if section.vertical_damping is None
+        else section.vertical_damping,
         strengths,
         hardening,
     )
@@ -231,14 +255,18 @@ def each_storey(value: float | tuple[float, ...] | None, storeys: int) -> list[f
 
 
 def overturning_limit(section: AnalysisSection, bearing: Bearing) -> float:
-    """Rotation that counts as overturned, over theta_cr: the lesser of what the case names."""
+    """Rotation that counts as overturned, over theta_cr: the
+    lesser of what the case names.
+    """
     if (displacement := section.overturning_displacement) is None:
         return section.overturning_limit
     rotation = bearing.rotation_at(displacement)
     return min(section.overturning_limit, rotation / bearing.critical_rotation)
 
 
-def time_history_settings(section: AnalysisSection, bearing: Bearing) -> TimeHistorySettings:
+def time_history_settings(
+    section: AnalysisSection, bearing: Bearing
+) -> TimeHistorySettings:
     """Settings of the time history; gravity belongs to the structure."""
     given = section.model_dump(exclude={"gravity", "overturning_displacement"})
     given["overturning_limit"] = overturning_limit(section, bearing)
@@ -246,7 +274,9 @@ def time_history_settings(section: AnalysisSection, bearing: Bearing) -> TimeHis
     return TimeHistorySettings(**given | {"free_vibration": None} if auto else given)
 
 
-STOREYS, HEIGHT, YIELD = (f"superstructure.{key}" for key in ("storeys", "storey_height", "yield"))
+STOREYS, HEIGHT, YIELD = (
+    f"superstructure.{key}" for key in ("storeys", "storey_height", "yield")
+)
 BEARING = "podium.bearing"
 DIMENSIONS = "podium.bearing.dimensions"
 COLUMN = "podium.column"
@@ -255,7 +285,9 @@ ETA = "podium.superstructure_mass_ratio"
 BEAM = "podium.cap_beam_mass"
 COLUMN_MASS = "podium.column_mass"
 COLUMNS = "podium.columns"
-COLUMN_LIMITS = tuple(q.name for q in LIMITED if q.needs in {"designed columns", "columns on arcs"})
+COLUMN_LIMITS = tuple(
+    q.name for q in LIMITED if q.needs in {"designed columns", "columns on arcs"}
+)
 RATIOS = {
     "semi_diagonal": "R = sqrt(H^2 + B^2), as in '1.5 m'",
     "slenderness": "tan(alpha) = B/H, as in 0.15",
@@ -274,8 +306,12 @@ def _of_value(key: str, text: str) -> Fault:
 
 
 def _given(section: object, *keys: str) -> list[str]:
-    """Those of the optional keys of a section, with or without what precedes them, with a value."""
-    return [key for key in keys if getattr(section, key.rpartition(".")[2], None) is not None]
+    """Those of the optional keys of a section, with or without what
+    precedes them, with a value.
+    """
+    return [
+        key for key in keys if getattr(section, key.rpartition(".")[2], None) is not None
+    ]
 
 
 def _one_of(key: str, section: object, text: str, *keys: str) -> Iterator[Fault]:
@@ -292,11 +328,15 @@ class Rules:
     document: Document
 
     def faults(self) -> Iterator[Fault]:
-        """Keys that are missing, said twice, or cannot be true together, whatever the shape."""
+        """Keys that are missing, said twice, or cannot be true
+        together, whatever the shape.
+        """
         building = self.file.superstructure
         if building.storeys:
             yield from self._building(building)
-        yield from self._masses_under_building() if building.storeys else self._masses_of_frame()
+        yield from (
+            self._masses_under_building() if building.storeys else self._masses_of_frame()
+        )
         yield from self._bearing()
         yield from self._without_effect()
         yield from self._devices()
@@ -317,30 +357,46 @@ class Rules:
             meaning = "floor mass, one value or a list from the bottom, as in '200 t'"
             yield _at_key("superstructure.storey_mass", f" is missing: {meaning}")
         if building.damping is None:
-            meaning = "as in {ratio: 0.05, modes: [1, 2]} (Rayleigh) or {ratio: 0.05} (every mode)"
+            meaning = (
+                "as in {ratio: 0.05, modes: [1, 2]} (Rayleigh) or {ratio: 0.05} (every"
+                " mode)"
+            )
             yield _at_key("superstructure.damping", f" is missing: {meaning}")
         elif (modes := building.damping.modes) and max(modes) > max(building.storeys, 2):
-            # One storey takes [1, 2] as well: stiffness-proportional, so that storeys can vary.
+            # One storey takes [1, 2] as well: stiffness-proportional, so that storeys can
+            # vary.
             yield _of_value(
                 "superstructure.damping.modes",
                 f" = {shown(modes)} must be from 1 to {STOREYS} ="
-                f" {building.storeys}{self._where(STOREYS)}; a building has as many modes as"
-                " storeys",
+                f" {building.storeys}{self._where(STOREYS)}; a building has as many"
+                " modes as storeys",
             )
         if building.vertical_damping is not None and building.vertical_period is None:
-            text = " needs superstructure.vertical_period, which is missing; give it, or remove"
+            text = (
+                " needs superstructure.vertical_period, which is missing; give it, or"
+                " remove"
+            )
             yield _at_key("superstructure.vertical_damping", f"{text} the key")
         text = "ratio, F_1 over V_st, or the shears at which storeys yield"
         yield from _one_of(YIELD, building.yields, text, "ratio", "shears")
-        for owner, section in (("superstructure", building), ("superstructure.y", building.y)):
+        for owner, section in (
+            ("superstructure", building),
+            ("superstructure.y", building.y),
+        ):
             if section is None:
                 continue
             if section.stiffness is None and section.period is None:
-                yield _at_key(owner, " has no stiffness: give period (with profile), or stiffness")
+                yield _at_key(
+                    owner, " has no stiffness: give period (with profile), or stiffness"
+                )
             for key in _given(section, f"{owner}.period", f"{owner}.profile"):
                 if section.stiffness is not None:
-                    yield self._both(f"{owner}.stiffness", key, "fix the storey stiffnesses")
-            yield from self._one_each(owner, section, "storey_mass", "storey_height", "stiffness")
+                    yield self._both(
+                        f"{owner}.stiffness", key, "fix the storey stiffnesses"
+                    )
+            yield from self._one_each(
+                owner, section, "storey_mass", "storey_height", "stiffness"
+            )
         yield from self._one_each(YIELD, building.yields, "shears")
 
     def _one_each(self, owner: str, section: object, *names: str) -> Iterator[Fault]:
@@ -351,8 +407,9 @@ class Rules:
             if isinstance(values, tuple) and len(values) != storeys:
                 yield _of_value(
                     f"{owner}.{name}",
-                    f" has {len(values)} values, but {STOREYS} = {storeys}{self._where(STOREYS)};"
-                    " give one value a storey from the bottom, or a single value",
+                    f" has {len(values)} values, but {STOREYS} ="
+                    f" {storeys}{self._where(STOREYS)}; give one value a storey from the"
+                    " bottom, or a single value",
                 )
 
     def _masses_under_building(self) -> Iterator[Fault]:
@@ -369,12 +426,16 @@ class Rules:
             elif len(given) > 1:
                 yield self._twice(what, given)
         yield from self._number_of_columns()
-        for key, value in ((GAMMA, podium.cap_beam_mass_ratio), (BEAM, podium.cap_beam_mass)):
+        for key, value in (
+            (GAMMA, podium.cap_beam_mass_ratio),
+            (BEAM, podium.cap_beam_mass),
+        ):
             if value == 0.0:
                 yield _of_value(
                     key,
-                    f" = 0 must be > 0: the superstructure{self._where(STOREYS)} stands on the cap"
-                    f" beam; 0 is for free-standing columns, with {STOREYS}: 0",
+                    f" = 0 must be > 0: the superstructure{self._where(STOREYS)} stands"
+                    f" on the cap beam; 0 is for free-standing columns, with {STOREYS}:"
+                    " 0",
                 )
 
     def _masses_of_frame(self) -> Iterator[Fault]:
@@ -383,34 +444,49 @@ class Rules:
         keys = (BEAM, GAMMA, COLUMN_MASS)
         given = _given(podium, *keys)
         if podium.superstructure_mass_ratio is not None:
-            text = f" has no meaning with {STOREYS} = 0{self._where(STOREYS)}; give {BEAM} instead"
+            text = (
+                f" has no meaning with {STOREYS} = 0{self._where(STOREYS)}; give {BEAM}"
+                " instead"
+            )
             yield _at_key(ETA, text)
         elif len(given) > 2:
             yield self._twice("the masses of cap beam and columns", given)
-        elif podium.without_cap_beam and (podium.cap_beam_mass_ratio or podium.cap_beam_mass):
+        elif podium.without_cap_beam and (
+            podium.cap_beam_mass_ratio or podium.cap_beam_mass
+        ):
             yield _of_value(
                 BEAM,
-                f" and {GAMMA}{self._where(GAMMA)} contradict each other: one says that there is no"
-                " cap beam; give column_mass instead of one of them",
+                f" and {GAMMA}{self._where(GAMMA)} contradict each other: one says that"
+                " there is no cap beam; give column_mass instead of one of them",
             )
         elif podium.without_cap_beam:
             if podium.column_mass is None:
-                yield _at_key(COLUMN_MASS, " is missing: without a cap beam it is the only mass")
+                yield _at_key(
+                    COLUMN_MASS, " is missing: without a cap beam it is the only mass"
+                )
         else:
             if len(given) < 2:
-                others = listed(key.rpartition(".")[2] for key in keys if key not in given)
+                others = listed(
+                    key.rpartition(".")[2] for key in keys if key not in given
+                )
                 text = " leaves the masses of cap beam and columns open: give"
-                text += f" {'one' if given else 'two'} of {others} (column_mass with columns)"
+                text += (
+                    f" {'one' if given else 'two'} of {others} (column_mass with columns)"
+                )
                 yield _at_key("podium", text)
             yield from self._number_of_columns()
 
     def _number_of_columns(self) -> Iterator[Fault]:
         if self.file.podium.column_mass is not None and self.file.podium.columns is None:
-            yield _at_key(COLUMNS, " is missing: the number of columns, each of column_mass")
+            yield _at_key(
+                COLUMNS, " is missing: the number of columns, each of column_mass"
+            )
 
     def _twice(self, what: str, given: list[str]) -> Fault:
         """Point at the last one written and name the places of the others."""
-        *others, last = sorted(given, key=lambda key: self.document.key_place(path_of(key)).order)
+        *others, last = sorted(
+            given, key=lambda key: self.document.key_place(path_of(key)).order
+        )
         told = listed((f"{key}{self._where(key)}" for key in others), "and")
         both = "both" if len(given) == 2 else "together"
         return _at_key(last, f" and {told} {both} fix {what}; remove one of them")
@@ -436,22 +512,30 @@ class Rules:
             yield _at_key(f"{DIMENSIONS}.wedge_width", f" is missing: {meaning}")
 
     def _without_effect(self) -> Iterator[Fault]:
-        """A measured restitution has no loss; ends without impacts have nothing to say of them."""
+        """A measured restitution has no loss; ends without impacts
+        have nothing to say of them.
+        """
         podium = self.file.podium
         ends = ""
         if podium.impact.law == "value" and podium.impact.loss not in (None, 1.0):
             yield _at_key(
                 "podium.impact.loss",
-                " does not go with law value: a measured restitution includes the loss; remove it,"
-                " or scale the restitution by factor",
+                " does not go with law value: a measured restitution includes the loss;"
+                " remove it, or scale the restitution by factor",
             )
         idle: list[tuple[str, Section]] = [("podium.impact.contact_time", podium.impact)]
         if podium.contact.kind != "rigid":
-            ends = f"with podium.contact{self._where('podium.contact.kind')}: compliant ends do not"
+            ends = (
+                f"with podium.contact{self._where('podium.contact.kind')}: compliant ends"
+                " do not"
+            )
             ends += " bounce"
             idle.append(("analysis.recontact_tolerance", self.file.analysis))
         elif podium.bearing.slenderness == 0.0:
-            ends = f"without a flat part{self._where(f'{BEARING}.slenderness')}: such ends roll"
+            ends = (
+                f"without a flat part{self._where(f'{BEARING}.slenderness')}: such ends"
+                " roll"
+            )
             ends += " through upright without an impact"
         for key, section in idle if ends else ():
             # The default may stand there, in a case that was written out whole.
@@ -472,7 +556,9 @@ class Rules:
                 yield _at_key(f"{owner}.{key}", f" is missing: {meaning}")
             for key in (key for key in given if key not in ("kind", *needed, *optional)):
                 known = listed((*needed, *optional), "and")
-                text = f" is not a key of kind: {device.kind}, which has {known}; remove it"
+                text = (
+                    f" is not a key of kind: {device.kind}, which has {known}; remove it"
+                )
                 yield _at_key(f"{owner}.{key}", text)
         kinds = [DEVICES.get(each.kind) for each in self.file.podium.devices]
         of_columns = [i for i, kind in enumerate(kinds) if kind and kind.in_each_column]
@@ -481,7 +567,9 @@ class Rules:
             yield _of_value(f"podium.devices.{of_columns[0]}", text)
 
     def _record(self) -> Iterator[Fault]:
-        """A record has a factor, or a measure that fixes it; a pair is said in one way."""
+        """A record has a factor, or a measure that fixes it; a
+        pair is said in one way.
+        """
         record = self.file.record
         if record is None:
             return
@@ -498,18 +586,27 @@ class Rules:
                 yield _of_value(f"record.{name}", f": {error}")
                 continue
             if record.y is not None and source.of_pair:
-                text = " names a pair or a direction between two components; name single components"
-                yield _of_value(f"record.{name}", f"{text} here, or leave y out and write `?both`")
+                text = (
+                    " names a pair or a direction between two components; name single"
+                    " components"
+                )
+                yield _of_value(
+                    f"record.{name}", f"{text} here, or leave y out and write `?both`"
+                )
             both = both or source.both
         if record.rotation is not None and not both:
             text = " turns a pair: give y as well, or write `?both` behind the source"
-            yield _at_key("record.rotation", f"{text}; angle= is one direction between two")
+            yield _at_key(
+                "record.rotation", f"{text}; angle= is one direction between two"
+            )
         if record.scale_to is not None and record.scale != 1.0:
             yield self._both("record.scale_to", "record.scale", "fix the factor")
 
     def _limited(self, text: str, *names: str) -> Iterator[Fault]:
         """The limits among some that are set."""
-        yield from (_at_key(f"limits.{name}", text) for name in _given(self.file.limits, *names))
+        yield from (
+            _at_key(f"limits.{name}", text) for name in _given(self.file.limits, *names)
+        )
 
     def _limits(self) -> Iterator[Fault]:
         """A limit on something that the case cannot give would never be exceeded."""
@@ -518,7 +615,10 @@ class Rules:
         if podium.column is None:
             yield from self._limited(f" needs {COLUMN}, which is missing", *COLUMN_LIMITS)
         if building.storeys == 0:
-            text = f" needs a building, but {STOREYS} = 0{self._where(STOREYS)}; remove the limit"
+            text = (
+                f" needs a building, but {STOREYS} = 0{self._where(STOREYS)}; remove the"
+                " limit"
+            )
             of_building = (q.name for q in LIMITED if "superstructure" in q.needs)
             yield from self._limited(text, *of_building)
             return
@@ -526,66 +626,104 @@ class Rules:
             text = f" needs {HEIGHT}, which is missing"
             yield from self._limited(text, "drift_ratio", "residual_drift_ratio")
         if building.yields is None:
-            text = f" needs {YIELD}, strengths of storeys, which is missing; give it, or remove the"
-            yield from self._limited(f"{text} limit", *(q.name for q in YIELDING if q.limit))
+            text = (
+                f" needs {YIELD}, strengths of storeys, which is missing; give it, or"
+                " remove the"
+            )
+            yield from self._limited(
+                f"{text} limit", *(q.name for q in YIELDING if q.limit)
+            )
         needed = {
             "the overturning moment": ("podium.plan", podium.plan),
-            "the shock of impacts": ("superstructure.vertical_period", building.vertical_period),
+            "the shock of impacts": (
+                "superstructure.vertical_period",
+                building.vertical_period,
+            ),
         }
-        if lacking := {what: key for what, (key, value) in needed.items() if value is None}:
+        if lacking := {
+            what: key for what, (key, value) in needed.items() if value is None
+        }:
             text = (
-                f": the force of a column is known without {listed(lacking, 'and')} only, and may"
+                f": the force of a column is known without {listed(lacking, 'and')} only,"
+                " and may"
             )
-            text += f" be several times as large with it; give {listed(lacking.values(), 'and')}"
-            yield from self._limited(text, "max_column_force", "min_column_force", *COLUMN_LIMITS)
+            text += (
+                " be several times as large with it; give"
+                f" {listed(lacking.values(), 'and')}"
+            )
+            yield from self._limited(
+                text, "max_column_force", "min_column_force", *COLUMN_LIMITS
+            )
 
     def _columns(self) -> Iterator[Fault]:
-        """Rows have heights for the moment of the building; the force of one column a number."""
+        """Rows have heights for the moment of the building; the
+        force of one column a number.
+        """
         podium = self.file.podium
         building = self.file.superstructure
         if podium.column is not None and podium.columns is None:
             yield _at_key(COLUMNS, f" is missing: {COLUMN} asks for the force of one")
         text = "length, between two rows of columns, or the places of all rows"
         yield from _one_of("podium.plan", podium.plan, text, "length", "rows")
-        yield from _one_of("podium.plan.y", podium.plan and podium.plan.y, text, "length", "rows")
+        yield from _one_of(
+            "podium.plan.y", podium.plan and podium.plan.y, text, "length", "rows"
+        )
         if podium.plan is not None and (number := podium.columns) is not None:
             x = len(_rows(podium.plan))
             y = len(_rows(podium.plan.y))
             if y and number != x * y:
-                of_rows = f"must be {x} x {y}: one stands wherever two rows of podium.plan cross"
+                of_rows = (
+                    f"must be {x} x {y}: one stands wherever two rows of podium.plan"
+                    " cross"
+                )
                 yield _of_value(COLUMNS, f" = {number} {of_rows}")
             elif number % x:
-                of_rows = f"cannot stand in {x} rows of podium.plan with equally many each"
+                of_rows = (
+                    f"cannot stand in {x} rows of podium.plan with equally many each"
+                )
                 yield _of_value(COLUMNS, f" = {number} {of_rows}")
-        if podium.plan is not None and building.storeys and building.storey_height is None:
+        if (
+            podium.plan is not None
+            and building.storeys
+            and building.storey_height is None
+        ):
             yield _at_key("podium.plan", f" needs {HEIGHT}: the moment has lever arms")
 
     def faults_of_bearing(self, bearing: Bearing) -> Iterator[Fault]:
-        """Limits and strengths that its ends do not have, and rotations beyond the model."""
+        """Limits and strengths that its ends do not have, and
+        rotations beyond the model.
+        """
         file = self.file
         analysis = self.file.analysis
         critical = bearing.critical_rotation
         if bearing.is_flat:
-            text = " needs curved ends: flat ones stand on edges; limit crushed_width_ratio"
+            text = (
+                " needs curved ends: flat ones stand on edges; limit crushed_width_ratio"
+            )
             yield from self._limited(text, "contact_pressure_ratio")
         yields = file.superstructure.yields
         if bearing.is_spherical and yields is not None and yields.ratio is not None:
-            text = ": columns without a flat part have no V_st; give the shears in place of a ratio"
+            text = (
+                ": columns without a flat part have no V_st; give the shears in place of"
+                " a ratio"
+            )
             yield _at_key(f"{YIELD}.ratio", text)
         most = bearing.largest_rotation / critical
         if analysis.overturning_limit > most:
             yield _of_value(
                 "analysis.overturning_limit",
-                f" = {analysis.overturning_limit:g} times theta_cr = {critical:.6g} rad must not"
-                f" exceed {bearing.largest_rotation:.6g} rad, where the columns lie down and the"
-                f" model ends; use at most {math.floor(1e3 * most) / 1e3:g}",
+                f" = {analysis.overturning_limit:g} times theta_cr = {critical:.6g} rad"
+                f" must not exceed {bearing.largest_rotation:.6g} rad, where the columns"
+                " lie down and the model ends; use at most"
+                f" {math.floor(1e3 * most) / 1e3:g}",
             )
         limit = overturning_limit(analysis, bearing) * critical
         if abs(analysis.initial_rotation) >= limit:
             yield _of_value(
                 "analysis.initial_rotation",
-                f" = {analysis.initial_rotation:g} rad must stay below the overturning limit,"
-                f" {limit:.6g} rad (overturning_limit * theta_cr, or less); use a smaller one",
+                f" = {analysis.initial_rotation:g} rad must stay below the overturning"
+                f" limit, {limit:.6g} rad (overturning_limit * theta_cr, or less); use a"
+                " smaller one",
             )
 
 

@@ -88,7 +88,9 @@ class Case(Shown):
         return single_source(self.record.source if self.record else "", self.folder)
 
     def record_pair(self, of: Of | None) -> Pair | None:
-        """Both components that a measure of the record is of; None if it is of a single one."""
+        """Both components that a measure of the record is of; None
+        if it is of a single one.
+        """
         if self.record is None or self.record.y is None:
             return pairs([self.record_source], of, self.folder)[0]
         if of == "component":
@@ -117,7 +119,9 @@ class Case(Shown):
 
     @cached_property
     def document(self) -> dict[str, Any]:
-        """The case in SI units with all defaults written out; JSON-able, and a case again."""
+        """The case in SI units with all defaults written out;
+        JSON-able, and a case again.
+        """
         Section.build()
         content = self.file.model_dump(
             mode="json", exclude_none=True, by_alias=True, serialize_as_any=True
@@ -137,21 +141,22 @@ class Case(Shown):
 
 
 def load_case(source: str | Path | Mapping[str, Any], overrides: Overrides = ()) -> Case:
-    """A case from a file, the standard input (``-``), or values as a file would hold them.
+    """A case from a file, the standard input (``-``), or values
+    as a file would hold them.
 
     Parameters
     ----------
     source
-        Name of the file, or a mapping, in which numbers and lists may be those of numpy; its
-        relative paths start in the working folder.
+        Name of the file, or a mapping, in which numbers and lists may be those of numpy;
+        its relative paths start in the working folder.
     overrides
         Texts ``key=value`` over the case's own values.
 
     Raises
     ------
     CaseError
-        If the file cannot be read, or is not a valid case: one line for each fault of a key, or,
-        if there are none, for each between keys.
+        If the file cannot be read, or is not a valid case: one line for each fault of a
+        key, or, if there are none, for each between keys.
     """
     if isinstance(source, Mapping):
         text = text_of_values(source, "<case>")
@@ -169,7 +174,8 @@ def parse_case(
     if (kind := format_of(document)) in ("study", "design"):
         command = "sweep" if kind == "study" else kind
         raise CaseError(
-            f"{name}: this is a {kind}, but a case is needed here; `rps {command} {name}` runs it"
+            f"{name}: this is a {kind}, but a case is needed here; `rps {command} {name}`"
+            " runs it"
         )
     case = case_from_mapping(document, name, folder, overrides)
     return replace(case, digest=hashlib.sha256(text.encode()).hexdigest())
@@ -183,7 +189,9 @@ def case_from_mapping(
     *,
     label: str = "--set",
 ) -> Case:
-    """A case from values in memory, or from a document (or part of one) with its positions."""
+    """A case from values in memory, or from a document (or part of
+    one) with its positions.
+    """
     document = mapping if isinstance(mapping, Document) else Document(name, dict(mapping))
     document = apply_overrides(document, overrides, label=label)
     file = checked(CaseFile, document)

@@ -1,4 +1,6 @@
-"""Conditions that histories must keep: the limits of a case or a study, or of `--fail-on`."""
+"""Conditions that histories must keep: the limits of a case or a
+study, or of `--fail-on`.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +25,8 @@ FRICTION = "podium.friction"
 """Source of the condition that the columns do not slide."""
 
 RATE = "annual_rate"
-"""Condition on how often a year the structure overturns [1/year], over all intensities."""
+"""Condition on how often a year the structure overturns
+[1/year], over all intensities."""
 
 NOT_SHOWN = "not-shown"
 """Word of `--fail-on`: limits which are met and not shown to be kept count too."""
@@ -36,8 +39,8 @@ LIMITS = {quantity.name: quantity for quantity in LIMITED}
 class Condition:
     """A limit on an event or a result [SI], and who asks for it; 0 for an event.
 
-    Of the records of a study a `share` may exceed it, or fall below where small values are bad; or
-    the `fractile` of the results must keep it.
+    Of the records of a study a `share` may exceed it, or fall below where small values
+    are bad; or the `fractile` of the results must keep it.
     """
 
     name: str
@@ -65,7 +68,9 @@ class Condition:
 
 
 def parse_condition(text: str) -> Condition:
-    """A condition of `--fail-on`: ``overturning``, with a share ``=0.1``, or ``NAME=VALUE``."""
+    """A condition of `--fail-on`: ``overturning``, with a share
+    ``=0.1``, or ``NAME=VALUE``.
+    """
     name, sign, value = (part.strip() for part in text.partition("="))
     if (name in EVENTS or name == NOT_SHOWN) and not sign:
         return Condition(name, 0.0, "--fail-on")
@@ -80,11 +85,15 @@ def parse_condition(text: str) -> Condition:
         limit = math.nan
     if name in EVENTS:
         if not 0.0 <= limit < 1.0:
-            raise UsageError(f"--fail-on {text}: write {name}=SHARE from 0 to 1, as in {name}=0.1")
+            raise UsageError(
+                f"--fail-on {text}: write {name}=SHARE from 0 to 1, as in {name}=0.1"
+            )
         return Condition(name, 0.0, "--fail-on", share=limit)
     in_unit = f" or '0.5 {KINDS[unit][1][0]}'" if unit in KINDS else ""
     if not math.isfinite(limit):
-        raise UsageError(f"--fail-on {text}: write {name}=NUMBER, as in {name}=0.5{in_unit}")
+        raise UsageError(
+            f"--fail-on {text}: write {name}=NUMBER, as in {name}=0.5{in_unit}"
+        )
     return Condition(name, limit, "--fail-on")
 
 
@@ -109,9 +118,11 @@ def conditions_of(limits: LimitsSection, source: str) -> tuple[Condition, ...]:
 def case_conditions(
     limits: LimitsSection, structure: PodiumStructure, records: int = 1
 ) -> tuple[Condition, ...]:
-    """The limits that a case sets for so many records, with those that follow from others.
+    """The limits that a case sets for so many records, with those
+    that follow from others.
 
-    What overturns exceeds every limit: where one is for every record, no record may overturn.
+    What overturns exceeds every limit: where one is for every
+    record, no record may overturn.
     """
     found = conditions_of(limits, "limits of the case")
     every = found if records == 1 else [each for each in found if each.admissible == 0.0]
@@ -120,8 +131,12 @@ def case_conditions(
     return with_friction(found, structure)
 
 
-def unknown_of_pairs(conditions: Iterable[Condition], structure: PodiumStructure) -> list[str]:
-    """Reasons why conditions cannot be judged where both components act, each with its source."""
+def unknown_of_pairs(
+    conditions: Iterable[Condition], structure: PodiumStructure
+) -> list[str]:
+    """Reasons why conditions cannot be judged where both components
+    act, each with its source.
+    """
     from rpscli.analyses.column_forces import no_bound  # numpy is slow
 
     found = ((each.source, no_bound(each.name, structure)) for each in conditions)
@@ -131,15 +146,25 @@ def unknown_of_pairs(conditions: Iterable[Condition], structure: PodiumStructure
 def with_friction(
     conditions: tuple[Condition, ...], structure: PodiumStructure
 ) -> tuple[Condition, ...]:
-    """The conditions, and that columns do not slide, unless the friction ratio has a limit."""
-    if structure.friction is None or any(each.name == "friction_ratio" for each in conditions):
+    """The conditions, and that columns do not slide, unless the
+    friction ratio has a limit.
+    """
+    if structure.friction is None or any(
+        each.name == "friction_ratio" for each in conditions
+    ):
         return conditions
     return (*conditions, Condition("friction_ratio", 1.0, FRICTION))
 
 
 def replaced_limits(base: dict[str, Any], own: LimitsSection | None) -> str:
-    """Names of the limits of a base case that a study has its own in place of, if it has any."""
+    """Names of the limits of a base case that a study has its own in
+    place of, if it has any.
+    """
     given = Document("", base).has(("podium", "friction"))
     still = given and own and "friction_ratio" not in own.model_fields_set
-    said = {"friction_ratio": f"friction_ratio (still at most 1, by {FRICTION})"} if still else {}
+    said = (
+        {"friction_ratio": f"friction_ratio (still at most 1, by {FRICTION})"}
+        if still
+        else {}
+    )
     return ", ".join(said.get(name, name) for name in base.get("limits") or () if own)

@@ -1,4 +1,6 @@
-"""Design files: what may change in a case, what is required of it, and what is to be least."""
+"""Design files: what may change in a case, what is required of it,
+and what is to be least.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +14,13 @@ from typing import Annotated, Any, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BeforeValidator, Field, PlainValidator, WithJsonSchema, model_validator
+from pydantic import (
+    BeforeValidator,
+    Field,
+    PlainValidator,
+    WithJsonSchema,
+    model_validator,
+)
 
 from rpscli.analyses.result_quantities import DEMANDS, SAMPLED
 from rpscli.case.conditions import replaced_limits
@@ -50,15 +58,18 @@ GONE = {
     "ties": "write `linked`",
     "least": "write `minimise`",
     "confirm": "write `validate`",
-    "tolerance": "every design is judged by itself; `perturb` varies motions and impacts, and a"
-    " study over values near the answer shows what differences in building do",
+    "tolerance": (
+        "every design is judged by itself; `perturb` varies motions and impacts, and a"
+        " study over values near the answer shows what differences in building do"
+    ),
 }
 """Keys of designs of earlier versions, and what to use in their place."""
 
 Array = NDArray[np.float64]
 
 STEPS = 3
-"""Decimals of a range, or of its least end, to which values are rounded, judged and printed."""
+"""Decimals of a range, or of its least end, to which values are
+rounded, judged and printed."""
 
 
 class Term(Section):
@@ -81,8 +92,8 @@ def _sum(value: object) -> object:
         return {value: {}}
     if isinstance(value, list | tuple):
         refuse(
-            "must be one objective: lists of two, for a Pareto front, are gone; write a sum, or"
-            " minimise one and set a limit on the other"
+            "must be one objective: lists of two, for a Pareto front, are gone; write a"
+            " sum, or minimise one and set a limit on the other"
         )
     if not isinstance(value, dict) or not value:
         refuse(
@@ -117,10 +128,14 @@ class Unknown(NamedTuple):
 
     @property
     def digits(self) -> int:
-        """Decimals of its values, which tell the ends of the range and a thousandth of it."""
+        """Decimals of its values, which tell the ends of the
+        range and a thousandth of it.
+        """
         if is_whole(self.key):
             return 0
-        sizes = [size for size in (abs(self.low), abs(self.high), self.high - self.low) if size]
+        sizes = [
+            size for size in (abs(self.low), abs(self.high), self.high - self.low) if size
+        ]
         return STEPS - math.floor(math.log10(min(sizes)))
 
 
@@ -129,28 +144,39 @@ def _unknown(given: tuple[str, object]) -> Unknown:
     key, bounds = given
     si = in_si(bounds, unit(key))
     if not isinstance(si, list) or len(si) != 2 or not all(map(is_moderate, si)):
-        words = "numbers" if unit(key) == "-" else f"numbers in {unit(key)} or with a unit"
+        words = (
+            "numbers" if unit(key) == "-" else f"numbers in {unit(key)} or with a unit"
+        )
         refuse(f"must be two {words}, [least, largest], up to {LARGEST:g}")
     if not si[0] < si[1]:
         refuse(
-            "must rise from the least value to the largest; exchange them, or leave the key to the"
-            " case"
+            "must rise from the least value to the largest; exchange them, or leave the"
+            " key to the case"
         )
     return Unknown(key, float(si[0]), float(si[1]))
 
 
-_BOUNDS = {"type": "array", "items": {"type": ["number", "string"]}, "minItems": 2, "maxItems": 2}
+_BOUNDS = {
+    "type": "array",
+    "items": {"type": ["number", "string"]},
+    "minItems": 2,
+    "maxItems": 2,
+}
 Variables = Annotated[
     dict[str, Annotated[Unknown, PlainValidator(_unknown), WithJsonSchema(_BOUNDS)]],
     BeforeValidator(with_keys),
     must_be(
-        dict, "keys with their ranges, as in {podium.bearing.slenderness: [0.1, 0.3]}", filled=True
+        dict,
+        "keys with their ranges, as in {podium.bearing.slenderness: [0.1, 0.3]}",
+        filled=True,
     ),
 ]
 
 
 class SearchSection(Section):
-    """How many designs are looked at; what is left out follows from the number of unknowns."""
+    """How many designs are looked at; what is left out follows
+    from the number of unknowns.
+    """
 
     first: Annotated[int, Whole(4, 65_536)] | None = None
     """designs of the first, even sample"""
@@ -182,13 +208,16 @@ class ValidateSection(Section):
 
 
 class DesignFile(StudyParts):
-    """A design: the values of some keys of a case that meet the limits and minimise something."""
+    """A design: the values of some keys of a case that meet the
+    limits and minimise something.
+    """
 
     variables: Variables
-    """dotted case keys with [least, largest]: what may change; devices count from 0, as in
-    podium.devices.0.force"""
+    """dotted case keys with [least, largest]: what may change; devices count from 0, as
+    in podium.devices.0.force"""
     linked: Linked = Field(
-        {}, description="further keys as linear sums of these, {key: factor, plus: constant}"
+        {},
+        description="further keys as linear sums of these, {key: factor, plus: constant}",
     )
     minimise: Objective
     """what is minimised: a result, a key, or a sum of them"""
@@ -202,7 +231,9 @@ class DesignFile(StudyParts):
 
 @dataclass(frozen=True, eq=False)
 class DesignTask:
-    """A study without values of its axis, which are looked for; `unseen` records validate them."""
+    """A study without values of its axis, which are looked for;
+    `unseen` records validate them.
+    """
 
     study: Study
     file: DesignFile
@@ -224,17 +255,26 @@ class DesignTask:
         for unknown, at in zip(self.unknowns, places.T, strict=True):
             key, low, high = unknown
             values = low + (high - low) * at
-            found[key] = np.array([round(value, unknown.digits) for value in values.tolist()])
+            found[key] = np.array(
+                [round(value, unknown.digits) for value in values.tolist()]
+            )
         for key, terms in self.file.linked.items():
-            columns = zip(*(found[name].tolist() for name in terms if name != PLUS), strict=True)
-            found[key] = np.array([linked_value(key, terms, row) for row in columns], dtype=float)
+            columns = zip(
+                *(found[name].tolist() for name in terms if name != PLUS), strict=True
+            )
+            found[key] = np.array(
+                [linked_value(key, terms, row) for row in columns], dtype=float
+            )
         return np.column_stack(list(found.values()))
 
     def rows(self, values: Array) -> tuple[tuple[float | int, ...], ...]:
         """The values of each design as a case takes them."""
         whole = [is_whole(key) for key in self.keys]
         return tuple(
-            tuple(int(value) if is_int else value for value, is_int in zip(row, whole, strict=True))
+            tuple(
+                int(value) if is_int else value
+                for value, is_int in zip(row, whole, strict=True)
+            )
             for row in values.tolist()
         )
 
@@ -243,12 +283,22 @@ class DesignTask:
         """Numbers of the recordings, or events, of the records of the search."""
         sources = self.study.sources
         # Without any it is the case's own record.
-        return clusters(sources, self.study.folder, self.file.independent) if sources else (0,)
+        return (
+            clusters(sources, self.study.folder, self.file.independent)
+            if sources
+            else (0,)
+        )
 
     def study_of(self, values: Array, sources: tuple[str, ...] | None = None) -> Study:
-        """The study of some designs, (designs, keys), under the design's records or others."""
-        owner = {key: "linked" if key in self.file.linked else "variables" for key in self.keys}
-        places = tuple((self.study.document.value_place((owner[k], k)),) for k in self.keys)
+        """The study of some designs, (designs, keys), under the
+        design's records or others.
+        """
+        owner = {
+            key: "linked" if key in self.file.linked else "variables" for key in self.keys
+        }
+        places = tuple(
+            (self.study.document.value_place((owner[k], k)),) for k in self.keys
+        )
         axis = Axis(self.keys, self.rows(values), places, of_designs=True)
         own = self.study.sources if sources is None else sources
         return replace(self.study, axes=(axis,), sources=own)
@@ -262,8 +312,9 @@ def parse_design(
     document = read_yaml(text, name)
     if (kind := format_of(document)) != "design":
         raise CaseError(
-            f"{name}: this is a {kind or 'file'} without `variables`, but a design is needed here:"
-            " a base case, variables, records, limits and minimise; see `rps explain variables`"
+            f"{name}: this is a {kind or 'file'} without `variables`, but a design is"
+            " needed here: a base case, variables, records, limits and minimise; see"
+            " `rps explain variables`"
         )
     document.refuse(
         Fault((word,), f"{word} is gone: {now}", at_key=True)
@@ -285,7 +336,9 @@ def parse_design(
     )
     used, unseen = _used_and_unseen(document, file, study, unseen)
     notes = (*study.notes, *_notes(file, study.base.content))
-    return DesignTask(replace(study, document=document, sources=used, notes=notes), file, unseen)
+    return DesignTask(
+        replace(study, document=document, sources=used, notes=notes), file, unseen
+    )
 
 
 def _notes(file: DesignFile, base: dict[str, Any]) -> Iterator[str]:
@@ -296,23 +349,26 @@ def _notes(file: DesignFile, base: dict[str, Any]) -> Iterator[str]:
     sizes = [key for key in file.variables if {*key.split(".")[2:3]} & own]
     if sizes and Document("", base).has(("superstructure", "yield", "ratio")):
         yield (
-            f"superstructure.yield.ratio is a multiple of V_st, which changes with {sizes[0]}: the"
-            " storeys of each design have another strength; yield.shears keeps it"
+            "superstructure.yield.ratio is a multiple of V_st, which changes with"
+            f" {sizes[0]}: the storeys of each design have another strength; yield.shears"
+            " keeps it"
         )
 
 
 def _used_and_unseen(
     document: Document, file: DesignFile, study: Study, unseen: tuple[str, ...]
 ) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Records of the search, and those that the answer is validated on: others, or a part."""
+    """Records of the search, and those that the answer is
+    validated on: others, or a part.
+    """
     numbers = clusters((*study.sources, *unseen), study.folder, file.independent)
     own = dict(zip(study.sources, numbers, strict=False))
     section = file.validation
     others = zip(unseen, numbers[len(own) :], strict=True)
     if both := [source for source, number in others if number in own.values()]:
         text = (
-            f"validate.records has {listed(both[:3], 'and')}, whose {file.independent[:-1]} the"
-            " search uses already; name other motions"
+            f"validate.records has {listed(both[:3], 'and')}, whose"
+            f" {file.independent[:-1]} the search uses already; name other motions"
         )
         document.refuse([Fault(("validate", "records"), text)])
     if section is None or section.share is None:
@@ -329,10 +385,15 @@ def _used_and_unseen(
 
 
 def _name_faults(document: Document, file: DesignFile) -> Iterator[Fault]:
-    """Keys that are no property of the structure; names that are neither keys nor results."""
+    """Keys that are no property of the structure; names that are
+    neither keys nor results.
+    """
     for key, place in varying(document):
         if key.split(".")[0] in {"limits", "analysis", "rps", "title", "record"}:
-            text = f"{key} must not change in a design; it is not a property of the structure"
+            text = (
+                f"{key} must not change in a design; it is not a property of the"
+                " structure"
+            )
             yield Fault(place, text, at_key=True)
     known = [*file.variables, PLUS]
     keys = [*file.variables, *file.linked]
@@ -347,7 +408,10 @@ def _name_faults(document: Document, file: DesignFile) -> Iterator[Fault]:
             text = f"{name} needs `whole_histories: true`; add it"
         elif name not in keys and name not in results:
             suggestion = hint(name, [*keys, *results], f"use {listed(keys)}, or a result")
-            text = f"{name} is neither a result nor a key that `variables` changes; {suggestion}"
+            text = (
+                f"{name} is neither a result nor a key that `variables` changes;"
+                f" {suggestion}"
+            )
         elif name in keys and "fractile" in term.model_fields_set:
             text = f"{name} is a key, without fractiles; remove it"
         else:

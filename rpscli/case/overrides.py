@@ -1,4 +1,6 @@
-"""`--set dotted.key=value`, and the varied keys of a study: values put over those of a file."""
+"""`--set dotted.key=value`, and the varied keys of a study: values
+put over those of a file.
+"""
 
 from __future__ import annotations
 
@@ -44,7 +46,9 @@ def apply_overrides(
     label: str = "--set",
     model: type[BaseModel] = CaseFile,
 ) -> Document:
-    """A new document with values put over those that are written; null takes a key out."""
+    """A new document with values put over those that are
+    written; null takes a key out.
+    """
     changed = replace(
         document,
         content=copy.deepcopy(document.content),
@@ -75,12 +79,16 @@ def _parsed(overrides: Overrides, label: str) -> Iterator[Override]:
             place = Place(f"{label} {item}", rank=rank)
             key, sign, text = item.partition("=")
             if not sign or not key.strip():
-                raise CaseError(f"{place}: write {label} dotted.key=value, as in podium.columns=4")
+                raise CaseError(
+                    f"{place}: write {label} dotted.key=value, as in podium.columns=4"
+                )
             yield Override(key.strip(), read_value(text, str(place)), place)
 
 
 def _unknown(path: Path, model: type[BaseModel]) -> str:
-    """The first part of a path that the format does not know, in words; empty if it knows all."""
+    """The first part of a path that the format does not know, in
+    words; empty if it knows all.
+    """
     named = tuple(part for part in path if isinstance(part, str))
     if not named:
         return "an index alone is not a key of the format"
@@ -88,7 +96,9 @@ def _unknown(path: Path, model: type[BaseModel]) -> str:
         if field_at(model, named[: end + 1]) is not None:
             continue
         if section_at(model, named[:end]) is None:
-            return f"{dotted(named[:end])} can be set as a whole only, not {dotted(named)}"
+            return (
+                f"{dotted(named[:end])} can be set as a whole only, not {dotted(named)}"
+            )
         return unknown_key(model, (*named[:end], part))[0].text
     return ""
 
@@ -120,9 +130,13 @@ def _put(document: Document, path: Path, override: Override) -> str:
 
 
 def _obstacle(owner: object, path: Path, part: str | int) -> str:
-    """The reason why `part` is no key or index of the value at a path; empty if it is one."""
+    """The reason why `part` is no key or index of the value at a
+    path; empty if it is one.
+    """
     if isinstance(owner, list) and isinstance(part, int):
-        lacks = f"{dotted(path)} has {len(owner)} values, counted from 0; there is no {part}"
+        lacks = (
+            f"{dotted(path)} has {len(owner)} values, counted from 0; there is no {part}"
+        )
         return lacks if part >= len(owner) else ""
     if isinstance(owner, list):
         return f"{dotted(path)} is a list, without a key {part}"

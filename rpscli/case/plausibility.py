@@ -1,7 +1,9 @@
-"""Doubts about a case, possible, but probably not intended: the number, and what is usual.
+"""Doubts about a case, possible, but probably not intended: the
+number, and what is usual.
 
-Mostly slips of units: millimetres for metres, kilograms for tonnes. The systems of a study are
-looked at as a single case is; what is doubted in many of them is told once, with the range.
+Mostly slips of units: millimetres for metres, kilograms for tonnes. The systems
+of a study are looked at as a single case is; what is doubted in many of them is
+told once, with the range.
 """
 
 from __future__ import annotations
@@ -22,7 +24,9 @@ if TYPE_CHECKING:
 
 
 class Doubt(NamedTuple):
-    """Something unusual: a sentence, with ``{0}`` for its number and ``{1}`` for a detail."""
+    """Something unusual: a sentence, with ``{0}`` for its number
+    and ``{1}`` for a detail.
+    """
 
     sentence: str
     value: float | None = None
@@ -35,7 +39,9 @@ class Doubt(NamedTuple):
 
 
 def doubts_of_many(systems: Sequence[Iterable[Doubt]]) -> list[str]:
-    """Each kind of doubt once, with how many systems raise it and the range of its number."""
+    """Each kind of doubt once, with how many systems raise it and
+    the range of its number.
+    """
     kinds: dict[str, dict[int, list[float]]] = {}
     for system, doubts in enumerate(systems):
         for sentence, value, _ in doubts:
@@ -46,26 +52,31 @@ def doubts_of_many(systems: Sequence[Iterable[Doubt]]) -> list[str]:
         values = [value for of_system in raised.values() for value in of_system]
         numbers = dict.fromkeys(f"{f(values):.4g}" for f in (min, max) if values)
         texts.append(
-            f"{len(raised)} of {len(systems)} systems: {sentence.format(' to '.join(numbers), '')}"
+            f"{len(raised)} of {len(systems)} systems:"
+            f" {sentence.format(' to '.join(numbers), '')}"
         )
     return texts
 
 
 HOLDS = 1.3
-"""Over tan(alpha): columns with less friction may slide in any record (Theory, section 2)."""
+"""Over tan(alpha): columns with less friction may slide in any
+record (Theory, section 2)."""
 
 WALKS = 0.25
-"""tan(alpha) above which contacts that rebound let the beam walk over its columns (Theory, 2)."""
+"""tan(alpha) above which contacts that rebound let the beam walk over
+its columns (Theory, 2)."""
 
 NEIGHBOURS = 20.0
 """No storey is so many times as heavy, or as stiff, as the next one."""
 
 STIFFEST = 1.02
 SOFTEST = 0.02
-"""Least period ratio and largest phi_u/alpha of compliant ends for which that is meant."""
+"""Least period ratio and largest phi_u/alpha of compliant ends
+for which that is meant."""
 
 STRONGEST = 0.4
-"""Hardly a building carries more than this part of its weight sideways: V_st/(M_tot g)."""
+"""Hardly a building carries more than this part of its weight
+sideways: V_st/(M_tot g)."""
 
 LARGEST_DRIFT = 0.02
 """Hardly a building carries a larger drift over its storey height without damage."""
@@ -77,38 +88,41 @@ def doubts_of_structure(structure: PodiumStructure) -> Iterator[Doubt]:
     yield from _pressed_arcs(structure)
     bearing = structure.bearing
     building = structure.superstructure
-    if structure.friction is not None and structure.friction < HOLDS * bearing.slenderness:
+    if (
+        structure.friction is not None
+        and structure.friction < HOLDS * bearing.slenderness
+    ):
         yield Doubt(
-            f"podium.friction = {{0}} is below {HOLDS:g} tan(alpha): columns may slide in any"
-            " record that lifts them, which the model leaves out",
+            f"podium.friction = {{0}} is below {HOLDS:g} tan(alpha): columns may slide"
+            " in any record that lifts them, which the model leaves out",
             structure.friction,
         )
     if (bed := structure.bed) is not None and (bed.period_ratio or STIFFEST) < STIFFEST:
         yield Doubt(
-            f"podium.contact: the period in full contact is {{0}} of the fixed base, below"
-            f" {STIFFEST:g}: short steps and no effect; use kind: rigid",
+            "podium.contact: the period in full contact is {0} of the fixed base,"
+            f" below {STIFFEST:g}: short steps and no effect; use kind: rigid",
             bed.period_ratio,
         )
     if bed is not None and bed.ratio > SOFTEST:
         yield Doubt(
-            f"podium.contact: ends lift at {{0}} alpha only, above {SOFTEST:g}: the settlement is"
-            " no longer small compared with the width of the joint",
+            f"podium.contact: ends lift at {{0}} alpha only, above {SOFTEST:g}: the"
+            " settlement is no longer small compared with the width of the joint",
             bed.ratio,
         )
     if building is None:
         return
     if bearing.slenderness > WALKS:
         yield Doubt(
-            f"tan(alpha) = {{0}} is above {WALKS:g}: contacts that rebound, which the model leaves"
-            " out, let the cap beam walk over its columns",
+            f"tan(alpha) = {{0}} is above {WALKS:g}: contacts that rebound, which the"
+            " model leaves out, let the cap beam walk over its columns",
             bearing.slenderness,
         )
     yield from _weak_storeys(structure)
     if bearing.slenderness > STRONGEST:
         yield Doubt(
             "the base shear at uplift V_st is {0} of the building's weight, above the"
-            f" {STRONGEST:g} that any usual building carries: it would be damaged before it lifts;"
-            " more slender columns lift earlier",
+            f" {STRONGEST:g} that any usual building carries: it would be damaged before"
+            " it lifts; more slender columns lift earlier",
             bearing.slenderness,
         )
     if building.storey_heights is not None:
@@ -118,8 +132,8 @@ def doubts_of_structure(structure: PodiumStructure) -> Iterator[Doubt]:
         if drifts[storey] > LARGEST_DRIFT:
             yield Doubt(
                 "a storey drifts at uplift by {0} of its height{1}; more than"
-                f" {LARGEST_DRIFT:g} is beyond usual buildings; check stiffness, period and storey"
-                " height",
+                f" {LARGEST_DRIFT:g} is beyond usual buildings; check stiffness, period"
+                " and storey height",
                 float(drifts[storey]),
                 f" (storey {storey + 1}, under a shear of {above[storey]:.4g} N)",
             )
@@ -138,7 +152,13 @@ def _unusual_sizes(structure: PodiumStructure) -> Iterator[Doubt]:
     if building is not None:
         column = structure.columns_mass / structure.columns
         ranges += [
-            ("the mean mass of a storey", 1e-3 * building.masses.mean(), "t", 1.0, 10_000.0),
+            (
+                "the mean mass of a storey",
+                1e-3 * building.masses.mean(),
+                "t",
+                1.0,
+                10_000.0,
+            ),
             ("the mean mass of a column", 1e-3 * column, "t", 0.02, 10_000.0),
             ("the first period on a fixed base T1", building.periods[0], "s", 0.02, 5.0),
             ("superstructure.vertical_period", building.vertical_period, "s", 0.01, 1.0),
@@ -148,7 +168,8 @@ def _unusual_sizes(structure: PodiumStructure) -> Iterator[Doubt]:
             usual = f"{least:g} to {most:g}{unit and f' {unit}'}"
             advice = "; check the units" if unit else ""
             yield Doubt(
-                f"{name} = {{0}}{unit and f' {unit}'} is unusual: {usual} is usual{advice}",
+                f"{name} = {{0}}{unit and f' {unit}'} is unusual: {usual} is"
+                f" usual{advice}",
                 float(value),
             )
 
@@ -173,13 +194,15 @@ def _pressed_arcs(structure: PodiumStructure) -> Iterator[Doubt]:
 def _weak_storeys(structure: PodiumStructure) -> Iterator[Doubt]:
     """Storeys that the podium does not protect, as they yield before columns lift."""
     for way, seen in structure.ways.items():
-        weak = {i: s for i, s in enumerate(storey_strengths(seen), 1) if not s.uplift_first}
+        weak = {
+            i: s for i, s in enumerate(storey_strengths(seen), 1) if not s.uplift_first
+        }
         if weak:
             yield Doubt(
                 "superstructure.yield: under slow ground motion storeys"
-                f" yield{way.replace('_', ' in ')} before columns lift, at {{0}} of their shear at"
-                " uplift{1}: the podium does not protect them; give them more strength, or the"
-                " podium more slender columns",
+                f" yield{way.replace('_', ' in ')} before columns lift, at {{0}} of"
+                " their shear at uplift{1}: the podium does not protect them; give them"
+                " more strength, or the podium more slender columns",
                 min(s.strength / s.shear_at_uplift for s in weak.values()),
                 f" (storey {listed(map(str, weak), 'and')})",
             )
@@ -189,43 +212,52 @@ def doubts_of_directions(structure: PodiumStructure, *, both: bool) -> Iterator[
     """Effects that both horizontal components bring in, or one alone leaves out."""
     if not both:
         if structure.superstructure_y is not None:
-            yield Doubt("superstructure.y has an effect only where both components act (`?both`)")
+            yield Doubt(
+                "superstructure.y has an effect only where both components act (`?both`)"
+            )
         return
     if structure.gamma == 0.0:
         yield Doubt(
-            "free-standing columns (no cap beam) are assumed to roll on their own ends and to"
-            " stay in place, which torsion under their weight hardly ensures: they may roll"
-            " away"
+            "free-standing columns (no cap beam) are assumed to roll on their own ends"
+            " and to stay in place, which torsion under their weight hardly ensures:"
+            " they may roll away"
         )
     if structure.column is not None and structure.column.section == "square":
         yield Doubt(
-            "podium.column.section: square columns are modelled as round under both components;"
-            " real ones resist up to 1.4 times as much towards their corners and wobble over them"
-            " with impacts, and the pressure at a corner is not computed"
+            "podium.column.section: square columns are modelled as round under both"
+            " components; real ones resist up to 1.4 times as much towards their corners"
+            " and wobble over them with impacts, and the pressure at a corner is not"
+            " computed"
         )
     lossless = structure.impact_law.contact_time == 0.0 and not structure.passes_smoothly
     if lossless and structure.restitution < 1.0:
         yield Doubt(
-            "podium.impact.contact_time = 0: passes near upright lose nothing, however close,"
-            " but impacts do: results are discontinuous, and rounding decides them"
+            "podium.impact.contact_time = 0: passes near upright lose nothing, however"
+            " close, but impacts do: results are discontinuous, and rounding decides"
+            " them"
         )
 
 
 def doubts_of_text(section: SuperstructureSection) -> Iterator[Doubt]:
     """Keys without effect, unequal neighbours."""
     fields = type(section).model_fields.items()
-    ignored = [each.alias or name for name, each in fields if name in section.model_fields_set]
+    ignored = [
+        each.alias or name for name, each in fields if name in section.model_fields_set
+    ]
     if section.storeys == 0 and len(ignored) > 1:
         keys = listed((f"superstructure.{name}" for name in ignored[1:]), "and")
-        yield Doubt(f"superstructure.storeys = 0: there is no building, so {keys} had no effect")
+        yield Doubt(
+            f"superstructure.storeys = 0: there is no building, so {keys} had no effect"
+        )
     for name, unit in (("storey_mass", "kg"), ("stiffness", "N/m")):
         given = getattr(section, name) if section.storeys else None
         values = each_storey(given, section.storeys) if given else ()
         for storey, (below, above) in enumerate(pairwise(values), start=1):
             if max(below, above) > NEIGHBOURS * min(below, above):
                 yield Doubt(
-                    f"superstructure.{name}: a storey has {{0}} times as much as its neighbour{{1}}"
-                    f"; less than {NEIGHBOURS:g} times is usual; check the units",
+                    f"superstructure.{name}: a storey has {{0}} times as much as its"
+                    f" neighbour{{1}}; less than {NEIGHBOURS:g} times is usual; check"
+                    " the units",
                     max(below, above) / min(below, above),
                     f" (storey {storey} has {below:.4g} {unit},"
                     f" storey {storey + 1} {above:.4g} {unit})",

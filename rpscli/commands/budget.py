@@ -1,4 +1,6 @@
-"""`rps budget`: what moves each limited result of a case, and which of it turns the verdict."""
+"""`rps budget`: what moves each limited result of a case, and which
+of it turns the verdict.
+"""
 
 from __future__ import annotations
 
@@ -38,13 +40,15 @@ def command(
     out: options.Output,
     motion: inputs.MotionRequest,
 ) -> None:
-    """Change of each limited result of CASE for one input at a time, in the unit of its limit.
+    """Change of each limited result of CASE for one input at a time,
+    in the unit of its limit.
 
-    Numerics, loss at impacts, contact, the other component, damping, a tenth of the period, a
-    fifth of strengths and devices, 1 % of the motion and of the dimensions, vertical motion,
-    records: of several --record the first is the history itself, else
-    the far-field set of FEMA P695 at its PGA shows the scatter. Each row names the options with
-    which `rps timehistory CASE` gives its numbers. The exit code is 0 whatever the verdicts are.
+    Numerics, loss at impacts, contact, the other component, damping, a tenth of the
+    period, a fifth of strengths and devices, 1 % of the motion and of the dimensions,
+    vertical motion, records: of several --record the first is the history itself, else
+    the far-field set of FEMA P695 at its PGA shows the scatter. Each row names the
+    options with which `rps timehistory CASE` gives its numbers. The exit code is 0
+    whatever the verdicts are.
     """
     given = inputs.read_case(request, out.terminal)
     single = inputs.single_motions(records, motion, out.terminal.warn)
@@ -54,7 +58,9 @@ def command(
     found = case_budget(given, motions, out.terminal)
     folder.add_all(found.files(out.look))
     plane = motions[0].ground.y is None
-    inputs.conclude(given, folder, found.document(), found.tables(), out.terminal, plane=plane)
+    inputs.conclude(
+        given, folder, found.document(), found.tables(), out.terminal, plane=plane
+    )
 
 
 def case_budget(
@@ -75,7 +81,10 @@ def case_budget(
 
 
 def _row(
-    given: inputs.CaseInput, cause: str, sets: tuple[str, ...], motion: inputs.MotionRequest | str
+    given: inputs.CaseInput,
+    cause: str,
+    sets: tuple[str, ...],
+    motion: inputs.MotionRequest | str,
 ) -> Row:
     """What `rps timehistory` would find; the sentence of a refusal."""
     from rpscli.analyses.timehistory import time_history
@@ -86,7 +95,11 @@ def _row(
     if isinstance(motion, str):
         return Row(cause, "", "", "", {}, "", motion)
     words = [*options.set_words((*given.request.overrides, *sets)), *motion.words]
-    change = re.sub(r"^[\w.]*\.|contact=|kind: |[{}]", "", sets[0]) if sets else " ".join(words)
+    change = (
+        re.sub(r"^[\w.]*\.|contact=|kind: |[{}]", "", sets[0])
+        if sets
+        else " ".join(words)
+    )
     row = Row(cause, change, shlex.join(words), "", {}, "", "")
     case = given.case
     try:
@@ -127,7 +140,9 @@ def _wishes(case: Case, motions: Sequence[inputs.Motion]) -> Iterator[Wish]:
     yield from _records(case, motions)
 
 
-def _with_own_vertical(case: Case, motion: inputs.MotionRequest) -> inputs.MotionRequest | str:
+def _with_own_vertical(
+    case: Case, motion: inputs.MotionRequest
+) -> inputs.MotionRequest | str:
     """The motion with the vertical component of its recording, if that lies beside it."""
     from rpscli.records.loading import OWN
 
@@ -155,13 +170,19 @@ def _values(case: Case) -> Iterator[tuple[str, ...]]:
         yield "contact", f"podium.contact={{kind: {kind}}}"
     if (damping := file.superstructure.damping) is not None:
         for factor in (0.5, 2.0) if damping.ratio else ():
-            yield "damping ratio", f"superstructure.damping.ratio={factor * damping.ratio:g}"
+            yield (
+                "damping ratio",
+                f"superstructure.damping.ratio={factor * damping.ratio:g}",
+            )
         rayleigh = f"[1, {min(2, file.superstructure.storeys)}]"
         modes = rayleigh if damping.modes is None else "null"
         yield "damping model", f"superstructure.damping.modes={modes}"
     if (period := file.superstructure.vertical_period) is not None:
         for factor in (0.5, 2.0):
-            yield "vertical period", f"superstructure.vertical_period={factor * period:g} s"
+            yield (
+                "vertical period",
+                f"superstructure.vertical_period={factor * period:g} s",
+            )
     yield from _of_building_and_devices(case)
     place = "podium.bearing.dimensions" if bearing.dimensions else "podium.bearing"
     for name in ("semi_diagonal", "slenderness", "height", "width"):
@@ -175,15 +196,21 @@ def _of_building_and_devices(case: Case) -> Iterator[tuple[str, ...]]:
     building = case.file.superstructure
     fifth = (0.8, 1.2)
     of_both = {"superstructure": building, "superstructure.y": building.y}
-    periods = {key: of.period for key, of in of_both.items() if of is not None and of.period}
+    periods = {
+        key: of.period for key, of in of_both.items() if of is not None and of.period
+    }
     for factor in (0.9, 1.1) if periods else ():
-        yield "period", *(f"{key}.period={factor * of:.12g}" for key, of in periods.items())
+        yield (
+            "period",
+            *(f"{key}.period={factor * of:.12g}" for key, of in periods.items()),
+        )
     if (strengths := building.yields) is not None:
         name = "ratio" if strengths.ratio is not None else "shears"
         given = getattr(strengths, name)
         for factor in fifth:
             each = [
-                f"{factor * of:.12g}" for of in (given if isinstance(given, tuple) else [given])
+                f"{factor * of:.12g}"
+                for of in (given if isinstance(given, tuple) else [given])
             ]
             changed = f"[{', '.join(each)}]" if isinstance(given, tuple) else each[0]
             yield "strength of storeys", f"superstructure.yield.{name}={changed}"
@@ -195,12 +222,18 @@ def _of_building_and_devices(case: Case) -> Iterator[tuple[str, ...]]:
 
 
 def _scaled(motion: inputs.MotionRequest, scale: float) -> inputs.MotionRequest:
-    """A motion by a factor that can be typed, which takes the place of any other scaling."""
+    """A motion by a factor that can be typed, which takes the
+    place of any other scaling.
+    """
     return replace(motion, scale=float(f"{scale:.12g}"), scale_to=None)
 
 
-def _direction(case: Case, motion: inputs.MotionRequest, ground: MotionComponents) -> Wish:
-    """Of one component both, in which it keeps its direction; of a source of both its first."""
+def _direction(
+    case: Case, motion: inputs.MotionRequest, ground: MotionComponents
+) -> Wish:
+    """Of one component both, in which it keeps its direction; of a
+    source of both its first.
+    """
     from rpscli.records.source import Source
 
     own = case.record if motion.record is None else None
@@ -227,7 +260,9 @@ def _direction(case: Case, motion: inputs.MotionRequest, ground: MotionComponent
 
 
 def _records(case: Case, motions: Sequence[inputs.Motion]) -> Iterator[Wish]:
-    """Those that are given; of a single one the far-field set, each alone at the PGA of that."""
+    """Those that are given; of a single one the far-field set, each
+    alone at the PGA of that.
+    """
     from rpscli.records.loading import expand_sources
 
     request, ground = motions[0]
@@ -237,8 +272,14 @@ def _records(case: Case, motions: Sequence[inputs.Motion]) -> Iterator[Wish]:
             pga = ground.scale / inputs.load_motion(case, one).scale
             sources = expand_sources([FAR_FIELD + "?both" * (ground.y is not None)])
             aim = inputs.MotionRequest(scale_to=f"PGA={pga:.9g} m/s2")
-            alone = [each for source in sources for each in inputs.single_motions((source,), aim)]
-            motions = [inputs.Motion(each, inputs.load_motion(case, each)) for each in alone]
+            alone = [
+                each
+                for source in sources
+                for each in inputs.single_motions((source,), aim)
+            ]
+            motions = [
+                inputs.Motion(each, inputs.load_motion(case, each)) for each in alone
+            ]
         for motion, ground in motions:
             yield "records", (), _scaled(motion, ground.scale)
     except RpsError as error:

@@ -48,8 +48,10 @@ RECORD = ("name", "source", "format", "description", "npts", "dt", "duration", "
 @click.option(
     "--draw",
     is_flag=True,
-    help="Also draw the bearing with its dimensions: at rest, where rolling ends, at the critical"
-    " rotation, and the restoring force; the figure bearing.",
+    help=(
+        "Also draw the bearing with its dimensions: at rest, where rolling ends, at the"
+        " critical rotation, and the restoring force; the figure bearing."
+    ),
 )
 @options.result_options
 def command(
@@ -60,11 +62,13 @@ def command(
 ) -> None:
     """What follows from CASE: geometry, masses, statics, periods.
 
-    Nothing is analysed, and nothing is written without --draw. A case with mistakes ends with exit
-    code 3 and a line for each of them; so does a record that cannot be read.
+    Nothing is analysed, and nothing is written without --draw. A case with mistakes ends
+    with exit code 3 and a line for each of them; so does a record that cannot be read.
     """
     if not draw and (out != options.Output(out.terminal)):
-        raise UsageError("only --draw writes something; options of files and figures go with it")
+        raise UsageError(
+            "only --draw writes something; options of files and figures go with it"
+        )
     given = inputs.read_case(request, out.terminal)
     from rpscli.model.statics import device_consequences, storey_strengths
 
@@ -116,23 +120,38 @@ def _record(case: Case) -> tuple[dict[str, Any] | None, RpsError | None]:
     both = motion.y is not None
     warnings = [*found.warnings, *motion.warnings]
     doubts = [str(doubt) for doubt in doubts_of_directions(case.structure, both=both)]
-    doubts += unknown_of_pairs(conditions_of(case.limits, ""), case.structure) if both else []
+    doubts += (
+        unknown_of_pairs(conditions_of(case.limits, ""), case.structure) if both else []
+    )
     known = {name: getattr(found, name) for name in RECORD}
     y = motion.y
     across = y and {name: getattr(y, name) for name in RECORD}
-    return {**known, "y": across, "scale": motion.scale, "warnings": [*warnings, *doubts]}, None
+    return {
+        **known,
+        "y": across,
+        "scale": motion.scale,
+        "warnings": [*warnings, *doubts],
+    }, None
 
 
-def _unknown(structure: PodiumStructure, record: dict[str, Any] | None) -> Collection[str]:
+def _unknown(
+    structure: PodiumStructure, record: dict[str, Any] | None
+) -> Collection[str]:
     """Derived quantities that a history under the record of the case will not give."""
     from rpscli.analyses.column_design import no_line  # numpy is slow
 
     both = record is not None and record["y"] is not None
-    return ("contact_rest_pressure", "crushed_rest_ratio") if no_line(structure, both=both) else ()
+    return (
+        ("contact_rest_pressure", "crushed_rest_ratio")
+        if no_line(structure, both=both)
+        else ()
+    )
 
 
 def check_tables(
-    document: Mapping[str, Any], limits: Sequence[Condition], unknown: Collection[str] = ()
+    document: Mapping[str, Any],
+    limits: Sequence[Condition],
+    unknown: Collection[str] = (),
 ) -> Iterator[Part]:
     """What leads; geometry; masses, statics and periods; the record; the limits."""
     heads = ("", "symbol", "value", "unit")
@@ -141,7 +160,9 @@ def check_tables(
     dynamics = (*DYNAMICS, FIRST_PERIOD, *UPWARDS, *CONTACT)
     for rows in (LEADING, GEOMETRY, dynamics, COLUMN, BOTH if pair else ()):
         texts = []
-        for row in (each for each in rows if each.name in document and each.name not in unknown):
+        for row in (
+            each for each in rows if each.name in document and each.name not in unknown
+        ):
             if row.name.endswith("_paper") or (row in LEADING and rows is not LEADING):
                 continue
             of_some = row in (*CONTACT, *COLUMN, *BOTH) or row.name == "rolling_period"
@@ -153,7 +174,9 @@ def check_tables(
             given = document["stiffnesses"]
             roof = "roof (see profile)" if given[-1:] > given[:1] else "roof"
             ends = zip(("bottom", roof), (*given[:1], *given[1:][-1:]), strict=False)
-            texts += [(f"storey stiffness, {n}", "", shown(1e-3 * k), "kN/m") for n, k in ends]
+            texts += [
+                (f"storey stiffness, {n}", "", shown(1e-3 * k), "kN/m") for n, k in ends
+            ]
         if texts:
             yield Table.of_texts(heads, texts, words=2)
     if record := document["record"]:
@@ -161,9 +184,16 @@ def check_tables(
             ("record", record["name"]),
             ("", record["description"]),
             ("format", record["format"]),
-            ("samples", f"{record['npts']} at {record['dt']:g} s, {shown(record['duration'])} s"),
+            (
+                "samples",
+                f"{record['npts']} at {record['dt']:g} s, {shown(record['duration'])} s",
+            ),
             ("peak acceleration", f"{shown(record['pga'])} m/s2"),
-            *([("in y", f"{y['name']}, {shown(y['pga'])} m/s2")] if (y := record["y"]) else []),
+            *(
+                [("in y", f"{y['name']}, {shown(y['pga'])} m/s2")]
+                if (y := record["y"])
+                else []
+            ),
             ("scale", f"{record['scale']:g}"),
         ]
         yield Table.listing(lines)
@@ -175,7 +205,9 @@ def check_tables(
 
 
 def device_tables(structure: PodiumStructure) -> Iterator[Part]:
-    """Each device's numbers, uplift with all of them, and from where the podium re-centres."""
+    """Each device's numbers, uplift with all of them, and from
+    where the podium re-centres.
+    """
     if not structure.devices:
         return
     from rpscli.model.statics import returns, uplift_acceleration, uplift_force
@@ -203,5 +235,12 @@ def device_tables(structure: PodiumStructure) -> Iterator[Part]:
         share = shown(row.rotation / structure.critical_rotation, 2)
         end = "yes" if row.recentres else "no"
         swings.append((shown(row.rotation), share, shown(row.displacement), *forces, end))
-    heads = "from rest at rad", "of theta_cr", "u_b m", "friction kN", "largest kN", "comes back"
+    heads = (
+        "from rest at rad",
+        "of theta_cr",
+        "u_b m",
+        "friction kN",
+        "largest kN",
+        "comes back",
+    )
     yield Table.of_texts(heads, swings)

@@ -41,8 +41,8 @@ from rpscli.sweep.table import Table as Points
 class Design(NamedTuple):
     """A design that was searched for, the studies that it rests on, and its files.
 
-    `run` has all valid designs, of which `found` tells; `judged` has the best or least violated one
-    under the records of the search, `validated` the best one under others.
+    `run` has all valid designs, of which `found` tells; `judged` has the best or least
+    violated one under the records of the search, `validated` the best one under others.
     """
 
     search: Search
@@ -73,7 +73,9 @@ class Design(NamedTuple):
             return None
         if messages := dict.fromkeys(self.validated.table.messages.values()):
             return StudyIncomplete("\n".join(f"validation: {text}" for text in messages))
-        lines = verdict_lines(self.validated.keys, self.validated.judgements, "validation: ")
+        lines = verdict_lines(
+            self.validated.keys, self.validated.judgements, "validation: "
+        )
         return LimitExceeded("\n".join(lines)) if lines else None
 
     @property
@@ -83,8 +85,12 @@ class Design(NamedTuple):
         unseen = self.validated
         notes = [*answer_notes(self.answer, self.search.faults)]
         if self.keeps_limits is False:
-            notes.append("the best design does not keep its limits under the records of `validate`")
-        validation = unseen and [verdict_document(unseen.keys, v) for v in unseen.judgements]
+            notes.append(
+                "the best design does not keep its limits under the records of `validate`"
+            )
+        validation = unseen and [
+            verdict_document(unseen.keys, v) for v in unseen.judgements
+        ]
         document = {
             **heading("design"),
             "study": study_heading(layout),
@@ -105,13 +111,17 @@ class Design(NamedTuple):
         judgements = self.judged.judgements
         yield Heading(layout.study.title)
         counts = answer_document(self.answer, judgements)["designs"]
-        listing = [(name.replace("_", " "), str(number)) for name, number in counts.items()]
+        listing = [
+            (name.replace("_", " "), str(number)) for name, number in counts.items()
+        ]
         yield Table.listing([*listing, ("records scaled to", layout.scaled_to)])
         yield from answer_tables(self.answer, judgements)
         if self.validated is not None:
             unseen = len(self.answer.task.unseen)
             yield Heading(f"validation with {unseen} records that were not used")
-            yield Table.of_texts(VERDICT, map(verdict_texts, self.validated.judgements), words=4)
+            yield Table.of_texts(
+                VERDICT, map(verdict_texts, self.validated.judgements), words=4
+            )
         yield of_first_system(self.judged.layout)
         yield from filter(None, [note_of_directions(layout)])
 
@@ -145,7 +155,9 @@ def designed(request: CaseRequest, choices: RunChoices, out: Output) -> Design |
 
         def run(layout: StudyPoints) -> StudyResult:
             layout.context.records = records
-            return computed("design", Study(layout, request.overrides), store, choices, terminal)
+            return computed(
+                "design", Study(layout, request.overrides), store, choices, terminal
+            )
 
         def evaluated(layout: StudyPoints) -> Points:
             nonlocal rounds

@@ -40,16 +40,24 @@ KINDS = ("formats", "measures", "targets", "reports", "figures", "dampers", "imp
 @click.command("doctor")
 @terminal_options
 def command(terminal: Terminal) -> None:
-    """Show what is installed, what is missing, and the remedy; exit code 6 if it cannot run."""
+    """Show what is installed, what is missing, and the remedy; exit
+    code 6 if it cannot run.
+    """
     needed = _packages(None)
     optional = [row for extra in EXTRAS for row in _packages(extra)]
     # Entry points of other packages: group and name, package, and why it does not load.
     offers = (offer for kind in KINDS for offer in Registry(kind, {}, Any).offers())
-    added = [(f"rpscli.{each.kind}: {each.name}", each.package, each.fault) for each in offers]
+    added = [
+        (f"rpscli.{each.kind}: {each.name}", each.package, each.fault) for each in offers
+    ]
     rows = [*_surroundings(), *needed, *optional, *added]
     table = Table.of_texts(("subject", "found", "remedy, or what it adds"), rows, words=3)
-    findings = [dict(zip(("subject", "found", "remedy"), row, strict=True)) for row in rows]
-    lacking = "\n".join(f"{name}: {found}; {remedy}" for name, found, remedy in needed if remedy)
+    findings = [
+        dict(zip(("subject", "found", "remedy"), row, strict=True)) for row in rows
+    ]
+    lacking = "\n".join(
+        f"{name}: {found}; {remedy}" for name, found, remedy in needed if remedy
+    )
     error = VerificationMismatch(lacking) if lacking else None
     document = {**heading("doctor"), "findings": findings}
     # Without rich there are no tables: then the errors say it.
@@ -57,19 +65,35 @@ def command(terminal: Terminal) -> None:
 
 
 def _surroundings() -> list[tuple[str, str, str]]:
-    anew = "" if installed("rpscli") == VERSION else "pip install rpscli: this runs from a folder"
+    anew = (
+        ""
+        if installed("rpscli") == VERSION
+        else "pip install rpscli: this runs from a folder"
+    )
     place = user_cache()
     encoder = shutil.which(ENCODER)
-    mine = "" if place in cache_places()[:1] else f"set {VARIABLE} to a folder that is yours alone"
+    mine = (
+        ""
+        if place in cache_places()[:1]
+        else f"set {VARIABLE} to a folder that is yours alone"
+    )
     return [
         ("rps", f"{VERSION}, cases in {shipped_cases()}", anew),
-        ("GUIDE.md, THEORY.md, GLOSSARY.md", f"in {Path(str(resources.files('rpscli')))}", ""),
+        (
+            "GUIDE.md, THEORY.md, GLOSSARY.md",
+            f"in {Path(str(resources.files('rpscli')))}",
+            "",
+        ),
         ("Python", f"{platform.python_version()}, {sys.executable}", ""),
         ("system", f"{platform.platform()}, text in {locale.getencoding()}", ""),
         ("cores", str(available_cores()), ""),
         *_processor(),
         ("cache", f"{place}, {_size(place)}, may be deleted" if place else "-", mine),
-        ("font of figures", font_file() if place and installed("matplotlib") else "-", ""),
+        (
+            "font of figures",
+            font_file() if place and installed("matplotlib") else "-",
+            "",
+        ),
         (ENCODER, encoder or "-", "" if encoder else "animations as MP4"),
     ]
 
@@ -85,7 +109,9 @@ def _processor() -> list[tuple[str, str, str]]:
 
 
 def _packages(extra: str | None) -> list[tuple[str, str, str]]:
-    """Packages that rps needs, or that one of its extras brings: name, version, remedy."""
+    """Packages that rps needs, or that one of its extras
+    brings: name, version, remedy.
+    """
     rows = []
     for text in metadata.requires("rpscli") or [] if installed("rpscli") else []:
         said = re.match(r"([\w.-]+)>=([\d.]+)(?:.*extra == .(\w+))?", text)

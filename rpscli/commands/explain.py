@@ -1,4 +1,6 @@
-"""`rps explain`: meanings of keys, results, words, reports with their options, and plugins."""
+"""`rps explain`: meanings of keys, results, words, reports with
+their options, and plugins.
+"""
 
 from __future__ import annotations
 
@@ -13,6 +15,7 @@ from rpscli.analyses.result_quantities import EVERY, ResultQuantity
 from rpscli.commands.shell.options import completing, terminal_options
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.errors import UsageError, hint
+from rpscli.registry import summary_of
 from rpscli.report.files import heading
 from rpscli.report.table import Heading, Part, Table
 
@@ -37,7 +40,9 @@ BEARING = """\
 
 
 class Entry(NamedTuple):
-    """A meaning: the list of the document in which it stands, what it says there, and its text."""
+    """A meaning: the list of the document in which it stands, what it
+    says there, and its text.
+    """
 
     kind: str
     said: dict[str, Any]
@@ -61,10 +66,12 @@ def _known() -> list[str]:
 @click.argument("words", metavar="KEY", nargs=-1, required=True, **completing(_known))
 @terminal_options
 def command(words: tuple[str, ...], terminal: Terminal) -> None:
-    """What KEY means: a key of cases or studies, a report, a result, a symbol, a word of tables.
+    """What KEY means: a key of cases or studies, a report, a result, a
+    symbol, a word of tables.
 
-    Keys are named in full (podium.bearing.slenderness), by their end (slenderness) or by their
-    symbol (rho). `plugins` lists what other packages add. `rps doctor` says where the guide is.
+    Keys are named in full (podium.bearing.slenderness), by their end (slenderness)
+    or by their symbol (rho). `plugins` lists what other packages add. `rps doctor`
+    says where the guide is.
     """
     word = " ".join(words)
     meant = [
@@ -72,24 +79,33 @@ def command(words: tuple[str, ...], terminal: Terminal) -> None:
         for name, meaning in glossary()
         if word.lower() in _names(name)
     ]
-    named = [q for q in EVERY.values() if word == q.name or (word == q.label and not meant)]
+    named = [
+        q for q in EVERY.values() if word == q.name or (word == q.label and not meant)
+    ]
     entries = [*_keys(word), *map(_result, named), *meant]
     offers = [] if entries else list(_offers(word))
     entries += _reports(word, everything=bool(offers), options=not (entries or offers))
     if not (entries or offers or word == PLUGINS):
-        instead = hint(word, _known(), "`rps explain podium` and the like list a section's keys")
+        instead = hint(
+            word, _known(), "`rps explain podium` and the like list a section's keys"
+        )
         raise UsageError(f"explain {word}: there is no such name; {instead}")
     parts = [part for entry in entries for part in entry.parts]
     if offers:
         heads = ("group", "name", "package", "is")
-        rows = [(f"rpscli.{o.kind}", o.name, o.package, o.fault or o.meaning) for o in offers]
+        rows = [
+            (f"rpscli.{o.kind}", o.name, o.package, o.fault or o.meaning) for o in offers
+        ]
         parts.append(Table.of_texts(heads, rows, words=len(heads)))
     elif word == PLUGINS:
         parts.append(
-            "no installed package adds anything; help(rpscli.plugins) explains how to write one"
+            "no installed package adds anything; help(rpscli.plugins) explains how to"
+            " write one"
         )
     entries += [Entry("plugins", offer._asdict()) for offer in offers]
-    said = {kind: [entry.said for entry in entries if entry.kind == kind] for kind in KINDS}
+    said = {
+        kind: [entry.said for entry in entries if entry.kind == kind] for kind in KINDS
+    }
     terminal.result({**heading("explain"), "word": word, **said}, parts)
 
 
@@ -136,7 +152,9 @@ def _keys(word: str) -> Iterator[Entry]:
     for called in (
         lambda key: key.key == word,
         lambda key: key.key.endswith(f".{word}"),
-        lambda key: word in re.split(r"[\s=/,()]+", key.symbol or key.meaning.split(",")[0]),
+        lambda key: (
+            word in re.split(r"[\s=/,()]+", key.symbol or key.meaning.split(",")[0])
+        ),
     ):
         hits = hits or [key for key in _formats() if called(key)]
     alike: dict[KeyReference, list[KeyReference]] = {}
@@ -147,7 +165,9 @@ def _keys(word: str) -> Iterator[Entry]:
         more = f" and {len(others) - 2} more" if len(others) > 2 else ""
         likewise = [f"likewise {also}{more}"] if others else []
         drawing = [BEARING] if key.key.startswith("podium.bearing") else []
-        yield Entry("keys", _said(key), (Heading(key.key), *likewise, _lines(key), *drawing))
+        yield Entry(
+            "keys", _said(key), (Heading(key.key), *likewise, _lines(key), *drawing)
+        )
         yield from (Entry("keys", _said(other)) for other in others)
 
 
@@ -176,16 +196,18 @@ def _lines(key: KeyReference) -> Table:
 
 
 def _reports(word: str, *, everything: bool, options: bool) -> Iterator[Entry]:
-    """The report of this name with its options, of other packages only where all are wanted.
+    """The report of this name with its options, of other packages
+    only where all are wanted.
 
-    Else the options of reports that are called so, each once, with the reports that have it.
+    Else the options of reports that are called so, each once, with
+    the reports that have it.
     """
     from rpscli.case.schema.keys import key_references
     from rpscli.report.study.registry import REPORTS
 
     named: dict[KeyReference, list[str]] = {}
     if report := (REPORTS.everything() if everything else REPORTS).get(word):
-        meaning = (report.options.__doc__ or "").split("\n")[0]
+        meaning = summary_of(report.options)
         text = Heading(f"{word}, a report of studies"), meaning
         yield Entry("reports", {"report": word, "meaning": meaning}, text)
         # Ranges of values of each limit are told at the limits of studies.
@@ -196,8 +218,14 @@ def _reports(word: str, *, everything: bool, options: bool) -> Iterator[Entry]:
             if f".{key.key}".endswith(f".{word}"):
                 named.setdefault(key, []).append(name)
     for key, reports in named.items():
-        of = f" of the report{'s' * (len(reports) > 1)} {', '.join(reports)}" if reports else ""
-        yield Entry("options", _said(key), (Heading(f"option {key.key}{of}"), _lines(key)))
+        of = (
+            f" of the report{'s' * (len(reports) > 1)} {', '.join(reports)}"
+            if reports
+            else ""
+        )
+        yield Entry(
+            "options", _said(key), (Heading(f"option {key.key}{of}"), _lines(key))
+        )
 
 
 def _offers(word: str) -> Iterator[Offer]:
@@ -212,4 +240,6 @@ def _offers(word: str) -> Iterator[Offer]:
 
     for registry in (FORMATS, MEASURES, CODES, REPORTS, FIGURES, DAMPERS, IMPACT_LAWS):
         if word == PLUGINS or (word not in registry and word in registry.names()):
-            yield from (each for each in registry.offers() if word in {PLUGINS, each.name})
+            yield from (
+                each for each in registry.offers() if word in {PLUGINS, each.name}
+            )

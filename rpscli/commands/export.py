@@ -33,10 +33,10 @@ def command(
 ) -> None:
     """Write CASE and its record as a model for another program.
 
-    mujoco: rigid bodies in contact, which know no impact law. opensees: floors on a spring that
-    uplifts, impacts as a damper. Further files are timehistory.csv, the record with the history
-    that rps computes, and rerun.py, which runs the model and draws both; it needs openseespy or
-    mujoco, and matplotlib, but not rps.
+    mujoco: rigid bodies in contact, which know no impact law. opensees: floors on a
+    spring that uplifts, impacts as a damper. Further files are timehistory.csv, the
+    record with the history that rps computes, and rerun.py, which runs the model and
+    draws both; it needs openseespy or mujoco, and matplotlib, but not rps.
     """
     from rpscli.analyses.result_quantities import plain
     from rpscli.analyses.timehistory import time_history
@@ -45,9 +45,13 @@ def command(
     from rpscli.report.table import Column, csv_lines
 
     given = inputs.read_case(request, out.terminal)
-    motions = list(inputs.single_motions(records, inputs.MotionRequest(), out.terminal.warn))
+    motions = list(
+        inputs.single_motions(records, inputs.MotionRequest(), out.terminal.warn)
+    )
     if len(motions) > 1:
-        raise UsageError(f"--record: a model has one motion, not {len(motions)}; name one of them")
+        raise UsageError(
+            f"--record: a model has one motion, not {len(motions)}; name one of them"
+        )
     motion = inputs.Motion(motions[0], inputs.load_motion(given.case, motions[0]))
     ground = motion.ground
     structure = given.case.structure
@@ -56,13 +60,19 @@ def command(
             "podium.contact": structure.bed, "podium.impact": structure.impact_law.own,
             "superstructure.vertical_period": structure.upwards,
             "superstructure.yield": structure.yields and program == "mujoco"}  # fmt: skip
-    why = [f"{key} is not exported; remove it by --set {key}=null" for key in left if left[key]]
+    why = [
+        f"{key} is not exported; remove it by --set {key}=null"
+        for key in left
+        if left[key]
+    ]
     if ground.y is not None:
         why.append("a model has one plane; name one of both components by --record")
     if why:
         text = f"{given.case.source}: {why[0]}, so that both programs compute the same"
         raise UsageError(text)
-    own = replace(out, place=out.place or inputs.RESULTS / given.case.name / "export" / program)
+    own = replace(
+        out, place=out.place or inputs.RESULTS / given.case.name / "export" / program
+    )
     folder = inputs.case_folder(given, own, "export", motion=motion, program=program)
     announce_compilation(out.terminal)
     result = time_history(structure, ground, given.case.analysis)
@@ -82,15 +92,23 @@ def command(
     inputs.conclude(given, folder, document, lines, out.terminal)
 
 
-def _model(program: str, result: TimeHistoryResult, title: str, until: float) -> tuple[str, str]:
+def _model(
+    program: str, result: TimeHistoryResult, title: str, until: float
+) -> tuple[str, str]:
     """The text of the model, and its limits in words."""
     from rpscli.report.export import multibody, opensees
 
-    note = "Under 0.9999 and 1.0001 times the motion, displacements of rps stay within 1 % of the\n"
+    note = (
+        "Under 0.9999 and 1.0001 times the motion, displacements of rps stay within 1 %"
+        " of the\n"
+    )
     parts = f"up to {until:.4g} s; further on, programs that agree part as well"
     note += f"largest {parts if until < math.inf else 'to the end'}."
     if result.overturned:
-        note += f"\nIn rps it overturns at {result.duration:.4g} s, where history and record end."
+        note += (
+            f"\nIn rps it overturns at {result.duration:.4g} s, where history and record"
+            " end."
+        )
     if program == "opensees":
         return opensees.model_text(result, title, note)
     return multibody.model_text(result.structure, title, note)
@@ -112,7 +130,9 @@ def _script(result: TimeHistoryResult, until: float) -> str:
 
 
 def _comparable(result: TimeHistoryResult) -> float:
-    """Time from which slight changes of the motion move the cap beam [s]; infinite if none does."""
+    """Time from which slight changes of the motion move the cap beam
+    [s]; infinite if none does.
+    """
     import numpy as np
 
     from rpscli.analyses.timehistory import time_history
@@ -121,7 +141,9 @@ def _comparable(result: TimeHistoryResult) -> float:
     first = math.inf
     for factor in (0.9999, 1.0001):
         motion = result.motion.scaled(factor)
-        beside = time_history(result.structure, motion, result.settings, with_fixed_base=False)
+        beside = time_history(
+            result.structure, motion, result.settings, with_fixed_base=False
+        )
         both = min(len(own), len(beside.trace.time))
         away = np.abs(beside.trace.cap_beam_displacement[:both] - own[:both])
         apart = np.flatnonzero(away > 0.01 * np.abs(own).max())

@@ -22,7 +22,12 @@ if TYPE_CHECKING:
 
     Columns = dict[str, NDArray[Any]]
 
-TESTS = ("rocking", "ambient", "release", "earthquake")  # of `identify`, which is slow to import
+TESTS = (
+    "rocking",
+    "ambient",
+    "release",
+    "earthquake",
+)  # of `identify`, which is slow to import
 FEWEST = 20
 """Samples of a measurement."""
 LARGEST = 1e15
@@ -41,7 +46,11 @@ LARGEST = 1e15
     help="Ignore samples before this time.",
 )
 @click.option(
-    "--to", "last", type=options.FiniteRange(), metavar="S", help="Ignore samples after this time."
+    "--to",
+    "last",
+    type=options.FiniteRange(),
+    metavar="S",
+    help="Ignore samples after this time.",
 )
 @options.terminal_options
 def command(
@@ -52,13 +61,14 @@ def command(
     last: float | None,
     terminal: Terminal,
 ) -> None:
-    """Identify properties of CASE from DATA.csv, measured on the structure, with 90 % intervals.
+    """Identify properties of CASE from DATA.csv, measured on the
+    structure, with 90 % intervals.
 
-    Its header has names and units, as in `time [s],rotation [mrad]`. rocking: free rocking after a
-    release from rest, `rotation` or `cap_beam_displacement`, gives the loss at impacts, and the
-    lever of a rolling_resistance in the case. Before uplift the period and the damping follow from
-    a `floor_acceleration`: ambient vibration, the release of a pull, or an earthquake with
-    `ground_acceleration` as well.
+    Its header has names and units, as in `time [s],rotation [mrad]`. rocking: free
+    rocking after a release from rest, `rotation` or `cap_beam_displacement`, gives the
+    loss at impacts, and the lever of a rolling_resistance in the case. Before uplift the
+    period and the damping follow from a `floor_acceleration`: ambient vibration, the
+    release of a pull, or an earthquake with `ground_acceleration` as well.
     """
     given = read_case(request, terminal)
     from rpscli.analyses.identification import LEVEL, identified
@@ -76,7 +86,9 @@ def command(
         "case": case_heading(given),
         "test": test,
         "level": LEVEL,
-        "estimates": [{"name": n, "unit": u, **value._asdict()} for (n, u), value in estimates],
+        "estimates": [
+            {"name": n, "unit": u, **value._asdict()} for (n, u), value in estimates
+        ],
         "misfit": found.misfit,
         "ensembles": found.ensembles,
         "residuals": found.residuals,
@@ -100,7 +112,13 @@ def _tables(found: Identified) -> Iterator[Part]:
         numbers = (each["time"], each["model_time"], 1e3 * top, 1e3 * model)
         off = shown((top - model) / each["amplitude_error"], 2)
         swings.append((*(shown(number, 5) for number in numbers), off))
-    heads = ("swing at s", "of the model", "rotation mrad", "of the model", "over its error")
+    heads = (
+        "swing at s",
+        "of the model",
+        "rotation mrad",
+        "of the model",
+        "over its error",
+    )
     if swings:
         yield Table.of_texts(heads, swings, words=0)
     if found.keys:
@@ -124,7 +142,9 @@ def measured(source: str, test: str, first: float | None, last: float | None) ->
         column = next((each for each in wanted if each[0] in names), None)
         if column is None:
             missing = listed(f"`{name} [{unit}]`" for name, unit in wanted)
-            raise RecordError(f"{source}:1: no column {missing}; {test} needs one: name it so")
+            raise RecordError(
+                f"{source}:1: no column {missing}; {test} needs one: name it so"
+            )
         place = names.index(column[0])
         (name, unit) = column
         rule = f"write numbers, in {unit} or another such unit"
@@ -137,18 +157,22 @@ def measured(source: str, test: str, first: float | None, last: float | None) ->
         columns[name] = values * factor
         if (bad := np.flatnonzero(~(np.abs(columns[name]) < LARGEST))).size:
             line, row = rows[bad[0]]
-            raise RecordError(f"{source}:{line}: column {name}: {row[place].strip()}; {rule}")
+            raise RecordError(
+                f"{source}:{line}: column {name}: {row[place].strip()}; {rule}"
+            )
     time = columns["time"]
     steps = np.diff(time)
     even = len(time) >= FEWEST and steps.mean() > 0.0
     if not (even and np.allclose(steps, steps.mean(), rtol=1e-2, atol=0.0)):
         raise RecordError(
-            f"{source}: at least {FEWEST} samples at even times that rise are needed; resample it"
+            f"{source}: at least {FEWEST} samples at even times that rise are needed;"
+            " resample it"
         )
     ends = (time[0] if first is None else first), (time[-1] if last is None else last)
     kept = (time >= ends[0]) & (time <= ends[1])
     if kept.sum() < FEWEST:
         raise UsageError(
-            f"{source}: {kept.sum()} samples lie between --from and --to; {FEWEST} are needed"
+            f"{source}: {kept.sum()} samples lie between --from and --to; {FEWEST} are"
+            " needed"
         )
     return {name: values[kept] for name, values in columns.items()}

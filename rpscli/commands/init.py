@@ -1,4 +1,6 @@
-"""`rps init`, `rps schema` and `rps completion`: what helps to write files and commands."""
+"""`rps init`, `rps schema` and `rps completion`: what helps to
+write files and commands.
+"""
 
 from __future__ import annotations
 
@@ -28,21 +30,30 @@ def shipped_cases() -> Path:
 
 
 def examples() -> dict[str, str]:
-    """Their names, as in `studies/product`, and the first sentence of what stands above each."""
+    """Their names, as in `studies/product`, and the first sentence
+    of what stands above each.
+    """
     place = shipped_cases()
     sentences = {}
     for file in sorted(place.rglob("*.yaml"), key=lambda file: (len(file.parts), file)):
-        above = file.read_text("utf-8").partition("\nrps:")[0].replace("\n#", "").lstrip("# ")
+        above = (
+            file.read_text("utf-8").partition("\nrps:")[0].replace("\n#", "").lstrip("# ")
+        )
         name = file.relative_to(place).with_suffix("").as_posix()
         sentences[name] = re.split(r"(?<=[.?])\s", above)[0]
     return sentences
 
 
 def example_files(name: str) -> dict[str, bytes]:
-    """An example, or all of a folder, and the files that they name, in comments too, by path."""
+    """An example, or all of a folder, and the files that they name,
+    in comments too, by path.
+    """
     place = shipped_cases()
     contents: dict[Path, bytes] = {}
-    waiting = [place / f"{name}.yaml", *sorted((place / name).rglob("*.yaml"), reverse=True)]
+    waiting = [
+        place / f"{name}.yaml",
+        *sorted((place / name).rglob("*.yaml"), reverse=True),
+    ]
     while waiting:
         file = waiting.pop()
         if file in contents or not file.is_file() or place not in file.parents:
@@ -52,9 +63,13 @@ def example_files(name: str) -> dict[str, bytes]:
             # Beside the file, or as commands are typed, from above the folder.
             named = ["README.md", *_FILE_NAMES.findall(contents[file].decode("utf-8"))]
             waiting += [
-                (up / each).resolve() for each in named for up in (file.parent, place.parent)
+                (up / each).resolve()
+                for each in named
+                for up in (file.parent, place.parent)
             ]
-    return {file.relative_to(place).as_posix(): content for file, content in contents.items()}
+    return {
+        file.relative_to(place).as_posix(): content for file, content in contents.items()
+    }
 
 
 @click.command("init")
@@ -66,14 +81,19 @@ def example_files(name: str) -> dict[str, bytes]:
     flag_value="",
     metavar="[NAME]",
     **completing(examples),
-    help="Write a case or study that comes with rps, or a folder of them, and the files that they"
-    " name, into the folder FILE (cases by default); without NAME, list them.",
+    help=(
+        "Write a case or study that comes with rps, or a folder of them, and the files"
+        " that they name, into the folder FILE (cases by default); without NAME, list"
+        " them."
+    ),
 )
 @click.option(
     "--editor",
     is_flag=True,
-    help="Also write the schema beside FILE, and a first line by which editors that know the YAML"
-    " language server check and complete what is typed.",
+    help=(
+        "Also write the schema beside FILE, and a first line by which editors that know"
+        " the YAML language server check and complete what is typed."
+    ),
 )
 @click.option("--force", is_flag=True, help="Overwrite files that exist.")
 @terminal_options
@@ -86,10 +106,14 @@ def command(
     force: bool,
     terminal: Terminal,
 ) -> None:
-    """Write a commented case to FILE (case.yaml or study.yaml by default; - prints it)."""
+    """Write a commented case to FILE (case.yaml or study.yaml
+    by default; - prints it).
+    """
     if example is not None:
         if study or editor or str(file) == "-":
-            raise UsageError("--example writes files as they are into a folder; leave out the rest")
+            raise UsageError(
+                "--example writes files as they are into a folder; leave out the rest"
+            )
         _example(example, file or Path(FOLDER), terminal, force=force)
         return
     from rpscli.case.text.files import starter_text
@@ -99,7 +123,9 @@ def command(
     file = file or Path(f"{kind}.yaml")
     if str(file) == "-":
         if editor:
-            raise UsageError("--editor writes the schema beside FILE; name a file in place of -")
+            raise UsageError(
+                "--editor writes the schema beside FILE; name a file in place of -"
+            )
         emit(text, sys.stdout)
         return
     files = {file: text}
@@ -107,7 +133,9 @@ def command(
         schema = file.with_name(f"rps-{kind}.schema.json")
         files[file] = f"# yaml-language-server: $schema={schema.name}\n{text}"
         files[schema] = json_text(schema_of(kind))
-    _write({each: content.encode() for each, content in files.items()}, terminal, force=force)
+    _write(
+        {each: content.encode() for each, content in files.items()}, terminal, force=force
+    )
 
 
 def _example(name: str, folder: Path, terminal: Terminal, *, force: bool) -> None:
@@ -125,15 +153,21 @@ def _example(name: str, folder: Path, terminal: Terminal, *, force: bool) -> Non
 
 
 def _write(files: Mapping[Path, bytes], terminal: Terminal, *, force: bool) -> None:
-    """All of the files, of which the first is what was asked for; the same may be there already."""
+    """All of the files, of which the first is what was asked for; the
+    same may be there already.
+    """
     for each, content in files.items():
         if each.exists() and not force and each.read_bytes() != content:
-            raise Refused(f"{each} exists; name another file, or overwrite it with --force")
+            raise Refused(
+                f"{each} exists; name another file, or overwrite it with --force"
+            )
     write_whole(files)
     first, *others = files
     # What names a base is a study, or a design.
     verb = "design" if b"\nminimise:" in files[first] else "sweep"
-    check = f"{verb} {first} --dry-run" if b"\nbase:" in files[first] else f"check {first}"
+    check = (
+        f"{verb} {first} --dry-run" if b"\nbase:" in files[first] else f"check {first}"
+    )
     also = f" with {listed(map(str, others), 'and')}" if others else ""
     terminal.note(f"written to {first}{also}; next: rps {check}")
     if terminal.as_json:
@@ -152,7 +186,8 @@ FORMATS = ("case", "study", "design")
 )
 @terminal_options
 def schema(*, what: str, terminal: Terminal) -> None:
-    """Print the JSON schema of a case file, a study (with the options of all reports) or a design.
+    """Print the JSON schema of a case file, a study (with the options of
+    all reports) or a design.
 
     Editors that know YAML check and complete a file by it: `rps init --editor`.
     """
@@ -175,7 +210,9 @@ def schema_of(what: str) -> dict[str, Any]:
     from rpscli.case.study.reports import format_with
     from rpscli.report.study.registry import REPORTS
 
-    return study_json_schema(DesignFile if what == "design" else format_with(REPORTS.everything()))
+    return study_json_schema(
+        DesignFile if what == "design" else format_with(REPORTS.everything())
+    )
 
 
 SHELLS = {"bash": BashComplete, "zsh": ZshComplete, "fish": FishComplete}
@@ -184,11 +221,13 @@ SHELLS = {"bash": BashComplete, "zsh": ZshComplete, "fish": FishComplete}
 @click.command("completion")
 @click.argument("shell", type=click.Choice(tuple(SHELLS)))
 def completion(shell: str) -> None:
-    """Print the lines with which SHELL completes commands, options, files, keys and names.
+    """Print the lines with which SHELL completes commands,
+    options, files, keys and names.
 
-    For bash put `eval "$(rps completion bash)"` into ~/.bashrc, for zsh the same with zsh into
-    ~/.zshrc; for fish, `rps completion fish > ~/.config/fish/completions/rps.fish`.
+    For bash put `eval "$(rps completion bash)"` into ~/.bashrc, for zsh the same with zsh
+    into ~/.zshrc; for fish, `rps completion fish > ~/.config/fish/completions/rps.fish`.
     """
     complete = SHELLS[shell](click.Command("rps"), {}, "rps", "_RPS_COMPLETE")
-    # Not `source()`, which for bash first asks the version of a bash that need not be here.
+    # Not `source()`, which for bash first asks the version of a bash that need not be
+    # here.
     emit(complete.source_template % complete.source_vars() + "\n", sys.stdout)

@@ -1,4 +1,6 @@
-"""From what stands on the command line to cases, their ground motions and folders of results."""
+"""From what stands on the command line to cases, their ground
+motions and folders of results.
+"""
 
 from __future__ import annotations
 
@@ -108,7 +110,9 @@ def conclude(
     plane: bool = True,
     doubts: Sequence[str] = (),
 ) -> None:
-    """Write the files of a command about one case, and give its result with doubts about it."""
+    """Write the files of a command about one case, and give its
+    result with doubts about it.
+    """
     write(folder, terminal)
     terminal.warn(doubts)
     warnings = [*given.case.warnings, *folder.undrawn, *doubts]
@@ -130,7 +134,11 @@ def conclude(
 
 def case_heading(given: CaseInput) -> dict[str, str]:
     """The case in a JSON document."""
-    return {"name": given.case.name, "title": given.case.title, "source": given.case.source}
+    return {
+        "name": given.case.name,
+        "title": given.case.title,
+        "source": given.case.source,
+    }
 
 
 FACTOR = options.FiniteRange("; scale to an intensity by --scale-to PGA=0.4g")
@@ -151,7 +159,9 @@ class MotionRequest:
 
     def __post_init__(self) -> None:
         if self.scale is not None and self.scale_to is not None:
-            raise UsageError("--scale and --scale-to both fix the factor; keep one of them")
+            raise UsageError(
+                "--scale and --scale-to both fix the factor; keep one of them"
+            )
 
     @property
     def words(self) -> list[str]:
@@ -162,7 +172,9 @@ class MotionRequest:
             "--scale": self.scale,
             "--scale-to": self.scale_to,
         }
-        given = [(name, str(value)) for name, value in known.items() if value not in (None, "")]
+        given = [
+            (name, str(value)) for name, value in known.items() if value not in (None, "")
+        ]
         return [word for option in given for word in option]
 
 
@@ -183,13 +195,17 @@ motion_options = options.gathered(
         type=options.FILE,
         help="Vertical component, with the same time step; own: that of the recording.",
     ),
-    click.option("--scale", type=FACTOR, metavar="FACTOR", help="Factor on the acceleration."),
+    click.option(
+        "--scale", type=FACTOR, metavar="FACTOR", help="Factor on the acceleration."
+    ),
     click.option(
         "--scale-to",
         metavar="MEASURE=VALUE",
         **options.completing(options.measures),
-        help="Scale each record to PGA=0.4g, PGV='50 cm/s', 'Sa(0.6 s)=1g', AvgSa, FIV3, PGD,"
-        " Housner, CAV or Arias.",
+        help=(
+            "Scale each record to PGA=0.4g, PGV='50 cm/s', 'Sa(0.6 s)=1g', AvgSa, FIV3,"
+            " PGD, Housner, CAV or Arias."
+        ),
     ),
 )
 """--record as `records`; --vertical, --scale and --scale-to as `motion`."""
@@ -200,7 +216,9 @@ def single_motions(
     request: MotionRequest,
     tell: Callable[[Iterable[str]], None] = lambda _: None,
 ) -> Iterator[MotionRequest]:
-    """One request for each motion that the sources stand for, sets and folders taken apart."""
+    """One request for each motion that the sources stand for, sets
+    and folders taken apart.
+    """
     if not records:
         yield request
         return
@@ -210,7 +228,9 @@ def single_motions(
     single, notes = expanded(records)
     tell(f"--record {text}" for text in notes)
     if len(single) > 1 and request.vertical not in {None, OWN}:
-        raise UsageError(f"--vertical {request.vertical}: belongs to one record, not {len(single)}")
+        raise UsageError(
+            f"--vertical {request.vertical}: belongs to one record, not {len(single)}"
+        )
     of = None if request.scale_to is None else parsed_target(request.scale_to).of
     for source, pair in zip(single, pairs(single, of), strict=True):
         yield replace(request, record=source, pair=pair)
@@ -243,7 +263,9 @@ def load_motions(
 
 
 def load_motion(case: Case, request: MotionRequest) -> MotionComponents:
-    """Read the motion; a `--record` stands in place of the whole `record` section of the case."""
+    """Read the motion; a `--record` stands in place of the whole
+    `record` section of the case.
+    """
     from rpscli.records.loading import OWN, load_components, load_record
 
     given = case.record if request.record is None else None
@@ -251,15 +273,21 @@ def load_motion(case: Case, request: MotionRequest) -> MotionComponents:
     if request.record is not None:
         motion = load_components(request.record, request.vertical)
     elif given is None:
-        raise UsageError(f"{case.source}: the case names no record; give one with --record")
+        raise UsageError(
+            f"{case.source}: the case names no record; give one with --record"
+        )
     else:
         own = {None: given.vertical, OWN: OWN}.get(request.vertical)
         how = {"folder": case.folder, "dt": given.dt, "units": given.units}
-        motion = load_components(case.record_source, own, given.y, given.rotation or 0.0, **how)
+        motion = load_components(
+            case.record_source, own, given.y, given.rotation or 0.0, **how
+        )
         if request.vertical is not None and request.vertical != OWN:
             motion = replace(motion, vertical=load_record(request.vertical))
     if motion.y is not None and (why := case.structure.planar_only):
-        raise CaseError(f"{case.source}: both components of {motion.horizontal.source}: {why}")
+        raise CaseError(
+            f"{case.source}: both components of {motion.horizontal.source}: {why}"
+        )
     scale = request.scale
     asker = f"{case.source}: record.scale_to"
     aim = given.scale_to if given is not None else None
@@ -282,7 +310,9 @@ def _scaled_to(
     target: ScaleToSection,
     asker: str,
 ) -> MotionComponents:
-    """A motion by the factor that brings a measure of one component or a pair to a value."""
+    """A motion by the factor that brings a measure of one
+    component or a pair to a value.
+    """
     from rpscli.records import measures
 
     measure = target.measure
@@ -291,12 +321,16 @@ def _scaled_to(
     if at_period and period is None:
         building = case.structure.superstructure
         if building is None:
-            raise UsageError(f"{asker}: without storeys {measure} has no T1 to be taken at")
+            raise UsageError(
+                f"{asker}: without storeys {measure} has no T1 to be taken at"
+            )
         period = float(building.periods[0])
     (one, *others), how = of, None
     if others:
         how = target.of or measures.USUAL
-        unscaled = measures.pair_measure(one, others[0], measure, how, period, target.damping)
+        unscaled = measures.pair_measure(
+            one, others[0], measure, how, period, target.damping
+        )
     else:
         unscaled = measures.measured(one, measure, period, target.damping)
     factor = measures.factor_to(target.value, unscaled, measure, motion.horizontal.source)

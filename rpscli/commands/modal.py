@@ -21,7 +21,9 @@ if TYPE_CHECKING:
 @click.command("modal")
 @options.case_options
 @options.film_options
-@click.option("--first-order", "paper", is_flag=True, help="Also show the values of the paper.")
+@click.option(
+    "--first-order", "paper", is_flag=True, help="Also show the values of the paper."
+)
 @options.result_options
 def command(
     request: options.CaseRequest,
@@ -30,7 +32,8 @@ def command(
     *,
     paper: bool,
 ) -> None:
-    """Modes of CASE in full contact and, linearised where they begin, rolling and rocking.
+    """Modes of CASE in full contact and, linearised where they
+    begin, rolling and rocking.
 
     Writes modes.csv, shapes.csv, eigenvalues.csv and the figure modes.
     """
@@ -51,8 +54,8 @@ def command(
 
 
 ORDER = (
-    "Uplifted states are linearised exactly where they begin: rolling at 0, rocking at beta (0 for"
-    " flat ends)."
+    "Uplifted states are linearised exactly where they begin: rolling at 0, rocking at"
+    " beta (0 for flat ends)."
 )
 FIRST_ORDER = "first order"
 """Head of the paper's values: small alpha, rocking continued to 0."""
@@ -71,7 +74,13 @@ def _tables(result: ModalResult, title: str, left_out: Collection[str]) -> Itera
             cells = shown(w), shown(first[0]), shown(ratio), *percent, shown(over)
             vibrations.append((name.replace("_", ", "), str(i), *cells))
     yield Heading(title)
-    heads: tuple[str, ...] = "podium's own mode", "", "p_ext rad/s", FIRST_ORDER, "rigid estimate"
+    heads: tuple[str, ...] = (
+        "podium's own mode",
+        "",
+        "p_ext rad/s",
+        FIRST_ORDER,
+        "rigid estimate",
+    )
     yield Table.of_texts(heads, storey, words=2).without(left_out)
     yield ORDER
     if result.left_out:
@@ -81,9 +90,9 @@ def _tables(result: ModalResult, title: str, left_out: Collection[str]) -> Itera
         if result.fixed_base is not None and (bed := result.structure.bed) is not None:
             ratio = full.periods[0] / result.fixed_base.periods[0]
             yield (
-                f"First period {shown(full.periods[0])} s in full contact, {ratio:.3f} of the fixed"
-                f" base, {bed.period_ratio:.3f} without damping. Uplifted states"
-                " are linearised as on rigid ends."
+                f"First period {shown(full.periods[0])} s in full contact, {ratio:.3f} of"
+                f" the fixed base, {bed.period_ratio:.3f} without damping. Uplifted"
+                " states are linearised as on rigid ends."
             )
     if (fixed := result.fixed_base) is None:
         return
@@ -94,19 +103,25 @@ def _tables(result: ModalResult, title: str, left_out: Collection[str]) -> Itera
     table = Table.of_texts(("uplifted", "mode", *heads), vibrations, words=1, keys=2)
     yield table.without(left_out)
     at = [
-        f"{name.replace('_', ' ')} {measured(first['base_shear'], 'N')} (storey {first['storey']})"
+        f"{name.replace('_', ' ')} {measured(first['base_shear'], 'N')} (storey"
+        f" {first['storey']})"
         for name, first in result.first_yield.items()
     ]
     if at:
         yield (
-            "Modes are those of the elastic building, and end where a storey yields: in the first"
-            f" mode at a base shear of {', '.join(at)}."
+            "Modes are those of the elastic building, and end where a storey yields: in"
+            f" the first mode at a base shear of {', '.join(at)}."
         )
 
 
 def _mode_table(state: str, modes: FixedBaseModes) -> Table:
     rows = [
-        (str(i + 1), shown(w), shown(modes.periods[i]), shown(100.0 * modes.damping[i], 3))
+        (
+            str(i + 1),
+            shown(w),
+            shown(modes.periods[i]),
+            shown(100.0 * modes.damping[i], 3),
+        )
         for i, w in enumerate(modes.frequencies)
     ]
     return Table.of_texts((state, "rad/s", "T s", "xi %"), rows)

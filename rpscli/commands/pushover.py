@@ -25,8 +25,10 @@ if TYPE_CHECKING:
     "patterns",
     multiple=True,
     metavar="PATTERN",
-    help="Floor forces: uniform, triangular, first_mode, or f1,f2,... from the bottom; repeatable."
-    " All three named ones by default.",
+    help=(
+        "Floor forces: uniform, triangular, first_mode, or f1,f2,... from the bottom;"
+        " repeatable. All three named ones by default."
+    ),
 )
 @options.result_options
 def command(
@@ -36,8 +38,9 @@ def command(
 ) -> None:
     """Restoring force of the podium of CASE, and capacity curves of the whole structure.
 
-    Writes storey_curve.csv and, for a case with storeys, capacity.csv, a figure of each, and the
-    figure bearing: columns at rest, where rolling ends and at the critical rotation.
+    Writes storey_curve.csv and, for a case with storeys, capacity.csv, a
+    figure of each, and the figure bearing: columns at rest, where rolling ends
+    and at the critical rotation.
     """
     given = read_case(request, out.terminal)
     from rpscli.analyses.pushover import PATTERNS, pushover
@@ -53,7 +56,9 @@ def command(
         raise UsageError(f"--pattern: {error}") from None
     folder.add_all(pushover_files(result, given.case.title, out.look))
     tables = _tables(result, given.case.title)
-    conclude(given, folder, result.results(), tables, out.terminal, doubts=result.warnings)
+    conclude(
+        given, folder, result.results(), tables, out.terminal, doubts=result.warnings
+    )
 
 
 def _pattern(text: str) -> PatternName | list[float]:
@@ -69,7 +74,9 @@ def _pattern(text: str) -> PatternName | list[float]:
 
 
 def _tables(result: PushoverResult, title: str) -> Iterator[Part]:
-    scalars = {q.name: (q.label, measured(getattr(result, q.name), q.unit)) for q in PUSHOVER}
+    scalars = {
+        q.name: (q.label, measured(getattr(result, q.name), q.unit)) for q in PUSHOVER
+    }
     label, stiffness = scalars["initial_stiffness"]
     yield Heading(title)
     yield Table.listing([
@@ -85,7 +92,9 @@ def _tables(result: PushoverResult, title: str) -> Iterator[Part]:
         capacity = []
         for curve in result.capacity:
             largest = shown(float(curve.sum_of_floor_forces.max()) * 1e-3)
-            capacity.append((curve.pattern, shown(curve.roof_displacement_at_uplift), largest))
+            capacity.append(
+                (curve.pattern, shown(curve.roof_displacement_at_uplift), largest)
+            )
         yield Table.of_texts(heads, capacity)
     yield from _yielding_tables(result)
 

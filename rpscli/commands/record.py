@@ -41,11 +41,12 @@ FORMATS = {"at2": ".at2", "text": ".txt"}
 def command() -> None:
     """Read, draw, select, convert and make ground motions.
 
-    SRC is a file (PEER AT2, columns of numbers, and more; options as in rec.txt?dt=0.01&units=g),
-    a member of a set (fema_p695:farfield/1/b), two components at an angle in degrees
-    (fema_p695:farfield/1?angle=30, x.at2?second=y.at2&angle=30; `both` in place of the angle has
-    them act together in time histories), a pulse
-    (pulse:sine?amplitude=0.4g&period=1.2) or a synthetic motion (synthetic:?pga=0.4g&seed=1).
+    SRC is a file (PEER AT2, columns of numbers, and more; options as in
+    rec.txt?dt=0.01&units=g), a member of a set (fema_p695:farfield/1/b), two components
+    at an angle in degrees (fema_p695:farfield/1?angle=30, x.at2?second=y.at2&angle=30;
+    `both` in place of the angle has them act together in time histories), a pulse
+    (pulse:sine?amplitude=0.4g&period=1.2) or a synthetic motion
+    (synthetic:?pga=0.4g&seed=1).
     """
 
 
@@ -77,9 +78,13 @@ source_options = gathered(
     "given",
     SourceRequest,
     click.argument("source", metavar="SRC", type=FILE),
-    click.option("--dt", type=float, metavar="S", help="Time step of a file that states none [s]."),
     click.option(
-        "--units", metavar="UNIT", help="Unit of the values of a file that states none, such as g."
+        "--dt", type=float, metavar="S", help="Time step of a file that states none [s]."
+    ),
+    click.option(
+        "--units",
+        metavar="UNIT",
+        help="Unit of the values of a file that states none, such as g.",
     ),
     click.option(
         "--scale", type=float, default=1.0, metavar="FACTOR", help="Factor on the values."
@@ -91,19 +96,28 @@ source_options = gathered(
 def _folder(
     motions: Sequence[GroundMotion], out: Output, command: str, **inputs: Any
 ) -> OutputFolder:
-    """The folder of a command's results; a record that is no file is known by its samples."""
+    """The folder of a command's results; a record that is no file
+    is known by its samples.
+    """
     from rpscli.records.source import Source
 
     motion, *others = motions
     file = Path(Source.parse(motion.source).place)
     name = f"{motion.name.removesuffix('_x')}_both" if others else motion.name
     inputs |= {"source": motion.source} | ({"y": others[0].digest} if others else {})
-    run = Run(f"record {command}", name, file if file.is_file() else None, motion.digest, inputs)
-    return OutputFolder(out.place or RESULTS / name / f"record_{command}", run, force=out.force)
+    run = Run(
+        f"record {command}", name, file if file.is_file() else None, motion.digest, inputs
+    )
+    return OutputFolder(
+        out.place or RESULTS / name / f"record_{command}", run, force=out.force
+    )
 
 
 def _result(
-    command: str, motions: Sequence[GroundMotion], terminal: Terminal, **more: Sequence[str]
+    command: str,
+    motions: Sequence[GroundMotion],
+    terminal: Terminal,
+    **more: Sequence[str],
 ) -> None:
     """The motion that was read and its strength, as document or table."""
     from rpscli.records.measures import intensity_measures
@@ -128,16 +142,20 @@ def info(given: SourceRequest, terminal: Terminal) -> None:
 @source_options
 @result_options
 def plot(given: SourceRequest, out: Output) -> None:
-    """Draw SRC: acceleration, velocity, displacement and its response spectrum at 5 % damping.
+    """Draw SRC: acceleration, velocity, displacement and its response
+    spectrum at 5 % damping.
 
-    Writes record.csv, spectrum.csv and the figure record; of a pair x_record.csv, y_record.csv, ...
+    Writes record.csv, spectrum.csv and the figure record; of a pair
+    x_record.csv, y_record.csv, ...
     """
     from rpscli.records.measures import drawn_spectrum
     from rpscli.report.motions import record_files
 
     motions = given.motions(out.terminal)
     folder = _folder(motions, out, "plot")
-    for motion, way in zip(motions, ("x_", "y_") if len(motions) > 1 else ("",), strict=True):
+    for motion, way in zip(
+        motions, ("x_", "y_") if len(motions) > 1 else ("",), strict=True
+    ):
         files = record_files(motion, drawn_spectrum(motion), out.look)
         folder.add_all((f"{way}{name}", content) for name, content in files)
     write(folder, out.terminal)
@@ -168,12 +186,17 @@ def _targets() -> list[str]:
     required=True,
     metavar="SPECTRUM",
     **completing(_targets, or_file=True),
-    help="A CSV file (period [s],acceleration [g], and sigma_ln [-] if ln Sa is to scatter),"
-    " the safest choice; en1998:?ag=0.3g&soil=B&type=1&damping=0.05, with s, tb, tc, td of"
-    " a national annex; en1998-2024:?s_alpha=0.9g&s_beta=0.35g&td=2;"
-    " asce7:?sds=1.0g&sd1=0.6g&tl=8&level=mcer; sp14:?acceleration=4 m/s2&soil=II.",
+    help=(
+        "A CSV file (period [s],acceleration [g], and sigma_ln [-] if ln Sa is to"
+        " scatter), the safest choice; en1998:?ag=0.3g&soil=B&type=1&damping=0.05, with"
+        " s, tb, tc, td of a national annex;"
+        " en1998-2024:?s_alpha=0.9g&s_beta=0.35g&td=2;"
+        " asce7:?sds=1.0g&sd1=0.6g&tl=8&level=mcer; sp14:?acceleration=4 m/s2&soil=II."
+    ),
 )
-@click.option("-n", "--count", type=int, default=11, show_default=True, help="Number of motions.")
+@click.option(
+    "-n", "--count", type=int, default=11, show_default=True, help="Number of motions."
+)
 @click.option(
     "--periods",
     type=float,
@@ -186,8 +209,10 @@ def _targets() -> list[str]:
     "case_source",
     type=FILE,
     metavar="CASE",
-    help="Take the range from a structure: 0.2 T1 on a fixed base to the secant period on bearings"
-    " at its limit of rotation, or 2 T1 if that is longer.",
+    help=(
+        "Take the range from a structure: 0.2 T1 on a fixed base to the secant period"
+        " on bearings at its limit of rotation, or 2 T1 if that is longer."
+    ),
 )
 @overrides_option("Override a value of the case of --case")
 @click.option(
@@ -200,15 +225,20 @@ def _targets() -> list[str]:
 @click.option(
     "--rules",
     type=click.Choice(RULES),
-    help="Rules of a code for the set, which the common factor satisfies if it can: by default"
-    " that of the target's code, and mean90 for others, 0.9 of the target at all periods.",
+    help=(
+        "Rules of a code for the set, which the common factor satisfies if it can: by"
+        " default that of the target's code, and mean90 for others, 0.9 of the target"
+        " at all periods."
+    ),
 )
 @click.option(
     "--where",
     multiple=True,
     metavar="NAME=LOW..HIGH",
-    help="Candidates only: magnitude=6.5..7.5, distance=10 km..50 km, vs30=180..360, pulse=no,"
-    " usable_period=4.., d5_75=5..20, d5_95; repeatable.",
+    help=(
+        "Candidates only: magnitude=6.5..7.5, distance=10 km..50 km, vs30=180..360,"
+        " pulse=no, usable_period=4.., d5_75=5..20, d5_95; repeatable."
+    ),
 )
 @click.option(
     "--factors",
@@ -253,18 +283,20 @@ def select(
 ) -> None:
     """Choose the motions among SRC whose mean spectrum fits a target, with their factors.
 
-    SRC are files, folders or sets (fema_p695:farfield/*). Of one recording one component is chosen,
-    or the pair. Each gets a factor of its own, then all one common factor. The rules of the code
-    for such a set are enforced where the factors allow it, and reported as met or not; the exit
-    code is 10 if one is not met. Sa(T1) is a poor measure for rocking: once lifted, a structure has
-    no period of its own, and overturning follows the velocity of long pulses. So spectra are
-    compared over a range of periods, PGV and PGD are reported with the target's, and --scale-by PGV
-    brings every motion to one PGV.
+    SRC are files, folders or sets (fema_p695:farfield/*). Of one recording one component
+    is chosen, or the pair. Each gets a factor of its own, then all one common factor. The
+    rules of the code for such a set are enforced where the factors allow it, and reported
+    as met or not; the exit code is 10 if one is not met. Sa(T1) is a poor measure for
+    rocking: once lifted, a structure has no period of its own, and overturning follows
+    the velocity of long pulses. So spectra are compared over a range of periods, PGV and
+    PGD are reported with the target's, and --scale-by PGV brings every motion to one PGV.
 
-    A target with sigma_ln is matched in median and scatter of Sa, as for conditional spectra.
+    A target with sigma_ln is matched in median and scatter of Sa, as
+    for conditional spectra.
 
-    Writes selection.txt, for `records: ["list:selection.txt"]` in a study or `rps timehistory CASE
-    --record list:selection.txt`, selection.csv, spectra.csv and the figure selection.
+    Writes selection.txt, for `records: ["list:selection.txt"]` in a study or
+    `rps timehistory CASE --record list:selection.txt`, selection.csv,
+    spectra.csv and the figure selection.
     """
     from rpscli.records import selection as search
     from rpscli.records.loading import expanded, load_components
@@ -284,32 +316,49 @@ def select(
     if case_source is not None:
         structure, limit = _structure(CaseRequest(case_source, overrides), out.terminal)
     if spectrum.deviation is not None and rules not in {None, "none"}:
-        raise UsageError(f"--rules {rules}: is about means, {target} has a sigma_ln to be met")
+        raise UsageError(
+            f"--rules {rules}: is about means, {target} has a sigma_ln to be met"
+        )
     asked = KNOWN.get(rules or spectrum.rules)
     span, why = _range(structure, limit, spectrum, asked)
     span, why = (span, why) if periods is None else (periods, "as asked for")
     single, notes = expanded(sources)
     out.terminal.warn(notes)
-    usual: Component = USUAL if any(Source.parse(text).both for text in single) else "component"
+    usual: Component = (
+        USUAL if any(Source.parse(text).both for text in single) else "component"
+    )
     of = component or (asked.of if asked and rules else None) or spectrum.of or usual
     request = search.SelectionRequest(
-        count, span, factors, per_event, wanted_pgv, of, rules or spectrum.rules, structure
+        count,
+        span,
+        factors,
+        per_event,
+        wanted_pgv,
+        of,
+        rules or spectrum.rules,
+        structure,
     )
     numbers = watched("records read", out.terminal, range(len(single)), many=100)
     every = [load_components(single[number]).horizontal for number in numbers]
     motions, left_out = search.kept(every, [search.parse_filter(text) for text in where])
     if not motions:
-        counts = ", ".join(f"{text} {sum(gone.values())}" for text, gone in left_out.items())
+        counts = ", ".join(
+            f"{text} {sum(gone.values())}" for text, gone in left_out.items()
+        )
         raise UsageError(f"--where: leaves no motion of {len(every)}; out go by {counts}")
     looking = partial(watched, "candidates", out.terminal, many=100)
     selection = search.select(motions, spectrum, request, looking)
     place = out.place or RESULTS / "selection" / "record_select"
     file = Path(target)
-    digest = hashlib.sha256("".join(motion.digest for motion in motions).encode()).hexdigest()
+    digest = hashlib.sha256(
+        "".join(motion.digest for motion in motions).encode()
+    ).hexdigest()
     inputs = {
         "sources": list(sources), "target": target, "request": asdict(request), "where": where
     }  # fmt: skip
-    run = Run("record select", spectrum.name, file if file.is_file() else None, digest, inputs)
+    run = Run(
+        "record select", spectrum.name, file if file.is_file() else None, digest, inputs
+    )
     folder = OutputFolder(place, run, force=out.force)
     folder.add_all(selection_files(selection, place, out.look))
     out.terminal.warn(report.selection_doubts(selection, structure and structure.fixed))
@@ -324,7 +373,9 @@ def select(
         **heading("record select"), **report.selection_document(selection),
         "periods_from": why, "left_out": left_out, "files": folder.files,
     }  # fmt: skip
-    out.terminal.finish(document, report.selection_tables(selection, why, left_out), error)
+    out.terminal.finish(
+        document, report.selection_tables(selection, why, left_out), error
+    )
 
 
 def _structure(request: CaseRequest, terminal: Terminal) -> tuple[Periods, str]:
@@ -341,7 +392,12 @@ def _structure(request: CaseRequest, terminal: Terminal) -> tuple[Periods, str]:
         (scales[limit.name] * limit.limit, f"the limit {limit.name} {limit.limit:g}")
         for limit in conditions_of(case.limits, "")
         if limit.name in scales
-    ] or [(USUAL_ROTATION * critical, f"{USUAL_ROTATION:g} theta_cr, as the case has no limit")]
+    ] or [
+        (
+            USUAL_ROTATION * critical,
+            f"{USUAL_ROTATION:g} theta_cr, as the case has no limit",
+        )
+    ]
     rotation, where = min(limits)
     if rotation >= critical:
         raise UsageError(
@@ -353,7 +409,10 @@ def _structure(request: CaseRequest, terminal: Terminal) -> tuple[Periods, str]:
 
 
 def _range(
-    structure: Periods | None, limit: str, target: TargetSpectrum, asked: Requirements | None
+    structure: Periods | None,
+    limit: str,
+    target: TargetSpectrum,
+    asked: Requirements | None,
 ) -> tuple[tuple[float, float], str]:
     """Range of periods, and why it is that."""
     low, high, why = *USUAL_PERIODS, "usual; --case takes it from a structure"
@@ -371,7 +430,10 @@ def _range(
         else:
             low = 0.2 * fixed
             high = max(2.0 * fixed, secant)
-            why = f"0.2 T1, T1 = {fixed:.3g} s on a fixed base, to the longer of 2 T1 and {why}"
+            why = (
+                f"0.2 T1, T1 = {fixed:.3g} s on a fixed base, to the longer of 2 T1 and"
+                f" {why}"
+            )
     cut = max(low, target.span[0]), min(high, target.span[1])
     return cut, why if cut == (low, high) else f"{why}; cut where the target ends"
 
@@ -383,11 +445,15 @@ def _pgv(scale_by: str, pgv: float | None, target: TargetSpectrum) -> float | No
             raise UsageError("--pgv: belongs to --scale-by PGV")
         return None
     if pgv is None and target.pgv is None:
-        raise UsageError(f"--scale-by PGV: the PGV of {target.source} is not known; add --pgv V")
+        raise UsageError(
+            f"--scale-by PGV: the PGV of {target.source} is not known; add --pgv V"
+        )
     return target.pgv if pgv is None else pgv
 
 
-def _write(command: str, motions: Sequence[GroundMotion], out: Output, form: str | None) -> None:
+def _write(
+    command: str, motions: Sequence[GroundMotion], out: Output, form: str | None
+) -> None:
     """Write the motions into the folder, or the file, that the command line names."""
     from rpscli.records.formats.at2 import at2_text
     from rpscli.report.motions import two_column_text
@@ -398,12 +464,18 @@ def _write(command: str, motions: Sequence[GroundMotion], out: Output, form: str
     if named and form not in {None, named}:
         raise UsageError(f"--to {form}: contradicts the file name {place}")
     if named and len(motions) > 1:
-        raise UsageError(f"-o {place}: both components are two files; name a folder, and --to")
+        raise UsageError(
+            f"-o {place}: both components are two files; name a folder, and --to"
+        )
     wanted = named or form or "at2"
-    contents = [(at2_text if wanted == "at2" else two_column_text)(motion) for motion in motions]
+    contents = [
+        (at2_text if wanted == "at2" else two_column_text)(motion) for motion in motions
+    ]
     if named:
         if place.exists() and not out.force:
-            raise Refused(f"{place} exists; name another file, or overwrite it with --force")
+            raise Refused(
+                f"{place} exists; name another file, or overwrite it with --force"
+            )
         write_whole({place: encoded(contents[0])})
         out.terminal.note(f"written to {place}")
         files = [str(place)]
@@ -422,18 +494,26 @@ def _write(command: str, motions: Sequence[GroundMotion], out: Output, form: str
     "--to",
     "form",
     type=click.Choice(tuple(FORMATS)),
-    help="at2: PEER AT2, in g. text: two columns, s and m/s2. By default by the name after -o,"
-    " otherwise at2.",
+    help=(
+        "at2: PEER AT2, in g. text: two columns, s and m/s2. By default by the name"
+        " after -o, otherwise at2."
+    ),
 )
 @click.option(
-    "--resample", type=float, metavar="S", help="New time step, by linear interpolation [s]."
+    "--resample",
+    type=float,
+    metavar="S",
+    help="New time step, by linear interpolation [s].",
 )
 @written_options
-def convert(given: SourceRequest, out: Output, form: str | None, resample: float | None) -> None:
-    """Write SRC as a PEER AT2 file or as two columns of text, with another time step if asked.
+def convert(
+    given: SourceRequest, out: Output, form: str | None, resample: float | None
+) -> None:
+    """Write SRC as a PEER AT2 file or as two columns of text, with
+    another time step if asked.
 
-    The name after -o may also be that of a file: -o motion.at2, -o motion.txt. Of a pair each
-    component has a file.
+    The name after -o may also be that of a file: -o motion.at2, -o motion.txt. Of a pair
+    each component has a file.
     """
     motions = given.motions(out.terminal)
     if resample is not None:
@@ -448,11 +528,14 @@ def convert(given: SourceRequest, out: Output, form: str | None, resample: float
 def synth(given: SourceRequest, out: Output) -> None:
     """Make the motion that SRC describes, and write it as an AT2 file that says so.
 
-    SRC is synthetic:?pga=0.4g&seed=1 (also duration, dt, ground_frequency, ground_damping,
-    cut_frequency, cut_damping, pulse_velocity, pulse_period, pulse_cycles) or a pulse such as
-    pulse:ricker?amplitude=0.4g&period=1. The same seed gives the same motion.
+    SRC is synthetic:?pga=0.4g&seed=1 (also duration, dt, ground_frequency,
+    ground_damping, cut_frequency, cut_damping, pulse_velocity, pulse_period,
+    pulse_cycles) or a pulse such as pulse:ricker?amplitude=0.4g&period=1. The same
+    seed gives the same motion.
     """
     motion, *_ = motions = given.motions(out.terminal)
     if (form := motion.format) not in ("synthetic", "pulse"):
-        raise UsageError(f"{motion.source}: is {form}, not made here; use `rps record convert`")
+        raise UsageError(
+            f"{motion.source}: is {form}, not made here; use `rps record convert`"
+        )
     _write("synth", motions, out, "at2")

@@ -41,7 +41,9 @@ PEOPLE = {"project": "project", "author": "made by", "checker": "checked by"}
 @options.overrides_option("Override a value of the case or study")
 @inputs.motion_options
 @options.fail_on_option("A further limit, as in `rps timehistory`; repeatable.")
-@click.option("--project", metavar="TEXT", help="Name or number of the project, for the page.")
+@click.option(
+    "--project", metavar="TEXT", help="Name or number of the project, for the page."
+)
 @click.option("--author", metavar="NAME", help="Who made the page and signs it.")
 @click.option("--checker", metavar="NAME", help="Who checks the page and signs it.")
 @click.option(
@@ -69,14 +71,16 @@ def command(
 ) -> None:
     """One page about a CASE, a STUDY, a DESIGN or a FOLDER of results.
 
-    It has the structure, the input, the formulas with their values, the ground motions, verdicts,
-    tables and figures, and the command that repeats it. It needs no network and no scripts, and
-    prints on A4. Histories of a CASE are computed, with mean and largest of several records; so are
-    points of a STUDY or DESIGN that are not stored yet. Those of a FOLDER are computed again and
-    compared with what is stored.
+    It has the structure, the input, the formulas with their values, the ground motions,
+    verdicts, tables and figures, and the command that repeats it. It needs no network and
+    no scripts, and prints on A4. Histories of a CASE are computed, with mean and largest
+    of several records; so are points of a STUDY or DESIGN that are not stored yet. Those
+    of a FOLDER are computed again and compared with what is stored.
     """
     if place is not None and place.suffix.lower() not in {".html", ".htm"}:
-        raise UsageError(f"-o {place}: the page is HTML; name a file that ends with .html")
+        raise UsageError(
+            f"-o {place}: the page is HTML; name a file that ends with .html"
+        )
     from rpscli.commands import report_page as pages
     from rpscli.commands.study import read
     from rpscli.report.page import FORMATS
@@ -88,9 +92,13 @@ def command(
     why = ""
     if earlier is not None and overrides:
         why = "stored results keep the values they have; leave --set out"
-    elif (kind != pages.HISTORY or earlier) and (records or motion != inputs.MotionRequest()):
+    elif (kind != pages.HISTORY or earlier) and (
+        records or motion != inputs.MotionRequest()
+    ):
         of = {pages.SWEEP: "a study has records", pages.DESIGN: "a design has records"}
-        owner = f"{of[kind]} of its own" if kind in of else "a stored history has its record"
+        owner = (
+            f"{of[kind]} of its own" if kind in of else "a stored history has its record"
+        )
         why = f"{owner}; leave --record, --vertical and --scale out"
     elif with_budget and kind != pages.HISTORY:
         why = "--budget is about one history; name a case"
@@ -122,7 +130,9 @@ def command(
     file = place or inputs.RESULTS / name / "report.html"
     _require_free(file, name, force=force)
     done = make()
-    signed = {word: people[key] or getattr(done.signed, key) for key, word in PEOPLE.items()}
+    signed = {
+        word: people[key] or getattr(done.signed, key) for key, word in PEOPLE.items()
+    }
     _write(file, name, done, signed, terminal)
     leave(done.error)
 
@@ -140,13 +150,17 @@ def _require_free(file: Path, name: str, *, force: bool) -> None:
         own = False
     if not own:
         raise Refused(
-            f"{file} exists and is not a report of {name}; name another file with -o, or overwrite"
-            " it with --force"
+            f"{file} exists and is not a report of {name}; name another file with -o, or"
+            " overwrite it with --force"
         )
 
 
 def _write(
-    file: Path, name: str, done: PageDone, signed: Mapping[str, str | None], terminal: Terminal
+    file: Path,
+    name: str,
+    done: PageDone,
+    signed: Mapping[str, str | None],
+    terminal: Terminal,
 ) -> None:
     from rpscli.report.page import MOST_BYTES, Picture, page
 
@@ -158,6 +172,10 @@ def _write(
     shown = (each.files.values() for each in blocks if isinstance(each, Picture))
     terminal.warn(undrawn(chain.from_iterable(shown)))
     if len(content) > MOST_BYTES:
-        terminal.warn([f"{file} has {1e-6 * len(content):.1f} MB: too many figures for a page"])
+        terminal.warn(
+            [f"{file} has {1e-6 * len(content):.1f} MB: too many figures for a page"]
+        )
     terminal.note(f"written to {file}, {1e-3 * len(content):.0f} kB")
-    terminal.result({**done.document, "command": "report", "files": [str(file)]}, [str(file)])
+    terminal.result(
+        {**done.document, "command": "report", "files": [str(file)]}, [str(file)]
+    )

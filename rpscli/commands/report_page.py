@@ -1,4 +1,6 @@
-"""Pages of `rps report`: of a case and its histories, a study, a design, and of stored results."""
+"""Pages of `rps report`: of a case and its histories, a study, a
+design, and of stored results.
+"""
 
 from __future__ import annotations
 
@@ -41,7 +43,12 @@ from rpscli.report.files import (
 from rpscli.report.limits import verdicts_in_short
 from rpscli.report.page import Block, Notice, Picture, Section, pictures
 from rpscli.report.study.report import labels
-from rpscli.report.study.statistics import cut, of_first_system, summary_tables, verdict_table
+from rpscli.report.study.statistics import (
+    cut,
+    of_first_system,
+    summary_tables,
+    verdict_table,
+)
 from rpscli.report.table import Heading, Table
 from rpscli.studies import Study, StudyResult
 from rpscli.sweep.evaluation import resolved
@@ -52,7 +59,12 @@ HISTORY = "timehistory"
 SWEEP = "sweep"
 DESIGN = "design"
 _COMPONENT = {"source": str, "sha256": str}
-_MOTION = {"scale": float, "horizontal": _COMPONENT, "vertical": (_COMPONENT,), "y": (_COMPONENT,)}
+_MOTION = {
+    "scale": float,
+    "horizontal": _COMPONENT,
+    "vertical": (_COMPONENT,),
+    "y": (_COMPONENT,),
+}
 HISTORY_INPUTS = {
     "overrides": [str], "case": dict, "record": (_MOTION,), "records": ([_MOTION],)
 }  # fmt: skip
@@ -88,9 +100,15 @@ class Earlier:
 
     @property
     def subject(self) -> CaseRequest:
-        """The study or the design as it is on the disk, which has to be there, and overrides."""
+        """The study or the design as it is on the disk, which has to
+        be there, and overrides.
+        """
         if self.file is None or not self.file.exists():
-            state = "comes from Python, without a file" if self.file is None else "is not there"
+            state = (
+                "comes from Python, without a file"
+                if self.file is None
+                else "is not there"
+            )
             name = self.run["name"] if self.file is None else self.file
             raise UsageError(f"{self.folder}: {name} {state}; give the file of it")
         return CaseRequest(str(self.file), tuple(self.run["inputs"]["overrides"]))
@@ -114,7 +132,8 @@ class Earlier:
         motions = []
         for given in self.records:
             horizontal, vertical = (
-                given[name] and str(given[name]["source"]) for name in ("horizontal", "vertical")
+                given[name] and str(given[name]["source"])
+                for name in ("horizontal", "vertical")
             )
             if own and own.source == horizontal and (own.y is None or given["y"]):
                 horizontal = None
@@ -136,16 +155,16 @@ def earlier_results(folder: Path) -> Earlier:
     except FileNotFoundError:
         if (folder / STORE).exists():
             raise UsageError(
-                f"{folder}: {STORE} has points of a study that has not ended; `rps sweep STUDY -o"
-                f" {folder}` goes on with it"
+                f"{folder}: {STORE} has points of a study that has not ended; `rps sweep"
+                f" STUDY -o {folder}` goes on with it"
             ) from None
     except ValueError as error:
         what = f"holds a {RUN_FILE} of which {error}"
     inside = sorted(path.parent for path in folder.glob(f"*/{RUN_FILE}"))
     hint = f"; name one of the folders in it, such as {inside[0]}" if inside else ""
     raise UsageError(
-        f"{folder}: {what}, and a report is made of time histories of one case, of one study or of"
-        f" one design{hint}"
+        f"{folder}: {what}, and a report is made of time histories of one case, of one"
+        f" study or of one design{hint}"
     )
 
 
@@ -160,7 +179,9 @@ def kind_of(source: str) -> str:
 
 
 class PageDone(NamedTuple):
-    """A page's title and sections, what was found for JSON, its error, and who answers for it."""
+    """A page's title and sections, what was found for JSON, its
+    error, and who answers for it.
+    """
 
     title: str
     subtitle: str
@@ -177,7 +198,9 @@ def ends(case: Case) -> str:
 
 
 class _Histories(NamedTuple):
-    """Histories on a page; `worst` is the place of the one that turns the columns most."""
+    """Histories on a page; `worst` is the place of the one
+    that turns the columns most.
+    """
 
     title: str
     short: Iterable[Block]
@@ -187,7 +210,9 @@ class _Histories(NamedTuple):
     worst: int = 0
 
 
-NO_MOTION = "The case names no ground motion: this page has only the results that need none."
+NO_MOTION = (
+    "The case names no ground motion: this page has only the results that need none."
+)
 
 
 def history_page(
@@ -207,7 +232,9 @@ def history_page(
     histories = list[run.History]()
     if case.record is not None or motions[0].record is not None:
         # A place for the files, which are not written there.
-        histories = run.histories_of([given], motions, Output(terminal, Path(), force=True))
+        histories = run.histories_of(
+            [given], motions, Output(terminal, Path(), force=True)
+        )
         announce_compilation(terminal)
         made = (_several if len(histories) > 1 else _single)(histories, conditions, out)
         terminal.warn(made.document["warnings"])
@@ -221,7 +248,11 @@ def history_page(
     elif with_budget:
         raise UsageError(f"{case.source}: --budget needs a ground motion; add --record")
     else:
-        document = {**heading(), "case": case_heading(given), "warnings": list(case.warnings)}
+        document = {
+            **heading(),
+            "case": case_heading(given),
+            "warnings": list(case.warnings),
+        }
         made = _Histories("Structure", [NO_MOTION], [], concluded(document, None), None)
         terminal.warn(case.warnings)
     sections = parts.page_sections(
@@ -230,7 +261,9 @@ def history_page(
         out.look,
         short=made.short,
         warnings=made.document["warnings"],
-        inputs=parts.case_input(case, given.request.overrides, [each.ground for each in histories]),
+        inputs=parts.case_input(
+            case, given.request.overrides, [each.ground for each in histories]
+        ),
         results=made.results,
         commands=_commands(given, asked, earlier, with_budget=with_budget),
         stored=stored,
@@ -247,7 +280,9 @@ def _single(
     """One history, and histories beside it."""
     (history,) = histories
     result = run.compute(history, conditions, out)
-    short = parts.history_short(result, history.verdicts, run.look_beside(history, result))
+    short = parts.history_short(
+        result, history.verdicts, run.look_beside(history, result)
+    )
     files = _names(history.folder)
     ground = parts.ground_section(history.ground, result.structure, out.look)
     response = parts.response_section(result, files)
@@ -259,7 +294,9 @@ def _single(
 def _several(
     histories: list[run.History], conditions: Sequence[Condition], out: Output
 ) -> _Histories:
-    """Histories under several records, with the response to the one that turns columns most."""
+    """Histories under several records, with the response to the one
+    that turns columns most.
+    """
     quiet = replace(out, look=replace(out.look, formats=()))
     found = run.computed_set(histories, conditions, quiet, None, written=False)
     error = run.set_error([found])
@@ -292,18 +329,30 @@ def typed_together(case: Case, motions: Sequence[MotionRequest]) -> list[Asked]:
     """Motions as they may be typed, those that differ in their record alone together."""
     own = case.record
     alike = dict[MotionRequest, list[str]]()
-    plain = own and Source.parse(own.source).scheme and not (own.y or own.rotation or own.vertical)
+    plain = (
+        own
+        and Source.parse(own.source).scheme
+        and not (own.y or own.rotation or own.vertical)
+    )
     for motion in motions:
-        record = motion.record or (own.source if own and plain and len(motions) > 1 else None)
+        record = motion.record or (
+            own.source if own and plain and len(motions) > 1 else None
+        )
         key = replace(motion, record=None if record is None else "")
         alike.setdefault(key, []).extend([record] if record else [])
     return [(records, motion) for motion, records in alike.items()]
 
 
 def _commands(
-    given: CaseInput, asked: Sequence[Asked], earlier: Earlier | None, *, with_budget: bool
+    given: CaseInput,
+    asked: Sequence[Asked],
+    earlier: Earlier | None,
+    *,
+    with_budget: bool,
 ) -> list[list[str]]:
-    """Commands that make the histories and the page again, which may be that of a folder."""
+    """Commands that make the histories and the page again, which
+    may be that of a folder.
+    """
     histories = [
         [
             *given.request.words,
@@ -315,7 +364,9 @@ def _commands(
     subjects = histories if earlier is None else [[str(earlier.folder)]]
     pages = [["rps", "report", *each, *["--budget"] * with_budget] for each in subjects]
     without = given.case.record is None and not any(records for records, _ in asked)
-    return pages if without else [*(["rps", HISTORY, *each] for each in histories), *pages]
+    return (
+        pages if without else [*(["rps", HISTORY, *each] for each in histories), *pages]
+    )
 
 
 def _compared(
@@ -324,8 +375,14 @@ def _compared(
     """Differences of case, records and results from the stored ones."""
     for history, record in zip(histories, earlier.records, strict=True):
         named = history.ground.named
-        if any(record[n]["sha256"] != named[n].digest for n in ("horizontal", "y") if record[n]):
-            yield Notice(f"The record {history.label} is no longer that of the stored results.")
+        if any(
+            record[n]["sha256"] != named[n].digest
+            for n in ("horizontal", "y")
+            if record[n]
+        ):
+            yield Notice(
+                f"The record {history.label} is no longer that of the stored results."
+            )
     if (file := earlier.file) is not None:
         digest = hashlib.sha256(file.read_bytes()).hexdigest() if file.is_file() else ""
         if digest != earlier.run["sha256"]:
@@ -343,18 +400,23 @@ def _compared(
     if len(histories) > 1:  # the summary of a set is that of its only case
         (document,) = document["sets"]
     now = results_of(plain(document))
-    # By what the record was scaled is a result; the aim that asked for it is computed once.
+    # By what the record was scaled is a result; the aim that asked for it is computed
+    # once.
     names = [name for name in before if name in now and name != "record.scaled_to"]
-    differing = [(n, as_text(before[n]), as_text(now[n])) for n in names if before[n] != now[n]]
+    differing = [
+        (n, as_text(before[n]), as_text(now[n])) for n in names if before[n] != now[n]
+    ]
     text = (
         f"The results in {folder} were computed again from what {folder / RUN_FILE} says:"
-        f" {len(names) - len(differing)} of {len(names)} stored results are the same to the last"
-        " digit."
+        f" {len(names) - len(differing)} of {len(names)} stored results are the same to"
+        " the last digit."
     )
     if not differing:
         yield text
         return
-    yield Notice(f"{text} Different: {len(differing)}; this page shows what was computed again.")
+    yield Notice(
+        f"{text} Different: {len(differing)}; this page shows what was computed again."
+    )
     yield Table.of_texts(("result", "stored", "computed anew"), differing, words=1)
 
 
@@ -373,7 +435,11 @@ def study_page(study: Study, out: Output) -> PageDone:
     contact = ", contact varied" if varied else ends(first)
     results = [_figures(found.files, study)]
     if result.summary:
-        statistics = [*summary_tables(result.summary), of_first_system(layout), *found.parts]
+        statistics = [
+            *summary_tables(result.summary),
+            of_first_system(layout),
+            *found.parts,
+        ]
         motions = parts.motions_section(*_motions_of(study), study.title, out.look)
         results = [motions, Section("Statistics", [*cut(statistics)]), *results]
     which = []
@@ -382,12 +448,14 @@ def study_page(study: Study, out: Output) -> PageDone:
         which = [f"The first of {systems} systems: {named}."]
     words = CaseRequest(layout.study.source, study.overrides).words
     warnings = [*done.notes, *(str(error) for error in found.broken)]
-    warnings += [f"Point {f.point} failed: {f.message}" for f in found.failures[:FAILURES_SHOWN]]
+    warnings += [
+        f"Point {f.point} failed: {f.message}" for f in found.failures[:FAILURES_SHOWN]
+    ]
     if (failed := len(found.failures)) > FAILURES_SHOWN:
         warnings.append(f"{failed} points failed; these are the first of them")
     stored = (
-        f"Every point is stored in {folder.folder}; points.csv there has them all, failed.csv the"
-        " command that computes each failed point alone."
+        f"Every point is stored in {folder.folder}; points.csv there has them all,"
+        " failed.csv the command that computes each failed point alone."
     )
     sections = parts.page_sections(
         first,
@@ -395,7 +463,9 @@ def study_page(study: Study, out: Output) -> PageDone:
         out.look,
         short=_in_short(result),
         warnings=warnings,
-        inputs=_study_input(study, first, "The case" if systems == 1 else "Its first system"),
+        inputs=_study_input(
+            study, first, "The case" if systems == 1 else "Its first system"
+        ),
         results=results,
         commands=[["rps", "sweep", *words], ["rps", "report", *words]],
         stored=[stored],
@@ -404,7 +474,9 @@ def study_page(study: Study, out: Output) -> PageDone:
     )
     subtitle = f"Study of {len(result)} points{contact}"
     signed = layout.study.file.document
-    return PageDone(study.title, subtitle, sections, done.document("report"), done.error, signed)
+    return PageDone(
+        study.title, subtitle, sections, done.document("report"), done.error, signed
+    )
 
 
 def _in_short(run: StudyResult) -> Iterator[Block]:
@@ -423,7 +495,9 @@ def _motions_of(study: Study) -> tuple[list[GroundMotion], list[str]]:
     layout = study.layout
     motions = []
     reasons = []
-    own = [properties.record for properties in layout.properties if None in layout.records]
+    own = [
+        properties.record for properties in layout.properties if None in layout.records
+    ]
     for request in filter(None, dict.fromkeys((*layout.records, *own))):
         try:
             motions.append(layout.context.records.motion(request).horizontal)
@@ -450,7 +524,11 @@ def _study_input(study: Study, first: Case, which: str) -> Iterator[Block]:
     yield parts.listing([
         ("file", checked.source),
         ("SHA-256 of its text", checked.digest),
-        ("case at its base", str(checked.base_file) if checked.base_file else "in the study"),
+        ((
+            "case at"
+            " its"
+            " base"
+        ), str(checked.base_file) if checked.base_file else "in the study"),
         ("overridden values", ", ".join(study.overrides)),
         ("solver", plan.solver),
     ])  # fmt: skip

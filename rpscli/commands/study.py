@@ -1,4 +1,6 @@
-"""A study for `rps sweep`, `rps design` and `rps report`: read, tried, computed and shown."""
+"""A study for `rps sweep`, `rps design` and `rps report`: read,
+tried, computed and shown.
+"""
 
 from __future__ import annotations
 
@@ -40,7 +42,9 @@ FEWER = (40, 30, 22, 16, 12, 9, 6, 4, 2, 1)
 ALL = "; --all prints them"
 
 
-def read(request: CaseRequest, conditions: Iterable[Condition], terminal: Terminal) -> Study:
+def read(
+    request: CaseRequest, conditions: Iterable[Condition], terminal: Terminal
+) -> Study:
     """Read and check a study and all its systems."""
     examined = partial(shell.watched, "systems examined", terminal)
     how: dict[str, Any] = {"conditions": conditions, "watched": examined}
@@ -53,7 +57,9 @@ def read(request: CaseRequest, conditions: Iterable[Condition], terminal: Termin
 def computed(
     command: str, study: Study, store: Store, choices: RunChoices, terminal: Terminal
 ) -> StudyResult:
-    """A study whose points are in a store; what goes on is said, and an interruption ends it."""
+    """A study whose points are in a store; what goes on is said, and
+    an interruption ends it.
+    """
     layout = study.layout
 
     @contextmanager
@@ -64,10 +70,13 @@ def computed(
         total = len(begin.keys)
         if choices.report_only and pending:
             raise Refused(
-                f"{store.path} lacks {pending} of {total} points, which `rps sweep` computes"
+                f"{store.path} lacks {pending} of {total} points, which `rps sweep`"
+                " computes"
             )
         if pending and begin.kept:
-            terminal.note(f"continuing: {begin.kept} of {total} points are stored already")
+            terminal.note(
+                f"continuing: {begin.kept} of {total} points are stored already"
+            )
         if pending and layout.plan.analysis == "timehistory" and not choices.scheduler:
             shell.announce_compilation(terminal)
         with shell.progress_report(terminal, begin.kept, begin.kept + pending) as report:
@@ -94,7 +103,9 @@ def computed(
     if count := result.done.computed:
         seconds = result.done.seconds
         rate = count / seconds if seconds else 0.0
-        terminal.note(f"computed {count} points in {duration(seconds)}, {rate:.3g} points/s")
+        terminal.note(
+            f"computed {count} points in {duration(seconds)}, {rate:.3g} points/s"
+        )
     return result
 
 
@@ -128,7 +139,9 @@ class Swept(NamedTuple):
             statistics = {
                 "pooled": rows.pooled,
                 "statistics": summary_document(rows),
-                "verdicts": [verdict_document(rows.keys, each) for each in result.judgements],
+                "verdicts": [
+                    verdict_document(rows.keys, each) for each in result.judgements
+                ],
             }
         document = {
             **heading(command),
@@ -152,7 +165,9 @@ class Swept(NamedTuple):
         return shell.concluded(document, self.error)
 
     def tables(self, most: int = 0) -> list[Part]:
-        """All, or as many rows of each as fit into some lines: statistics are cut first."""
+        """All, or as many rows of each as fit into some lines:
+        statistics are cut first.
+        """
         result = self.result
         judged = self.result.judgements
         told = list(self._told())
@@ -161,7 +176,9 @@ class Swept(NamedTuple):
         listing.append(("records scaled to", result.layout.scaled_to))
         head: list[Part] = [Heading(result.study.title), Table.listing(listing)]
         if not most:
-            every = {of.name for of in result.summary.quantities} if result.summary else None
+            every = (
+                {of.name for of in result.summary.quantities} if result.summary else None
+            )
             return [*head, *of_study.summary_tables(result.summary, every), *told]
         statistics = list(of_study.summary_tables(result.summary, asked(result.layout)))
         elsewhere = f"statistics are in statistics.csv{ALL}"
@@ -175,7 +192,9 @@ class Swept(NamedTuple):
         return few
 
     def _told(self) -> Iterator[Part]:
-        """What counts as overturned, verdicts, reports; a remark of several is said once."""
+        """What counts as overturned, verdicts, reports; a remark
+        of several is said once.
+        """
         result = self.result
         if result.summary is not None:
             yield of_study.of_first_system(result.layout)
@@ -200,7 +219,9 @@ def swept(
     choices: RunChoices,
     out: Output,
 ) -> Swept:
-    """Compute what is not stored yet; only a sweep writes into the folder of the store."""
+    """Compute what is not stored yet; only a sweep writes into
+    the folder of the store.
+    """
     with Store(folder.folder, fresh=choices.fresh) as store:
         result = computed(command, study, store, choices, out.terminal)
         with passing_time("making reports", out.terminal):
@@ -239,9 +260,13 @@ def sweep(
     shell.leave(error)
 
 
-def show_dry_run(command: str, study: Study, choices: RunChoices, terminal: Terminal) -> None:
+def show_dry_run(
+    command: str, study: Study, choices: RunChoices, terminal: Terminal
+) -> None:
     """Count, first and last points, and an estimate of the time."""
-    terminal.warn(study.warnings)  # first: trying points may take long where the case is at fault
+    terminal.warn(
+        study.warnings
+    )  # first: trying points may take long where the case is at fault
     layout = study.layout
     count = len(study)
     jobs = choices.jobs or available_cores()
@@ -250,7 +275,9 @@ def show_dry_run(command: str, study: Study, choices: RunChoices, terminal: Term
     for number in sorted({*range(count)[:POINTS_SHOWN], *range(count)[-POINTS_SHOWN:]}):
         point = layout[number]
         points[number + 1] = layout.described(number)
-        if histories and layout.plan.measure is None:  # no measure decides about the factor
+        if (
+            histories and layout.plan.measure is None
+        ):  # no measure decides about the factor
             points[number + 1]["scale"] = point.scale * point.scale_change
     listed = [{"point": number, **varied} for number, varied in points.items()]
     with passing_time("trying some of the points", terminal):
@@ -275,6 +302,8 @@ def show_dry_run(command: str, study: Study, choices: RunChoices, terminal: Term
     }
     time = f"about {duration(seconds)} on {jobs} cores, by {source}"
     listing = [*((name, str(number)) for name, number in counts.items()), ("time", time)]
-    tried = [(f"point {n}", labels([*each], [*each.values()])) for n, each in points.items()]
+    tried = [
+        (f"point {n}", labels([*each], [*each.values()])) for n, each in points.items()
+    ]
     parts = (Heading(study.title), Table.listing(listing), Table.listing(tried))
     terminal.result(document, parts)

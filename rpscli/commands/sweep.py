@@ -18,17 +18,22 @@ MOST_LINES = 60
 )
 @options.run_options
 @options.fail_on_option(
-    "End with exit code 10 if overturning=0.1 (more than this share of the records of a system"
-    " at an intensity), or a result of any record exceeds a value, as rotation_ratio=0.5 (SI"
-    " units), or not-shown if too few records show that a limit is met; repeatable. The limits of"
-    " study and case count as well."
+    "End with exit code 10 if overturning=0.1 (more than this share of the records of a"
+    " system at an intensity), or a result of any record exceeds a value, as"
+    " rotation_ratio=0.5 (SI units), or not-shown if too few records show that a limit"
+    " is met; repeatable. The limits of study and case count as well."
 )
-@click.option("--report-only", is_flag=True, help="Draw the reports again from the stored points.")
+@click.option(
+    "--report-only", is_flag=True, help="Draw the reports again from the stored points."
+)
 @click.option(
     "--all",
     "whole",
     is_flag=True,
-    help=f"Print statistics of all demands, and all rows; at most {MOST_LINES} lines without it.",
+    help=(
+        f"Print statistics of all demands, and all rows; at most {MOST_LINES} lines"
+        " without it."
+    ),
 )
 @options.result_options
 def command(
@@ -42,9 +47,10 @@ def command(
 ) -> None:
     """Compute all points of STUDY, and draw its reports.
 
-    Every point is stored at once: after an interruption the same command continues. If points
-    failed the exit code is 5, and failed.csv has the command that computes each of them alone. It
-    is 10 if a limit of the study, of its base case or of --fail-on is exceeded.
+    Every point is stored at once: after an interruption the same command continues.
+    If points failed the exit code is 5, and failed.csv has the command that
+    computes each of them alone. It is 10 if a limit of the study, of its base case
+    or of --fail-on is exceeded.
     """
     from rpscli.commands.study import sweep
 
@@ -54,7 +60,9 @@ def command(
 
 @click.command("design")
 @click.argument("design", metavar="DESIGN", type=options.FILE)
-@options.overrides_option("Override a value of the file (--set search.most=64) or of its base case")
+@options.overrides_option(
+    "Override a value of the file (--set search.most=64) or of its base case"
+)
 @options.run_options
 @options.result_options
 def design(
@@ -65,13 +73,14 @@ def design(
 ) -> None:
     """Find the values of DESIGN that meet its limits and minimise its objective.
 
-    The file has a base case, `variables`, records and `limits` as a study, and `minimise`. The
-    search starts from evenly spread designs and refines where the verdict changes. The answer is
-    the best design that passes in 90 % of the resamples of the records, if any does, and is
-    validated on records that the search did not see.
+    The file has a base case, `variables`, records and `limits` as a study, and
+    `minimise`. The search starts from evenly spread designs and refines where the verdict
+    changes. The answer is the best design that passes in 90 % of the resamples of the
+    records, if any does, and is validated on records that the search did not see.
 
-    Every point is stored at once: after an interruption the same command continues. The exit
-    code is 10 if no design passes, or if the best one fails the limits in its validation.
+    Every point is stored at once: after an interruption the same command
+    continues. The exit code is 10 if no design passes, or if the best one fails
+    the limits in its validation.
     """
     from rpscli.commands.design import designed
 

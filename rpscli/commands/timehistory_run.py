@@ -66,16 +66,18 @@ OF_ONE_COLUMN = ("max_column_force", "column_moment")
 A_TABLE = 4
 """Quantities side by side in a table that fits a page."""
 CODES = (
-    "codes take the mean of the maxima of 7 records (EN 1998-1) or 11 pairs (ASCE/SEI 7-16, chapter"
-    " 16) and more; with 3 to 6 records EN 1998-1 takes the largest"
+    "codes take the mean of the maxima of 7 records (EN 1998-1) or 11 pairs (ASCE/SEI"
+    " 7-16, chapter 16) and more; with 3 to 6 records EN 1998-1 takes the largest"
 )
 
 
 @dataclass(eq=False)
 class History:
-    """A case under a motion, the folder of its results, and what it says once it is computed.
+    """A case under a motion, the folder of its results, and what it
+    says once it is computed.
 
-    `demands` are by name, NaN for what it has not; spectra of floors are made where asked for.
+    `demands` are by name, NaN for what it has not; spectra of floors
+    are made where asked for.
     """
 
     given: inputs.CaseInput
@@ -107,7 +109,9 @@ def histories_of(
     *,
     floor_spectra: bool = False,
 ) -> list[History]:
-    """Every case under every motion, all read and all folders claimed before any is computed."""
+    """Every case under every motion, all read and all folders
+    claimed before any is computed.
+    """
     histories = []
     case_labels = unique([given.case.name for given in cases])
     for given, case_label in zip(cases, case_labels, strict=True):
@@ -123,7 +127,9 @@ def histories_of(
                 place = out.place.joinpath(*inside)
             own = replace(out, place=place)
             folder = inputs.case_folder(given, own, COMMAND, motion=motion)
-            histories.append(History(given, case_label, motion, label, folder, floor_spectra))
+            histories.append(
+                History(given, case_label, motion, label, folder, floor_spectra)
+            )
     return histories
 
 
@@ -137,7 +143,9 @@ def unique(names: Sequence[str]) -> list[str]:
     return [*taken.values()]
 
 
-def compute(history: History, conditions: Sequence[Condition], out: Output) -> TimeHistoryResult:
+def compute(
+    history: History, conditions: Sequence[Condition], out: Output
+) -> TimeHistoryResult:
     """Run a history, judge it, and collect its files; the caller writes them."""
     case = history.given.case
     ground = history.ground
@@ -158,7 +166,9 @@ def compute(history: History, conditions: Sequence[Condition], out: Output) -> T
             _refuse_unknown(limit, result)
         records = Records.of([result.outcome], [history.demands], [result.record.source])
         history.verdicts = judged_records(records, [history.label], limits)
-        over = [f"limit exceeded: {excess_text(v)}" for v in history.verdicts if v.exceeded]
+        over = [
+            f"limit exceeded: {excess_text(v)}" for v in history.verdicts if v.exceeded
+        ]
         history.error = LimitExceeded("\n".join(over)) if over else None
     document = _document(history, result)
     history.document = concluded(document, history.error)
@@ -168,7 +178,9 @@ def compute(history: History, conditions: Sequence[Condition], out: Output) -> T
 def limited(result: TimeHistoryResult) -> dict[str, float]:
     """Results that may have limits by name, NaN for what a history has not."""
     values = {quantity.name: getattr(result, quantity.name) for quantity in LIMITED}
-    return {name: math.nan if each is None else float(each) for name, each in values.items()}
+    return {
+        name: math.nan if each is None else float(each) for name, each in values.items()
+    }
 
 
 def _refuse_unknown(limit: Condition, result: TimeHistoryResult) -> None:
@@ -188,11 +200,18 @@ def _document(history: History, result: TimeHistoryResult) -> dict[str, Any]:
         "note": direction_note([both], result.structure.planar_only) or None,
         "case": inputs.case_heading(history.given),
         **timehistory_document(result),
-        "verdicts": [statistics.verdict_document((), verdict) for verdict in history.verdicts],
+        "verdicts": [
+            statistics.verdict_document((), verdict) for verdict in history.verdicts
+        ],
     }
     document["record"] |= {"scale": ground.scale, "scaled_to": ground.scaled_to or None}
     doubts = map(str, doubts_of_directions(case.structure, both=both))
-    document["warnings"] = [*case.warnings, *doubts, *document["warnings"], *ground.warnings]
+    document["warnings"] = [
+        *case.warnings,
+        *doubts,
+        *document["warnings"],
+        *ground.warnings,
+    ]
     return document
 
 
@@ -204,7 +223,9 @@ def look_beside(history: History, result: TimeHistoryResult) -> list[Neighbour]:
 
 
 def _add_summary(history: History) -> OutputFolder:
-    """The folder with `summary.json`, which names all files that were collected before it."""
+    """The folder with `summary.json`, which names all files that
+    were collected before it.
+    """
     folder = history.folder
     history.document["files"] = [str(folder.folder / "summary.json"), *folder.files]
     folder.add("summary.json", json_text(history.document))
@@ -212,7 +233,10 @@ def _add_summary(history: History) -> OutputFolder:
 
 
 def run_one(
-    history: History, conditions: Sequence[Condition], film: FilmRequest | None, out: Output
+    history: History,
+    conditions: Sequence[Condition],
+    film: FilmRequest | None,
+    out: Output,
 ) -> None:
     """Compute a single history, look beside it, and write and show all of it."""
     title = history.given.case.title
@@ -252,9 +276,13 @@ class Computed(NamedTuple):
         return [history.label for history in self.histories]
 
 
-def run_all(histories: Sequence[History], conditions: Sequence[Condition], out: Output) -> None:
+def run_all(
+    histories: Sequence[History], conditions: Sequence[Condition], out: Output
+) -> None:
     """Compute all histories, and write each as soon as it is over."""
-    cases = [list(group) for _, group in groupby(histories, lambda history: history.case_label)]
+    cases = [
+        list(group) for _, group in groupby(histories, lambda history: history.case_label)
+    ]
     folders = [_set_folder(group, out, alone=len(cases) == 1) for group in cases]
     computed = [
         computed_set(group, conditions, out, folder)
@@ -265,8 +293,12 @@ def run_all(histories: Sequence[History], conditions: Sequence[Condition], out: 
             out.terminal.note(f"written to {case.first.folder.folder}")
             continue
         scalars = [history.document for history in case.histories]
-        case.folder.add("records.csv", csv_text(statistics.records_columns(case.labels, scalars)))
-        case.folder.add("statistics.csv", csv_text(statistics.demand_columns(case.together)))
+        case.folder.add(
+            "records.csv", csv_text(statistics.records_columns(case.labels, scalars))
+        )
+        case.folder.add(
+            "statistics.csv", csv_text(statistics.demand_columns(case.together))
+        )
         case.folder.add("summary.json", json_text({**heading(), **set_document(case)}))
         inputs.write(case.folder, out.terminal)
     error = set_error(computed)
@@ -284,7 +316,9 @@ def computed_set(
     *,
     written: bool = True,
 ) -> Computed:
-    """Compute the histories of one case, each written as soon as it is over, and judge them."""
+    """Compute the histories of one case, each written as soon as it
+    is over, and judge them.
+    """
     for history in group:
         compute(history, conditions, out)
         if written:
@@ -295,17 +329,23 @@ def computed_set(
     records = Records.of(outcomes, [history.demands for history in group], sources)
     case = group[0].given.case
     limits = case_conditions(case.limits, case.structure, len(group))
-    verdicts = judged_records(records, [each.label for each in group], [*limits, *conditions])
+    verdicts = judged_records(
+        records, [each.label for each in group], [*limits, *conditions]
+    )
     return Computed(group, summary_of_records(records), verdicts, folder)
 
 
-def _set_folder(group: Sequence[History], out: Output, *, alone: bool) -> OutputFolder | None:
+def _set_folder(
+    group: Sequence[History], out: Output, *, alone: bool
+) -> OutputFolder | None:
     """Folder for the table of a case: each set of records has one of its own."""
     if len(group) == 1:
         return None
     first = group[0]
     grounds = (history.ground.named for history in group)
-    motions = "".join(each[name].digest for each in grounds for name in each if name != "vertical")
+    motions = "".join(
+        each[name].digest for each in grounds for name in each if name != "vertical"
+    )
     name = f"{len(group)}_records_{hashlib.sha256(motions.encode()).hexdigest()[:6]}"
     place = inputs.RESULTS / first.case_label / COMMAND / name
     if out.place is not None:
@@ -320,7 +360,9 @@ def _set_folder(group: Sequence[History], out: Output, *, alone: bool) -> Output
 
 
 def set_error(computed: Sequence[Computed]) -> RpsError | None:
-    """The error that ends the command: failed histories, else limits that are exceeded."""
+    """The error that ends the command: failed histories, else
+    limits that are exceeded.
+    """
     lines = [
         f"{history.name}: {history.error}"
         for case in computed
@@ -332,7 +374,9 @@ def set_error(computed: Sequence[Computed]) -> RpsError | None:
     lines = [
         line
         for case in computed
-        for line in statistics.verdict_lines((), case.verdicts, f"{case.first.case_label}: ")
+        for line in statistics.verdict_lines(
+            (), case.verdicts, f"{case.first.case_label}: "
+        )
     ]
     return LimitExceeded("\n".join(lines)) if lines else None
 
@@ -341,7 +385,9 @@ def all_document(computed: Sequence[Computed], error: RpsError | None) -> dict[s
     """All histories and sets in JSON."""
     histories = [history for case in computed for history in case.histories]
     files = [file for history in histories for file in history.document.get("files", ())]
-    files += [file for case in computed if case.folder is not None for file in case.folder.files]
+    files += [
+        file for case in computed if case.folder is not None for file in case.folder.files
+    ]
     document = {
         **heading(COMMAND),
         "note": _note(computed) or None,
@@ -354,7 +400,9 @@ def all_document(computed: Sequence[Computed], error: RpsError | None) -> dict[s
 
 
 def _warnings(histories: Sequence[History]) -> Iterator[str]:
-    named = ((each.name, text) for each in histories for text in each.document["warnings"])
+    named = (
+        (each.name, text) for each in histories for text in each.document["warnings"]
+    )
     return told_once(named, len(histories), "histories")
 
 
@@ -364,7 +412,9 @@ def set_document(case: Computed) -> dict[str, Any]:
         "case": case.first.document["case"],
         "records": case.labels,
         **statistics.summary_document(case.together)[0],
-        "verdicts": [statistics.verdict_document((), verdict) for verdict in case.verdicts],
+        "verdicts": [
+            statistics.verdict_document((), verdict) for verdict in case.verdicts
+        ],
     }
 
 
@@ -372,7 +422,9 @@ def set_tables(computed: Sequence[Computed]) -> Iterator[Part]:
     """Every record, mean and largest, and the verdicts."""
     for case in computed:
         yield Heading(case.first.given.case.title)
-        if aims := dict.fromkeys(filter(None, (each.ground.scaled_to for each in case.histories))):
+        if aims := dict.fromkeys(
+            filter(None, (each.ground.scaled_to for each in case.histories))
+        ):
             yield f"records scaled to {' or '.join(aims)}"
         (row,) = case.together.rows
         spreads = zip(case.together.quantities, row.spreads, strict=True)
@@ -388,7 +440,9 @@ def set_tables(computed: Sequence[Computed]) -> Iterator[Part]:
         for first in range(0, len(main), A_TABLE):
             yield _records_table(case, dict(main[first : first + A_TABLE]))
         if len(case.histories) > 1:
-            undefined = ", so the mean of maxima is not defined" * bool(row.overturned.number)
+            undefined = ", so the mean of maxima is not defined" * bool(
+                row.overturned.number
+            )
             yield f"overturned: {row.overturned}{undefined}; {CODES}"
         documents = (each.document["column_forces_leave_out"] for each in case.histories)
         left_out = [*dict.fromkeys(part for of in documents for part in of)]
@@ -421,15 +475,29 @@ def _records_table(case: Computed, quantities: dict[ResultQuantity, Spread]) -> 
     for label, history in zip(case.labels, case.histories, strict=True):
         document = history.document
         outcome = str(history.document["outcome"])
-        word = "overturned" if outcome.startswith("overturned") else outcome.replace("_", " ")
+        word = (
+            "overturned"
+            if outcome.startswith("overturned")
+            else outcome.replace("_", " ")
+        )
         values = [large(document[q.name], q.unit)[0] for q in quantities]
         rows.append([label, word, *(shown(value, DIGITS) for value in values)])
     if len(case.histories) > 1:
-        words = {"mean": "mean of maxima", "median": "median", "high": "84 %", "largest": "largest"}
+        words = {
+            "mean": "mean of maxima",
+            "median": "median",
+            "high": "84 %",
+            "largest": "largest",
+        }
         if case.together.rows[0].overturned.number:
-            words |= {"low_stands": "least that stands", "high_stands": "largest that stands"}
+            words |= {
+                "low_stands": "least that stands",
+                "high_stands": "largest that stands",
+            }
         for name, label in words.items():
-            values = [large(getattr(each, name), q.unit)[0] for q, each in quantities.items()]
+            values = [
+                large(getattr(each, name), q.unit)[0] for q, each in quantities.items()
+            ]
             rows.append([label, "", *(standing(value, DIGITS) for value in values)])
     heads = [headed(q.label, q.unit) for q in quantities]
     return Table.of_texts(["record", "", *heads], rows, words=2)

@@ -1,4 +1,6 @@
-"""`rps verify`: correct digits of the certified problems, by this installation or any program."""
+"""`rps verify`: correct digits of the certified problems, by this
+installation or any program.
+"""
 
 from __future__ import annotations
 
@@ -22,13 +24,15 @@ if TYPE_CHECKING:
 
 DIGITS = 10
 OWN_DIGITS = 9.0
-"""Digits that rps itself must have, or all that are certified: another processor rounds in another
-way, which weights of the steps and impacts multiply."""
+"""Digits that rps itself must have, or all that are certified: another processor rounds
+in another way, which weights of the steps and impacts multiply."""
 INSTALLATION = (
-    "differ from what is known: do not trust results of this installation; install rps again, and"
-    " report it if they still differ"
+    "differ from what is known: do not trust results of this installation; install rps"
+    " again, and report it if they still differ"
 )
-OF_OTHERS = "are missing, or have less than {:g} digits right; the pages say how to get them"
+OF_OTHERS = (
+    "are missing, or have less than {:g} digits right; the pages say how to get them"
+)
 
 
 @click.command("verify")
@@ -36,28 +40,38 @@ OF_OTHERS = "are missing, or have less than {:g} digits right; the pages say how
     "--problems",
     metavar="FOLDER",
     type=click.Path(path_type=Path),
-    help="Write certified problems, with a page and a case each, and answers.csv to fill in.",
+    help=(
+        "Write certified problems, with a page and a case each, and answers.csv to fill"
+        " in."
+    ),
 )
 @click.option(
     "--score",
     metavar="FILE.csv",
     type=FILE,
-    help="Count correct digits of any program's answers (columns problem, quantity, value).",
+    help=(
+        "Count correct digits of any program's answers (columns problem, quantity,"
+        " value)."
+    ),
 )
 @click.option(
     "--digits",
     type=FiniteRange(min=0.0, max=12.0),
     default=3.0,
     show_default=True,
-    help="Correct digits that --score requires; fewer in one answer end with exit code 6.",
+    help=(
+        "Correct digits that --score requires; fewer in one answer end with exit code 6."
+    ),
 )
 @terminal_options
-def command(*, problems: Path | None, score: str | None, digits: float, terminal: Terminal) -> None:
+def command(
+    *, problems: Path | None, score: str | None, digits: float, terminal: Terminal
+) -> None:
     """Compute the certified problems, and count how many digits are correct.
 
-    Their answers come from closed forms, quadratures and other integrators. Takes some seconds,
-    after a minute in which the kernels for one plane and for both directions are compiled once. The
-    exit code is 6 if a single number is off.
+    Their answers come from closed forms, quadratures and other integrators. Takes some
+    seconds, after a minute in which the kernels for one plane and for both directions are
+    compiled once. The exit code is 6 if a single number is off.
     """
     if problems is not None and score is not None:
         raise UsageError("--problems writes what --score reads; take one of them")
@@ -106,14 +120,17 @@ def _conclude(
         "compared": len(compared),
         "mismatches": len(off),
         "comparisons": [
-            {**asdict(each), "holds": each.holds, "digits": each.digits} for each in compared
+            {**asdict(each), "holds": each.holds, "digits": each.digits}
+            for each in compared
         ],
         "not_answered": left,
     }
     parts: list[Part] = []
     for group, lines in groupby(compared, lambda line: line.group):
         heads = ("quantity", "expected", "computed", "tolerance", "verdict")
-        named = ((f"{one.quantity} [{one.unit}]".removesuffix(" [-]"), one) for one in lines)
+        named = (
+            (f"{one.quantity} [{one.unit}]".removesuffix(" [-]"), one) for one in lines
+        )
         rows = [(name, *_numbers(one), one.verdict) for name, one in named]
         parts += [Heading(group), Table.of_texts(heads, rows)]
     parts.append(Heading(f"{len(compared)} numbers compared, {len(off) or 'none'} off"))
@@ -121,12 +138,18 @@ def _conclude(
         parts.append(f"{sum(right) / len(right):.1f} digits in the mean")
     if left:
         parts.append(f"not answered: {', '.join(left)}")
-    terminal.finish(document, parts, VerificationMismatch("\n".join(faults)) if off else None)
+    terminal.finish(
+        document, parts, VerificationMismatch("\n".join(faults)) if off else None
+    )
 
 
 def _numbers(line: Comparison) -> tuple[str, str, str]:
     """Expected, computed, tolerance."""
-    return shown(line.expected, DIGITS), shown(line.computed, DIGITS), shown(line.tolerance, 2)
+    return (
+        shown(line.expected, DIGITS),
+        shown(line.computed, DIGITS),
+        shown(line.tolerance, 2),
+    )
 
 
 def _write_problems(folder: Path, terminal: Terminal) -> None:
@@ -136,6 +159,8 @@ def _write_problems(folder: Path, terminal: Terminal) -> None:
     if there := [path for path in files if path.exists()]:
         raise Refused(f"{there[0]} exists; name another folder, or remove it")
     write_whole(files)
-    terminal.note(f"written to {folder}; begin with README.md, fill in {folder / ANSWERS}")
+    terminal.note(
+        f"written to {folder}; begin with README.md, fill in {folder / ANSWERS}"
+    )
     if terminal.as_json:
         terminal.result({**heading("verify"), "files": [str(path) for path in files]})

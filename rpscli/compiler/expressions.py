@@ -1,4 +1,6 @@
-"""Expressions: the text that computes a value, and the functions that every program may call."""
+"""Expressions: the text that computes a value, and the functions
+that every program may call.
+"""
 
 from __future__ import annotations
 
@@ -41,7 +43,9 @@ from rpscli.compiler.values import (
 
 
 def fma(a: float, b: float, c: float) -> float:
-    """The sum a b + c, rounded once: in machine code one instruction, in Python the same number."""
+    """The sum a b + c, rounded once: in machine code one instruction,
+    in Python the same number.
+    """
     if (there := getattr(math, "fma", None)) is not None:  # Python 3.13
         return float(there(a, b, c))
     plain = float(a) * float(b) + float(c)
@@ -61,7 +65,9 @@ def call_at(address: int, numbers: tuple[float, ...]) -> float:
 
 @dataclass(slots=True)
 class Slot:
-    """Where a variable stands on the stack, and in which block of statements that began."""
+    """Where a variable stands on the stack, and in which block
+    of statements that began.
+    """
 
     kind: Kind
     rooms: list[str]
@@ -120,7 +126,9 @@ def expression(body: Body, node: ast.expr) -> Value:
 def placed(error: NotInLanguage, body: Body, node: ast.AST) -> NotInLanguage:
     """The same error with file and line, unless it has them already."""
     if len(error.args) == 1:
-        return NotInLanguage(error.args[0], f"{body.scope.file}:{getattr(node, 'lineno', 0)}")
+        return NotInLanguage(
+            error.args[0], f"{body.scope.file}:{getattr(node, 'lineno', 0)}"
+        )
     return error
 
 
@@ -186,7 +194,10 @@ def read_attribute(body: Body, node: ast.Attribute) -> Value:
     if isinstance(value, Record):
         place = field(body, value, name)
         return place if place.shape else load(body, place)
-    refuse(f"`.{name}` of {described(value)}: records and NamedTuples have fields, arrays a shape")
+    refuse(
+        f"`.{name}` of {described(value)}: records and NamedTuples have fields, arrays a"
+        " shape"
+    )
 
 
 def load(body: Body, place: Places) -> Number:
@@ -223,7 +234,10 @@ def element(body: Body, array: Value, indices: list[Value]) -> Places | Matrix |
         address = body.get(f"getelementptr inbounds double, ptr {array.name}, i64 {flat}")
         left = array.sizes[len(names) :]
         return Matrix(address, left) if left else Places(DOUBLE, (), address)
-    refuse(f"{described(array)} with {len(names)} indices: index arrays, tuples, rows of records")
+    refuse(
+        f"{described(array)} with {len(names)} indices: index arrays, tuples, rows of"
+        " records"
+    )
 
 
 def read_element(body: Body, node: ast.Subscript) -> Value:
@@ -246,7 +260,9 @@ def read_element(body: Body, node: ast.Subscript) -> Value:
             refuse(f"the index {known[0]}: {error}")
     if elements is not None:
         return one_of(body, elements, indices[0])
-    of_bools = isinstance(value, Known) and getattr(value.value, "dtype", None) == np.bool_
+    of_bools = (
+        isinstance(value, Known) and getattr(value.value, "dtype", None) == np.bool_
+    )
     if isinstance(value, Known):
         value = body.program.constant(value.value)
     found = element(body, value, indices)
@@ -259,7 +275,9 @@ def read_element(body: Body, node: ast.Subscript) -> Value:
 def part_of_rows(body: Body, value: Value, part: ast.Slice) -> Value:
     """Rows from one up to another."""
     if not isinstance(value, Rows) or not part.lower or not part.upper or part.step:
-        refuse("slices are of rows of records, `rows[first : end]`: use indices elsewhere")
+        refuse(
+            "slices are of rows of records, `rows[first : end]`: use indices elsewhere"
+        )
     first = body.index(expression(body, part.lower))
     end = body.index(expression(body, part.upper))
     return Rows(value.dtype, row(body, value, first), body.get(f"sub i64 {end}, {first}"))
@@ -317,7 +335,9 @@ def binary(body: Body, of: type, one: Value, other: Value) -> Value:
     if of is ast.Pow:
         return external(body, "pow", [one, other])
     if kinds == {BOOL} and of not in {ast.BitAnd, ast.BitOr}:
-        refuse("arithmetic of two bools, which numpy has otherwise: write `1 if test else 0`")
+        refuse(
+            "arithmetic of two bools, which numpy has otherwise: write `1 if test else 0`"
+        )
     if of in {ast.BitAnd, ast.BitOr}:
         if DOUBLE in kinds:
             refuse("& and | are of bools or of ints")
@@ -340,8 +360,14 @@ def two(body: Body, instruction: str, kind: str, one: Value, other: Value) -> st
 
 
 def known(function: Callable[..., Any], *arguments: Value) -> Known | None:
-    """What Python makes of numbers that are known; None if they are not, or if it raises."""
-    given = [each.value for each in arguments if isinstance(each, Known) and is_number(each.value)]
+    """What Python makes of numbers that are known; None if they
+    are not, or if it raises.
+    """
+    given = [
+        each.value
+        for each in arguments
+        if isinstance(each, Known) and is_number(each.value)
+    ]
     if len(given) < len(arguments):
         return None
     try:
@@ -379,10 +405,16 @@ def unary(body: Body, node: ast.UnaryOp) -> Value:
             return Known(not is_true(value))
         return Number(BOOL, body.get(f"xor i1 {body.number(value, BOOL)}, true"))
     if isinstance(node.op, ast.UAdd):
-        return Number(DOUBLE, body.number(value, DOUBLE)) if kind_of(value) == DOUBLE else value
+        return (
+            Number(DOUBLE, body.number(value, DOUBLE))
+            if kind_of(value) == DOUBLE
+            else value
+        )
     if kind_of(value) == BOOL:
         refuse("a sign before a bool: write `-1 if test else 0`")
-    if (found := known(operator.neg, value)) is not None and isinstance(node.op, ast.USub):
+    if (found := known(operator.neg, value)) is not None and isinstance(
+        node.op, ast.USub
+    ):
         return found
     if not isinstance(node.op, ast.USub):
         refuse("`~`: write it in another way")
@@ -427,7 +459,9 @@ def compared(body: Body, of: ast.cmpop, one: Value, other: Value) -> Value:
     return Number(BOOL, two(body, test, kind, one, other))
 
 
-def contained(body: Body, of: ast.cmpop, one: Value, others: tuple[Value, ...] | None) -> Value:
+def contained(
+    body: Body, of: ast.cmpop, one: Value, others: tuple[Value, ...] | None
+) -> Value:
     """Whether a number is one of a tuple's."""
     if others is None:
         refuse("`in`: followed by a tuple")
@@ -469,10 +503,14 @@ def compare(body: Body, node: ast.Compare) -> Value:
 
 
 def truth(body: Body, node: ast.expr) -> Value:
-    """An operand of `and` and `or`, which must be a bool: Python would give the operand itself."""
+    """An operand of `and` and `or`, which must be a bool: Python would
+    give the operand itself.
+    """
     value = expression(body, node)
     if kind_of(value) != BOOL:
-        refuse(f"`{ast.unparse(node)}` beside `and` or `or` is no bool: write a comparison")
+        refuse(
+            f"`{ast.unparse(node)}` beside `and` or `or` is no bool: write a comparison"
+        )
     return value
 
 
@@ -502,7 +540,9 @@ def choose(body: Body, node: ast.BoolOp) -> Value:
         body.jump(end)
         body.label(end)
         decided = "false" if is_and else "true"
-        value = Number(BOOL, body.get(f"phi i1 [{decided}, %{before}], [{other}, %{after}]"))
+        value = Number(
+            BOOL, body.get(f"phi i1 [{decided}, %{before}], [{other}, %{after}]")
+        )
     return value
 
 
@@ -516,8 +556,12 @@ def conditional(body: Body, node: ast.IfExp) -> Value:
         one = expression(body, node.body)
         other = expression(body, node.orelse)
         kind = common(kind_of(one), kind_of(other))
-        pairs = zip(parts(body.as_kind(one, kind)), parts(body.as_kind(other, kind)), strict=True)
-        chosen = (body.get(f"select i1 {name}, {of} {x}, {of} {y}") for (of, x), (_, y) in pairs)
+        pairs = zip(
+            parts(body.as_kind(one, kind)), parts(body.as_kind(other, kind)), strict=True
+        )
+        chosen = (
+            body.get(f"select i1 {name}, {of} {x}, {of} {y}") for (of, x), (_, y) in pairs
+        )
         return rebuilt(kind, chosen)
     yes = body.new("yes")
     no = body.new("no")
@@ -540,7 +584,10 @@ def conditional(body: Body, node: ast.IfExp) -> Value:
     body.lines += later
     body.label(end)
     pairs = zip(parts(one), parts(other), strict=True)
-    chosen = (body.get(f"phi {of} [{x}, %{first}], [{y}, %{second}]") for (of, x), (_, y) in pairs)
+    chosen = (
+        body.get(f"phi {of} [{x}, %{first}], [{y}, %{second}]")
+        for (of, x), (_, y) in pairs
+    )
     return rebuilt(kind, chosen)
 
 
@@ -558,13 +605,15 @@ INTRINSICS = {
     "sqrt": ("sqrt", 1), "fabs": ("fabs", 1), "absolute": ("fabs", 1), "ceil": ("ceil", 1),
     "floor": ("floor", 1), "copysign": ("copysign", 2), "fma": ("fma", 3),
 }  # fmt: skip
-"""Functions of `math` and numpy that processors have: their names in LLVM, how many numbers."""
+"""Functions of `math` and numpy that processors have: their names
+in LLVM, how many numbers."""
 
 EXTERNALS = {
     "sin": 1, "cos": 1, "tan": 1, "asin": 1, "acos": 1, "atan": 1, "atan2": 2, "sinh": 1, "cosh": 1,
     "tanh": 1, "exp": 1, "expm1": 1, "log": 1, "log10": 1, "log1p": 1, "pow": 2, "fmod": 2,
 }  # fmt: skip
-"""Functions of C's library, which Python calls as well, and how many numbers they take."""
+"""Functions of C's library, which Python calls as well, and
+how many numbers they take."""
 
 
 def intrinsic(body: Body, name: str, arguments: list[Value]) -> Number:
@@ -574,7 +623,9 @@ def intrinsic(body: Body, name: str, arguments: list[Value]) -> Number:
 
 
 def external(body: Body, name: str, arguments: list[Value]) -> Number:
-    """Call a function of C's library; LLVM is not to replace it by what rounds in another way."""
+    """Call a function of C's library; LLVM is not to replace it by
+    what rounds in another way.
+    """
     given = ", ".join(f"double {body.number(each, DOUBLE)}" for each in arguments)
     return Number(DOUBLE, body.get(f"call double @{name}({given}) nobuiltin"))
 
@@ -586,7 +637,9 @@ def least_or_most(body: Body, function: Any, arguments: list[Value]) -> Value:
         kind = joined(kind, kind_of(each))
     if not isinstance(kind, str):
         refuse("`min` and `max` are of numbers")
-    test = ("fcmp o" if kind == DOUBLE else "icmp s") + ("lt" if function is min else "gt")
+    test = ("fcmp o" if kind == DOUBLE else "icmp s") + (
+        "lt" if function is min else "gt"
+    )
     kind = INT if kind == BOOL else kind
     found = body.number(arguments[0], kind)
     for each in arguments[1:]:
@@ -630,7 +683,9 @@ def at_address(body: Body, function: Any, arguments: list[Value]) -> Value:
     """`call_at`."""
     address, numbers = arguments
     place = body.get(f"inttoptr i64 {body.number(address, INT)} to ptr")
-    given = ", ".join(f"double {body.number(each, DOUBLE)}" for each in elements_of(numbers) or ())
+    given = ", ".join(
+        f"double {body.number(each, DOUBLE)}" for each in elements_of(numbers) or ()
+    )
     return Number(DOUBLE, body.get(f"call double {place}({given})"))
 
 
@@ -649,7 +704,9 @@ TAKEN: dict[Any, Any] = {min: range(2, 99), max: range(2, 99), call_at: {2}}
 
 
 def call(body: Body, node: ast.Call) -> Value:
-    """The call of a function of the language, of `math`, or of one that is compiled with it."""
+    """The call of a function of the language, of `math`, or of one
+    that is compiled with it.
+    """
     called = expression(body, node.func)
     if not isinstance(called, Known) or not callable(called.value):
         refuse(f"`{ast.unparse(node.func)}` is no function that is known")
@@ -686,13 +743,18 @@ def call_of_numbers(
         return intrinsic(body, inside, given)
     if EXTERNALS.get(name) == len(given) and not isinstance(function, np.ufunc):
         return external(body, name, given)  # numpy rounds these in its own way
-    refuse(f"`{name}` of {len(given)} numbers: write it with functions that LANGUAGE.md lists")
+    refuse(
+        f"`{name}` of {len(given)} numbers: write it with functions that LANGUAGE.md"
+        " lists"
+    )
 
 
 EXPRESSIONS: dict[type, Callable[[Body, Any], Value]] = {
     ast.Constant: lambda _, node: Known(node.value),
     ast.Name: read_name,
-    ast.Tuple: lambda body, node: Tuple(tuple(expression(body, each) for each in node.elts)),
+    ast.Tuple: lambda body, node: Tuple(
+        tuple(expression(body, each) for each in node.elts)
+    ),
     ast.Attribute: read_attribute,
     ast.Subscript: read_element,
     ast.UnaryOp: unary,

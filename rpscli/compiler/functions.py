@@ -1,4 +1,6 @@
-"""Functions: each once for every combination of kinds that it is called with, in one program."""
+"""Functions: each once for every combination of kinds that it is
+called with, in one program.
+"""
 
 from __future__ import annotations
 
@@ -51,19 +53,23 @@ _inlined: set[Any] = set()
 
 
 def inlined(function: Function) -> Function:
-    """Mark a function to be merged into its callers, and to know the numbers that they know."""
+    """Mark a function to be merged into its callers, and to know
+    the numbers that they know.
+    """
     _inlined.add(function)
     return function
 
 
 SHORT = 60
-"""Nodes of an expression's syntax tree: a function that returns one so small is written in place
-of its call."""
+"""Nodes of an expression's syntax tree: a function that returns one so small is
+written in place of its call."""
 
 
 @dataclass(slots=True, frozen=True)
 class Version:
-    """A function for some kinds of arguments: its name in the program, and what it returns."""
+    """A function for some kinds of arguments: its name in the
+    program, and what it returns.
+    """
 
     name: str
     kind: Kind
@@ -86,25 +92,33 @@ class Program:
         name: str,
         result: str | None = None,
     ) -> None:
-        """Add a function that can be called from outside, by a name, with arguments of kinds.
+        """Add a function that can be called from outside, by a name,
+        with arguments of kinds.
 
         It returns a double (`result`) or nothing. Raises NotInLanguage.
         """
         arguments = [rebuilt(kind, iter(types_of(kind))) for kind in kinds]
         try:
             if len(tree_of(function).args.args) != len(kinds):
-                refuse(f"`{function.__name__}` takes another number of arguments than {len(kinds)}")
+                refuse(
+                    f"`{function.__name__}` takes another number of arguments than"
+                    f" {len(kinds)}"
+                )
             self._texts.append(written(self, function, arguments, name, "", result)[0])
         except RecursionError:
             raise NotInLanguage(
-                "too much stands within each other: write several statements", function.__name__
+                "too much stands within each other: write several statements",
+                function.__name__,
             ) from None
 
-    def add_watched(self, function: Callable[..., Any], taken: int, given: int, name: str) -> None:
+    def add_watched(
+        self, function: Callable[..., Any], taken: int, given: int, name: str
+    ) -> None:
         """Add a function of doubles that is given more than it takes.
 
-        Where it returns no finite number of finite ones, the array ``<name>.refused`` is left with
-        1.0 and what it was given: the last such call. What follows from it is not its fault.
+        Where it returns no finite number of finite ones, the array
+        ``<name>.refused`` is left with 1.0 and what it was given: the last such
+        call. What follows from it is not its fault.
         """
         self.add(function, [DOUBLE] * taken, f"@{name}.plain", DOUBLE)
         names = [f"%a.{k}" for k in range(given)]
@@ -131,7 +145,9 @@ class Program:
         for k, value in enumerate(["1.0", *names]):
             place = f"getelementptr inbounds {room}, ptr @{name}.refused, i64 0, i64 {k}"
             lines += [f"  %p.{k} = {place}", f"  store double {value}, ptr %p.{k}"]
-        self._texts.append("\n".join([*lines, "  br label %end", "end:", "  ret double %r", "}"]))
+        self._texts.append(
+            "\n".join([*lines, "  br label %end", "end:", "  ret double %r", "}"])
+        )
 
     def text(self) -> str:
         """All of the program."""
@@ -164,7 +180,12 @@ class Program:
         if found is not None:
             return found
         version = self.version(function, given)
-        passed = [part for value in given if not belongs(function, value) for part in parts(value)]
+        passed = [
+            part
+            for value in given
+            if not belongs(function, value)
+            for part in parts(value)
+        ]
         names = ", ".join(f"{kind} {name}" for kind, name in passed)
         kinds = types_of(version.kind)
         if not kinds:
@@ -174,12 +195,15 @@ class Program:
         if len(kinds) == 1:
             return rebuilt(version.kind, iter([result]))
         taken = (
-            body.get(f"extractvalue {structure(kinds)} {result}, {k}") for k in range(len(kinds))
+            body.get(f"extractvalue {structure(kinds)} {result}, {k}")
+            for k in range(len(kinds))
         )
         return rebuilt(version.kind, taken)
 
     def version(self, function: Any, arguments: list[Value]) -> Version:
-        """The version of a function for arguments like these, written at its first call."""
+        """The version of a function for arguments like these,
+        written at its first call.
+        """
         key = function, tuple(known_part(function, value) for value in arguments)
         if key in self._versions:
             if (version := self._versions[key]) is None:
@@ -205,7 +229,9 @@ class Program:
         return self._constants[id(array)][1]
 
     def loop(self, name: str) -> str:
-        """Metadata with which LLVM knows a loop by name: it says there what became of it."""
+        """Metadata with which LLVM knows a loop by name: it says
+        there what became of it.
+        """
         self._loops.append(name)
         return f"!{2 * len(self._loops) - 2}"
 
@@ -229,7 +255,10 @@ class Program:
 
 def declaration(name: str, taken: int) -> str:
     """A function of doubles that reads and writes nothing else."""
-    return f"declare double @{name}({', '.join([DOUBLE] * taken)}) nounwind willreturn memory(none)"
+    return (
+        f"declare double @{name}({', '.join([DOUBLE] * taken)}) nounwind willreturn"
+        " memory(none)"
+    )
 
 
 def initial(numbers: Any, kind: str) -> str:
@@ -252,7 +281,9 @@ def is_known(value: Value) -> bool:
 
 
 def belongs(function: Any, value: Value) -> bool:
-    """Whether an argument is part of the version: a known number of a function that is inlined."""
+    """Whether an argument is part of the version: a known number of a
+    function that is inlined.
+    """
     return function in _inlined and is_known(value)
 
 
@@ -265,8 +296,12 @@ def known_part(function: Any, value: Value) -> Any:
 
 
 def takes_float(parameter: ast.arg) -> bool:
-    """Whether a parameter is annotated as a float: ints that it is given become floats."""
-    return isinstance(parameter.annotation, ast.Name) and parameter.annotation.id == "float"
+    """Whether a parameter is annotated as a float: ints that
+    it is given become floats.
+    """
+    return (
+        isinstance(parameter.annotation, ast.Name) and parameter.annotation.id == "float"
+    )
 
 
 def as_float(body: Body, value: Value) -> Value:
@@ -286,7 +321,8 @@ def tree_of_module(name: str) -> ast.Module:
         return ast.parse(inspect.getsource(sys.modules[name]))
     except (OSError, TypeError, KeyError) as error:
         raise NotInLanguage(
-            f"the source of `{name}` cannot be read ({error}): it must stand in a file", name
+            f"the source of `{name}` cannot be read ({error}): it must stand in a file",
+            name,
         ) from None
 
 
@@ -301,7 +337,9 @@ def tree_of(function: Any) -> ast.FunctionDef:
     node = found_in_file(function, code)
     given = node.args
     if given.vararg or given.kwarg or given.kwonlyargs or given.posonlyargs:
-        refuse(f"`{function.__name__}` has `*` or `/` among its parameters: write plain ones")
+        refuse(
+            f"`{function.__name__}` has `*` or `/` among its parameters: write plain ones"
+        )
     return node
 
 
@@ -315,10 +353,15 @@ def found_in_file(function: Any, code: Any) -> ast.FunctionDef:
                 return node
         if isinstance(node, ast.Lambda) and is_lambda(function, node):
             returned = ast.copy_location(ast.Return(node.body), node)
-            lambdas.append(ast.FunctionDef("lambda", node.args, [returned], [], lineno=node.lineno))
+            lambdas.append(
+                ast.FunctionDef("lambda", node.args, [returned], [], lineno=node.lineno)
+            )
     if len(lambdas) == 1:
         return lambdas[0]
-    refuse(f"`{function.__name__}` is not found in its file: give it a name, at the file's top")
+    refuse(
+        f"`{function.__name__}` is not found in its file: give it a name, at the file's"
+        " top"
+    )
 
 
 def is_lambda(function: Any, node: ast.Lambda) -> bool:
@@ -326,7 +369,9 @@ def is_lambda(function: Any, node: ast.Lambda) -> bool:
     code = function.__code__
     if function.__name__ != "<lambda>" or node.lineno != code.co_firstlineno:
         return False
-    return [each.arg for each in node.args.args] == list(code.co_varnames[: code.co_argcount])
+    return [each.arg for each in node.args.args] == list(
+        code.co_varnames[: code.co_argcount]
+    )
 
 
 def scope_of(function: Any, names: dict[str, Value]) -> Scope:
@@ -341,7 +386,9 @@ def scope_of(function: Any, names: dict[str, Value]) -> Scope:
 # How a function is written.
 
 
-def in_place(body: Body, function: Any, node: ast.FunctionDef, given: list[Value]) -> Value | None:
+def in_place(
+    body: Body, function: Any, node: ast.FunctionDef, given: list[Value]
+) -> Value | None:
     """What a function returns whose known tests leave one short expression; else None."""
     names = {of.arg: value for of, value in zip(node.args.args, given, strict=True)}
     outside = body.scope
@@ -397,7 +444,9 @@ def written(
     widened: dict[str, Kind] = {}
     while True:
         try:
-            return written_with(program, function, arguments, name, linkage, widened, result)
+            return written_with(
+                program, function, arguments, name, linkage, widened, result
+            )
         except Widened as found:
             widened[found.name] = found.kind
 
@@ -419,7 +468,9 @@ def written_with(
         inside = value
         if not belongs(function, value):
             names = [f"%a.{len(taken) + k}" for k, _ in enumerate(parts(value))]
-            taken += [f"{of} {each}" for (of, _), each in zip(parts(value), names, strict=True)]
+            taken += [
+                f"{of} {each}" for (of, _), each in zip(parts(value), names, strict=True)
+            ]
             inside = rebuilt(kind_of(value), iter(names))
         if body.assigned[parameter.arg]:
             body.assigned[parameter.arg] += 1
@@ -434,7 +485,10 @@ def written_with(
         kind = returned(body, result)
     except NotInLanguage as error:
         raise placed(error, body, node) from None
-    head = f"define {linkage}{structure(types_of(kind)) if types_of(kind) else 'void'} {name}"
+    head = (
+        f"define {linkage}{structure(types_of(kind)) if types_of(kind) else 'void'}"
+        f" {name}"
+    )
     merged = "alwaysinline " if function in _inlined and linkage else ""
     lines = [f"{head}({', '.join(taken)}) {merged}nounwind {{", "entry:"]
     return "\n".join([*lines, *body.allocas, *body.lines, "}"]), kind
@@ -447,7 +501,9 @@ def returned(body: Statements, result: str | None) -> Kind:
         mine = kind_of(value)
         both = mine if kind is None else joined(kind, mine)
         if both is None:
-            refuse(f"`{body.name}` returns values of two kinds: return the same everywhere")
+            refuse(
+                f"`{body.name}` returns values of two kinds: return the same everywhere"
+            )
         kind = both
         if mine[0] == "known" and mine[1].value.value is not None:
             refuse(f"`{body.name}` returns {described(value)}: return numbers, or tuples")
@@ -463,7 +519,9 @@ def returned(body: Statements, result: str | None) -> Kind:
         else:
             whole = "undef"
             for k, (of, each) in enumerate(zip(kinds, given, strict=True)):
-                whole = body.get(f"insertvalue {structure(kinds)} {whole}, {of} {each}, {k}")
+                whole = body.get(
+                    f"insertvalue {structure(kinds)} {whole}, {of} {each}, {k}"
+                )
             body.put(f"ret {structure(kinds)} {whole}")
         lines[at : at + 1] = body.lines
     body.lines = lines

@@ -20,8 +20,8 @@ from rpscli.compiler.values import DOUBLE, INT, POINTER, Kind, types_of
 
 OPTIMISATION = 2
 SELECTION = 2
-"""Levels of LLVM's passes and of its choice of instructions: higher ones take longer to compile and
-no less to run."""
+"""Levels of LLVM's passes and of its choice of instructions: higher ones take longer to
+compile and no less to run."""
 
 DIGEST = 32
 """Bytes at the end of a file of machine code: the digest of the rest."""
@@ -33,11 +33,15 @@ def processor() -> str:
     features = llvm.get_host_cpu_features().flatten()
     version = ".".join(map(str, llvm.llvm_version_info))
     triple = llvm.get_process_triple()
-    return f"{triple} {llvm.get_host_cpu_name()} {features} {version} {llvmlite.__version__}"
+    return (
+        f"{triple} {llvm.get_host_cpu_name()} {features} {version} {llvmlite.__version__}"
+    )
 
 
 def can_fuse() -> bool:
-    """Whether the processor has an instruction for `fma`; else a function does it, slowly."""
+    """Whether the processor has an instruction for `fma`; else a
+    function does it, slowly.
+    """
     return bool(llvm.get_host_cpu_features().get("fma", True))
 
 
@@ -57,7 +61,9 @@ def target_machine() -> Any:
 
 
 def optimised(text: str) -> Any:
-    """A program's text as a module of LLVM, optimised; numbers round as they are written."""
+    """A program's text as a module of LLVM, optimised; numbers
+    round as they are written.
+    """
     machine = target_machine()
     module = llvm.parse_assembly(text)
     module.triple = llvm.get_process_triple()
@@ -65,7 +71,9 @@ def optimised(text: str) -> Any:
     module.verify()
     options = llvm.create_pipeline_tuning_options(speed_level=OPTIMISATION)
     options.loop_vectorization = True
-    options.slp_vectorization = False  # it takes long, and finds nothing that loops have not
+    options.slp_vectorization = (
+        False  # it takes long, and finds nothing that loops have not
+    )
     builder = llvm.create_pass_builder(machine, options)
     builder.getModulePassManager().run(module, builder)
     return module
@@ -100,7 +108,9 @@ class Kept:
         self.not_kept = not_kept
 
     def find(self, name: str) -> bytes | None:
-        """Machine code of a name, if all of it is there: flipped bits would compute, or crash."""
+        """Machine code of a name, if all of it is there: flipped bits
+        would compute, or crash.
+        """
         if self.folder is None:
             return None
         try:
@@ -112,7 +122,9 @@ class Kept:
         return code if hashlib.sha256(code).digest() == digest else None
 
     def get(self, name: str, make: Callable[[], str]) -> bytes:
-        """Machine code of a name, made of the text that `make` gives if it is not there."""
+        """Machine code of a name, made of the text that `make`
+        gives if it is not there.
+        """
         if (code := self.find(name)) is not None:
             return code
         if self.folder is None:
@@ -163,7 +175,12 @@ class Entry:
     """
 
     def __init__(
-        self, code: bytes, name: str, kinds: Sequence[Kind], result: str | None, *arrays: str
+        self,
+        code: bytes,
+        name: str,
+        kinds: Sequence[Kind],
+        result: str | None,
+        *arrays: str,
     ) -> None:
         target_machine()
         self._jit = llvm.create_lljit_compiler()

@@ -60,7 +60,8 @@ class Statements(Body):
         self.widened = widened
         self.assigned = assignments(node)
         self.returns: list[tuple[int, Value]] = []
-        """Lines at which the function is left, and with what: written when its kind is known."""
+        """Lines at which the function is left, and with what:
+        written when its kind is known."""
         self.loops: list[tuple[str, str]] = []
         """Blocks where `continue` and `break` go, of all loops around."""
         self.regions = [0]
@@ -102,7 +103,11 @@ def statements(body: Statements, nodes: list[ast.stmt]) -> None:
         write = STATEMENTS.get(type(node))
         try:
             if write is None:
-                words = "`raise`" if isinstance(node, ast.Try) else "if, for, while and return"
+                words = (
+                    "`raise`"
+                    if isinstance(node, ast.Try)
+                    else "if, for, while and return"
+                )
                 refuse(f"`{ast.unparse(node).splitlines()[0]}`: write it with {words}")
             write(body, node)
         except NotInLanguage as error:
@@ -125,7 +130,9 @@ def assign(body: Statements, target: ast.expr, value: Value) -> None:
     elif isinstance(target, ast.Tuple):
         elements = elements_of(value)
         if elements is None or len(elements) != len(target.elts):
-            refuse(f"{len(target.elts)} names for {described(value)}: give each its value")
+            refuse(
+                f"{len(target.elts)} names for {described(value)}: give each its value"
+            )
         for each, of in zip(target.elts, elements, strict=True):
             assign(body, each, of)
     else:
@@ -140,7 +147,9 @@ def assign_name(body: Statements, name: str, value: Value) -> None:
         return
     kind = kind_of(value)
     if isinstance(kind, tuple) and kind[0] == "known":
-        refuse(f"`{name}` is set to {described(value)}, not to a number: name it once, first")
+        refuse(
+            f"`{name}` is set to {described(value)}, not to a number: name it once, first"
+        )
     if name in body.widened:
         kind = joined(body.widened[name], kind) or kind
     slot = body.scope.names.get(name)
@@ -160,7 +169,9 @@ def assign_name(body: Statements, name: str, value: Value) -> None:
 
 
 def shadow(body: Statements, name: str, slot: Slot) -> None:
-    """Let a name stand for something else from here to the end of its block of statements."""
+    """Let a name stand for something else from here to the end of
+    its block of statements.
+    """
     here = body.regions[-1]
     if slot.region == here:
         return
@@ -182,7 +193,9 @@ def place_of(body: Statements, target: ast.expr) -> Places:
         found = element(body, array, [expression(body, each) for each in nodes])
         if isinstance(found, Places) and found.shape == ():
             return found
-    refuse(f"`{ast.unparse(target)}` is set: numbers in records and arrays can be, and names")
+    refuse(
+        f"`{ast.unparse(target)}` is set: numbers in records and arrays can be, and names"
+    )
 
 
 def store(body: Statements, place: Places, value: Value) -> None:
@@ -271,9 +284,15 @@ def loop(body: Statements, node: ast.For) -> None:
 
 
 def name_in_pass(body: Statements, target: ast.expr, value: Value) -> None:
-    """Name an element of a tuple; one that is no number has its name within the loop alone."""
-    whole = value.value if isinstance(value, Known) and not is_number(value.value) else None
-    of_function = whole is not None and (not isinstance(whole, tuple) or named(whole) is not None)
+    """Name an element of a tuple; one that is no number has its
+    name within the loop alone.
+    """
+    whole = (
+        value.value if isinstance(value, Known) and not is_number(value.value) else None
+    )
+    of_function = whole is not None and (
+        not isinstance(whole, tuple) or named(whole) is not None
+    )
     if isinstance(target, ast.Name) and of_function:
         body.scope.names[target.id] = value
         body.shadowed.setdefault(body.regions[-1], set()).add(target.id)
@@ -312,7 +331,9 @@ def loop_over_range(body: Statements, node: ast.For, limits: list[Value]) -> Non
     body.jump(following)
     body.label(following)
     body.put(f"{more} = add nsw i64 {i}, {step.value}")
-    body.put(f"br label %{name}, !llvm.loop {body.program.loop(f'{body.name}:{node.lineno}')}")
+    body.put(
+        f"br label %{name}, !llvm.loop {body.program.loop(f'{body.name}:{node.lineno}')}"
+    )
     body.label(out)
 
 
@@ -345,8 +366,12 @@ def repeat(body: Statements, node: ast.While) -> None:
 
 
 def expression_is_false(body: Statements, node: ast.expr) -> bool:
-    """Whether a test without variables is known to fail: then its statements are not looked at."""
-    if any(isinstance(each, (ast.Call, ast.Subscript, ast.BoolOp)) for each in ast.walk(node)):
+    """Whether a test without variables is known to fail: then its
+    statements are not looked at.
+    """
+    if any(
+        isinstance(each, (ast.Call, ast.Subscript, ast.BoolOp)) for each in ast.walk(node)
+    ):
         return False
     written = len(body.lines)
     test = expression(body, node)

@@ -1,4 +1,6 @@
-"""Values: what a name may stand for while a function is written, and how it stands in LLVM."""
+"""Values: what a name may stand for while a function is written,
+and how it stands in LLVM.
+"""
 
 from __future__ import annotations
 
@@ -16,11 +18,15 @@ POINTER = "ptr"
 
 
 class NotInLanguage(Exception):
-    """A function cannot be compiled; the text names the file, the line, and what to write."""
+    """A function cannot be compiled; the text names the file, the
+    line, and what to write.
+    """
 
 
 class Widened(Exception):
-    """A variable turned out to be of a wider kind: its function is to be written once more."""
+    """A variable turned out to be of a wider kind: its function is
+    to be written once more.
+    """
 
     def __init__(self, name: str, kind: Kind) -> None:
         super().__init__(name)
@@ -30,7 +36,9 @@ class Widened(Exception):
 
 @dataclass(slots=True, frozen=True)
 class Known:
-    """What is known while compiling: a number, a tuple, an array, a function, a module."""
+    """What is known while compiling: a number, a tuple, an
+    array, a function, a module.
+    """
 
     value: Any
 
@@ -100,14 +108,17 @@ class Itself:
 
 Value: TypeAlias = Known | Number | Tuple | Record | Rows | Places | Matrix
 Kind: TypeAlias = Any
-"""A number's LLVM type, or a tuple that begins with what it is; it can be compared and hashed."""
+"""A number's LLVM type, or a tuple that begins with what it is; it
+can be compared and hashed."""
 
 
 NUMBERS = bool, int, float, np.bool_, np.int64, np.float64
 
 
 def is_number(value: object) -> bool:
-    """Whether something known is a number of the language: no narrower one, nothing derived."""
+    """Whether something known is a number of the language: no
+    narrower one, nothing derived.
+    """
     return type(value) in NUMBERS
 
 
@@ -227,13 +238,22 @@ def joined(one: Kind, other: Kind) -> Kind:
         return None
     if one[0] == other[0] == "tuple" and len(one[1]) == len(other[1]):
         elements = tuple(map(joined, one[1], other[1]))
-        same = one[2] is other[2] or None in {one[2], other[2]}  # fields of two classes differ
-        return ("tuple", elements, one[2] or other[2]) if same and None not in elements else None
+        same = one[2] is other[2] or None in {
+            one[2],
+            other[2],
+        }  # fields of two classes differ
+        return (
+            ("tuple", elements, one[2] or other[2])
+            if same and None not in elements
+            else None
+        )
     return None
 
 
 def refuse(what: str) -> NoReturn:
-    """Say what is not in the language, and what to write; place and line are added outside."""
+    """Say what is not in the language, and what to write; place
+    and line are added outside.
+    """
     raise NotInLanguage(what)
 
 
@@ -315,7 +335,11 @@ class Code:
     def as_kind(self, value: Value, kind: Kind) -> Value:
         """A value as one of a wider kind."""
         if isinstance(kind, str):
-            return value if kind_of(value) == kind else Number(kind, self.number(value, kind))
+            return (
+                value
+                if kind_of(value) == kind
+                else Number(kind, self.number(value, kind))
+            )
         elements = elements_of(value)
         if kind[0] == "tuple" and elements is not None:
             return Tuple(tuple(map(self.as_kind, elements, kind[1])), kind[2])
@@ -326,5 +350,10 @@ def described(value: Value) -> str:
     """What a value is, for a message."""
     if isinstance(value, Known):
         return f"`{getattr(value.value, '__name__', value.value)!s}`"
-    words = {Number: "a number", Tuple: "a tuple", Record: "a record", Rows: "rows of records"}
+    words = {
+        Number: "a number",
+        Tuple: "a tuple",
+        Record: "a record",
+        Rows: "rows of records",
+    }
     return words.get(type(value), "an array")

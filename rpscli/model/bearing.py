@@ -1,4 +1,6 @@
-"""One kinematic bearing: its shape, and what follows from shape alone, at rest and uplifted."""
+"""One kinematic bearing: its shape, and what follows from shape
+alone, at rest and uplifted.
+"""
 
 from __future__ import annotations
 
@@ -15,8 +17,11 @@ from rpscli.errors import is_size, require_fields
 from rpscli.physics.laws import geometry
 
 
-def first_order_critical_curvature_ratio(slenderness: float, wedge_slenderness: float) -> float:
-    """rho_cr = (1 - tan(alpha)/tan(alpha'))/2 (paper, Eq. 1): sin(beta) taken as tan(beta).
+def first_order_critical_curvature_ratio(
+    slenderness: float, wedge_slenderness: float
+) -> float:
+    """rho_cr = (1 - tan(alpha)/tan(alpha'))/2 (paper, Eq. 1):
+    sin(beta) taken as tan(beta).
 
     Examples
     --------
@@ -33,24 +38,28 @@ class Bearing:
     Parameters
     ----------
     semi_diagonal
-        R = sqrt(H^2 + B^2) of the half-height H and the half-width B of the flat part [m].
+        R = sqrt(H^2 + B^2) of the half-height H and the
+        half-width B of the flat part [m].
     slenderness
         tan(alpha) = B/H; 0 for spherical ends, whose arc leaves no flat part.
     wedge_slenderness
-        tan(alpha') = B'/H, B' the half-width up to which the ends are curved. Flat ends ignore it.
+        tan(alpha') = B'/H, B' the half-width up to which the ends are
+        curved. Flat ends ignore it.
     curvature_ratio
         rho = r/(2H), r the radius of the arcs; 0 for flat ends (Housner's block).
     inertia_ratio
         I_o/(m_c R^2), I_o about an edge of the flat part; 4/3 for a rectangular block.
     inertia_ratio_axial
-        I_3/(m_c R^2), I_3 about the axis of the column, which takes part where both horizontal
-        components act; left out: (B'/R)^2/2, a solid round column of half-width B'.
+        I_3/(m_c R^2), I_3 about the axis of the column, which takes part where
+        both horizontal components act; left out: (B'/R)^2/2, a solid round
+        column of half-width B'.
 
     Raises
     ------
     ValueError
-        If a size is not positive, if the arc cannot span from B to B' (0 <= sin(beta) <= 1
-        fails), or if spherical ends would not stand: their radius must exceed H, rho > 1/2.
+        If a size is not positive, if the arc cannot span from B to B' (0 <=
+        sin(beta) <= 1 fails), or if spherical ends would not stand: their radius
+        must exceed H, rho > 1/2.
 
     Notes
     -----
@@ -82,22 +91,26 @@ class Bearing:
             raise ValueError(
                 f"curvature_ratio = {self.curvature_ratio} must be >= 0; 0 = flat ends"
             )
-        if self.is_spherical and not (self.curvature_ratio > 0.5 and self.wedge_slenderness > 0.0):
+        if self.is_spherical and not (
+            self.curvature_ratio > 0.5 and self.wedge_slenderness > 0.0
+        ):
             raise ValueError(
-                f"curvature_ratio = {self.curvature_ratio:g} must be > 0.5 with slenderness: 0, and"
-                f" wedge_slenderness = {self.wedge_slenderness:g} > 0: without a flat part an arc"
-                " whose radius is not above half the height does not hold the column upright"
+                f"curvature_ratio = {self.curvature_ratio:g} must be > 0.5 with"
+                f" slenderness: 0, and wedge_slenderness = {self.wedge_slenderness:g} >"
+                " 0: without a flat part an arc whose radius is not above half the"
+                " height does not hold the column upright"
             )
         if not self.is_flat and self.slenderness > self.wedge_slenderness:
             raise ValueError(
                 f"wedge_slenderness = {self.wedge_slenderness:g} must be >= slenderness ="
-                f" {self.slenderness:g}: the arcs lie outside the flat part; both are tangents"
+                f" {self.slenderness:g}: the arcs lie outside the flat part; both are"
+                " tangents"
             )
         if not self.is_flat and self._sin_beta > 1.0:
             raise ValueError(
                 f"curvature_ratio = {self.curvature_ratio:.6g} must be >="
-                f" {0.5 * (self.wedge_slenderness - self.slenderness):.6g} ="
-                " (tan alpha' - tan alpha)/2: a smaller arc does not reach the wedge's edge; use a"
+                f" {0.5 * (self.wedge_slenderness - self.slenderness):.6g} = (tan alpha'"
+                " - tan alpha)/2: a smaller arc does not reach the wedge's edge; use a"
                 " larger one, or a smaller wedge_slenderness"
             )
         axial: float | None = vars(self)["inertia_ratio_axial"]
@@ -114,7 +127,9 @@ class Bearing:
 
     @property
     def is_spherical(self) -> bool:
-        """True if an arc takes all of the ends: the column rolls from rest, without impacts."""
+        """True if an arc takes all of the ends: the column rolls
+        from rest, without impacts.
+        """
         return self.slenderness == 0.0
 
     @property
@@ -129,7 +144,9 @@ class Bearing:
 
     @property
     def alpha_wedge(self) -> float:
-        """alpha': slenderness angle of the curved part's edge [rad]; alpha for flat ends."""
+        """alpha': slenderness angle of the curved part's edge
+        [rad]; alpha for flat ends.
+        """
         return math.atan(self._wedge)
 
     @property
@@ -173,10 +190,11 @@ class Bearing:
 
     @cached_property
     def critical_rotation(self) -> float:
-        """theta_cr: where the weight stops restoring; the smallest positive root of B [rad].
+        """theta_cr: where the weight stops restoring; the smallest
+        positive root of B [rad].
 
-        The paper's Eq. 1 has the same branches, but changes over at its first-order rho_cr: see
-        `critical_rotation_of_paper`.
+        The paper's Eq. 1 has the same branches, but changes over at its first-order
+        rho_cr: see `critical_rotation_of_paper`.
         """
         return geometry.critical_rotation(self.rolling, self.rocking, self.beta)
 
@@ -190,15 +208,20 @@ class Bearing:
         from scipy.optimize import brentq  # slow
 
         def beyond(rotation: float) -> float:
-            path = geometry.path_along(self.rolling, self.rocking, self.beta, np.array([rotation]))
+            path = geometry.path_along(
+                self.rolling, self.rocking, self.beta, np.array([rotation])
+            )
             return float(2.0 * self.semi_diagonal * path[2][0] - displacement)
 
         end = self.largest_rotation  # up to which it grows
-        return math.inf if beyond(end) < 0.0 else float(brentq(beyond, 0.0, end, xtol=1e-15))
+        return (
+            math.inf if beyond(end) < 0.0 else float(brentq(beyond, 0.0, end, xtol=1e-15))
+        )
 
     @cached_property
     def largest_rotation(self) -> float:
-        """Rotation where the model ends [rad]: the cap beam is farthest from its place, C = 0.
+        """Rotation where the model ends [rad]: the cap beam is
+        farthest from its place, C = 0.
 
         pi/2 + alpha for flat ends; at most pi, up to where `formulae.trigonometry` holds.
 
@@ -216,7 +239,9 @@ class Bearing:
 
     @property
     def critical_rotation_of_paper(self) -> float:
-        """theta_cr by Eq. 1 of the paper [rad]; its branches jump by about 2 % at its rho_cr."""
+        """theta_cr by Eq. 1 of the paper [rad]; its branches jump by
+        about 2 % at its rho_cr.
+        """
         if self.curvature_ratio <= self.critical_curvature_ratio_of_paper:
             return math.atan2(self.slenderness, 1.0 - 2.0 * self.curvature_ratio)
         lowered = 1.0 - 2.0 * self.curvature_ratio * (1.0 - math.cos(self.beta))
@@ -229,15 +254,17 @@ class Bearing:
 
     @cached_property
     def critical_curvature_ratio(self) -> float:
-        """The rho at which theta_cr = beta exactly; above it the column overturns rocking.
+        """The rho at which theta_cr = beta exactly; above it the
+        column overturns rocking.
 
         Solves tan alpha/(1 - 2 rho) = tan beta(rho), Theory (1.14). 0 for flat ends.
         """
         rise = self._wedge - self.slenderness
         if rise <= 0.0 or self.is_spherical:
             return 0.5 if self.is_spherical else 0.0
-        # With t = 2 rho the condition squares to t^2 - rise^2 = (rise (1 - t)/tan(alpha))^2, a
-        # quadratic whose root between rise and 1 is wanted (beta from 90 degrees down).
+        # With t = 2 rho the condition squares to t^2 - rise^2 = (rise (1 -
+        # t)/tan(alpha))^2, a quadratic whose root between rise and 1 is wanted (beta from
+        # 90 degrees down).
         ratio = (rise / self.slenderness) ** 2
         roots = np.roots([1.0 - ratio, 2.0 * ratio, -(rise**2) - ratio]).real
         admissible = [t for t in roots if rise <= t <= 1.0]
@@ -249,14 +276,20 @@ class Bearing:
         return 2.0 * np.hypot(across, upwards)
 
     def tendon_lever(self, rotation: NDArray[np.float64]) -> NDArray[np.float64]:
-        """de/dx, the arm of a tendon about the contacts at |theta| [m] (Theory (11.10))."""
+        """de/dx, the arm of a tendon about the contacts at
+        |theta| [m] (Theory (11.10)).
+        """
         across, upwards, reach = self._end_displacement(rotation)
         distance = np.hypot(across, upwards)
         some = np.where(distance > 0.0, distance, 1.0)
         return 2.0 * reach * np.where(distance > 0.0, upwards / some, 1.0)  # its cosine
 
-    def _end_displacement(self, rotation: NDArray[np.float64]) -> tuple[NDArray[np.float64], ...]:
-        """Ways of the middle of an end across and upwards, and the contact from there [m]."""
+    def _end_displacement(
+        self, rotation: NDArray[np.float64]
+    ) -> tuple[NDArray[np.float64], ...]:
+        """Ways of the middle of an end across and upwards, and
+        the contact from there [m].
+        """
         x = np.abs(np.asarray(rotation, dtype=float))
         y = np.minimum(x, self.beta)
         return geometry.end_displacement(
@@ -268,7 +301,8 @@ class Bearing:
 
 
 class UpliftedState(NamedTuple):
-    """Contact geometry at one tilt x, of which linear equations have constants (Theory (6.1)).
+    """Contact geometry at one tilt x, of which linear equations have
+    constants (Theory (6.1)).
 
     Lengths of the columns are over R, derivatives by the tilt.
     """
@@ -281,14 +315,20 @@ class UpliftedState(NamedTuple):
     elongation: tuple[float, float, float]  # e, e' and e'' of a tendon in the axis [m]
 
 
-def uplifted_state(bearing: Bearing, *, rolling: bool, exact: bool = True) -> UpliftedState:
-    """The state where it begins; else the paper's, to first order and rocking continued to 0."""
+def uplifted_state(
+    bearing: Bearing, *, rolling: bool, exact: bool = True
+) -> UpliftedState:
+    """The state where it begins; else the paper's, to first order
+    and rocking continued to 0.
+    """
     if not exact:
         diameter = 2.0 * bearing.semi_diagonal
         a = bearing.alpha if rolling else bearing.alpha_wedge
         kappa = 2.0 * bearing.curvature_ratio - 1.0 if rolling else -1.0
         # e = 2 R (a x + (kappa + 1) x^2/2)
-        return UpliftedState(0.0, a, 1.0, kappa, 1.0, (0.0, diameter * a, diameter * (kappa + 1.0)))
+        return UpliftedState(
+            0.0, a, 1.0, kappa, 1.0, (0.0, diameter * a, diameter * (kappa + 1.0))
+        )
     phase, x = (bearing.rolling, 0.0) if rolling else (bearing.rocking, bearing.beta)
     cosine = math.cos(x)
     sine = math.sin(x)
@@ -311,4 +351,8 @@ def _elongation(bearing: Bearing, x: float) -> tuple[float, float, float]:
     away = (z.conjugate() * 1j * turned).real
     bend = abs(turned) ** 2 + (z.conjugate() * turned).real
     distance = abs(z)
-    return 2.0 * distance, 2.0 * away / distance, 2.0 * (bend - (away / distance) ** 2) / distance
+    return (
+        2.0 * distance,
+        2.0 * away / distance,
+        2.0 * (bend - (away / distance) ** 2) / distance,
+    )

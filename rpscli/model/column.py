@@ -1,8 +1,8 @@
 """One column as an engineer designs it: forces along it, and the pressure under its ends.
 
-Ends are elastic where they bear on their arcs, and plastic where they stand on an edge, under which
-an elastic pressure has no bound. The plates under and over them are half-spaces. Theory (16.1) to
-(16.6).
+Ends are elastic where they bear on their arcs, and plastic where they stand on an edge,
+under which an elastic pressure has no bound. The plates under and over them are
+half-spaces. Theory (16.1) to (16.6).
 """
 
 from __future__ import annotations
@@ -29,14 +29,17 @@ class ColumnState(NamedTuple):
     side: float  # 1 where the lower contact lies right of the axis, or -1
     rotation: float  # |theta| [rad]
     rate: float  # theta' [rad/s]
-    lever: float  # of the lower contact from the middle of its end [m]; the upper end is its image
+    # of the lower contact from the middle of its end [m]; the upper end is its image
+    lever: float
     rise: float  # the same along the axis [m]
     shear_bottom: float  # F to the right on what is above [N]
     normal_bottom: float  # N upwards on what is above [N]
     shear_top: float
     normal_top: float
 
-    def section_forces(self, bearing: Bearing, mass: float, along: Array) -> tuple[Array, ...]:
+    def section_forces(
+        self, bearing: Bearing, mass: float, along: Array
+    ) -> tuple[Array, ...]:
         """P [N], compression positive, Q [N] and M [N m] at places along the column.
 
         Accelerations are those that the forces at both ends give it: (16.1), (16.2).
@@ -73,7 +76,9 @@ class ColumnState(NamedTuple):
 class ColumnDesign:
     """Cross-section and material of a column, and of the plate it stands on."""
 
-    section: Literal["square", "round"]  # square columns bear on lines, round ones on points
+    section: Literal[
+        "square", "round"
+    ]  # square columns bear on lines, round ones on points
     modulus: float  # E of the column [Pa]
     poisson: float  # nu of the column
     contact_strength: float  # f: pressure that column or plate can bear [Pa]
@@ -85,10 +90,14 @@ class ColumnDesign:
         """Refuse a line without a length, and what cannot be a material."""
         require_fields(self)
         if (self.section == "square") != (self.edge_length is not None):
-            raise ValueError("edge_length belongs to square columns, all of them, as in 0.45 m")
+            raise ValueError(
+                "edge_length belongs to square columns, all of them, as in 0.45 m"
+            )
         sizes = self.modulus, self.contact_strength, self.edge_length, self.plate_modulus
         if not all(0.0 < size < math.inf for size in sizes if size is not None):
-            raise ValueError("moduli, contact_strength and edge_length must be > 0 and finite")
+            raise ValueError(
+                "moduli, contact_strength and edge_length must be > 0 and finite"
+            )
         if not all(0.0 <= nu <= 0.5 for nu in (self.poisson, self.plate_poisson or 0.0)):
             raise ValueError("poisson must be from 0 to 0.5")
 
@@ -99,7 +108,9 @@ class ColumnDesign:
         plate = (1.0 - nu**2) / (self.plate_modulus or self.modulus)
         return 1.0 / ((1.0 - self.poisson**2) / self.modulus + plate)
 
-    def pressed(self, bearing: Bearing, rotation: Array, force: Array) -> tuple[Array, ...]:
+    def pressed(
+        self, bearing: Bearing, rotation: Array, force: Array
+    ) -> tuple[Array, ...]:
         """Elastic pressure p_0 under an arc [Pa], and half widths of the contact [m].
 
         The first of these lies in the plane of tilt; that of a line across is infinite.
@@ -115,7 +126,9 @@ class ColumnDesign:
         # (16.5), with Carlson's integrals for K and E: [K - E]/m = R_D(0, k^2, 1)/3 and
         # [E/k^2 - K]/m = R_D(0, 1, k^2)/3, without the differences that vanish with m.
         width = bearing.half_width
-        ratio = 1.0 + (width / (r * np.sin(rotation)) if width else np.zeros_like(rotation))
+        ratio = 1.0 + (
+            width / (r * np.sin(rotation)) if width else np.zeros_like(rotation)
+        )
         k = ratio ** (-2.0 / 3.0)
         one = np.ones_like(ratio)
         for _ in range(16):  # each leaves a fifth of the error at most
@@ -139,7 +152,8 @@ class ColumnDesign:
         return "longer than half of the distance to the axis" if wide else ""
 
     def crushed(self, bearing: Bearing, force: float) -> tuple[float, float]:
-        """Depth of a plastic edge, and by how much it shortens the lever of the column [m] (16.6).
+        """Depth of a plastic edge, and by how much it shortens the lever
+        of the column [m] (16.6).
 
         Of a round end that crushes whole, the depth goes on with the force.
         """
@@ -152,6 +166,8 @@ class ColumnDesign:
             return 2.0 * radius * area / math.pi, radius
         from scipy.optimize import brentq  # slow
 
-        p = float(brentq(lambda p: p - 0.5 * math.sin(2.0 * p) - area, 0.0, math.pi, xtol=1e-14))
+        p = float(
+            brentq(lambda p: p - 0.5 * math.sin(2.0 * p) - area, 0.0, math.pi, xtol=1e-14)
+        )
         centroid = 2.0 / 3.0 * math.sin(p) ** 3 / area if area else 1.0
         return radius * (1.0 - math.cos(p)), radius * (1.0 - centroid)

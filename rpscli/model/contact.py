@@ -15,17 +15,23 @@ from rpscli.physics.laws import geometry, plane_bed
 Array: TypeAlias = NDArray[np.float64]
 ContactKind = Literal["rigid", "plane", "edges"]
 SHAPE = {"plane": 1.0 / 3.0, "edges": 1.0}
-"""m(phi_u): the moment at which a kind begins to lift, over that of a column on its edge."""
+"""m(phi_u): the moment at which a kind begins to lift, over that
+of a column on its edge."""
 
 USUAL_LOSS = {"rigid": 1.0, "plane": 0.3, "edges": 1.0}
-"""kappa where a case gives none: little for plane ends, which is cautious for rotations."""
+"""kappa where a case gives none: little for plane ends, which
+is cautious for rotations."""
 
 
 @dataclass(frozen=True)
 class Contact:
-    """Support of the ends in full contact and as they lift, rigid or of one size (Theory, 12)."""
+    """Support of the ends in full contact and as they lift, rigid or
+    of one size (Theory, 12).
+    """
 
-    kind: ContactKind = "rigid"  # plane: an even joint, lifts gradually; edges: lift at once
+    kind: ContactKind = (
+        "rigid"  # plane: an even joint, lifts gradually; edges: lift at once
+    )
     period_ratio: float | None = None  # r, in full contact over a fixed base, above 1
     stiffness: float | None = None  # K_s = dF/du_b of the podium at u_b = 0 [N/m]
     settlement: float | None = None  # D_0 of one joint of flat ends under the weight [m]
@@ -36,11 +42,16 @@ class Contact:
         require_fields(self)
         if self.kind not in USUAL_LOSS:
             raise ValueError(f"contact {self.kind!r} must be rigid, plane or edges")
-        given = [x for x in (self.period_ratio, self.stiffness, self.settlement) if x is not None]
+        given = [
+            x
+            for x in (self.period_ratio, self.stiffness, self.settlement)
+            if x is not None
+        ]
         if self.kind == "rigid" and given:
             raise ValueError(
-                "rigid contact takes no period_ratio, stiffness or settlement; a measured period"
-                " does not tell whether ends are `plane` or `edges`: name one, and try both"
+                "rigid contact takes no period_ratio, stiffness or settlement; a"
+                " measured period does not tell whether ends are `plane` or `edges`:"
+                " name one, and try both"
             )
         if self.kind != "rigid" and len(given) != 1:
             raise ValueError(
@@ -53,8 +64,8 @@ class Contact:
             )
         if self.period_ratio is not None and self.period_ratio <= 1.0:
             raise ValueError(
-                f"period_ratio = {self.period_ratio:g} must be above 1: compliant ends lengthen"
-                " the period; for 1 use the kind `rigid`"
+                f"period_ratio = {self.period_ratio:g} must be above 1: compliant ends"
+                " lengthen the period; for 1 use the kind `rigid`"
             )
 
 
@@ -89,19 +100,24 @@ class Bed(NamedTuple):
     sink: float  # what w takes from the arm of the weight; 0 on edges
     root: float  # and from that of the lift
     kept: float  # j, theta' after uplift over that before: below 1 on edges
-    shift: float  # what u_b/2R lacks at phi_u for being continuous, C_u being constant below it
+    # what u_b/2R lacks at phi_u for being continuous, C_u being constant below it
+    shift: float
     full_rotation: float  # x_full of curved ends or 0 [rad]
     fade: float  # 1/(x_full - phi_u) or 0
 
     @property
     def settlement(self) -> float | None:
-        """D_0 of one joint under permanent load [m]; None on curved ends, which bear wider."""
+        """D_0 of one joint under permanent load [m]; None on
+        curved ends, which bear wider.
+        """
         b = self.structure.bearing
         return float(self.uplift_rotation * b.half_width) if b.is_flat else None
 
     @property
     def period_ratio(self) -> float | None:
-        """r, first period in full contact over that on a fixed base; None without a building."""
+        """r, first period in full contact over that on a fixed base;
+        None without a building.
+        """
         from scipy.optimize import brentq
 
         if self.structure.superstructure is None:
@@ -110,7 +126,9 @@ class Bed(NamedTuple):
 
         def misses(share: float) -> float:
             return (
-                _storey_stiffness(self.structure, self.mass, share * first) / self.stiffness - 1.0
+                _storey_stiffness(self.structure, self.mass, share * first)
+                / self.stiffness
+                - 1.0
             )
 
         return 1.0 / float(brentq(misses, 1e-9, 1.0 - 1e-12, xtol=1e-15, rtol=1e-15))
@@ -124,7 +142,9 @@ class Bed(NamedTuple):
 
     @property
     def joint_stiffness(self) -> float | None:
-        """W/D_0 of one joint of all columns, pressed evenly by the permanent load [N/m]."""
+        """W/D_0 of one joint of all columns, pressed evenly by
+        the permanent load [N/m].
+        """
         return self.settlement and float(self.structure.weight) / self.settlement
 
     @property
@@ -134,7 +154,9 @@ class Bed(NamedTuple):
 
     @property
     def contact_share(self) -> float | None:
-        """Contact length at alpha/10 over the flat part's; None of edges and curved ends."""
+        """Contact length at alpha/10 over the flat part's; None
+        of edges and curved ends.
+        """
         gradual = self.root and self.structure.bearing.is_flat
         return math.sqrt(min(10.0 * self.ratio, 1.0)) if gradual else None
 
@@ -158,7 +180,9 @@ class Bed(NamedTuple):
         start = float(geometry.path_along(b.rolling, b.rocking, b.beta, np.array(u))[3])
         end = np.minimum(up, self.full_rotation) if self.full_rotation else up
         w, slope = plane_bed.patch(end, u, fade)
-        area = plane_bed.patch_integral(end, u, fade) - plane_bed.patch_integral(u, u, fade)
+        area = plane_bed.patch_integral(end, u, fade) - plane_bed.patch_integral(
+            u, u, fade
+        )
         arm = self.lift_arm - self.sink / math.sqrt(u)  # at phi_u
         stored = 0.5 * arm * u + lift - start - self.sink * area
         return BedPath(
@@ -182,7 +206,9 @@ def _make_bed(structure: Standing, u: float) -> Bed:
     sine = math.sin(u)
     cosine = math.cos(u)
     columns = structure.columns_mass
-    B, C = (f(phase, cosine, sine) for f in (geometry.contact_arm, geometry.contact_height))
+    B, C = (
+        f(phase, cosine, sine) for f in (geometry.contact_arm, geometry.contact_height)
+    )
     masses = (
         b.inertia_ratio - 1.0,
         1.0 + 4.0 * gamma,
@@ -217,7 +243,9 @@ def _make_bed(structure: Standing, u: float) -> Bed:
 
 
 def _storey_stiffness(structure: Standing, mass: float, omega: float) -> float:
-    """K_s with which the building vibrates freely at omega, beam and columns weighing m_0 [N/m]."""
+    """K_s with which the building vibrates freely at omega, beam and
+    columns weighing m_0 [N/m].
+    """
     building = structure.superstructure
     shaken = building.participation**2 / (1.0 - (omega / building.frequencies) ** 2)
     return float(omega**2 * (mass + shaken.sum()))
@@ -241,26 +269,34 @@ def bed_of(structure: Standing) -> Bed | None:
             bed = _make_bed(structure, u)
             wanted = contact.stiffness
             if contact.period_ratio is not None:
-                omega = float(structure.superstructure.frequencies[0]) / contact.period_ratio
+                omega = (
+                    float(structure.superstructure.frequencies[0]) / contact.period_ratio
+                )
                 wanted = _storey_stiffness(structure, bed.mass, omega)
             return float(bed.stiffness / wanted) - 1.0
 
         ends = 1e-12 * softest, softest * (1.0 - 1e-9)
         if misses(ends[0]) < 0.0:
-            raise ValueError("the contact is so stiff that it is rigid; use the kind `rigid`")
+            raise ValueError(
+                "the contact is so stiff that it is rigid; use the kind `rigid`"
+            )
         if misses(ends[1]) < 0.0:
-            bed = _make_bed(structure, float(brentq(misses, *ends, xtol=1e-18, rtol=1e-15)))
+            bed = _make_bed(
+                structure, float(brentq(misses, *ends, xtol=1e-18, rtol=1e-15))
+            )
     if bed is None or bed.uplift_rotation >= softest or bed.spring <= 0.0:
         share = "3 phi_u" if contact.kind == "plane" else "phi_u"
         raise ValueError(
-            f"the contact is so soft that it does not hold the weight upright: {share} must stay"
-            " below tan(alpha); use a smaller period_ratio or settlement, or a larger stiffness"
+            f"the contact is so soft that it does not hold the weight upright: {share}"
+            " must stay below tan(alpha); use a smaller period_ratio or settlement, or a"
+            " larger stiffness"
         )
     beyond = max(bed.uplift_rotation, bed.full_rotation)
     if not b.is_flat and beyond >= b.beta:
         raise ValueError(
-            f"the ends bear outside of their flat part from {beyond:.3g} rad on, beyond the end of"
-            f" their arcs at {b.beta:.3g} rad; use a stiffer contact, or flat ends"
+            f"the ends bear outside of their flat part from {beyond:.3g} rad on, beyond"
+            f" the end of their arcs at {b.beta:.3g} rad; use a stiffer contact, or flat"
+            " ends"
         )
     farthest = 2.0 * b.semi_diagonal * bed.height * bed.uplift_rotation
     if any(getattr(device, "gap", math.inf) <= farthest for device in structure.devices):
@@ -282,13 +318,12 @@ def _refuse_combinations(structure: Standing) -> None:
     reasons = {
         "spherical ends have no flat part to bear on; use `rigid`": b.is_spherical,
         "floors would jump at re-contact, use the impact law `flexible`": law.floors_jump,
-        "a period_ratio is that of a building, without one give stiffness or settlement": (
-            contact.period_ratio is not None and without
-        ),
-        "curved ends bear on more than a settlement describes; give period_ratio or stiffness": (
-            contact.settlement is not None and curved
-        ),
-        "tendons would load the bed, which is not followed; leave them out": "tendon" in devices,
+        "a period_ratio is that of a building, without one give stiffness or"
+        " settlement": (contact.period_ratio is not None and without),
+        "curved ends bear on more than a settlement describes; give period_ratio or"
+        " stiffness": (contact.settlement is not None and curved),
+        "tendons would load the bed, which is not followed; leave them out": "tendon"
+        in devices,
         "rolling resistance is given by the contact's damping; leave it out": (
             "rolling_resistance" in devices
         ),

@@ -1,4 +1,6 @@
-"""Laws of the devices between ground and cap beam, with all that follows (Theory, section 11)."""
+"""Laws of the devices between ground and cap beam, with all that
+follows (Theory, section 11).
+"""
 
 from __future__ import annotations
 
@@ -11,13 +13,22 @@ import numpy as np
 from rpscli.errors import PluginError, require_fields
 from rpscli.model.bearing import Bearing, UpliftedState
 from rpscli.model.own import DamperLaw, OwnLaw
-from rpscli.model.podium import Array, AtRest, Consequence, Device, Linear, PodiumStructure
+from rpscli.model.podium import (
+    Array,
+    AtRest,
+    Consequence,
+    Device,
+    Linear,
+    PodiumStructure,
+)
 from rpscli.registry import Registry
 
 
 @dataclass(frozen=True)
 class ViscousDamper(Device):
-    """P = -c |u_b'|^a sgn(u_b') on the cap beam, c [N (s/m)^a] the force at 1 m/s, a 0.2 to 2."""
+    """P = -c |u_b'|^a sgn(u_b') on the cap beam, c [N (s/m)^a] the
+    force at 1 m/s, a 0.2 to 2.
+    """
 
     coefficient: float
     exponent: float = 1.0
@@ -43,7 +54,9 @@ class ViscousDamper(Device):
         if structure.bearing.is_spherical:
             return
         speed = (structure.uplift_force / self.coefficient) ** (1.0 / self.exponent)
-        yield Consequence("velocity_at_uplift_force", "reaches W tan(alpha) at", "m/s", speed)
+        yield Consequence(
+            "velocity_at_uplift_force", "reaches W tan(alpha) at", "m/s", speed
+        )
 
 
 @dataclass(frozen=True)
@@ -58,7 +71,9 @@ class FrictionDamper(Device):
     def __post_init__(self) -> None:
         _require(self, "> 0", "force")
 
-    def at_rest(self, structure: PodiumStructure, rotation: Array, farthest: float) -> AtRest:
+    def at_rest(
+        self, structure: PodiumStructure, rotation: Array, farthest: float
+    ) -> AtRest:
         return AtRest(held=self.force)
 
     def linear(self, structure: PodiumStructure, state: UpliftedState) -> Linear:
@@ -73,7 +88,9 @@ class FrictionDamper(Device):
 
 @dataclass(frozen=True)
 class Stop(Device):
-    """s P = -(k_s (|u_b| - d) + c_s |u_b|') beyond the gap d [m] on both sides, where it pushes."""
+    """s P = -(k_s (|u_b| - d) + c_s |u_b|') beyond the gap d [m] on
+    both sides, where it pushes.
+    """
 
     gap: float
     stiffness: float
@@ -86,7 +103,9 @@ class Stop(Device):
         _require(self, ">= 0", "gap", "damping")
         _require(self, "> 0", "stiffness")
 
-    def at_rest(self, structure: PodiumStructure, rotation: Array, farthest: float) -> AtRest:
+    def at_rest(
+        self, structure: PodiumStructure, rotation: Array, farthest: float
+    ) -> AtRest:
         beyond = np.maximum(self.stroke(structure, rotation) - self.gap, 0.0)
         return AtRest(self.stiffness * beyond)
 
@@ -110,8 +129,8 @@ class Stop(Device):
 class Tendon(Device):
     """An unbonded tendon in the axis of each column, from the ground to the cap beam.
 
-    Elastic up to its yield force and perfectly plastic beyond; it never pushes. Prestress P_0 while
-    the structure stands [N], k_t [N/m] and P_y [N] are those of one.
+    Elastic up to its yield force and perfectly plastic beyond; it never pushes. Prestress
+    P_0 while the structure stands [N], k_t [N/m] and P_y [N] are those of one.
     """
 
     prestress: float
@@ -126,17 +145,22 @@ class Tendon(Device):
         _require(self, "> 0", "stiffness")
         if not self.yield_force > self.prestress:
             raise ValueError(
-                f"yield_force = {self.yield_force:g} N must be > prestress = {self.prestress:g} N;"
-                " use a lower prestress, or leave yield_force out for a tendon that never yields"
+                f"yield_force = {self.yield_force:g} N must be > prestress ="
+                f" {self.prestress:g} N; use a lower prestress, or leave yield_force out"
+                " for a tendon that never yields"
             )
 
     @property
     def results(self) -> tuple[str, ...]:
         return ("lost_prestress",) if self.prestress > 0.0 else ()
 
-    def at_rest(self, structure: PodiumStructure, rotation: Array, farthest: float) -> AtRest:
+    def at_rest(
+        self, structure: PodiumStructure, rotation: Array, farthest: float
+    ) -> AtRest:
         stretch = self.stroke(structure, rotation) - self.permanent(structure, farthest)
-        tension = np.clip(self.prestress + self.stiffness * stretch, 0.0, self.yield_force)
+        tension = np.clip(
+            self.prestress + self.stiffness * stretch, 0.0, self.yield_force
+        )
         lever = structure.bearing.tendon_lever(rotation)
         arm = structure.lever_arm(rotation)
         return AtRest(structure.columns * tension * lever / arm)
@@ -164,10 +188,13 @@ class Tendon(Device):
         return Linear(growth / diameter**2, left_out="yielding of tendons")
 
     def bounds(self, structure: PodiumStructure) -> tuple[float, float]:
-        # N k_t (de/du_b)^2: de/dx is at most 2 (B + r beta), du_b/dx at least 2 R cos(alpha).
+        # N k_t (de/du_b)^2: de/dx is at most 2 (B + r beta), du_b/dx at least 2 R
+        # cos(alpha).
         b = structure.bearing
         radius = 2.0 * b.curvature_ratio * b.semi_diagonal * math.cos(b.alpha)
-        reach = math.tan(b.alpha) + radius * b.beta / (b.semi_diagonal * math.cos(b.alpha))
+        reach = math.tan(b.alpha) + radius * b.beta / (
+            b.semi_diagonal * math.cos(b.alpha)
+        )
         return structure.columns * self.stiffness * reach**2, 0.0
 
     def consequences(self, structure: PodiumStructure) -> Iterator[Consequence]:
@@ -178,10 +205,16 @@ class Tendon(Device):
             return
         ratio = self.prestress / self.yield_force
         yield Consequence("prestress_ratio", "prestress over yield force", "-", ratio)
-        x = self.reached_at(structure, (self.yield_force - self.prestress) / self.stiffness)
+        x = self.reached_at(
+            structure, (self.yield_force - self.prestress) / self.stiffness
+        )
         yield Consequence("yield_rotation", "yields at", "rad", x)
-        left = self.remaining_prestress(self.permanent(structure, structure.critical_rotation))
-        yield Consequence("prestress_after_critical", "prestress after theta_cr", "N", left)
+        left = self.remaining_prestress(
+            self.permanent(structure, structure.critical_rotation)
+        )
+        yield Consequence(
+            "prestress_after_critical", "prestress after theta_cr", "N", left
+        )
 
     def stroke(self, structure: PodiumStructure, rotation: Array) -> Array:
         return structure.bearing.tendon_elongation(rotation)
@@ -192,7 +225,9 @@ class Tendon(Device):
 
 @dataclass(frozen=True)
 class RollingResistance(Device):
-    """The moment f (N_top + N_bot) against the tilt's rate, f [m], the weight for normal forces."""
+    """The moment f (N_top + N_bot) against the tilt's rate, f [m], the
+    weight for normal forces.
+    """
 
     lever: float
 
@@ -205,8 +240,12 @@ class RollingResistance(Device):
     def constants(self, structure: PodiumStructure) -> tuple[float, ...]:
         return (2.0 * structure.weight * self.lever,)
 
-    def at_rest(self, structure: PodiumStructure, rotation: Array, farthest: float) -> AtRest:
-        return AtRest(held=2.0 * structure.weight * self.lever / structure.lever_arm(rotation))
+    def at_rest(
+        self, structure: PodiumStructure, rotation: Array, farthest: float
+    ) -> AtRest:
+        return AtRest(
+            held=2.0 * structure.weight * self.lever / structure.lever_arm(rotation)
+        )
 
     def stiffness_after_uplift(self, structure: PodiumStructure) -> float:
         return _force_growth(structure.bearing, 2.0 * structure.weight * self.lever, 0.0)
@@ -223,7 +262,9 @@ class RollingResistance(Device):
 
 @dataclass(frozen=True)
 class OwnDamper(Device):
-    """A damper of the kind `name` whose law another package adds, and values of its constants."""
+    """A damper of the kind `name` whose law another package adds, and
+    values of its constants.
+    """
 
     name: str
     law: DamperLaw
@@ -248,18 +289,24 @@ class OwnDamper(Device):
 
     def linear(self, structure: PodiumStructure, state: UpliftedState) -> Linear:
         if self.law.linear is None:
-            return Linear(left_out=f"dampers of kind {self.name}, which have a kink at rest")
+            return Linear(
+                left_out=f"dampers of kind {self.name}, which have a kink at rest"
+            )
         return Linear(damping=self.law.linear(*self.values) * state.height**2)
 
     def bounds(self, structure: PodiumStructure) -> tuple[float, float]:
-        stiffness = 0.0 if self.law.stiffness is None else self.law.stiffness(*self.values)
+        stiffness = (
+            0.0 if self.law.stiffness is None else self.law.stiffness(*self.values)
+        )
         return stiffness, self.law.damping(*self.values)
 
 
 def own_laws(structure: PodiumStructure) -> dict[str, OwnLaw]:
     """Laws of other packages that a structure has, by their names."""
     laws: dict[str, OwnLaw] = {
-        device.kind: device.law for device in structure.devices if isinstance(device, OwnDamper)
+        device.kind: device.law
+        for device in structure.devices
+        if isinstance(device, OwnDamper)
     }
     own = structure.impact_law.own
     return laws if own is None else {**laws, structure.impact_law.kind: own}
@@ -276,7 +323,8 @@ def _require(device: Device, rule: str, *names: str) -> None:
 def _force_growth(bearing: Bearing, moment: float, growth: float) -> float:
     """Part of dF/du_b at u_b = 0+ that a moment M + M' x adds [N/m], exact.
 
-    With the arm 2 R C = 2 H + 2 B x it is the force M/2H + (M' - M B/H) x/2H, and du_b = 2 H dx.
+    With the arm 2 R C = 2 H + 2 B x it is the force M/2H + (M' - M B/H)
+    x/2H, and du_b = 2 H dx.
     """
     return (growth - moment * bearing.half_width / bearing.half_height) / (
         4.0 * bearing.half_height**2

@@ -19,14 +19,16 @@ IMPACT_LAWS: Registry[RestitutionLaw | None] = Registry(
 """Ours by their names, and what other packages add."""
 
 CONTACT_TIME = 2e-3
-"""Duration of an impact [s]: a joint that settles by D_0 under the building has sqrt(2 D_0/g), that
-is 2 to 4.5 ms of 20 to 100 um; it moves the medians of many pairs by less than 5 %."""
+"""Duration of an impact [s]: a joint that settles by D_0 under the building
+has sqrt(2 D_0/g), that is 2 to 4.5 ms of 20 to 100 um; it moves the medians of
+many pairs by less than 5 %."""
 
 LONGEST_CONTACT = 0.02
 """Longest impact [s]; beyond it a pass would no longer be short against the motion."""
 
 SMALL_RATE = 1e-3
-"""Rate of the tilt at which a law of another package gives the one e of tables [rad/s]."""
+"""Rate of the tilt at which a law of another package gives the
+one e of tables [rad/s]."""
 
 
 @dataclass(frozen=True)
@@ -36,23 +38,25 @@ class ImpactLaw:
     Parameters
     ----------
     kind
-        ``flexible``: storey springs carry no impulse, so the floors keep their absolute velocities.
-        ``rigid``: all floors jump with the cap beam (paper, Eq. 6). ``value``: e is measured; the
-        floors jump as in ``rigid``. Another name: that of the law `own`.
+        ``flexible``: storey springs carry no impulse, so the floors keep their
+        absolute velocities. ``rigid``: all floors jump with the cap beam (paper,
+        Eq. 6). ``value``: e is measured; the floors jump as in ``rigid``. Another
+        name: that of the law `own`.
     restitution
         e of the law ``value``.
     factor
         Multiplies the e of any law.
     loss
-        kappa: how much of 1 - e is lost beside an impulse at the edges, 1 - e = kappa (1 - e_edge)
-        with e_edge of ``flexible`` or ``rigid``. About x/B if the impulse acts at x from the middle
-        of ends of half width B.
+        kappa: how much of 1 - e is lost beside an impulse at the edges, 1 - e = kappa (1
+        - e_edge) with e_edge of ``flexible`` or ``rigid``. About x/B if the impulse acts
+        at x from the middle of ends of half width B.
     contact_time
-        t_c, how long an impact takes [s], 0 to 20 ms. Only motions in both horizontal directions
-        ask for it: of a pass near upright it decides how much is lost as at an impact.
+        t_c, how long an impact takes [s], 0 to 20 ms. Only motions in both
+        horizontal directions ask for it: of a pass near upright it decides how much
+        is lost as at an impact.
     own
-        The law of another package, whose e goes by the rate of the tilt; floors keep their
-        velocities. Where one number is asked for it is that at 0.001 rad/s.
+        The law of another package, whose e goes by the rate of the tilt; floors keep
+        their velocities. Where one number is asked for it is that at 0.001 rad/s.
     constants
         Of that law, in their order.
 
@@ -78,7 +82,8 @@ class ImpactLaw:
             raise ValueError("law `value`, and it alone, needs a restitution, as in 0.92")
         if not 0.0 <= self.contact_time <= LONGEST_CONTACT:
             raise ValueError(
-                f"contact_time = {self.contact_time} s must be within 0 and {LONGEST_CONTACT:g} s"
+                f"contact_time = {self.contact_time} s must be within 0 and"
+                f" {LONGEST_CONTACT:g} s"
             )
 
     @property
@@ -89,8 +94,8 @@ class ImpactLaw:
     def ratio(self, bearing: Bearing, gamma: float, eta: float) -> float:
         """Restitution e = theta'+/theta'- of a bearing with mass ratios gamma and eta.
 
-        A value <= 0 means that the column does not go over to its other edge; the case is then
-        outside the model.
+        A value <= 0 means that the column does not go over to its other edge; the case
+        is then outside the model.
 
         Parameters
         ----------
@@ -106,13 +111,18 @@ class ImpactLaw:
         >>> round(ImpactLaw("rigid").ratio(Bearing(1.5, 0.15, 0.3, 0.5), 10.0, 6.0), 5)
         0.95604
         """
-        law = {"rigid": rigid_restitution, "flexible": flexible_restitution}.get(self.kind)
+        law = {"rigid": rigid_restitution, "flexible": flexible_restitution}.get(
+            self.kind
+        )
         e = None if law is None else law(bearing, gamma, eta)
         if self.own is not None:
             given = SMALL_RATE, bearing.slenderness, bearing.inertia_ratio, gamma, eta
             e = self.own.restitution(*given, *self.constants)
             if not 0.0 < e <= 1.0:
-                text = f"{self.kind}: its restitution is {e:g} at a rate of {SMALL_RATE:g} rad/s"
+                text = (
+                    f"{self.kind}: its restitution is {e:g} at a rate of {SMALL_RATE:g}"
+                    " rad/s"
+                )
                 raise PluginError(f"impact law {text}, and must be above 0 and at most 1")
         if e is not None:
             return self.factor * (1.0 - self.loss * (1.0 - e))

@@ -1,4 +1,5 @@
-"""Laws of other packages: forces of dampers and restitutions, compiled when a history uses them.
+"""Laws of other packages: forces of dampers and restitutions, compiled
+when a history uses them.
 
 Only their functions are compiled, never the kernels, which call them by their addresses.
 """
@@ -22,8 +23,8 @@ class OwnLaw:
     Parameters
     ----------
     constants
-        A `Quantity` of each of up to four constants, by the name that it has in a case. Functions
-        of a law take their values last, in this order.
+        A `Quantity` of each of up to four constants, by the name that it has in a case.
+        Functions of a law take their values last, in this order.
     """
 
     constants: Mapping[str, Any]
@@ -33,7 +34,9 @@ class OwnLaw:
             if not (str(name).isidentifier() and hasattr(quantity, "unit")):
                 raise TypeError(f"its constant {name!r} must be a name with a Quantity")
         if len(self.constants) > MOST_CONSTANTS:
-            raise ValueError(f"it has {len(self.constants)} constants, at most {MOST_CONSTANTS}")
+            raise ValueError(
+                f"it has {len(self.constants)} constants, at most {MOST_CONSTANTS}"
+            )
 
     def taken(self) -> dict[Callable[..., float], int]:
         """Functions of the law that are compiled, and how many numbers each takes."""
@@ -44,15 +47,19 @@ class OwnLaw:
         """The files in which its functions are written, as far as there are any."""
         functions = map(inspect.unwrap, filter(callable, vars(self).values()))
         files = {inspect.getsourcefile(function) or "" for function in functions}
-        return [Path(file).read_text("utf-8") for file in sorted(files) if Path(file).is_file()]
+        return [
+            Path(file).read_text("utf-8")
+            for file in sorted(files)
+            if Path(file).is_file()
+        ]
 
 
 @dataclass(frozen=True, eq=False)
 class DamperLaw(OwnLaw):
     """A damper between ground and cap beam, which resists along the beam's velocity.
 
-    `force` and `watched` are compiled; what they may do is in `rpscli/compiler/LANGUAGE.md`. All in
-    SI.
+    `force` and `watched` are compiled; what they may do is in
+    `rpscli/compiler/LANGUAGE.md`. All in SI.
 
     Parameters
     ----------
@@ -63,8 +70,8 @@ class DamperLaw(OwnLaw):
     damping
         The largest slope of the force with the velocity, for steps [N s/m].
     linear
-        That slope about rest, for modes [N s/m]; None if the force has a kink there, as powers of
-        the velocity have.
+        That slope about rest, for modes [N s/m]; None if the force has a kink there, as
+        powers of the velocity have.
     stiffness
         The largest slope with the displacement, for steps [N/m]; None if there is none.
     watched
@@ -92,8 +99,8 @@ class RestitutionLaw(OwnLaw):
     constants
         As of every law.
     restitution
-        Of the tilt's rate before an impact [rad/s], tan(alpha), I_o/(m_c R^2), gamma = m_b/(N m_c)
-        and eta = M_tot/m_b: e in (0, 1]; it is compiled.
+        Of the tilt's rate before an impact [rad/s], tan(alpha), I_o/(m_c R^2), gamma =
+        m_b/(N m_c) and eta = M_tot/m_b: e in (0, 1]; it is compiled.
     """
 
     restitution: Callable[..., float]

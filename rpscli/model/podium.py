@@ -30,7 +30,8 @@ USUAL_SHOCK = 0.025
 """`PodiumStructure.shock_time` where no vertical period is known [s]: of one of .1 s."""
 
 MOST_DEVICES = 8
-"""A structure has no more; equal devices are one with the sum of their forces and stiffnesses."""
+"""A structure has no more; equal devices are one with the sum of
+their forces and stiffnesses."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -58,14 +59,14 @@ class PodiumStructure(Shown):
     friction
         Coefficient of friction at both ends of the columns; None where it is not known.
     rows
-        Where rows of columns, with equally many each, stand along the motion [m]; none where that
-        is not known.
+        Where rows of columns, with equally many each, stand along the motion [m]; none
+        where that is not known.
     rows_y
-        Where they stand in y, with a column wherever two rows cross [m]; axial forces under both
-        components ask for it.
+        Where they stand in y, with a column wherever two rows cross [m]; axial forces
+        under both components ask for it.
     superstructure_y
-        The same floors on the stiffnesses across the first direction, y, where they differ from
-        those along it, x; None if they do not.
+        The same floors on the stiffnesses across the first direction, y, where they
+        differ from those along it, x; None if they do not.
     contact
         What the ends bear on; rigid or compliant in full contact.
     column
@@ -74,8 +75,8 @@ class PodiumStructure(Shown):
     Raises
     ------
     ValueError
-        For masses, floors in y, devices, or a contact that are not followed, and a restitution
-        that is not in (0, 1], of spherical ends not 1 (Theory, section 4).
+        For masses, floors in y, devices, or a contact that are not followed, and a
+        restitution that is not in (0, 1], of spherical ends not 1 (Theory, section 4).
 
     Notes
     -----
@@ -104,33 +105,45 @@ class PodiumStructure(Shown):
         require_fields(self)
         sizes = self.columns_mass, self.gravity, self.cap_beam_mass or 1.0
         if not all(map(is_size, sizes)):
-            raise ValueError("columns_mass and gravity must be > 0, cap_beam_mass >= 0, all finite")
+            raise ValueError(
+                "columns_mass and gravity must be > 0, cap_beam_mass >= 0, all finite"
+            )
         if self.friction is not None and self.friction < 0.0:
             raise ValueError(f"friction = {told(self.friction)} must be >= 0, or None")
         self._refuse_buildings()
         for name, rows in (("rows", self.rows), ("rows_y", self.rows_y)):
             if rows and (len(rows) < 2 or not is_size(max(rows) - min(rows))):
-                raise ValueError(f"{name} must be at least two positions that differ, as in [0, 4]")
+                raise ValueError(
+                    f"{name} must be at least two positions that differ, as in [0, 4]"
+                )
         if not (isinstance(self.columns, Integral) and 1 <= self.columns <= MOST_COLUMNS):
-            raise ValueError(f"columns = {told(self.columns)} must be a whole number from 1 on")
+            raise ValueError(
+                f"columns = {told(self.columns)} must be a whole number from 1 on"
+            )
         if len(self.devices) > MOST_DEVICES:
             raise ValueError(
-                f"devices: {len(self.devices)} must be at most {MOST_DEVICES}; write equal ones as"
-                " one, with the sum of their forces and stiffnesses"
+                f"devices: {len(self.devices)} must be at most {MOST_DEVICES}; write"
+                " equal ones as one, with the sum of their forces and stiffnesses"
             )
         if self.bearing.is_spherical and self.restitution != 1.0:
             raise ValueError(
-                f"restitution e = {self.restitution:.4g} must be 1: columns without a flat part"
-                " roll through upright without an impact; remove restitution and factor"
+                f"restitution e = {self.restitution:.4g} must be 1: columns without a"
+                " flat part roll through upright without an impact; remove restitution"
+                " and factor"
             )
-        if self.bearing.is_spherical and any(device.kind == "tendon" for device in self.devices):
-            raise ValueError("devices: tendons are not followed in columns without a flat part")
+        if self.bearing.is_spherical and any(
+            device.kind == "tendon" for device in self.devices
+        ):
+            raise ValueError(
+                "devices: tendons are not followed in columns without a flat part"
+            )
         if not 0.0 < self.restitution <= 1.0:
             raise ValueError(
-                f"restitution e = {self.restitution:.4g} (law {self.impact_law.kind}) must be in"
-                " (0, 1]: with e <= 0 the columns would not pass to their other edge; use more"
-                " slender columns (a smaller tan alpha), with the law `flexible` a lighter building"
-                " over the cap beam, a smaller loss (0.5) or factor, or give a measured value"
+                f"restitution e = {self.restitution:.4g} (law {self.impact_law.kind})"
+                " must be in (0, 1]: with e <= 0 the columns would not pass to their"
+                " other edge; use more slender columns (a smaller tan alpha), with the"
+                " law `flexible` a lighter building over the cap beam, a smaller loss"
+                " (0.5) or factor, or give a measured value"
             )
         object.__setattr__(self, "bed", bed_of(self))  # raises what it does not have
 
@@ -139,11 +152,15 @@ class PodiumStructure(Shown):
         y = self.superstructure_y
         if x is not None and self.cap_beam_mass == 0.0:
             raise ValueError("cap_beam_mass must be > 0: the superstructure stands on it")
-        if x is not None and x.vertical_period is not None and self.impact_law.floors_jump:
+        if (
+            x is not None
+            and x.vertical_period is not None
+            and self.impact_law.floors_jump
+        ):
             raise ValueError(
-                f"the impact law {self.impact_law.kind} lets floors jump with the cap beam, which"
-                " vertical springs (vertical_period) do not; use the law flexible, with loss or"
-                " factor"
+                f"the impact law {self.impact_law.kind} lets floors jump with the cap"
+                " beam, which vertical springs (vertical_period) do not; use the law"
+                " flexible, with loss or factor"
             )
         if y is not None and (x is None or not np.array_equal(x.masses, y.masses)):
             raise ValueError("superstructure_y must have the floors of superstructure")
@@ -162,47 +179,65 @@ class PodiumStructure(Shown):
 
     @property
     def planar_only(self) -> str:
-        """The reason why both horizontal components cannot act at once; empty if they can."""
+        """The reason why both horizontal components cannot act at
+        once; empty if they can.
+        """
         jumps = self.impact_law.floors_jump and self.superstructure is not None
         if jumps and not self.passes_smoothly:
             return (
-                f"the impact law {self.impact_law.kind} lets floors jump, which has no form for a"
-                " pass that loses a part of an impact; use the law flexible, with loss or factor"
+                f"the impact law {self.impact_law.kind} lets floors jump, which has no"
+                " form for a pass that loses a part of an impact; use the law flexible,"
+                " with loss or factor"
             )
         return ""
 
     @property
     def passes_smoothly(self) -> bool:
-        """True if nothing happens at upright: on compliant ends, and on those without flat part.
+        """True if nothing happens at upright: on compliant ends, and on
+        those without flat part.
 
-        Others have impacts there, or passes where both components act (Theory, section 13).
+        Others have impacts there, or passes where both components
+        act (Theory, section 13).
         """
         return self.bed is not None or self.bearing.is_spherical
 
     @cached_property
     def across(self) -> PodiumStructure:
         """The same podium under what vibrates in y."""
-        return self if self.superstructure_y is None else self._under(self.superstructure_y)
+        return (
+            self if self.superstructure_y is None else self._under(self.superstructure_y)
+        )
 
     @cached_property
     def upwards(self) -> PodiumStructure | None:
-        """The same podium under what vibrates upwards; None where floors ride on the cap beam."""
+        """The same podium under what vibrates upwards; None where
+        floors ride on the cap beam.
+        """
         above = None if self.superstructure is None else self.superstructure.upwards
         return None if above is None else self._under(above)
 
     def _under(self, above: Superstructure) -> PodiumStructure:
         """The same podium under another building; joints keep their stiffness."""
         joint = None if self.bed is None else self.bed.stiffness
-        contact = replace(self.contact, period_ratio=None, settlement=None, stiffness=joint)
+        contact = replace(
+            self.contact, period_ratio=None, settlement=None, stiffness=joint
+        )
         return replace(self, superstructure=above, superstructure_y=None, contact=contact)
 
     @property
     def ways(self) -> dict[str, PodiumStructure]:
-        """What vibrates in x and, where that differs, in y, by an empty name and ``_y``."""
-        return {"": self, "_y": self.across} if self.superstructure_y is not None else {"": self}
+        """What vibrates in x and, where that differs, in y, by
+        an empty name and ``_y``.
+        """
+        return (
+            {"": self, "_y": self.across}
+            if self.superstructure_y is not None
+            else {"": self}
+        )
 
     def left_out_of_columns(self, *, both: bool, axial: bool = True) -> tuple[str, ...]:
-        """Parts that forces of single columns leave out, and the keys that would give them.
+        """Parts that forces of single columns leave out, and the
+        keys that would give them.
 
         Parameters
         ----------
@@ -216,10 +251,16 @@ class PodiumStructure(Shown):
         passes = both and not self.passes_smoothly
         if not (axial or passes):
             return ()
-        if axial and building is not None and not (self.rows and (self.rows_y or not both)):
+        if (
+            axial
+            and building is not None
+            and not (self.rows and (self.rows_y or not both))
+        ):
             key = "podium.plan, with y" if both else "podium.plan"
             parts.append(f"the overturning moment of the building ({key})")
-        shocks = f"passes shorter than {1e3 * self.shock_time:g} ms" if passes else "impacts"
+        shocks = (
+            f"passes shorter than {1e3 * self.shock_time:g} ms" if passes else "impacts"
+        )
         if building is None:
             parts += [f"the shock of {shocks}"] * passes
         elif building.vertical_period is None and not self.bearing.is_spherical:
@@ -228,7 +269,9 @@ class PodiumStructure(Shown):
 
     @property
     def shock_time(self) -> float:
-        """Passes near upright that take less are shocks to what stands above [s] (13.19)."""
+        """Passes near upright that take less are shocks to what
+        stands above [s] (13.19).
+        """
         above = self.superstructure
         period = None if above is None else above.vertical_period
         return USUAL_SHOCK if period is None else period / 4.0
@@ -256,11 +299,15 @@ class PodiumStructure(Shown):
     @property
     def eta(self) -> float:
         """M_tot/m_b; 0 without a superstructure."""
-        return self.superstructure_mass / self.cap_beam_mass if self.superstructure else 0.0
+        return (
+            self.superstructure_mass / self.cap_beam_mass if self.superstructure else 0.0
+        )
 
     @property
     def eta_riding(self) -> float:
-        """eta of floors that rise with the cap beam: of all, or of none on vertical springs."""
+        """eta of floors that rise with the cap beam: of all, or of
+        none on vertical springs.
+        """
         above = self.superstructure
         return 0.0 if above is None or above.vertical_period is not None else self.eta
 
@@ -307,15 +354,17 @@ class PodiumStructure(Shown):
 
     @property
     def static_base_shear(self) -> float:
-        """V_st = M_tot g tan(alpha), the base shear at quasi-static uplift [N] (Theory (5.4))."""
+        """V_st = M_tot g tan(alpha), the base shear at quasi-static
+        uplift [N] (Theory (5.4)).
+        """
         return self.superstructure_mass * self.uplift_acceleration
 
     @property
     def initial_stiffness(self) -> float:
         """dF/du_b at u_b = 0+ [N/m], exact.
 
-        F = W B/C and du_b = 2 R C dx, so it is W (B'C - B^2)/(2 R C^3) at x = 0; to first order in
-        alpha W (2 rho - 1)/(2 R) (Theory (5.2)).
+        F = W B/C and du_b = 2 R C dx, so it is W (B'C - B^2)/(2 R C^3) at x = 0; to first
+        order in alpha W (2 rho - 1)/(2 R) (Theory (5.2)).
         """
         phase = self.bearing.rocking if self.bearing.is_flat else self.bearing.rolling
         B = geometry.contact_arm(phase, 1.0, 0.0)
@@ -325,17 +374,20 @@ class PodiumStructure(Shown):
 
     @property
     def turning_inertia(self) -> float:
-        """K(0), limit of J/theta^2 over N m_c R^2: inertia against turns (Theory (13.12))."""
+        """K(0), limit of J/theta^2 over N m_c R^2: inertia
+        against turns (Theory (13.12)).
+        """
         cosine = math.cos(self.bearing.alpha)
         return self.bearing.inertia_ratio - 1.0 + (1.0 + 4.0 * self.gamma) * cosine**2
 
     @property
     def pass_turn(self) -> float:
-        """Delta phi = pi sqrt(A(0)/K(0)): turn in a pass near upright [rad] (Theory (13.13)).
+        """Delta phi = pi sqrt(A(0)/K(0)): turn in a pass near
+        upright [rad] (Theory (13.13)).
 
-        A(0) - K(0) = (1 + 4 gamma (1 + eta)) sin^2(alpha): falling moves masses up and down, going
-        round does not, so the turn exceeds pi however near the pass is. Floors on vertical springs
-        have no part in it.
+        A(0) - K(0) = (1 + 4 gamma (1 + eta)) sin^2(alpha): falling moves masses up and
+        down, going round does not, so the turn exceeds pi however near the pass is.
+        Floors on vertical springs have no part in it.
         """
         sine = math.sin(self.bearing.alpha)
         K = self.turning_inertia
@@ -344,10 +396,11 @@ class PodiumStructure(Shown):
 
     @property
     def rolling_period(self) -> float | None:
-        """T of small rolling under a rigid building [s]; None where a flat part makes it jump.
+        """T of small rolling under a rigid building [s]; None where a
+        flat part makes it jump.
 
-        2 pi sqrt(M/K) with M = N m_c Io/4 + m_b + M_tot and K = W (2 rho - 1)/(2 H), exact as the
-        swing vanishes (Theory (6.4)).
+        2 pi sqrt(M/K) with M = N m_c Io/4 + m_b + M_tot and K = W (2 rho - 1)/(2 H),
+        exact as the swing vanishes (Theory (6.4)).
         """
         if not self.bearing.is_spherical:
             return None
@@ -363,7 +416,9 @@ class PodiumStructure(Shown):
         return math.sqrt(self.gravity / self.bearing.semi_diagonal * ratio)
 
     def path(self, rotation: Array) -> tuple[Array, ...]:
-        """F = W B/C [N] (on a bed the weight's arm for B), u_b and v_b [m] at |theta| [rad]."""
+        """F = W B/C [N] (on a bed the weight's arm for B), u_b and
+        v_b [m] at |theta| [rad].
+        """
         (arm, C, u, v) = self._along(rotation)
         diameter = 2.0 * self.bearing.semi_diagonal
         return self.weight * arm / C, diameter * u, diameter * v
@@ -378,23 +433,31 @@ class PodiumStructure(Shown):
         return on_bed.arm, on_bed.height, on_bed.displacement, on_bed.lift
 
     def weight_arm(self, rotation: Array) -> Array:
-        """Arm of the weight over R at |theta| [rad]: the restoring moment is 2 R W times it."""
+        """Arm of the weight over R at |theta| [rad]: the restoring
+        moment is 2 R W times it.
+        """
         return self._along(rotation)[0]
 
     def lever_arm(self, rotation: Array) -> Array:
-        """2 R C = |du_b/dtheta| at |theta| [rad]: the arm of a force at the cap beam [m]."""
+        """2 R C = |du_b/dtheta| at |theta| [rad]: the arm of a
+        force at the cap beam [m].
+        """
         return 2.0 * self.bearing.semi_diagonal * self._along(rotation)[1]
 
 
 class AtRest(NamedTuple):
-    """Horizontal forces of a device on the cap beam at rest, at the rotations asked for [N]."""
+    """Horizontal forces of a device on the cap beam at rest, at the
+    rotations asked for [N].
+    """
 
     restoring: Array | float = 0.0  # Needed in addition to hold a rotation > 0
     held: Array | float = 0.0  # Friction, which holds as much either way
 
 
 class Linear(NamedTuple):
-    """Terms that a device adds to small motions 2 R theta on one side (Theory, sections 6, 11)."""
+    """Terms that a device adds to small motions 2 R theta on one side
+    (Theory, sections 6, 11).
+    """
 
     stiffness: float = 0.0  # [N/m]
     damping: float = 0.0  # [N s/m]
@@ -402,7 +465,9 @@ class Linear(NamedTuple):
 
 
 class Consequence(NamedTuple):
-    """A number that follows from one device: its name in JSON, and the words of a table."""
+    """A number that follows from one device: its name in JSON,
+    and the words of a table.
+    """
 
     name: str  # In JSON
     label: str  # In tables
@@ -412,10 +477,11 @@ class Consequence(NamedTuple):
 
 @dataclass(frozen=True)
 class Device(ABC):
-    """The law of a device between ground and cap beam, which it pushes unless a law says otherwise.
+    """The law of a device between ground and cap beam, which it pushes
+    unless a law says otherwise.
 
-    All that follows from a law is asked here; what resists motion alone need not answer most of it.
-    How it is drawn is told in `report.figures.bearing`.
+    All that follows from a law is asked here; what resists motion alone need not answer
+    most of it. How it is drawn is told in `report.figures.bearing`.
     """
 
     in_each_column: ClassVar[bool] = False
@@ -429,7 +495,9 @@ class Device(ABC):
     @property
     @abstractmethod
     def results(self) -> tuple[str, ...]:
-        """Results of a history that exist with it: its largest force by a name, or a share lost."""
+        """Results of a history that exist with it: its largest force by
+        a name, or a share lost.
+        """
 
     @abstractmethod
     def linear(self, structure: PodiumStructure, state: UpliftedState) -> Linear:
@@ -439,8 +507,12 @@ class Device(ABC):
         """Numbers of its law, as the kernels read them."""
         return astuple(self)
 
-    def at_rest(self, structure: PodiumStructure, rotation: Array, farthest: float) -> AtRest:
-        """Forces at rest at |theta|, after it was drawn to the farthest rotation [rad]."""
+    def at_rest(
+        self, structure: PodiumStructure, rotation: Array, farthest: float
+    ) -> AtRest:
+        """Forces at rest at |theta|, after it was drawn to the
+        farthest rotation [rad].
+        """
         return AtRest()
 
     def stiffness_after_uplift(self, structure: PodiumStructure) -> float:
@@ -448,7 +520,9 @@ class Device(ABC):
         return 0.0
 
     def bounds(self, structure: PodiumStructure) -> tuple[float, float]:
-        """Stiffness [N/m] and damping [N s/m] that it adds at most against u_b, for time steps."""
+        """Stiffness [N/m] and damping [N s/m] that it adds at most
+        against u_b, for time steps.
+        """
         return 0.0, 0.0
 
     def consequences(self, structure: PodiumStructure) -> Iterator[Consequence]:
@@ -460,11 +534,15 @@ class Device(ABC):
         return structure.path(rotation)[1]
 
     def remaining_prestress(self, permanent: float) -> float | None:
-        """Prestress of one, upright, after a permanent elongation [m]; None without [N]."""
+        """Prestress of one, upright, after a permanent
+        elongation [m]; None without [N].
+        """
         return None
 
     def reached_at(self, structure: PodiumStructure, length: float) -> float | None:
-        """The |theta| at which its stroke reaches a length; None beyond 2 theta_cr [rad]."""
+        """The |theta| at which its stroke reaches a length; None
+        beyond 2 theta_cr [rad].
+        """
         from scipy.optimize import brentq
 
         def excess(x: float) -> float:

@@ -1,4 +1,6 @@
-"""Statics with devices: what holds a tilt, and from where the podium comes back (Theory, 11)."""
+"""Statics with devices: what holds a tilt, and from where the podium
+comes back (Theory, 11).
+"""
 
 from __future__ import annotations
 
@@ -13,7 +15,8 @@ PARTS = (0.25, 0.5, 0.75)
 """Parts of the critical rotation from which the structure may come back."""
 
 NEARLY = 1.0 + 1e-9
-"""Forces that differ by less are equal but for rounding: what yields together, or at uplift."""
+"""Forces that differ by less are equal but for rounding: what
+yields together, or at uplift."""
 
 POINTS = 400
 """Rotations that are looked at; the curve has no more than a few bends."""
@@ -31,12 +34,15 @@ class Return(NamedTuple):
 
 
 class StoreyStrength(NamedTuple):
-    """Strength of a storey beside its shear where columns lift under slow ground motion."""
+    """Strength of a storey beside its shear where columns lift
+    under slow ground motion.
+    """
 
     strength: float  # F_i [N]
     strength_ratio: float | None  # F_i/V_st; None on spherical ends
     shear_at_uplift: float
-    """Mass above times the ground acceleration that uplifts rigid ends, with devices [N]."""
+    """Mass above times the ground acceleration that uplifts
+    rigid ends, with devices [N]."""
     uplift_first: bool  # True if columns lift before it yields
     yield_drift: float  # F_i/k_i [m]
 
@@ -52,13 +58,18 @@ def storey_strengths(structure: PodiumStructure) -> list[StoreyStrength]:
     )
     columns = building.strengths, at_uplift, building.stiffnesses
     return [
-        StoreyStrength(F, F / static if static else None, shear, shear <= NEARLY * F, F / k)
+        StoreyStrength(
+            F, F / static if static else None, shear, shear <= NEARLY * F, F / k
+        )
         for F, shear, k in zip(*(column.tolist() for column in columns), strict=True)
     ]
 
 
-def restoring_force(structure: PodiumStructure, rotation: Array, farthest: float = 0.0) -> Array:
-    """Horizontal force at the cap beam that holds rotations > 0 at rest without friction [N].
+def restoring_force(
+    structure: PodiumStructure, rotation: Array, farthest: float = 0.0
+) -> Array:
+    """Horizontal force at the cap beam that holds rotations > 0 at
+    rest without friction [N].
 
     F = W B/C with what stops and tendons add.
     """
@@ -70,7 +81,8 @@ def restoring_force(structure: PodiumStructure, rotation: Array, farthest: float
 
 
 def secant_period(structure: PodiumStructure, rotation: float) -> float:
-    """Period of the rigid building on bearings whose secant stiffness is that at a rotation [s].
+    """Period of the rigid building on bearings whose secant stiffness
+    is that at a rotation [s].
 
     T = 2 pi sqrt(M u_b/F), with M the mass that F = W B/C lifts, W/g, without friction.
     """
@@ -80,7 +92,9 @@ def secant_period(structure: PodiumStructure, rotation: float) -> float:
 
 
 def friction_force(structure: PodiumStructure, rotation: Array) -> Array:
-    """Horizontal force at the cap beam that friction of all kinds can hold at rest [N]."""
+    """Horizontal force at the cap beam that friction of all
+    kinds can hold at rest [N].
+    """
     x = np.asarray(rotation, dtype=float)
     held = np.zeros_like(x)
     for device in structure.devices:
@@ -91,16 +105,22 @@ def friction_force(structure: PodiumStructure, rotation: Array) -> Array:
 def uplift_force(structure: PodiumStructure) -> float:
     """Horizontal force at the cap beam that uplifts it against weight and devices [N]."""
     upright = np.zeros(1)
-    return float(restoring_force(structure, upright)[0] + friction_force(structure, upright)[0])
+    return float(
+        restoring_force(structure, upright)[0] + friction_force(structure, upright)[0]
+    )
 
 
 def uplift_acceleration(structure: PodiumStructure) -> float:
-    """Ground acceleration that uplifts the structure with its devices quasi-statically [m/s2]."""
+    """Ground acceleration that uplifts the structure with its devices
+    quasi-statically [m/s2].
+    """
     return uplift_force(structure) / structure.restoring_mass
 
 
 def largest_recentring_friction(structure: PodiumStructure, rotation: float) -> float:
-    """The largest friction from which the structure still comes back from a rotation [N]."""
+    """The largest friction from which the structure still comes
+    back from a rotation [N].
+    """
     x = np.linspace(rotation / POINTS, rotation, POINTS)
     return float(np.min(restoring_force(structure, x, rotation)))
 
@@ -108,7 +128,9 @@ def largest_recentring_friction(structure: PodiumStructure, rotation: float) -> 
 def recentres(structure: PodiumStructure, rotation: float) -> bool:
     """True if the structure comes back to full contact from rest, slowly."""
     x = np.linspace(rotation / POINTS, rotation, POINTS)
-    return bool(np.all(restoring_force(structure, x, rotation) > friction_force(structure, x)))
+    return bool(
+        np.all(restoring_force(structure, x, rotation) > friction_force(structure, x))
+    )
 
 
 def returns(structure: PodiumStructure) -> list[Return]:
@@ -123,7 +145,8 @@ def returns(structure: PodiumStructure) -> list[Return]:
             recentres(structure, x),
         )
         for x in rotations
-        if (friction := float(np.max(friction_force(structure, np.linspace(0.0, x, 50))))) > 0.0
+        if (friction := float(np.max(friction_force(structure, np.linspace(0.0, x, 50)))))
+        > 0.0
     ]
 
 

@@ -1,4 +1,6 @@
-"""The building above the cap beam, one horizontal freedom a floor, and its classical damping."""
+"""The building above the cap beam, one horizontal freedom a floor,
+and its classical damping.
+"""
 
 from __future__ import annotations
 
@@ -30,8 +32,9 @@ class RayleighDamping:
     ratio
         Critical damping ratio in both modes.
     modes
-        The two modes, counted from 1. A building of one storey, or a mode named twice, takes
-        stiffness-proportional damping (a0 = 0): one mode cannot fix two coefficients.
+        The two modes, counted from 1. A building of one storey, or a mode
+        named twice, takes stiffness-proportional damping (a0 = 0): one mode
+        cannot fix two coefficients.
 
     Examples
     --------
@@ -51,7 +54,9 @@ class RayleighDamping:
 
     def coefficients(self, frequencies: Array) -> tuple[float, float]:
         """a0 [1/s] and a1 [s], from circular frequencies (n,) [rad/s]."""
-        first, second = (float(frequencies[min(i, len(frequencies)) - 1]) for i in self.modes)
+        first, second = (
+            float(frequencies[min(i, len(frequencies)) - 1]) for i in self.modes
+        )
         if first == second:
             return 0.0, 2.0 * self.ratio / first
         a1 = 2.0 * self.ratio / (first + second)
@@ -87,7 +92,9 @@ def _require_ratio(damping: RayleighDamping | ModalDamping) -> None:
 Profile = Literal["sine", "uniform", "linear", "flexural"]
 
 
-def profile_stiffnesses(masses: ArrayLike, period: float, profile: Profile = "sine") -> Array:
+def profile_stiffnesses(
+    masses: ArrayLike, period: float, profile: Profile = "sine"
+) -> Array:
     """Storey stiffnesses that give a fixed-base first period and mode.
 
     Parameters
@@ -104,10 +111,8 @@ def profile_stiffnesses(masses: ArrayLike, period: float, profile: Profile = "si
     -------
     (n,) stiffnesses from the bottom [N/m].
 
-    Notes
-    -----
-    k_i (Phi_i - Phi_{i-1}) = w1^2 sum_{j>=i} m_j Phi_j: the storey shear of free vibration in the
-    mode Phi (Theory (7.1)).
+    Notes ----- k_i (Phi_i - Phi_{i-1}) = w1^2 sum_{j>=i} m_j Phi_j: the storey shear of
+    free vibration in the mode Phi (Theory (7.1)).
 
     Examples
     --------
@@ -147,12 +152,15 @@ def stiffness_matrix(stiffnesses: Array) -> Array:
 
 
 def shear_modes(masses: Array, stiffnesses: Array) -> tuple[Array, Array]:
-    """Frequencies (n,) [rad/s], ascending, and mass-normalised shapes (n, n), one a column.
+    """Frequencies (n,) [rad/s], ascending, and mass-normalised
+    shapes (n, n), one a column.
 
     The sign of a shape is fixed by a positive roof.
     """
     root = 1.0 / np.sqrt(masses)
-    squares, vectors = np.linalg.eigh(root[:, None] * stiffness_matrix(stiffnesses) * root)
+    squares, vectors = np.linalg.eigh(
+        root[:, None] * stiffness_matrix(stiffnesses) * root
+    )
     shapes = root[:, None] * vectors
     return np.sqrt(squares), shapes * np.where(shapes[-1] < 0.0, -1.0, 1.0)
 
@@ -172,12 +180,13 @@ class Superstructure(Shown):
     storey_heights
         (n,) [m]; only for drift ratios, pictures and the overturning moment.
     vertical_period
-        First period of the vertical vibration on the cap beam [s], in which floors stand on springs
-        and columns; None for floors that ride rigidly on the beam.
+        First period of the vertical vibration on the cap beam [s], in which floors stand
+        on springs and columns; None for floors that ride rigidly on the beam.
     vertical_damping
         Critical damping ratio of each vertical mode.
     strengths
-        (n,) shears at which storeys yield, from the bottom [N]; None of an elastic building.
+        (n,) shears at which storeys yield, from the bottom [N];
+        None of an elastic building.
     hardening
         Stiffness of a storey that yields over its elastic one, kinematic, 0 <= h < 1.
 
@@ -206,12 +215,15 @@ class Superstructure(Shown):
                 with suppress(TypeError, ValueError, OverflowError):
                     array = np.array(value, dtype=float)
                 if array.ndim != 1 or not all(map(is_size, array.tolist())):
-                    raise ValueError(f"{name} must be a list of finite sizes > 0, from the bottom")
+                    raise ValueError(
+                        f"{name} must be a list of finite sizes > 0, from the bottom"
+                    )
                 object.__setattr__(self, name, frozen(array))
                 lengths.add(len(array))
         if lengths != {self.storeys} or not self.storeys:
             raise ValueError(
-                f"masses, stiffnesses, heights and strengths must have one length: {lengths}"
+                "masses, stiffnesses, heights and strengths must have one length:"
+                f" {lengths}"
             )
         if not 0.0 <= self.hardening < 1.0:
             raise ValueError(f"hardening = {self.hardening:g} must be >= 0 and < 1")
@@ -220,7 +232,9 @@ class Superstructure(Shown):
         if not 0.0 <= self.vertical_damping < 1.0:
             raise ValueError("vertical_damping must be >= 0 and < 1")
         if self.storeys > MOST_STOREYS:
-            raise ValueError(f"{self.storeys} storeys: there is room for {MOST_STOREYS} at most")
+            raise ValueError(
+                f"{self.storeys} storeys: there is room for {MOST_STOREYS} at most"
+            )
 
     @property
     def storeys(self) -> int:
@@ -233,7 +247,9 @@ class Superstructure(Shown):
         return float(self.masses.sum())
 
     def drift_ratios(self, drifts: Array) -> Array | None:
-        """Storey drifts (n,) [m] over the storey heights; None where no heights are given."""
+        """Storey drifts (n,) [m] over the storey heights; None
+        where no heights are given.
+        """
         return None if self.storey_heights is None else drifts / self.storey_heights
 
     @cached_property
@@ -282,7 +298,9 @@ class Superstructure(Shown):
 
     @cached_property
     def upwards(self) -> Superstructure | None:
-        """What vibrates upwards: the floors on equal springs; None where they ride on the beam."""
+        """What vibrates upwards: the floors on equal springs; None
+        where they ride on the beam.
+        """
         if self.vertical_period is None:
             return None
         stiffnesses = profile_stiffnesses(self.masses, self.vertical_period, "uniform")

@@ -1,12 +1,13 @@
 """The compiled kernel on records with named fields; no strings, no exceptions, no files.
 
-`state` names every number once. `laws` are the physics, each law once, of plain named numbers;
-`lane` asks them with the numbers of a lane, and `energy`, `devices`, `friction`, `storeys`, `bed`
-are what else it has. `step` takes a Runge-Kutta step of all lanes together (`tableau`), `standing`
-the exact one, `events` finds where a step is to end, `upright` has uplift, impact and pass,
-`demands` what is largest, `rest` when nothing more can come, `samples` and `ground` what is kept.
-`follow` strings them together, in `groups` of those that stand and that move. `kernels` has machine
-code of all, `own_laws` of those of other packages, and `integrate` runs it.
+`state` names every number once. `laws` are the physics, each law once, of plain named
+numbers; `lane` asks them with the numbers of a lane, and `energy`, `devices`, `friction`,
+`storeys`, `bed` are what else it has. `step` takes a Runge-Kutta step of all lanes
+together (`tableau`), `standing` the exact one, `events` finds where a step is to end,
+`upright` has uplift, impact and pass, `demands` what is largest, `rest` when nothing more
+can come, `samples` and `ground` what is kept. `follow` strings them together, in `groups`
+of those that stand and that move. `kernels` has machine code of all, `own_laws` of those
+of other packages, and `integrate` runs it.
 
 What the kernel's functions hand to each other everywhere stands here once:
 
@@ -19,7 +20,8 @@ l
 r, i, axis
     A mode, a storey or floor or device, a direction: 0 is x, 1 is y.
 system, systems
-    The record of a lane's structure (`state.SYSTEM`), and one for each direction, or of all.
+    The record of a lane's structure (`state.SYSTEM`), and one for
+    each direction, or of all.
 acceleration
     (samples,) records of the ground end to end [m/s2].
 output, log

@@ -1,11 +1,14 @@
-"""Ends that give way: full contact with a stiffness, and gradual uplift (Theory, section 12).
+"""Ends that give way: full contact with a stiffness, and gradual
+uplift (Theory, section 12).
 
-In full contact, BEDDED, the tilt is a signed number within -phi_u and phi_u, or any vector within,
-with B = 0 and C = C_u: constants of a phase like others, with `bed_k` and `bed_c`. Beyond it a
-plane end lifts gradually, by `sink` and `root` of what `laws` takes from both arms.
+In full contact, BEDDED, the tilt is a signed number within -phi_u and phi_u, or any
+vector within, with B = 0 and C = C_u: constants of a phase like others, with `bed_k`
+and `bed_c`. Beyond it a plane end lifts gradually, by `sink` and `root` of what
+`laws` takes from both arms.
 
-phi_u is that of the weight. Where the ground accelerates upwards, lifted ends may turn back what
-the bed pushes out: then the storey is held there, STUCK with `bed_back`, until either lets it go.
+phi_u is that of the weight. Where the ground accelerates upwards, lifted ends may turn
+back what the bed pushes out: then the storey is held there, STUCK with `bed_back`,
+until either lets it go.
 """
 
 from __future__ import annotations
@@ -50,7 +53,9 @@ def first_phase(system: Record) -> int:
 
 @compiled
 def enter_on_bed(s: Record, l: int, system: Record, phase: int) -> None:
-    """What a bed changes in a phase of motion that is entered: constants, range, steps."""
+    """What a bed changes in a phase of motion that is entered:
+    constants, range, steps.
+    """
     s.bed_k[l] = 0.0
     s.bed_c[l] = 0.0
     s.sink[l] = 0.0

@@ -1,7 +1,8 @@
-"""Marks of the functions that become machine code, and what they may call beside Python's own.
+"""Marks of the functions that become machine code, and what they may
+call beside Python's own.
 
-They are written in the compiler's language (`rpscli/compiler/LANGUAGE.md`) and run as Python with
-the same bits.
+They are written in the compiler's language (`rpscli/compiler/LANGUAGE.md`) and run as
+Python with the same bits.
 """
 
 from __future__ import annotations
@@ -23,10 +24,11 @@ def compiled(function: Function) -> Function:
 
 
 LAW_NUMBERS = 9
-"""Numbers that a law of another package is called with; those behind what it takes are left off."""
+"""Numbers that a law of another package is called with; those behind
+what it takes are left off."""
 
 Numbers: TypeAlias = tuple[float, float, float, float, float, float, float, float, float]
 
 own_law = call_at
-"""Call a law of another package. Addresses differ from process to process: they stand in records,
-and machine code on disk knows none."""
+"""Call a law of another package. Addresses differ from process to process: they stand in
+records, and machine code on disk knows none."""

@@ -1,7 +1,7 @@
 """What a step demands of contacts, devices and floors, and how far it tilts.
 
-The forces of contacts are compared with the largest so far at the ends of all steps, and looked at
-within where they come near.
+The forces of contacts are compared with the largest so far at the ends of all steps, and
+looked at within where they come near.
 """
 
 from __future__ import annotations
@@ -52,9 +52,9 @@ UNSEEN = 1e-6
 """Of the weight: smaller changes of the floors' force on springs are ignored."""
 
 NEARLY = 0.999
-"""Steps that may pass this part of the largest force so far, with what the base shear may be within
-them above their ends, are looked at within. As long as columns rock |F|/N hardly leaves
-tan(alpha)."""
+"""Steps that may pass this part of the largest force so far, with what the base shear may
+be within them above their ends, are looked at within. As long as columns rock |F|/N
+hardly leaves tan(alpha)."""
 
 
 # Contacts.
@@ -74,13 +74,16 @@ def measures_of(
     ground: tuple[float, float],
     up: tuple[float, float],
 ) -> Measures:
-    """Measures of contacts; where nothing stands on the columns their upper ends demand nothing.
+    """Measures of contacts; where nothing stands on the columns their
+    upper ends demand nothing.
 
-    In a shock `stays` is 0, else 1: forces are those without it (13.19), and what friction they ask
-    for says nothing.
+    In a shock `stays` is 0, else 1: forces are those without it (13.19), and what
+    friction they ask for says nothing.
     """
     lift *= stays
-    top, bottom, N_top, N_bottom = contact_forces(s, l, stays * beam[0], lift, V[0], ground[0], up)
+    top, bottom, N_top, N_bottom = contact_forces(
+        s, l, stays * beam[0], lift, V[0], ground[0], up
+    )
     top = abs(top)
     bottom = abs(bottom)
     if ways_of(s) == 2:
@@ -106,7 +109,8 @@ def measures_of(
 
 @compiled
 def observe_contacts(s: Record) -> None:
-    """Say in `contacts_rise` where the forces of contacts at the ends come near the largest.
+    """Say in `contacts_rise` where the forces of contacts at the
+    ends come near the largest.
 
     In full contact without what friction dampers may take: the more.
     """
@@ -137,13 +141,22 @@ def observe_contacts(s: Record) -> None:
         pressed = (g_up, s.new_V[ways_of(s), l])
         V_up = bulge(s, l, ways_of(s), ways_of(s) + 1)
         found = measures_of(
-            s, l, stays, (beam, beam_y), s.new_lift[l], (V, V_y), (ground, ground_y), pressed
+            s,
+            l,
+            stays,
+            (beam, beam_y),
+            s.new_lift[l],
+            (V, V_y),
+            (ground, ground_y),
+            pressed,
         )
         more = bulge(s, l, 0, ways_of(s))
         heavier = pushed_by(s, l, s.diameter[l]) / s.one[l] * s.tan_a[l]
         springs = s.axes > ways_of(s)
         heavier *= more / s.gravity[l] * s.moves[l]
-        heavier += V_up / ((s.cap_beam_mass[l] + s.floors_mass[l] + 1e-300) * s.gravity[l])
+        heavier += V_up / (
+            (s.cap_beam_mass[l] + s.floors_mass[l] + 1e-300) * s.gravity[l]
+        )
         rises = found[4] + more > NEARLY * s.shear_top[l]
         rises |= found[5] + more > NEARLY * s.shear_bottom[l]
         more /= s.weigh[l] * s.diameter[l] * s.gravity[l] * s.columns_mass[l] * 0.5
@@ -162,12 +175,16 @@ def observe_contacts(s: Record) -> None:
     if ways_of(s) == 2:
         for l in range(lanes_of(s)):
             lever = torsion(s, l)
-            s.torsion_lever[l] = max(s.torsion_lever[l], lever if s.accepted[l] > 0.0 else 0.0)
+            s.torsion_lever[l] = max(
+                s.torsion_lever[l], lever if s.accepted[l] > 0.0 else 0.0
+            )
 
 
 @inlined
 def torsion(s: Record, l: int) -> float:
-    """Torsion that prevents roll-out at the end of the step, over the weight: a length [m]."""
+    """Torsion that prevents roll-out at the end of the step, over
+    the weight: a length [m].
+    """
     tilt = new_tilt_of(s, l)
     rate = new_rate_of(s, l)
     x, n, t, p, q = polar(s, l, tilt, rate)
@@ -204,7 +221,10 @@ def force_within(s: Record, l: int, axis: int, t: float) -> float:
     r = 1.0 - t
     h = s.h[l]
     if s.axes == ways_of(s):
-        V = r * r * (1.0 + 2.0 * t) * s.V[axis, l] + t * t * (3.0 - 2.0 * t) * s.new_V[axis, l]
+        V = (
+            r * r * (1.0 + 2.0 * t) * s.V[axis, l]
+            + t * t * (3.0 - 2.0 * t) * s.new_V[axis, l]
+        )
         return V + h * t * r * (r * s.dV[axis, l] - t * s.new_dV[axis, l])  # type: ignore[no-any-return]
     V = 0.0
     slip = 0.0
@@ -223,10 +243,11 @@ def force_within(s: Record, l: int, axis: int, t: float) -> float:
 
 @compiled
 def measures_within(s: Record, l: int, t: float) -> tuple[float, Measures]:
-    """Measures of contacts a fraction t into the step; first 0 if they are those of a shock.
+    """Measures of contacts a fraction t into the step; first 0 if
+    they are those of a shock.
 
-    The tilt is on the quintic through both ends, the base shear on the cubic; what accelerates
-    follows by the laws.
+    The tilt is on the quintic through both ends, the base shear on the cubic; what
+    accelerates follows by the laws.
     """
     tilt, rate = tilt_within(s, l, t)
     now = polar(s, l, tilt, rate)
@@ -251,7 +272,9 @@ def measures_within(s: Record, l: int, t: float) -> tuple[float, Measures]:
     stays = without_shock(s, l, now.x, rate)
     beam = (found.beam_x, found.beam_y)
     ground = found.a_x, found.a_y
-    return stays, measures_of(s, l, stays, beam, found.lift, V, ground, (found.g_up, V_up))
+    return stays, measures_of(
+        s, l, stays, beam, found.lift, V, ground, (found.g_up, V_up)
+    )
 
 
 @compiled
@@ -352,7 +375,9 @@ def observe_start(s: Record, l: int) -> None:
 
 @inlined
 def observe(s: Record, systems: Record, log: Record, stands: bool) -> None:
-    """Raise all demands by those of accepted steps; those of the tilt unless all lanes stand."""
+    """Raise all demands by those of accepted steps; those of the
+    tilt unless all lanes stand.
+    """
     ways = ways_of(s)
     observe_floors(s)
     observe_contacts(s)
@@ -380,14 +405,20 @@ def observe_devices(s: Record) -> None:
         speed = s.speed[l]
         end = s.new_speed[l]
         least = NEARLY * s.device_velocity[0, l]
-        path = cubic(s.h[l], speed * speed, s.square_rate[l], end * end, s.new_square_rate[l])
+        path = cubic(
+            s.h[l], speed * speed, s.square_rate[l], end * end, s.new_square_rate[l]
+        )
         rises = max(upper_hull(path), path[0]) > least * least
         # the force that does what rolling resistance does is larger the lower the path is
         low = s.new_height[l]
-        rises |= (s.branched[l] > 0.0) | ((s.friction_moment[l] > 0.0) & (low < s.least_height[l]))
+        rises |= (s.branched[l] > 0.0) | (
+            (s.friction_moment[l] > 0.0) & (low < s.least_height[l])
+        )
         counts = (s.accepted[l] > 0.0) & (s.moves[l] > 0.0) & (s.devices[l] > 0)
         s.devices_rise[l] = 1.0 if counts & rises else 0.0
-        s.least_height[l] = low if counts & (low < s.least_height[l]) else s.least_height[l]
+        s.least_height[l] = (
+            low if counts & (low < s.least_height[l]) else s.least_height[l]
+        )
     for i in range(s.equipped):
         for l in range(lanes):
             counts = (s.accepted[l] > 0.0) & (s.moves[l] > 0.0) & (s.devices[l] > i)

@@ -32,14 +32,16 @@ def path_at(s: Record, l: int, x: float) -> float:
 
 
 Beam: TypeAlias = tuple[float, float, float, float, float, float]
-"""Way of the cap beam in each of a state's axes [m], in x, perhaps y, and upwards, and from
-`RATES` on its rates [m/s]. The way upwards is that of rigid ends, 0 on beds."""
+"""Way of the cap beam in each of a state's axes [m], in x, perhaps y, and upwards, and
+from `RATES` on its rates [m/s]. The way upwards is that of rigid ends, 0 on beds."""
 
 RATES = 3
 
 
 @compiled
-def beam_at(s: Record, l: int, tilt: tuple[float, float], rate: tuple[float, float]) -> Beam:
+def beam_at(
+    s: Record, l: int, tilt: tuple[float, float], rate: tuple[float, float]
+) -> Beam:
     """Way and velocity of the cap beam; zero in full contact on rigid ends."""
     if s.phase[l] == FULL_CONTACT:
         return 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
@@ -89,7 +91,9 @@ def lift_at(s: Record, l: int, x: float) -> float:
 
 @compiled
 def risen(s: Record, l: int, system: Record, x: float, share: float) -> float:
-    """Rise of a compliant end beyond phi_u [m]: of the weight (`sink`), the beam (`root`)."""
+    """Rise of a compliant end beyond phi_u [m]: of the weight
+    (`sink`), the beam (`root`).
+    """
     u = system.bed_uplift
     first = system.rolling if system.beta > 0.0 else system.rocking
     start = s.diameter[l] * (first[4] + first[0] * math.sin(u) - first[1] * math.cos(u))
@@ -149,7 +153,9 @@ def relative_momentum(s: Record, l: int, axis: int) -> float:
 
 @compiled
 def look_at(s: Record, l: int) -> None:
-    """Write the modes at the start of the step to `seen_modes`, a row of q and one of q' a way."""
+    """Write the modes at the start of the step to `seen_modes`, a row
+    of q and one of q' a way.
+    """
     for axis in range(s.axes):
         for i in range(s.n):
             r = axis * s.n + i
@@ -159,9 +165,15 @@ def look_at(s: Record, l: int) -> None:
 
 @compiled
 def energy_at(
-    s: Record, l: int, system: Record, tilt: tuple[float, float], rate: tuple[float, float]
+    s: Record,
+    l: int,
+    system: Record,
+    tilt: tuple[float, float],
+    rate: tuple[float, float],
 ) -> float:
-    """Kinetic, potential and elastic energy without devices [J], of modes as `seen_modes`."""
+    """Kinetic, potential and elastic energy without devices [J],
+    of modes as `seen_modes`.
+    """
     beam = beam_at(s, l, tilt, rate)
     energy = 0.0
     for axis in range(s.axes):
@@ -171,12 +183,16 @@ def energy_at(
             r = axis * s.n + i
             q = s.seen_modes[2 * axis, i]
             dq = s.seen_modes[2 * axis + 1, i]
-            energy += 0.5 * (dq * dq + s.omega2[r, l] * (q * q)) + u * (s.Gamma[r, l] * dq)
+            energy += 0.5 * (dq * dq + s.omega2[r, l] * (q * q)) + u * (
+                s.Gamma[r, l] * dq
+            )
     if s.phase[l] == FULL_CONTACT:
         return float(energy)
     x, _, _, p, q = polar(s, l, tilt, rate)
     return float(
-        energy + tilting_energy(s, l, place_of(s, l, x), p, q) + potential(s, l, system, x)
+        energy
+        + tilting_energy(s, l, place_of(s, l, x), p, q)
+        + potential(s, l, system, x)
     )
 
 

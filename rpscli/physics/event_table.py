@@ -1,7 +1,7 @@
 """The events, each with what is watched for it, how far off it is, and what it does.
 
-A kind of event is a row here. What it does logs what happened (`state`: kinds of the log), since
-one event may be an impact or a pass, an uplift or a slide.
+A kind of event is a row here. What it does logs what happened (`state`: kinds of the
+log), since one event may be an impact or a pass, an uplift or a slide.
 """
 
 from __future__ import annotations
@@ -17,7 +17,9 @@ class Event(NamedTuple):
     """A kind of event on which steps end."""
 
     kind: int
-    first: Callable[..., Any]  # fraction of a step at which it first happens, and which of it
+    first: Callable[
+        ..., Any
+    ]  # fraction of a step at which it first happens, and which of it
     missing: Callable[..., Any]  # what the end of a step is still above it, and the rate
     happens: Callable[..., Any]
 

@@ -1,9 +1,10 @@
 """Where a step is to end: found between its ends, then taken again to the root.
 
-What is watched is smooth and leaves a range downwards: the tilt its phase's, the margin of a storey
-at rest its zero, a device's value its branch. Hulls of the polynomials through both ends tell, for
-all lanes together, which steps surely hold no event; only the others are looked at alone. A step
-that is to end on an event is taken again, its length corrected by Newton's method.
+What is watched is smooth and leaves a range downwards: the tilt its phase's, the margin
+of a storey at rest its zero, a device's value its branch. Hulls of the polynomials
+through both ends tell, for all lanes together, which steps surely hold no event; only the
+others are looked at alone. A step that is to end on an event is taken again, its length
+corrected by Newton's method.
 """
 
 from __future__ import annotations
@@ -44,8 +45,8 @@ LEAST_STEP = 1e-13
 """Of the sampling interval: a step is not made shorter."""
 
 ROUNDING = 1e-13
-"""Share of the limit within which the margin at rest is zero. Were it the last bit that decides, a
-motion whose peak is the limit itself would uplift and land again and again."""
+"""Share of the limit within which the margin at rest is zero. Were it the last bit that
+decides, a motion whose peak is the limit itself would uplift and land again and again."""
 
 
 @inlined
@@ -56,7 +57,8 @@ def path_of(s: Record, l: int) -> Quintic:
 
 @inlined
 def path_in_range(s: Record, l: int) -> tuple[Quintic, float, float]:
-    """The tilt over the step and its range; the squares of both where it passes upright smoothly.
+    """The tilt over the step and its range; the squares of both where it
+    passes upright smoothly.
 
     There x = |r| turns at once, and what is smooth is its square.
     """
@@ -115,7 +117,9 @@ def push_path(s: Record, l: int, axis: int) -> Quintic:
 
 @inlined
 def relief_path(s: Record, l: int) -> Quintic:
-    """g + a_v less what contacts feel of it over the step [m/s2]: 0 without springs upwards."""
+    """g + a_v less what contacts feel of it over the step [m/s2]: 0
+    without springs upwards.
+    """
     up = ways_of(s)
     spared = s.spared[l]
     h = s.h[l]
@@ -164,7 +168,8 @@ def surely_held(s: Record, l: int) -> bool:
 
 
 CIRCLING = 1e-9
-"""Of the tilt's speed: what approaches upright by less goes round it, but for rounding."""
+"""Of the tilt's speed: what approaches upright by less goes
+round it, but for rounding."""
 
 
 @inlined
@@ -180,7 +185,9 @@ def falls(s: Record, l: int) -> bool:
 
 @inlined
 def check_steps(s: Record, systems: Record, stands: bool) -> None:
-    """Accept the steps that are short enough and surely hold no event; of lanes that all stand."""
+    """Accept the steps that are short enough and surely hold no event;
+    of lanes that all stand.
+    """
     if stands:
         for l in range(lanes_of(s)):
             held = surely_held(s, l) & (s.wanted[l] == NOTHING)
@@ -189,7 +196,11 @@ def check_steps(s: Record, systems: Record, stands: bool) -> None:
         check_all_steps(s)
     if s.yielding > 0:
         for l in range(lanes_of(s)):
-            if s.yields[l] > 0 and s.accepted[l] > 0.0 and first_yield(s, l, systems)[0] <= 1.0:
+            if (
+                s.yields[l] > 0
+                and s.accepted[l] > 0.0
+                and first_yield(s, l, systems)[0] <= 1.0
+            ):
                 s.accepted[l] = 0.0
 
 
@@ -225,14 +236,17 @@ def check_all_steps(s: Record) -> None:
 
 
 UNLOADED = 1e-12
-"""Of its strength: so much more yields a storey anew that has just turned back, by rounding."""
+"""Of its strength: so much more yields a storey anew that has just
+turned back, by rounding."""
 
 
 @compiled
 def storey_paths(s: Record, l: int, systems: Record, r: int) -> tuple[Quintic, Quintic]:
-    """What falls below zero where a storey yields to the left or to the right, or no longer does.
+    """What falls below zero where a storey yields to the left or to the
+    right, or no longer does.
 
-    Cubics over the step: its force is so far from either strength; or both the rate of its drift.
+    Cubics over the step: its force is so far from either strength; or
+    both the rate of its drift.
     """
     axis = r // s.n
     i = r % s.n
@@ -252,7 +266,9 @@ def storey_paths(s: Record, l: int, systems: Record, r: int) -> tuple[Quintic, Q
 
 @compiled
 def first_yield(s: Record, l: int, systems: Record) -> tuple[float, int]:
-    """Fraction of the step at which a storey first yields or ends to, and which to which side."""
+    """Fraction of the step at which a storey first yields or ends to,
+    and which to which side.
+    """
     first = NO_PASSAGE
     which = 0
     for r in range(ways_of(s) * s.n):
@@ -270,7 +286,9 @@ def first_yield(s: Record, l: int, systems: Record) -> tuple[float, int]:
 
 @compiled
 def watched_path(s: Record, l: int, which: int) -> tuple[bool, Quintic]:
-    """The cubic through a watched value at both ends; what has just changed begins at zero."""
+    """The cubic through a watched value at both ends; what has
+    just changed begins at zero.
+    """
     there, value, slope = watched(s, l, which, 0)
     if not there:
         return False, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
@@ -292,7 +310,9 @@ def may_change(s: Record, l: int) -> bool:
 
 @compiled
 def falls_low(s: Record, l: int, systems: Record) -> tuple[float, int]:
-    """Fraction of the step at which a free tilt leaves its range downwards, if it does."""
+    """Fraction of the step at which a free tilt leaves its
+    range downwards, if it does.
+    """
     if s.moves[l] == 0.0:
         return NO_PASSAGE, 0
     path, low, _ = path_in_range(s, l)
@@ -341,7 +361,9 @@ def yields_first(s: Record, l: int, systems: Record) -> tuple[float, int]:
 
 @compiled
 def nearest(s: Record, l: int) -> float:
-    """Fraction of the step at which x' rises through zero: by the cubic through x' and x''."""
+    """Fraction of the step at which x' rises through zero: by the
+    cubic through x' and x''.
+    """
     low = 0.0
     high = 1.0
     h = s.h[l]
@@ -412,7 +434,9 @@ def let_go(s: Record, l: int, systems: Record) -> tuple[float, int]:
 
 @compiled
 def squared_margin(s: Record, l: int) -> Quintic:
-    """The limit's square less that of R z, through both ends of the step with two derivatives."""
+    """The limit's square less that of R z, through both ends of the
+    step with two derivatives.
+    """
     h = s.h[l]
     R = 0.5 * s.diameter[l]
     ends = s.piece
@@ -449,7 +473,9 @@ def squared_margin(s: Record, l: int) -> Quintic:
 
 @compiled
 def missing_low(s: Record, l: int, systems: Record) -> tuple[float, float]:
-    """What the end of the step still is above the event, and its rate: of a tilt that falls."""
+    """What the end of the step still is above the event, and its
+    rate: of a tilt that falls.
+    """
     return s.new_x[l] - s.x_low[l], s.new_v[l]
 
 

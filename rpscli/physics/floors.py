@@ -1,22 +1,24 @@
 """What a step demands of storeys and floors, at its ends and within.
 
-A storey shear is a sum over modes, sum_r s_ir q_r, so that all of them cost n^2 products a step,
-more than the motion itself. By Cauchy and Schwarz's inequality what it changes by is bounded:
+A storey shear is a sum over modes, sum_r s_ir q_r, so that all of them cost n^2
+products a step, more than the motion itself. By Cauchy and Schwarz's inequality what
+it changes by is bounded:
 
     (sum_r s_ir dq_r)^2 <= (sum_r s_ir^2/g_r) (sum_r g_r dq_r^2)
 
-whatever the weights g_r > 0. With dq what has changed since all storeys were last looked at, no
-shear is raised while the last sum, which costs n, stays below the least
+whatever the weights g_r > 0. With dq what has changed since all storeys were last looked
+at, no shear is raised while the last sum, which costs n, stays below the least
 
-    (largest shear so far of storey i - its shear when last looked at)^2/(sum_r s_ir^2/g_r).
+    (largest shear so far of storey i - its shear when last looked
+    at)^2/(sum_r s_ir^2/g_r).
 
-The same holds for floor accelerations, sums over the modal forces. Within a step of length h a
-motion leaves the chord between its ends by h/8 of what its velocity changes by, if it is a cubic;
-with a margin for what it is more, the same sum over that change bounds the whole step. Only where
-that bound is passed the step is looked at.
+The same holds for floor accelerations, sums over the modal forces. Within a step of
+length h a motion leaves the chord between its ends by h/8 of what its velocity changes
+by, if it is a cubic; with a margin for what it is more, the same sum over that change
+bounds the whole step. Only where that bound is passed the step is looked at.
 
-Rows of demands are those of shears, then those of accelerations: in one plane one each; of both
-components resultants, then x, then y, whose sums are added for resultants.
+Rows of demands are those of shears, then those of accelerations: in one plane one each;
+of both components resultants, then x, then y, whose sums are added for resultants.
 """
 
 from __future__ import annotations
@@ -48,7 +50,9 @@ def reach(one: float, other: float) -> float:
 
 @inlined
 def floors_may_rise(s: Record, l: int) -> bool:
-    """Whether the sums, and what they may be within the step, leave room for a larger demand."""
+    """Whether the sums, and what they may be within the step, leave
+    room for a larger demand.
+    """
     rises = s.marked[l] > 0
     part = WITHIN / 8.0 * s.h[l]
     part *= part
@@ -59,7 +63,9 @@ def floors_may_rise(s: Record, l: int) -> bool:
         for axis in range(ways_of(s)):
             if j in (0, 1 + axis):
                 shear += max(s.shear_before[axis, l], s.shear_sum[axis, l])
-                acceleration += max(s.acceleration_before[axis, l], s.acceleration_sum[axis, l])
+                acceleration += max(
+                    s.acceleration_before[axis, l], s.acceleration_sum[axis, l]
+                )
                 bent += s.bent[axis, l]
         bent *= part
         rises |= reach(shear, bent) > s.room[j, l]
@@ -83,7 +89,9 @@ def observe_floors(s: Record) -> None:
                 force = s.force[r, l] - s.seen_force[r, l]
                 lost = s.dq[r, l] - s.new_dq[r, l]
                 s.shear_sum[axis, l] += s.shear_weight[r, l] * (q * q)
-                s.acceleration_sum[axis, l] += s.acceleration_weight[r, l] * (force * force)
+                s.acceleration_sum[axis, l] += s.acceleration_weight[r, l] * (
+                    force * force
+                )
                 s.bent[axis, l] += s.shear_weight[r, l] * (lost * lost)
     for l in range(lanes):
         s.demands_rise[l] = 1.0 if floors_may_rise(s, l) else 0.0
@@ -91,7 +99,9 @@ def observe_floors(s: Record) -> None:
 
 @compiled
 def bounds_of(systems: Record, axis: int, kind: int) -> Floats:
-    """Of all storeys or floors what times their demand sums do not pass, in a direction."""
+    """Of all storeys or floors what times their demand sums do
+    not pass, in a direction.
+    """
     system = systems[axis]
     return system.shear_bound_of if kind == 0 else system.acceleration_bound_of  # type: ignore[no-any-return]
 
@@ -145,7 +155,9 @@ def raise_row(s: Record, l: int, systems: Record, kind: int, j: int) -> bool:
     k = kind * rows_of(s) + j
     for axis in range(ways_of(s)):
         if j in (0, 1 + axis):
-            moved += s.acceleration_before[axis, l] if kind > 0 else s.shear_before[axis, l]
+            moved += (
+                s.acceleration_before[axis, l] if kind > 0 else s.shear_before[axis, l]
+            )
             bent += s.bent[axis, l]
     bent *= s.bend_ratio[l] if kind > 0 else 1.0
     moved = math.sqrt(moved)
@@ -184,7 +196,9 @@ def raise_floors_within(s: Record, l: int, systems: Record) -> None:
 
 
 @compiled
-def raise_floors_between(s: Record, l: int, systems: Record, begin: float, end: float) -> None:
+def raise_floors_between(
+    s: Record, l: int, systems: Record, begin: float, end: float
+) -> None:
     """The same between fractions of the step."""
     n = s.n
     rows = s.between
@@ -207,7 +221,9 @@ def raise_floors_between(s: Record, l: int, systems: Record, begin: float, end: 
 
 
 @compiled
-def write_between(s: Record, l: int, system: Record, axis: int, begin: float, end: float) -> None:
+def write_between(
+    s: Record, l: int, system: Record, axis: int, begin: float, end: float
+) -> None:
     """Write shears and accelerations at three instants of the step, of a direction."""
     n = s.n
     rows = s.between

@@ -1,8 +1,8 @@
 """Histories in lanes: step, detect, locate, switch, store.
 
-All lanes take a step together, each as long as its own motion allows. What has come to a sample
-goes on into the next interval; what has come to an event, or to the end of its record, is looked at
-alone. A lane whose history is over takes the next one.
+All lanes take a step together, each as long as its own motion allows. What has come to a
+sample goes on into the next interval; what has come to an event, or to the end of its
+record, is looked at alone. A lane whose history is over takes the next one.
 """
 
 from __future__ import annotations
@@ -78,7 +78,9 @@ def follow(
     results: Record,
     output: Output,
 ) -> None:
-    """Follow every history of `requests` from rest, in a state of one record; writes `results`."""
+    """Follow every history of `requests` from rest, in a state of one
+    record; writes `results`.
+    """
     if lanes_of(state[0]) > 1:
         follow_many(state, systems, requests, acceleration, results, output)
         return
@@ -167,8 +169,12 @@ def begin_histories(
 
 
 @compiled
-def look_after_all(state: Record, k: int, systems: Record, results: Record, output: Output) -> None:
-    """What lanes alone are to do; those whose histories are over, or go on otherwise, leave."""
+def look_after_all(
+    state: Record, k: int, systems: Record, results: Record, output: Output
+) -> None:
+    """What lanes alone are to do; those whose histories are over,
+    or go on otherwise, leave.
+    """
     s = state[k]
     for l in range(lanes_of(s)):
         if s.due[l] == 0.0 or s.history[l] == NO_HISTORY:
@@ -252,7 +258,9 @@ def accept_steps(s: Record) -> None:  # noqa: C901 -- few fields a loop
         for l in range(lanes):
             yes = s.accepted[l]
             s.tilt[axis, l] = chosen(yes, s.new_tilt[axis, l], s.tilt[axis, l])
-            s.tilt_rate[axis, l] = chosen(yes, s.new_tilt_rate[axis, l], s.tilt_rate[axis, l])
+            s.tilt_rate[axis, l] = chosen(
+                yes, s.new_tilt_rate[axis, l], s.tilt_rate[axis, l]
+            )
             s.bend[axis, l] = chosen(yes, s.new_bend[axis, l], s.bend[axis, l])
         for l in range(lanes):
             yes = s.accepted[l]
@@ -329,7 +337,9 @@ def near_limit(s: Record, l: int) -> float:
 
 @inlined
 def plan(s: Record, l: int) -> float:
-    """Length of a lane's next step: an even part of what is left, or what its motion allows."""
+    """Length of a lane's next step: an even part of what is left,
+    or what its motion allows.
+    """
     step = min(even_part(max(s.dt[l] - s.time[l], 0.0), s.h_most[l]), s.h_limit[l])
     if ways_of(s) == 2:
         near = near_limit(s, l)
@@ -341,8 +351,8 @@ def plan(s: Record, l: int) -> float:
 def next_intervals(s: Record, acceleration: Floats) -> None:
     """Lanes that have come to a sample enter the next interval; plan the steps of all.
 
-    `due` to those at an event, at a jump of the ground's acceleration, or whose end may be
-    near.
+    `due` to those at an event, at a jump of the ground's acceleration,
+    or whose end may be near.
     """
     lanes = lanes_of(s)
     for l in range(lanes):
@@ -379,7 +389,9 @@ STALL = 100
 
 @compiled
 def look_after(s: Record, l: int, systems: Record, output: Output) -> bool:
-    """What a lane alone is to do: switch at an event, store, end; True if its history is over."""
+    """What a lane alone is to do: switch at an event, store, end;
+    True if its history is over.
+    """
     if s.outcome[l] != RUNNING:
         return True
     kind = s.kind[l]
@@ -422,7 +434,9 @@ def switch(s: Record, l: int, systems: Record, log: Record, kind: int) -> None:
 
 @compiled
 def review_laws(s: Record, l: int, systems: Record, kind: int) -> None:
-    """Velocities may have jumped: storeys may no longer yield, own laws be on another branch."""
+    """Velocities may have jumped: storeys may no longer yield, own
+    laws be on another branch.
+    """
     if kind != YIELD and review_storeys(s, l, systems):
         renew(s, l)
     if kind != CHANGE:
@@ -446,8 +460,11 @@ def too_many(s: Record, l: int, system: Record) -> bool:
 
 @compiled
 def stay_inside(s: Record, l: int) -> None:
-    """Have the next step begin within its range: of a tilt to any side x is a root, and rounded."""
-    # after all that renews it: one that is below its range by rounding would pass upright at once
+    """Have the next step begin within its range: of a tilt to any side
+    x is a root, and rounded.
+    """
+    # after all that renews it: one that is below its range by rounding would pass upright
+    # at once
     if s.phase[l] != FULL_CONTACT:
         s.x[l] = min(max(s.x[l], s.x_low[l]), s.x_high[l])
 
@@ -631,7 +648,9 @@ def load_request(s: Record, l: int, request: Record, system: Record) -> None:
     s.interval[l] = 0
     s.h_limit[l] = math.inf
     s.stalled[l] = 0
-    s.intervals[l] = request.npts - 1 + math.ceil(system.free_vibration / request.dt - 1e-9)
+    s.intervals[l] = (
+        request.npts - 1 + math.ceil(system.free_vibration / request.dt - 1e-9)
+    )
 
 
 @compiled
@@ -660,7 +679,9 @@ def clear_results(s: Record, l: int) -> None:
 
 @compiled
 def release(s: Record, l: int, system: Record, log: Record) -> None:
-    """Start from rest at a rotation, the building unstrained; without a flat part perhaps at 0."""
+    """Start from rest at a rotation, the building unstrained; without
+    a flat part perhaps at 0.
+    """
     theta = abs(system.initial_rotation)
     s.side[l] = math.copysign(1.0, system.initial_rotation)
     s.x[l] = theta

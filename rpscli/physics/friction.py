@@ -1,7 +1,8 @@
 """What friction holds: a storey at rest on its ends, or tilted (section 11).
 
-In one plane it is held between two limits. A tilt to any side is held inside a closed curve of what
-pushes it, a circle where dampers alone hold it, and begins to slide along its normal.
+In one plane it is held between two limits. A tilt to any side is held inside a
+closed curve of what pushes it, a circle where dampers alone hold it, and begins
+to slide along its normal.
 """
 
 from __future__ import annotations
@@ -47,7 +48,8 @@ def push_of_stops(s: Record, l: int) -> float:
 def force_at_rest(s: Record, l: int) -> tuple[float, float]:
     """Horizontal force at the cap beam against a tilt at rest [N].
 
-    Returns: That of stops and tendons, towards smaller x, and what friction may add to either side.
+    Returns: That of stops and tendons, towards smaller x, and what
+    friction may add to either side.
     """
     if s.devices[l] == 0:
         return 0.0, 0.0
@@ -61,7 +63,9 @@ def force_at_rest(s: Record, l: int) -> tuple[float, float]:
 
 @compiled
 def set_limits(s: Record, l: int) -> None:
-    """Write what holds a lane at rest to either side, in full contact or stuck (3.2), (11.14)."""
+    """Write what holds a lane at rest to either side, in full contact
+    or stuck (3.2), (11.14).
+    """
     R = 0.5 * s.diameter[l]
     weigh = R * s.weigh[l]
     elastic, friction = force_at_rest(s, l)
@@ -98,7 +102,9 @@ def set_limits(s: Record, l: int) -> None:
         back = elastic + at.Bv / at.C * weigh * s.gravity[l] if s.x[l] > 0.0 else 0.0
         s.held_x[l] = back * n
         s.held_y[l] = back * t
-        if ways_of(s) == 2:  # within this circle it surely is: what (13.25) asks of dampers alone
+        if (
+            ways_of(s) == 2
+        ):  # within this circle it surely is: what (13.25) asks of dampers alone
             moment = s.friction_moment[l] / (s.diameter[l] * max(at.C, at.h))
             s.held_right[l] = R * pushed_by(s, l, s.friction_force[l] + moment)
             s.limit_right[l] = 0.0
@@ -112,18 +118,23 @@ def set_limits(s: Record, l: int) -> None:
 
 
 @compiled
-def push_at_rest(s: Record, l: int, V: tuple[float, float], time: float, V_up: float) -> float:
-    """What friction dampers push the cap beam with while a lane is at rest [N]; writes `drive`.
+def push_at_rest(
+    s: Record, l: int, V: tuple[float, float], time: float, V_up: float
+) -> float:
+    """What friction dampers push the cap beam with while a lane is at
+    rest [N]; writes `drive`.
 
-    In full contact the columns hold what they can, and friction dampers the rest: no less, or the
-    columns would turn (11.13). A stuck storey is held by dampers and rolling resistance in
-    proportion to what each could. Returns the share of their friction that is asked for, against
-    growing tilts, -1 to 1; of a tilt to any side against where it is pushed to, 0 to 1.
+    In full contact the columns hold what they can, and friction dampers the rest: no
+    less, or the columns would turn (11.13). A stuck storey is held by dampers and
+    rolling resistance in proportion to what each could. Returns the share of their
+    friction that is asked for, against growing tilts, -1 to 1; of a tilt to any side
+    against where it is pushed to, 0 to 1.
     """
     R = 0.5 * s.diameter[l]
     side = s.side[l]
     g_felt = felt(s, l, g_up_at(s, l, time), V_up)
-    # Between bed and lifted ends the columns hold what they can too, up to where they let go.
+    # Between bed and lifted ends the columns hold what they can too, up to where they let
+    # go.
     if s.friction_force[l] + s.friction_moment[l] == 0.0 or s.bed_back[l] > 0.0:
         return 0.0
     per_N = R * s.share[l]
@@ -163,7 +174,9 @@ def push_at_rest(s: Record, l: int, V: tuple[float, float], time: float, V_up: f
 
 @compiled
 def sticks(s: Record, l: int, log: Record) -> bool:
-    """After x' = 0 under friction: go on to the side that is pushed to; True if neither is."""
+    """After x' = 0 under friction: go on to the side that is
+    pushed to; True if neither is.
+    """
     if not has_friction(s, l):
         return False
     at = place_of(s, l, s.x[l])
@@ -179,15 +192,16 @@ def sticks(s: Record, l: int, log: Record) -> bool:
 
 
 # Where the tilt may have any azimuth (13.25). With P the friction of dampers along W d =
-# (C d_n, h d_t) and M that of rolling along d, Q is held if Q.d <= P |W d| + M for every unit
-# vector d.
+# (C d_n, h d_t) and M that of rolling along d, Q is held if Q.d <= P |W d| + M for every
+# unit vector d.
 
 
 class Grip(NamedTuple):
     """How a tilt at rest is held, over N m_c R^2 [1/s2]."""
 
     used: float  # the part of what friction could do: it holds up to 1
-    margin: float  # P |W d| + M - Q.d, where d is the vector for which that is least at used = 1
+    # P |W d| + M - Q.d, where d is the vector for which that is least at used = 1
+    margin: float
     slope: float  # its rate [1/s3]
     late: float  # what it is below zero when a motion has come to `START_SPEED`
     d_n: float
@@ -209,7 +223,8 @@ def grip_of(
     g_felt: tuple[float, float],
     less: float,
 ) -> Grip:
-    """How a tilt at rest is held under z of what is not friction, and g_f, with their rates.
+    """How a tilt at rest is held under z of what is not friction,
+    and g_f, with their rates.
 
     Of the dampers' part `less` may not be asked for [1/s2].
     """
@@ -221,7 +236,9 @@ def grip_of(
     P = max(pushed_by(s, l, s.friction_force[l]) - less, 0.0)
     M = pushed_by(s, l, s.friction_moment[l]) / s.diameter[l]
     arm = at.Bv * weigh
-    held = arm * g_felt[0] + (s.root[l] - s.sink[l]) * w * gravity * weigh + s.bed_k[l] * x
+    held = (
+        arm * g_felt[0] + (s.root[l] - s.sink[l]) * w * gravity * weigh + s.bed_k[l] * x
+    )
     held = held + at.C * pushed_by(s, l, force_at_rest(s, l)[0]) if x > 0.0 else 0.0
     Q_n = at.C * (z[0] * n + z[1] * t) - held
     Q_t = at.h * (z[1] * n - z[0] * t)
@@ -288,7 +305,9 @@ def push_stuck(s: Record, l: int, z: tuple[float, float], g_felt: float) -> floa
     """`push_at_rest` of a lane that is stuck with a tilt to any side."""
     grip = grip_of(s, l, z, (0.0, 0.0), (g_felt, 0.0), 0.0)
     now = polar(s, l, tilt_of(s, l), (0.0, 0.0))
-    used = min(grip.used, 1.0)  # a little more would be asked for just before it lets go (13.26)
+    used = min(
+        grip.used, 1.0
+    )  # a little more would be asked for just before it lets go (13.26)
     push = used * s.friction_force[l]
     out = -push * grip.drag_n - push_of_stops(s, l)
     aside = -push * grip.drag_t

@@ -1,4 +1,6 @@
-"""Ground acceleration of a lane, linear between samples and zero after the last; and its log."""
+"""Ground acceleration of a lane, linear between samples and zero
+after the last; and its log.
+"""
 
 from __future__ import annotations
 

@@ -1,9 +1,11 @@
-"""Histories of many in states: of those that stand, of those that move, of those that wait.
+"""Histories of many in states: of those that stand, of those that
+move, of those that wait.
 
-Who stands takes the exact step (`standing`), who moves that of Runge and Kutta (`step`); each state
-takes its own for all its lanes. A history that is to take other steps than before changes its state
-at an uplift or a re-contact, or waits until there is a lane free: no bit of it knows its company.
-There are always more places than histories, so that none waits for another one that waits.
+Who stands takes the exact step (`standing`), who moves that of Runge and Kutta (`step`);
+each state takes its own for all its lanes. A history that is to take other steps than
+before changes its state at an uplift or a re-contact, or waits until there is a lane
+free: no bit of it knows its company. There are always more places than histories, so that
+none waits for another one that waits.
 """
 
 from __future__ import annotations
@@ -21,7 +23,9 @@ CHEAPER = 3
 
 @inlined
 def standing_is_next(moving: Record, standing: Record) -> bool:
-    """Which state takes a step: one whose lanes are full, the one for which more are there."""
+    """Which state takes a step: one whose lanes are full, the one
+    for which more are there.
+    """
     lanes = lanes_of(moving)
     if moving.present >= lanes and standing.present >= lanes:
         return standing.present >= moving.present  # type: ignore[no-any-return]
@@ -58,7 +62,9 @@ def waiting_place(state: Record) -> int:
 
 @compiled
 def leave(state: Record, k: int, place: int) -> None:
-    """Copy a history of state k from its place to the other state, or to where it waits for it."""
+    """Copy a history of state k from its place to the other state, or
+    to where it waits for it.
+    """
     other = state[STANDING if k == MOVING else MOVING]
     lanes = lanes_of(state[k])
     state[k].present -= 1

@@ -18,15 +18,17 @@ HEARS = 0.1
 def integrate(run: Run, lanes: int = LANES, *, interruptible: bool = False) -> None:
     """Follow every history of `run.requests` from rest; writes `run.results`.
 
-    Machine code hears no signal: to be `interruptible` by Ctrl-C it runs in another thread, which
-    costs a tenth of a millisecond. Of many histories the longest begin first, so that no lane is
-    left with one at the end.
+    Machine code hears no signal: to be `interruptible` by Ctrl-C it runs in another
+    thread, which costs a tenth of a millisecond. Of many histories the longest begin
+    first, so that no lane is left with one at the end.
     """
     if len(run.requests) > lanes and not run.output.samples.size:
         given = run.requests.view(np.ndarray)
         order = np.argsort(-given["npts"] * given["dt"], kind="stable")
         if np.any(order[1:] < order[:-1]):
-            ordered = run._replace(requests=run.requests[order], results=run.results[order])
+            ordered = run._replace(
+                requests=run.requests[order], results=run.results[order]
+            )
             integrate(ordered, lanes, interruptible=interruptible)
             run.results[order] = ordered.results
             return
@@ -73,7 +75,9 @@ def in_background(work: Callable[..., object], *given: object) -> None:
 
 
 def hear(work: Callable[[], None], state: Record) -> None:
-    """Do some work on a state in another thread; a Ctrl-C stops it, and waits for its end."""
+    """Do some work on a state in another thread; a Ctrl-C stops
+    it, and waits for its end.
+    """
     ended = Event()
 
     def whole() -> None:
@@ -84,7 +88,8 @@ def hear(work: Callable[[], None], state: Record) -> None:
 
     Thread(target=whole, daemon=True).start()
     try:
-        # Not Thread.join: interrupted, it takes a running thread for ended before Python 3.13.
+        # Not Thread.join: interrupted, it takes a running thread for ended before Python
+        # 3.13.
         while not ended.wait(HEARS):
             pass
     except BaseException:

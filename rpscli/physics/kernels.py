@@ -1,7 +1,7 @@
 """The kernel as machine code: compiled at its first use, kept where the user may write.
 
-Files are named after a digest of all sources that decide about them, of the processor and of LLVM:
-what is found there always belongs to the program that runs.
+Files are named after a digest of all sources that decide about them, of the processor and
+of LLVM: what is found there always belongs to the program that runs.
 """
 
 from __future__ import annotations
@@ -17,15 +17,25 @@ from typing import Any
 
 from rpscli.errors import OutputError
 from rpscli.physics.run import Output
-from rpscli.physics.state import EVENT, REQUEST, RESULT, SAMPLE, STATE, SYSTEM, record_type
+from rpscli.physics.state import (
+    EVENT,
+    REQUEST,
+    RESULT,
+    SAMPLE,
+    STATE,
+    SYSTEM,
+    record_type,
+)
 from rpscli.user_cache import VARIABLE, alone_in, is_private, user_cache
 
 SOURCES = Path(__file__).parent
 OTHERS = SOURCES.parent / "constants.py", SOURCES.parent / "compiler"
-"""What decides about a kernel beside the sources: how large its records are, and the compiler."""
+"""What decides about a kernel beside the sources: how large its
+records are, and the compiler."""
 
 INTERPRETED = "RPS_INTERPRETED", "NUMBA_DISABLE_JIT"
-"""Environment variables with which kernels run as Python; the second is of earlier versions."""
+"""Environment variables with which kernels run as Python; the
+second is of earlier versions."""
 
 Kernel = Callable[..., Any]
 
@@ -39,7 +49,9 @@ def are_interpreted() -> bool:
 
 
 def sources_digest(*places: Path) -> str:
-    """Digest of Python sources: of files, and of all below folders, their places included."""
+    """Digest of Python sources: of files, and of all below
+    folders, their places included.
+    """
     digest = hashlib.sha256()
     for place in places:
         for source in sorted(place.rglob("*.py")) if place.is_dir() else [place]:
@@ -50,7 +62,9 @@ def sources_digest(*places: Path) -> str:
 
 @cache
 def cache_folder() -> Path | None:
-    """Folder of the compiled kernels; None if no place is writable, or others may write there."""
+    """Folder of the compiled kernels; None if no place is writable,
+    or others may write there.
+    """
     if (place := user_cache()) is None:
         return None
     folder = place / f"kernels-{sources_digest(SOURCES, *OTHERS)}"
@@ -65,8 +79,8 @@ def cache_folder() -> Path | None:
 def not_kept(folder: Path, error: OSError) -> None:
     """Say once why machine code is not kept."""
     warnings.warn(
-        f"{folder}: {error.strerror or error}: compiled kernels are not kept there, and compiled"
-        f" each time; make room, or name another place in {VARIABLE}",
+        f"{folder}: {error.strerror or error}: compiled kernels are not kept there, and"
+        f" compiled each time; make room, or name another place in {VARIABLE}",
         stacklevel=2,
     )
 
@@ -75,13 +89,17 @@ def file_of(ways: int, lanes: int) -> str:
     """Name of the file of a kernel for this processor."""
     from rpscli.compiler.objects import processor
 
-    digest = hashlib.sha256(f"{processor()} {program_sizes(ways, lanes)}".encode()).hexdigest()
+    digest = hashlib.sha256(
+        f"{processor()} {program_sizes(ways, lanes)}".encode()
+    ).hexdigest()
     return f"{ways}-{lanes}-{digest[:16]}.o"
 
 
 def program_sizes(ways: int, lanes: int) -> str:
     """Sizes of the records of a kernel."""
-    return " ".join(str(record_type(of, ways, lanes).itemsize) for of in (STATE, SYSTEM, RESULT))
+    return " ".join(
+        str(record_type(of, ways, lanes).itemsize) for of in (STATE, SYSTEM, RESULT)
+    )
 
 
 def kept() -> Any:
@@ -92,7 +110,9 @@ def kept() -> Any:
 
 
 def is_ready(ways: int, lanes: int) -> bool:
-    """Whether calling a kernel starts at once: it is loaded, kept on disk, or runs as Python."""
+    """Whether calling a kernel starts at once: it is loaded, kept on
+    disk, or runs as Python.
+    """
     if are_interpreted() or (ways, lanes) in _loaded:
         return True
     return kept().find(file_of(ways, lanes)) is not None
@@ -120,13 +140,16 @@ def program_text(ways: int, lanes: int) -> str:
     except NotInLanguage as error:
         said = ": ".join(reversed(error.args))
         raise OutputError(
-            f"the kernel cannot be compiled: {said}; install rps with its sources, in a folder"
+            f"the kernel cannot be compiled: {said}; install rps with its sources, in a"
+            " folder"
         ) from None
     return program.text()
 
 
 def kernel(ways: int, lanes: int) -> Kernel:
-    """`follow.follow` for so many directions and lanes, compiled if it was never called before."""
+    """`follow.follow` for so many directions and lanes, compiled if it
+    was never called before.
+    """
     from rpscli.physics.follow import follow
 
     if are_interpreted():

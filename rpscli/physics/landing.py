@@ -1,4 +1,5 @@
-"""A step of a lane alone: accepted, taken again because it erred, or taken again to its event.
+"""A step of a lane alone: accepted, taken again because it erred, or
+taken again to its event.
 
 A step that is to end on an event is taken again, its length corrected by Newton's method.
 """
@@ -23,19 +24,22 @@ from rpscli.physics.state import (
 )
 
 CLOSE = 1e-7
-"""Of the step: what is missing to an event is so short that rates lead there. What flows in it is
-taken for the mean of the step, a part of what flows at its end where a tilt has only begun."""
+"""Of the step: what is missing to an event is so short that rates lead there. What
+flows in it is taken for the mean of the step, a part of what flows at its end
+where a tilt has only begun."""
 
 AT_LIMIT = 1e-9
-"""The same of an uplift, over the sampling interval: a margin that is not yet zero would have the
-storey land at once."""
+"""The same of an uplift, over the sampling interval: a margin that is not yet zero would
+have the storey land at once."""
 
 MOST_TRIES = 8
 
 
 @compiled
 def first_event(s: Record, l: int, systems: Record) -> tuple[float, int, int]:
-    """Fraction of the step at which its first event happens, its kind, and which of it."""
+    """Fraction of the step at which its first event happens,
+    its kind, and which of it.
+    """
     first = NO_PASSAGE
     kind = NOTHING
     which = 0
@@ -50,7 +54,9 @@ def first_event(s: Record, l: int, systems: Record) -> tuple[float, int, int]:
 
 @compiled
 def missing(s: Record, l: int, systems: Record) -> tuple[float, float]:
-    """What the end of the step still is above the event on which it is to end, and its rate."""
+    """What the end of the step still is above the event on which it
+    is to end, and its rate.
+    """
     for event in EVENTS:
         if s.wanted[l] == event.kind:
             return event.missing(s, l, systems)  # type: ignore[no-any-return]
@@ -59,7 +65,9 @@ def missing(s: Record, l: int, systems: Record) -> tuple[float, float]:
 
 @compiled
 def resolve_step(s: Record, l: int, systems: Record) -> bool:
-    """A step that was not accepted: accept it, or have it taken again; False if it is no number."""
+    """A step that was not accepted: accept it, or have it taken again;
+    False if it is no number.
+    """
     if s.history[l] == NO_HISTORY:
         s.accepted[l] = 1.0
         return True
@@ -70,7 +78,8 @@ def resolve_step(s: Record, l: int, systems: Record) -> bool:
         s.outcome[l] = FAILED_NOT_FINITE
         return False
     if s.error[l] > 1.0 and s.h[l] > LEAST_STEP * s.dt[l]:
-        # also of a step that is to end on an event: there a bed may be steeper than beyond it
+        # also of a step that is to end on an event: there a bed may be steeper than
+        # beyond it
         s.h[l] *= 0.5 if s.error[l] < 64.0 else 0.25
         s.h_limit[l] = s.h[l]
         s.wanted[l] = NOTHING
@@ -105,7 +114,8 @@ def land(s: Record, l: int, systems: Record) -> None:
         return
     if abs(change) <= close:  # else it only grazes, and stays where it is
         go_on_by(s, l, change)
-    # a cubic from zero without slope may dip where the value grows with the third power of time
+    # a cubic from zero without slope may dip where the value grows with the third power
+    # of time
     dips = s.wanted[l] in (CHANGE, YIELD) and value > 0.0 and slope >= 0.0
     kind = NOTHING if dips else s.wanted[l]
     s.accepted[l] = 1.0
@@ -115,7 +125,9 @@ def land(s: Record, l: int, systems: Record) -> None:
 
 @compiled
 def go_on_by(s: Record, l: int, time: float) -> None:
-    """Lead the end of the step on by rates: so short a time that its square is rounding."""
+    """Lead the end of the step on by rates: so short a time
+    that its square is rounding.
+    """
     for axis in range(ways_of(s)):
         bend = s.new_bend[axis, l]
         s.new_tilt[axis, l] += time * (s.new_tilt_rate[axis, l] + 0.5 * time * bend)

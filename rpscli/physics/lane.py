@@ -1,4 +1,6 @@
-"""A lane: its numbers by the names that laws know, and what the laws say of it (`laws`)."""
+"""A lane: its numbers by the names that laws know, and what the
+laws say of it (`laws`).
+"""
 
 from __future__ import annotations
 
@@ -90,7 +92,9 @@ class Polar(NamedTuple):
 
 
 @inlined
-def polar(s: Record, l: int, tilt: tuple[float, float], rate: tuple[float, float]) -> Polar:
+def polar(
+    s: Record, l: int, tilt: tuple[float, float], rate: tuple[float, float]
+) -> Polar:
     """A tilt vector and its rate along it and across."""
     if ways_of(s) == 1:
         side = s.side[l]
@@ -163,8 +167,12 @@ def place_with(s: Record, l: int, x: float, w: float, dw: float) -> Place:
     """Geometry and inertia of a lane at a tilt, where the patch is known."""
     if ways_of(s) == 1:
         sine, less, _ = sines(x)
-        return place_in_plane(column_of(s, l), phase_of(s, l), s.root[l], sine, less, w, dw)
-    return place_in_space(column_of(s, l), phase_of(s, l), ends_of(s, l), max(x, UPRIGHT), w, dw)
+        return place_in_plane(
+            column_of(s, l), phase_of(s, l), s.root[l], sine, less, w, dw
+        )
+    return place_in_space(
+        column_of(s, l), phase_of(s, l), ends_of(s, l), max(x, UPRIGHT), w, dw
+    )
 
 
 @compiled
@@ -197,13 +205,17 @@ def pushed_by(s: Record, l: int, force: float) -> float:
 
 @inlined
 def z_of(s: Record, l: int, force: float, a_g: float) -> float:
-    """The z of a horizontal force at the cap beam and of the ground's acceleration [1/s2]."""
+    """The z of a horizontal force at the cap beam and of the
+    ground's acceleration [1/s2].
+    """
     return push(s.share[l], force, s.load[l], a_g)
 
 
 @inlined
 def felt(s: Record, l: int, g_up: float, V_up: float) -> float:
-    """g_f, what contacts feel of g + a_v [m/s2], under forces V_up of the floors' springs [N]."""
+    """g_f, what contacts feel of g + a_v [m/s2], under forces V_up of
+    the floors' springs [N].
+    """
     return felt_gravity(s.gravity[l], g_up, s.spared[l], s.floors_mass[l], V_up)
 
 
@@ -228,7 +240,9 @@ def felt_at(s: Record, l: int, end: int) -> tuple[float, float, float]:
 @inlined
 def mode_acceleration(s: Record, r: int, l: int, axis: int) -> float:
     """Acceleration of a mode at the start of the step."""
-    force = fma(s.omega2[r, l], s.q[r, l], s.two_xi_omega[r, l] * s.dq[r, l]) - s.freed[r, l]
+    force = (
+        fma(s.omega2[r, l], s.q[r, l], s.two_xi_omega[r, l] * s.dq[r, l]) - s.freed[r, l]
+    )
     return fma(-s.Gamma[r, l], s.shaking[axis, l], -force)
 
 
@@ -251,11 +265,18 @@ class Response(NamedTuple):
 
 @inlined
 def respond(
-    s: Record, l: int, at: Place, w: float, tilt: Polar, V: tuple[float, float, float], time: float
+    s: Record,
+    l: int,
+    at: Place,
+    w: float,
+    tilt: Polar,
+    V: tuple[float, float, float],
+    time: float,
 ) -> Response:
     """The equation of motion of a lane under base shears in x, in y and upwards [N].
 
-    At a place and a rate of the tilt, a time of the interval [s], and what devices now do.
+    At a place and a rate of the tilt, a time of the interval [s],
+    and what devices now do.
     """
     a_x = ground_at(s, l, 0, time)
     a_y = 0.0
@@ -332,23 +353,34 @@ def masses_of(s: Record, l: int) -> Masses:
 
 @inlined
 def contact_forces(
-    s: Record, l: int, beam: float, lift: float, V: float, a_g: float, up: tuple[float, float]
+    s: Record,
+    l: int,
+    beam: float,
+    lift: float,
+    V: float,
+    a_g: float,
+    up: tuple[float, float],
 ) -> tuple[float, float, float, float]:
-    """F and N of all columns together at their upper and lower ends, in one direction [N] (8.4).
+    """F and N of all columns together at their upper and lower ends, in
+    one direction [N] (8.4).
 
     Of u_b'', v_b'', what pushes the beam and the ground; `up` are g + a_v and V_up.
     """
     F, F_bottom = shears(masses_of(s, l), beam, a_g, V)
-    N, N_bottom = normal_forces(masses_of(s, l), s.gravity[l], up[0], lift, up[1], s.pull[l])
+    N, N_bottom = normal_forces(
+        masses_of(s, l), s.gravity[l], up[0], lift, up[1], s.pull[l]
+    )
     return F, F_bottom, N, N_bottom
 
 
 @inlined
 def without_shock(s: Record, l: int, x: float, rate: tuple[float, float]) -> float:
-    """0 where a motion is part of a pass that takes less than `shock_time`: an impact's impulse.
+    """0 where a motion is part of a pass that takes less than
+    `shock_time`: an impact's impulse.
 
-    Beam and columns are turned over within it; forces of contacts are then those of a beam that
-    keeps its velocity, and what turns it is added afterwards, if it is known (13.19).
+    Beam and columns are turned over within it; forces of contacts are then
+    those of a beam that keeps its velocity, and what turns it is added
+    afterwards, if it is known (13.19).
     """
     if ways_of(s) == 1:
         return 1.0

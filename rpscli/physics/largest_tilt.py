@@ -1,4 +1,6 @@
-"""The largest tilt, turning points between samples included, and the passage of theta_cr."""
+"""The largest tilt, turning points between samples included, and
+the passage of theta_cr.
+"""
 
 from __future__ import annotations
 
@@ -37,7 +39,9 @@ def observe_tilt(s: Record, log: Record) -> None:
         below &= ways_of(s) == 1
         closer = (s.accepted[l] > 0.0) & (passing | inside | below)
         s.tilt_rises[l] = 2.0 if closer else s.tilt_rises[l]
-        s.max_theta_time[l] = (end if higher & (not closer) else s.max_theta_time[l]) + 0.0
+        s.max_theta_time[l] = (
+            end if higher & (not closer) else s.max_theta_time[l]
+        ) + 0.0
         s.max_theta[l] = (x if higher & (not closer) else s.max_theta[l]) + 0.0
     for l in range(lanes_of(s)):
         if s.tilt_rises[l] > 1.0:
@@ -110,7 +114,9 @@ def log_critical_passage(
 
 @compiled
 def observe_ways(s: Record) -> None:
-    """Raise the beam's way in x and in y by those at the ends of accepted steps, and between."""
+    """Raise the beam's way in x and in y by those at the ends of
+    accepted steps, and between.
+    """
     for axis in range(ways_of(s)):
         for l in range(lanes_of(s)):
             u = path_at(s, l, s.new_x[l]) * s.diameter[l]

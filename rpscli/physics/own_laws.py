@@ -1,4 +1,6 @@
-"""Laws of other packages: compiled for themselves, called by the kernel through their addresses."""
+"""Laws of other packages: compiled for themselves, called by the kernel
+through their addresses.
+"""
 
 from __future__ import annotations
 
@@ -45,7 +47,9 @@ class InterpretedLaw:
 
 
 def plain(function: Law) -> Law:
-    """A law as its package wrote it: without the guard that calls from Python go through."""
+    """A law as its package wrote it: without the guard that
+    calls from Python go through.
+    """
     while getattr(function, GUARD, False):
         function = vars(function)["__wrapped__"]
     return getattr(function, "py_func", function)  # of another compiler
@@ -66,7 +70,9 @@ def loaded(function: Law, taken: int) -> Any:
         place = f"{function.__module__}.{function.__qualname__}"
         said = ": ".join(reversed(error.args))
         raise PluginError(f"{place} cannot be compiled: {said}") from None
-    return Entry(machine_code(program.text()), NAME, [DOUBLE] * LAW_NUMBERS, DOUBLE, REFUSED)
+    return Entry(
+        machine_code(program.text()), NAME, [DOUBLE] * LAW_NUMBERS, DOUBLE, REFUSED
+    )
 
 
 @cache
@@ -79,7 +85,8 @@ def address_of(function: Law, taken: int) -> int:
 
 
 def said_of(function: Law, taken: int) -> str:
-    """What a law said, or gave, where it last gave no finite number; empty if it always did.
+    """What a law said, or gave, where it last gave no finite
+    number; empty if it always did.
 
     It is asked once more, in Python, by what it was given then.
     """

@@ -15,7 +15,9 @@ def middle_of(
 
 @compiled
 def turning_value(start: float, middle: float, end: float) -> float:
-    """Where the parabola through three values turns within the step, its value; else the end."""
+    """Where the parabola through three values turns within the step,
+    its value; else the end.
+    """
     bend = start - 2.0 * middle + end
     change = end - start
     turns = abs(change) < 2.0 * abs(bend)

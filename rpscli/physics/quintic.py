@@ -4,14 +4,15 @@ Over one step a function f with f, f' and f'' known at both ends is the quintic
 
     f(h t) = sum_i b_i C(5, i) t^i (1 - t)^(5 - i),    0 <= t <= 1,
 
-whose Bernstein coefficients b_i follow from the end values directly. A polynomial lies within the
-hull of its coefficients: if none is negative there is no passage, however the curve bends between
-the ends. This is the whole test of a step without event, and it cannot overlook a dip below zero
-and back. Where it fails, the interval is halved until the coefficients change sign once, which
-means exactly one root (G. Farin, Curves and Surfaces for CAGD, on variation diminution).
+whose Bernstein coefficients b_i follow from the end values directly. A polynomial lies
+within the hull of its coefficients: if none is negative there is no passage, however the
+curve bends between the ends. This is the whole test of a step without event, and it
+cannot overlook a dip below zero and back. Where it fails, the interval is halved until
+the coefficients change sign once, which means exactly one root (G. Farin, Curves and
+Surfaces for CAGD, on variation diminution).
 
-A start at exactly zero is no passage unless the curve leaves downwards, so a search may begin on
-the very event that was handled last.
+A start at exactly zero is no passage unless the curve leaves downwards, so a search may
+begin on the very event that was handled last.
 """
 
 from __future__ import annotations
@@ -29,8 +30,8 @@ NO_PASSAGE = 2.0
 """Returned instead of a t in [0, 1]."""
 
 SETTLED = 1e-9
-"""Relative correction at which Newton's method stops: its square, the error left, is less than
-rounding; at a double root, which is not known any better, the error is as large."""
+"""Relative correction at which Newton's method stops: its square, the error left, is less
+than rounding; at a double root, which is not known any better, the error is as large."""
 
 DEEPEST_HALVING = 40
 """Pieces of 2^-40 of a step are below rounding: a contact of two roots there is one."""
@@ -129,7 +130,9 @@ def search_descent(b: Quintic, piece: NDArray[np.float64]) -> float:
 
 @compiled
 def restrict(b: Quintic, start: float, end: float, piece: NDArray[np.float64]) -> None:
-    """Coefficients over [start, end], by de Casteljau's scheme from either end; writes `piece`."""
+    """Coefficients over [start, end], by de Casteljau's scheme from
+    either end; writes `piece`.
+    """
     for i in range(6):
         piece[i] = b[i]
     if start == 0.0 and end == 1.0:
@@ -145,7 +148,9 @@ def restrict(b: Quintic, start: float, end: float, piece: NDArray[np.float64]) -
 
 @compiled
 def sign_pattern(piece: NDArray[np.float64]) -> tuple[int, int]:
-    """Number of sign changes, zeros left out, and the sign of the first coefficient not zero."""
+    """Number of sign changes, zeros left out, and the sign of the
+    first coefficient not zero.
+    """
     changes = 0
     first = 0
     last = 0
@@ -163,7 +168,9 @@ def sign_pattern(piece: NDArray[np.float64]) -> tuple[int, int]:
 
 @compiled
 def descent_in(piece: NDArray[np.float64]) -> float:
-    """The root of a piece that changes sign once, downwards: Newton's method inside a bracket."""
+    """The root of a piece that changes sign once, downwards: Newton's
+    method inside a bracket.
+    """
     b = (piece[0], piece[1], piece[2], piece[3], piece[4], piece[5])
     low = 0.0
     high = 1.0

@@ -11,10 +11,12 @@ from rpscli.physics.lane import felt, pushed_by, ways_of
 from rpscli.physics.state import BEDDED, FULL_CONTACT, STUCK, Record
 
 REST_EVERY = 8
-"""After the record, so many samples pass between looks at whether anything can still happen."""
+"""After the record, so many samples pass between looks at whether
+anything can still happen."""
 
 WOBBLES = 20.0
-"""So long after the record a wobbling structure is left, once no larger tilt can come [s]."""
+"""So long after the record a wobbling structure is left, once no
+larger tilt can come [s]."""
 
 
 @compiled
@@ -23,9 +25,9 @@ def is_over(s: Record, l: int, systems: Record) -> bool:
 
     Of what wobbles only the tilt is looked at: rigid ends lose nothing as it goes on.
 
-    At rest each mode decays from its present energy, which bounds every demand and the push that
-    could uplift the storey again. Uplifted in one plane a history is never over: impacts excite the
-    building until the storey is down.
+    At rest each mode decays from its present energy, which bounds every demand and the
+    push that could uplift the storey again. Uplifted in one plane a history is never
+    over: impacts excite the building until the storey is down.
     """
     system = systems[0]
     free = s.interval[l] + 1 - s.npts[l]
@@ -50,7 +52,9 @@ def modal_speed(s: Record, l: int, r: int) -> float:
 
 @compiled
 def largest_force(s: Record, l: int, axis: int) -> float:
-    """Bound on the force of the springs and dampers under the freely vibrating floors [N]."""
+    """Bound on the force of the springs and dampers under the
+    freely vibrating floors [N].
+    """
     largest = 0.0
     for r in range(axis * s.n, (axis + 1) * s.n):
         force = math.sqrt(s.omega2[r, l]) + s.two_xi_omega[r, l]
@@ -60,7 +64,9 @@ def largest_force(s: Record, l: int, axis: int) -> float:
 
 @compiled
 def stays_down(s: Record, l: int) -> bool:
-    """Whether the freely vibrating building can never again push hard enough to let go."""
+    """Whether the freely vibrating building can never again
+    push hard enough to let go.
+    """
     square = 0.0
     up = ways_of(s)
     for axis in range(up):
@@ -72,7 +78,9 @@ def stays_down(s: Record, l: int) -> bool:
         lightest = felt(s, l, lightest, largest_force(s, l, up))
     if up == 2 and s.phase[l] == STUCK:
         grip = grip_of(s, l, (0.0, 0.0), (0.0, 0.0), (lightest, 0.0), most)
-        return s.n == 0 or bool(most < pushed_by(s, l, s.friction_force[l]) and grip.margin > 0.0)
+        return s.n == 0 or bool(
+            most < pushed_by(s, l, s.friction_force[l]) and grip.margin > 0.0
+        )
     limit = lightest * s.limit_right[l] + s.held_right[l]
     if up == 1:
         limit = min(limit, lightest * s.limit_left[l] + s.held_left[l])
@@ -91,14 +99,18 @@ def weights_stand(s: Record, l: int) -> bool:
 
 @compiled
 def spare_strength(s: Record, l: int, r: int) -> float:
-    """What a storey without force still bears before it yields again, to either side [N]."""
+    """What a storey without force still bears before it yields
+    again, to either side [N].
+    """
     back = s.hardening[l] * s.stiffness[r, l] * abs(s.middle[r, l])
     return s.strength[r, l] - back  # type: ignore[no-any-return]
 
 
 @compiled
 def demands_stand(s: Record, l: int, systems: Record) -> bool:
-    """Whether free vibration in full contact can raise no storey shear and no acceleration."""
+    """Whether free vibration in full contact can raise no storey
+    shear and no acceleration.
+    """
     rows = 2 * ways_of(s) - 1
     for i in range(s.n):
         shears = 0.0
@@ -152,12 +164,14 @@ def hardened_energy(s: Record, l: int) -> float:
 
 @compiled
 def rests_on_bed(s: Record, l: int, systems: Record) -> bool:
-    """Whether free vibration in full contact can bring nothing new: energy bounds all of it.
+    """Whether free vibration in full contact can bring nothing new:
+    energy bounds all of it.
 
-    All springs together hold no more than the energy, nor do all masses: with E = v^2/2 the tilt is
-    below v/sqrt(N m_c R^2 k), a storey's shear below v sqrt(k_i), and the force of mode r below
-    w_r v, with what its dampers add at velocities against the beam of v (1 + Gamma/sqrt(m_0)).
-    Both directions share the energy: resultants are below the larger of both bounds.
+    All springs together hold no more than the energy, nor do all masses: with E = v^2/2
+    the tilt is below v/sqrt(N m_c R^2 k), a storey's shear below v sqrt(k_i), and the
+    force of mode r below w_r v, with what its dampers add at velocities against the beam
+    of v (1 + Gamma/sqrt(m_0)). Both directions share the energy: resultants are below
+    the larger of both bounds.
     """
     system = systems[0]
     v = math.sqrt(2.0 * (total_energy(s, l, system) - hardened_energy(s, l)))
@@ -187,7 +201,10 @@ def rests_on_bed(s: Record, l: int, systems: Record) -> bool:
             shear = v * math.sqrt(stiffness)
             acceleration = v * (math.sqrt(spring) + math.sqrt(damper) + beam)
             for row in (0, axis + 1 if ways_of(s) == 2 else 0):
-                if shear > s.largest[row, l, i] or acceleration > s.largest[rows + row, l, i]:
+                if (
+                    shear > s.largest[row, l, i]
+                    or acceleration > s.largest[rows + row, l, i]
+                ):
                     return False
             if s.yields[l] > 0 and shear >= spare_strength(s, l, axis * s.n + i):
                 return False

@@ -11,9 +11,11 @@ from rpscli.physics.state import Floats, Record
 
 
 class Output(NamedTuple):
-    """Samples and events of a history that is run by itself; of many, give no rows to keep none.
+    """Samples and events of a history that is run by itself; of many,
+    give no rows to keep none.
 
-    Without room for samples no energy is audited; events beyond the log's rows are only counted.
+    Without room for samples no energy is audited; events beyond the
+    log's rows are only counted.
     """
 
     samples: Record  # (rows,) `state.SAMPLE`
@@ -21,16 +23,24 @@ class Output(NamedTuple):
         np.float64
     ]  # (rows, 4, axes n) u, u' over the ground, absolute u'', plastic drift
     log: Record  # (rows,) `state.EVENT`
-    devices: NDArray[np.float64]  # (rows, 4, devices) force [N], path [m], energy lost, stored [J]
-    finer: int = 1  # rows a sample: even parts of the interval at which the motion is kept as well
+    devices: NDArray[
+        np.float64
+    ]  # (rows, 4, devices) force [N], path [m], energy lost, stored [J]
+    finer: int = (
+        1  # rows a sample: even parts of the interval at which the motion is kept as well
+    )
 
 
 class Run(NamedTuple):
-    """Histories to run, and what they leave behind; all arrays of records but the floats."""
+    """Histories to run, and what they leave behind; all arrays
+    of records but the floats.
+    """
 
     systems: Record  # (S,) `state.SYSTEM`, all of the same number of storeys n
     requests: Record  # (P,) `state.REQUEST`: the histories
-    acceleration: Floats  # records of the ground end to end [m/s2], linear between their samples
+    acceleration: (
+        Floats  # records of the ground end to end [m/s2], linear between their samples
+    )
     results: Record  # (P,) `state.RESULT`: written
     output: Output  # samples and events, where there is one history: written
     ways: int = 1  # horizontal components: 2 with two systems of each structure

@@ -42,7 +42,9 @@ def store_sample(s: Record, l: int, systems: Record, output: Output) -> None:
 
 @compiled
 def store_within(s: Record, l: int, systems: Record, output: Output) -> None:
-    """Keep the states at the even parts of the interval that the step just taken passes."""
+    """Keep the states at the even parts of the interval that
+    the step just taken passes.
+    """
     h = s.h[l]
     part = s.dt[l] / output.finer
     if h <= 0.0:
@@ -93,7 +95,9 @@ def slip_energy_of_row(s: Record, l: int, system: Record, axis: int) -> float:
         r = axis * s.n + i
         elastic = elastic_of_row(s, system, axis, i)
         middle = middle_with(s, l, r, elastic)
-        energy += slip_force(s, l, r, elastic) * (0.5 * middle - elastic / s.stiffness[r, l])
+        energy += slip_force(s, l, r, elastic) * (
+            0.5 * middle - elastic / s.stiffness[r, l]
+        )
     return energy
 
 
@@ -118,8 +122,6 @@ def write_row(
     share = 0.0
     stored = 0.0
     x = now.x
-    p = now.p
-    q = now.q
     V_x = shear_of_row(s, l, systems, 0)
     V_y = 0.0
     if ways == 2:
@@ -141,20 +143,13 @@ def write_row(
     stays = without_shock(s, l, x, rate)
     sample.phase = s.phase[l]
     sample.theta_ddot = sign * motion.a
-    sample.theta, sample.theta_dot = (sign * x, sign * p) if moves else (0.0, 0.0)
+    sample.theta, sample.theta_dot = (sign * x, sign * now.p) if moves else (0.0, 0.0)
     sample.azimuth = math.atan2(now.t, now.n) if ways == 2 and moves and x > 0.0 else 0.0
-    sample.turning = q / x if ways == 2 and moves and x > 0.0 else 0.0
+    sample.turning = now.q / x if ways == 2 and moves and x > 0.0 else 0.0
     sample.height = s.diameter[l] * place.C
     sample.lift = beam_lift(s, l, systems[0], x) if moves else 0.0
-    sample.energy_input = s.energy_input[l]
-    sample.energy_damped = s.energy_damped[l]
-    sample.energy_upwards = s.energy_upwards[l]
-    sample.energy_yielded = s.energy_yielded[l]
-    sample.energy_lost = s.energy_lost[l]
-    sample.energy_bed = s.bed_energy[l]
-    sample.energy_stored = energy_at(s, l, systems[0], tilt, rate) + stored
-    for axis in range(ways if s.yields[l] > 0 else 0):
-        sample.energy_stored += slip_energy_of_row(s, l, systems[axis], axis)
+    write_energies(s, l, systems, sample)
+    sample.energy_stored += energy_at(s, l, systems[0], tilt, rate) + stored
     for axis in range(ways):
         V, a_g, n = (V_x, motion.a_x, now.n) if axis == 0 else (V_y, motion.a_y, now.t)
         faster = stays * (motion.beam_x if axis == 0 else motion.beam_y)
@@ -169,7 +164,23 @@ def write_row(
         sample.normal_top = N
         sample.normal_bottom = N_bottom
     for axis in range(s.axes):
-        write_floors(s, l, systems[axis], output, row, axis, beam[axis], beam[RATES + axis])
+        write_floors(
+            s, l, systems[axis], output, row, axis, beam[axis], beam[RATES + axis]
+        )
+
+
+@compiled
+def write_energies(s: Record, l: int, systems: Record, sample: Record) -> None:
+    """Keep the energies of a lane so far, and what plastic drifts store."""
+    sample.energy_input = s.energy_input[l]
+    sample.energy_damped = s.energy_damped[l]
+    sample.energy_upwards = s.energy_upwards[l]
+    sample.energy_yielded = s.energy_yielded[l]
+    sample.energy_lost = s.energy_lost[l]
+    sample.energy_bed = s.bed_energy[l]
+    sample.energy_stored = 0.0
+    for axis in range(ways_of(s) if s.yields[l] > 0 else 0):
+        sample.energy_stored += slip_energy_of_row(s, l, systems[axis], axis)
 
 
 @compiled
@@ -193,7 +204,9 @@ def write_floors(
         forces[i] = 0.0
         slip = 0.0
         if yields:
-            slip = slip_force(s, l, axis * n + i, shears[i]) / s.stiffness[axis * n + i, l]
+            slip = (
+                slip_force(s, l, axis * n + i, shears[i]) / s.stiffness[axis * n + i, l]
+            )
         output.floors[row, 3, n * axis + i] = slip
     if yields:
         free_rows(s, l, system, axis, shears, forces)

@@ -1,12 +1,14 @@
-"""The exact step of a storey that stands: full contact on rigid ends, under linear springs.
+"""The exact step of a storey that stands: full contact on rigid
+ends, under linear springs.
 
-No law is asked and nothing errs: each mode is an oscillator on ground whose acceleration is linear
-within the step,
+No law is asked and nothing errs: each mode is an oscillator on ground whose acceleration
+is linear within the step,
 
     q'' + c q' + w^2 q = a + b t,      a = -Gamma a_g + what plastic drifts do,  c = 2 xi w,
 
-whose end follows from its start (N. C. Nigam and P. C. Jennings, Bull. Seism. Soc. Am. 59 (1969)
-909-922). With S(h) the response to a unit velocity, I its integral and J that of I,
+whose end follows from its start (N. C. Nigam and P. C. Jennings, Bull. Seism.
+Soc. Am. 59 (1969) 909-922). With S(h) the response to a unit velocity, I its
+integral and J that of I,
 
     q(h)  = (1 - w^2 I) q + S q'  + I a + J b
     q'(h) =      -w^2 S q + S' q' + S a + I b,         S' = 1 - w^2 I - c S.
@@ -62,12 +64,17 @@ def responses(omega2: float, c: float, h: float) -> tuple[float, float, float, f
 
 
 CREEPS = 0.1
-"""Half of the difference of two rates of decay times h, from which each is followed by itself."""
+"""Half of the difference of two rates of decay times h, from which
+each is followed by itself."""
 
 
 @compiled
-def creeping_responses(slow: float, fast: float, h: float) -> tuple[float, float, float, float]:
-    """The same of an oscillator that is damped beyond its critical damping, by its two rates."""
+def creeping_responses(
+    slow: float, fast: float, h: float
+) -> tuple[float, float, float, float]:
+    """The same of an oscillator that is damped beyond its critical
+    damping, by its two rates.
+    """
     apart = fast - slow
     S = math.exp(-slow * h) * -math.expm1(-apart * h) / apart
     dS = (fast * math.exp(-fast * h) - slow * math.exp(-slow * h)) / apart
@@ -96,8 +103,12 @@ def decayed_twice(rate: float, h: float) -> float:
 
 
 @compiled
-def responses_by_series(omega2: float, c: float, h: float) -> tuple[float, float, float, float]:
-    """The same by powers of h, whose factors follow from each other by the equation of motion."""
+def responses_by_series(
+    omega2: float, c: float, h: float
+) -> tuple[float, float, float, float]:
+    """The same by powers of h, whose factors follow from each other
+    by the equation of motion.
+    """
     S = 0.0
     I = 0.0
     J = 0.0
@@ -150,8 +161,12 @@ def stand_along(s: Record, axis: int) -> None:
             I = s.factors[2, r, l]
             q = s.q[r, l]
             dq = s.dq[r, l]
-            new_q = fma(s.factors[0, r, l], q, fma(S, dq, fma(I, load, s.factors[3, r, l] * rate)))
-            new_dq = fma(s.factors[4, r, l], q, fma(s.factors[5, r, l], dq, fma(S, load, I * rate)))
+            new_q = fma(
+                s.factors[0, r, l], q, fma(S, dq, fma(I, load, s.factors[3, r, l] * rate))
+            )
+            new_dq = fma(
+                s.factors[4, r, l], q, fma(s.factors[5, r, l], dq, fma(S, load, I * rate))
+            )
             s.new_q[r, l] = new_q
             s.new_dq[r, l] = new_dq
             s.force[r, l] = fma(s.omega2[r, l], new_q, s.two_xi_omega[r, l] * new_dq)
@@ -197,7 +212,9 @@ def free_standing(s: Record) -> None:
     """Take what plastic drifts, which now rest, load the modes by from their forces."""
     for axis in range(ways_of(s)):
         for l in range(lanes_of(s)):
-            s.new_V[axis, l] -= base_slip(s, l, axis, 0.0)  # the drift counts where it yields
+            s.new_V[axis, l] -= base_slip(
+                s, l, axis, 0.0
+            )  # the drift counts where it yields
         for r in range(axis * s.n, (axis + 1) * s.n):
             for l in range(lanes_of(s)):
                 s.force[r, l] -= s.freed[r, l]
@@ -205,8 +222,18 @@ def free_standing(s: Record) -> None:
 
 # Where energy is audited its flows are integrated by C. F. Gauss's rule of four points.
 
-POINTS = (0.06943184420297371, 0.33000947820757187, 0.6699905217924281, 0.9305681557970263)
-WEIGHTS = (0.17392742256872692, 0.32607257743127307, 0.32607257743127307, 0.17392742256872692)
+POINTS = (
+    0.06943184420297371,
+    0.33000947820757187,
+    0.6699905217924281,
+    0.9305681557970263,
+)
+WEIGHTS = (
+    0.17392742256872692,
+    0.32607257743127307,
+    0.32607257743127307,
+    0.17392742256872692,
+)
 
 
 @compiled

@@ -1,15 +1,18 @@
 """What the kernel reads and writes: structured records, every field named once, here.
 
-* ``system``: a structure and how it is followed; filled by `rpscli.analyses`, read only; where both
-  components act two stand together, of the directions x and y, which differ in their buildings;
+* ``system``: a structure and how it is followed; filled by `rpscli.analyses`, read
+  only; where both components act two stand together, of the directions x and y, which
+  differ in their buildings;
 * ``request``: a history to run, a system under a record; likewise;
-* ``state``: all lanes side by side, last; ``q`` has one row a mode, ``tilt`` one a direction;
+* ``state``: all lanes side by side, last; ``q`` has one row a mode,
+  ``tilt`` one a direction;
 * ``result``: what a history leaves behind.
 
-Letters are those of Theory: x the tilt, s its side, B and C the arms of contact over R. Lanes come
-last, so that a loop over them is one vector instruction; what such loops test is a number, 1 or 0.
-Sizes are part of a record's type: `ways`, the horizontal directions in which the ground moves, and
-the lanes are so known when the kernel is compiled, which is one source for all of them.
+Letters are those of Theory: x the tilt, s its side, B and C the arms of contact over R.
+Lanes come last, so that a loop over them is one vector instruction; what such loops test
+is a number, 1 or 0. Sizes are part of a record's type: `ways`, the horizontal directions
+in which the ground moves, and the lanes are so known when the kernel is compiled, which
+is one source for all of them.
 """
 
 from __future__ import annotations
@@ -26,18 +29,22 @@ from rpscli.physics.tableau import END
 
 Floats = NDArray[np.float64]
 Record: TypeAlias = Any
-"""One entry of an array of records: its fields are attributes, in Python as in machine code."""
+"""One entry of an array of records: its fields are attributes, in
+Python as in machine code."""
 
 LANES = 32
-"""Histories that one core follows at once. Loops over fewer are unrolled by the compiler before it
-looks for vector instructions; more do not fit into the processor's first cache."""
+"""Histories that one core follows at once. Loops over fewer are unrolled by the
+compiler before it looks for vector instructions; more do not fit into the
+processor's first cache."""
 
 STATES = 5
-"""States of many histories: for those that move, those that stand, and those that wait."""
+"""States of many histories: for those that move, those that
+stand, and those that wait."""
 
 PADDING = 8
-"""Rows that no mode uses, and entries that no lane uses. Without them the rows of one lane would
-all fall into a few lines of the processor's cache, and drive each other out."""
+"""Rows that no mode uses, and entries that no lane uses. Without them the
+rows of one lane would all fall into a few lines of the processor's cache,
+and drive each other out."""
 
 NO_HISTORY = -1
 """`history` of a lane that has nothing left to do."""
@@ -58,12 +65,13 @@ STOP_GAP, STOP_STIFFNESS, STOP_DAMPING = range(3)  # d, k_s, c_s
 TENDON_PRESTRESS, TENDON_STIFFNESS, TENDON_YIELD = range(3)  # P_0, k_t, P_y of one column
 ROLLING_MOMENT = 0  # 2 W f
 
-# Branches of a device's law: of a stop with its gap open, pushing back, let go before its gap; of
-# a tendon slack, elastic, yielding; of an own law what it watches above zero or below. The others
-# have one.
+# Branches of a device's law: of a stop with its gap open, pushing back, let go before its
+# gap; of a tendon slack, elastic, yielding; of an own law what it watches above zero or
+# below. The others have one.
 IDLE, WORKING, BEYOND = range(3)
 
-# Phases of motion; STUCK is held by friction while tilted, BEDDED in full contact that gives way.
+# Phases of motion; STUCK is held by friction while tilted, BEDDED in full contact that
+# gives way.
 FULL_CONTACT, ROLLING, ROCKING, STUCK, BEDDED = range(5)
 
 # Kinds of event, in the log and in the counts.
@@ -100,8 +108,8 @@ RUNNING = -1
     FAILED_RESTITUTION,
 ) = range(9)
 
-# Where a step is to end: the tilt leaves its range, passes nearest to upright; a storey at rest is
-# no longer held; a device changes its law; a storey begins to yield, or ends.
+# Where a step is to end: the tilt leaves its range, passes nearest to upright; a storey
+# at rest is no longer held; a device changes its law; a storey begins to yield, or ends.
 NOTHING, LOW, HIGH, NEAREST, LET_GO, CHANGE, YIELD = range(7)
 
 WHOLE = "integer"
@@ -134,7 +142,12 @@ SYSTEM = (
         theta_limit="counts as overturned",
         initial_rotation="theta at the start, released from rest",
     ),
-    Field("initial_turning", "", "rad/s", "rate of its azimuth then, for tests of free motion"),
+    Field(
+        "initial_turning",
+        "",
+        "rad/s",
+        "rate of its azimuth then, for tests of free motion",
+    ),
     Field("rolling", "5", "-", "p, q, c, u0, v0 of `geometry.Phase`"),
     Field("rocking", "5", "-", "the same beyond beta"),
     *_fields(
@@ -164,7 +177,10 @@ SYSTEM = (
     *_fields(
         "",
         WHOLE,
-        axes="records of a structure: horizontal directions, and upwards on vertical springs",
+        axes=(
+            "records of a structure: horizontal directions, and upwards on vertical"
+            " springs"
+        ),
         floors_jump="1 if the floors jump with the cap beam at an impact",
         max_events="more of them are a failure",
         until_rest="1 if it may end earlier, with nothing new to come",
@@ -172,14 +188,18 @@ SYSTEM = (
         compliant="1 if full contact gives way, on a bed",
         yields="1 if storeys may yield",
     ),
-    *_fields("", "-", hardening="h, stiffness of a storey that yields over the elastic one"),
+    *_fields(
+        "", "-", hardening="h, stiffness of a storey that yields over the elastic one"
+    ),
     *_fields("modes", "N", strength="F of a storey, or infinite"),
     *_fields("modes", "N/m", stiffness="k of a storey"),
     *_fields("modes", "kg", mass="of a floor"),
     *_fields("modes", "rad/s", omega="frequencies of the fixed base"),
     *_fields("modes", "1/s2", omega2="w^2"),
     *_fields("modes", "1/s", two_xi_omega="2 xi w"),
-    *_fields("modes", "sqrt(kg)", Gamma="participation Phi^T M 1, shapes mass-normalised"),
+    *_fields(
+        "modes", "sqrt(kg)", Gamma="participation Phi^T M 1, shapes mass-normalised"
+    ),
     *_fields(
         "modes",
         "mixed",
@@ -190,7 +210,9 @@ SYSTEM = (
     ),
     Field("phi", "modes modes", "1/sqrt(kg)", "shapes: mode, floor"),
     Field("storey_shear_of", "modes modes", "N/(m sqrt(kg))", "k_i (phi_i - phi_(i-1))"),
-    Field("bend_ratio", "", "mixed", "largest w^4 times the latter weight over the former"),
+    Field(
+        "bend_ratio", "", "mixed", "largest w^4 times the latter weight over the former"
+    ),
     *_fields(
         "",
         "1/s",
@@ -200,11 +222,23 @@ SYSTEM = (
     ),
     Field("device_kind", f"{SLOTS}", WHOLE, "VISCOUS to OWN"),
     Field("device_constants", f"{SLOTS} 4", "mixed", "of its law, see the kinds"),
-    Field("own_law", f"{SLOTS} 3", WHOLE, "addresses of force and watched value; 1: kink at rest"),
+    Field(
+        "own_law",
+        f"{SLOTS} 3",
+        WHOLE,
+        "addresses of force and watched value; 1: kink at rest",
+    ),
     Field("impact_law", "", WHOLE, "address of an own law of e, or 0"),
-    Field("impact_constants", "6", "mixed", "of it: a, b of e = a + b e_own, and four of its own"),
+    Field(
+        "impact_constants",
+        "6",
+        "mixed",
+        "of it: a, b of e = a + b e_own, and four of its own",
+    ),
     Field("linear_speed", "", "m/s", "up to which |u_b'|^a is followed as linear"),
-    Field("start_speed", "", "m/s", "|u_b'| with which a tilt to any side begins to slide"),
+    Field(
+        "start_speed", "", "m/s", "|u_b'| with which a tilt to any side begins to slide"
+    ),
     *_fields(
         "",
         "rad",
@@ -252,20 +286,42 @@ KEPT = (
     Field("energy_created", "", "J", "at impacts that create it"),
     Field("energy_passes", "", "J", "lost in passes, part of energy_lost"),
     Field("bed_energy", "", "J", "dissipated in the bed, if audited"),
-    Field("closest_pass", "", "-", "least theta_min/alpha of a pass; infinite without passes"),
-    Field("shortest_pass", "", "s", "least theta_min/|theta phi'| of a pass; over t_c it is s"),
+    Field(
+        "closest_pass",
+        "",
+        "-",
+        "least theta_min/alpha of a pass; infinite without passes",
+    ),
+    Field(
+        "shortest_pass",
+        "",
+        "s",
+        "least theta_min/|theta phi'| of a pass; over t_c it is s",
+    ),
     Field("torsion_lever", "", "m", "largest torsion in a contact over the weight on it"),
     Field("bedded_time", "", "s", "in full contact with a bed"),
     Field("impact_number", "", "-", "largest chi"),
-    Field("passes_as_impacts", "", WHOLE, "passes that lost more than half of an impact's share"),
+    Field(
+        "passes_as_impacts",
+        "",
+        WHOLE,
+        "passes that lost more than half of an impact's share",
+    ),
     Field("creating_impacts", "", WHOLE, "impacts that created energy"),
     Field("accumulations", "", WHOLE, "of passes upright, begun anew as uplifts"),
 )
-"""What a lane keeps of its history as it goes, and leaves behind at its end: all is `kept`."""
+"""What a lane keeps of its history as it goes, and leaves behind
+at its end: all is `kept`."""
 
 STATE = (
     # The structure, folded as the laws want it.
-    *_fields("lanes", "m", diameter="2 R", half_width="B of the flat part", arc_radius="r, or 0"),
+    *_fields(
+        "lanes",
+        "m",
+        diameter="2 R",
+        half_width="B of the flat part",
+        arc_radius="r, or 0",
+    ),
     *_fields(
         "lanes",
         "-",
@@ -281,12 +337,20 @@ STATE = (
         kappa="sqrt(K(0)/A(0)) of passes near upright",
         step_error="see `system`",
     ),
-    *_fields("lanes", "1/m", weigh="(1 + 2 gamma + 2 gamma eta)/R", load="(1 + 2 gamma)/R"),
-    *_fields("lanes", "1/(kg m)", share="2/(N m_c R)"),
-    *_fields("lanes", "kg", columns_mass="N m_c", cap_beam_mass="m_b", floors_mass="M_tot"),
-    *_fields("lanes", "kg", riding="of floors that are lifted with the cap beam: all, or none"),
     *_fields(
-        "lanes", "1/kg", spared="g + a_v less at contacts, a newton of floors on springs, else 0"
+        "lanes", "1/m", weigh="(1 + 2 gamma + 2 gamma eta)/R", load="(1 + 2 gamma)/R"
+    ),
+    *_fields("lanes", "1/(kg m)", share="2/(N m_c R)"),
+    *_fields(
+        "lanes", "kg", columns_mass="N m_c", cap_beam_mass="m_b", floors_mass="M_tot"
+    ),
+    *_fields(
+        "lanes", "kg", riding="of floors that are lifted with the cap beam: all, or none"
+    ),
+    *_fields(
+        "lanes",
+        "1/kg",
+        spared="g + a_v less at contacts, a newton of floors on springs, else 0",
     ),
     *_fields("lanes", "m/s2", gravity="g"),
     *_fields("lanes", "rad", beta="end of the arc", theta_cr="static limit"),
@@ -294,7 +358,9 @@ STATE = (
     *_fields("rows lanes", "1/s2", omega2="w^2"),
     *_fields("rows lanes", "1/s", two_xi_omega="2 xi w"),
     *_fields("rows lanes", "sqrt(kg)", Gamma="participation"),
-    *_fields("rows lanes", "mixed", shear_weight="see `system`", acceleration_weight="likewise"),
+    *_fields(
+        "rows lanes", "mixed", shear_weight="see `system`", acceleration_weight="likewise"
+    ),
     # Storeys that may yield, see `storeys`.
     *_fields("lanes", WHOLE, yields="1 if they may", marked="storeys that yield now"),
     *_fields("lanes", "-", hardening="h"),
@@ -306,9 +372,15 @@ STATE = (
     *_fields("rows lanes", "N", drift_most="largest k |d| of a storey that yields"),
     *_fields("rows lanes", "J", yielded="F times the path of its plastic drift"),
     *_fields("rows lanes", "s", first_yield="when, or -1"),
-    *_fields("rows lanes", "m sqrt(kg)/s2", freed="sum g_ri delta_i, load of plastic drifts"),
+    *_fields(
+        "rows lanes", "m sqrt(kg)/s2", freed="sum g_ri delta_i, load of plastic drifts"
+    ),
     *_fields("rows lanes", "m sqrt(kg)/s2", new_freed="at a stage"),
-    *_fields("rows lanes", "N/(m sqrt(kg))", slipping="(1 - h) g_r1 while storey 1 yields, else 0"),
+    *_fields(
+        "rows lanes",
+        "N/(m sqrt(kg))",
+        slipping="(1 - h) g_r1 while storey 1 yields, else 0",
+    ),
     # The history and its records.
     *_fields(
         "lanes",
@@ -343,22 +415,47 @@ STATE = (
         side="s: of one direction",
         moves="1: the tilt is free",
         rolls="1: on the arcs",
-        cone="1: columns that may tilt to any side pass upright as a cone's tip, 0: smoothly",
+        cone=(
+            "1: columns that may tilt to any side pass upright as a cone's tip, 0:"
+            " smoothly"
+        ),
         turned="keeps K continuous at phi_u of a bed, times x^2",
         direction="sign of x' for friction",
     ),
-    *_fields("lanes", "rad", x_low="the phase ends below", x_high="and above", bed_u="phi_u"),
-    *_fields("lanes", "1/s2", bed_k="k in full contact, else 0", bed_back="k phi_u/C_u, see `bed`"),
+    *_fields(
+        "lanes", "rad", x_low="the phase ends below", x_high="and above", bed_u="phi_u"
+    ),
+    *_fields(
+        "lanes",
+        "1/s2",
+        bed_k="k in full contact, else 0",
+        bed_back="k phi_u/C_u, see `bed`",
+    ),
     *_fields("lanes", "1/s", bed_c="damping there, else 0"),
-    Field("rim", "lanes", "rad/s", "bed_c phi_u beyond it, against what goes round, else 0"),
-    *_fields("lanes", "sqrt(rad)", sink="while a plane end lifts, else 0", root="likewise"),
+    Field(
+        "rim", "lanes", "rad/s", "bed_c phi_u beyond it, against what goes round, else 0"
+    ),
+    *_fields(
+        "lanes", "sqrt(rad)", sink="while a plane end lifts, else 0", root="likewise"
+    ),
     *_fields("lanes", "1/rad", fade="1/(x_full - phi_u) of curved ends, else 0"),
     *_fields("lanes", "1/sqrt(rad)", w="w of (12.6)"),
     *_fields("lanes", "1/(rad sqrt(rad))", dw="its slope"),
-    # At rest: what multiplies g + a_v in the limits of R |z| to either side, and what adds to it.
-    *_fields("lanes", "-", limit_right="tan(alpha) (1 + 2 gamma + 2 gamma eta)", limit_left="too"),
+    # At rest: what multiplies g + a_v in the limits of R |z| to either side, and what
+    # adds to it.
+    *_fields(
+        "lanes",
+        "-",
+        limit_right="tan(alpha) (1 + 2 gamma + 2 gamma eta)",
+        limit_left="too",
+    ),
     *_fields("lanes", "m/s2", held_right="of devices and beds", held_left="likewise"),
-    *_fields("lanes", "m/s2", held_x="what friction holds a tilt to any side about", held_y="in y"),
+    *_fields(
+        "lanes",
+        "m/s2",
+        held_x="what friction holds a tilt to any side about",
+        held_y="in y",
+    ),
     # The ground, linear over the interval; and time.
     Field("a_g", "ways lanes", "m/s2", "at the interval's start"),
     Field("a_g_slope", "ways lanes", "m/s3", "over it"),
@@ -376,11 +473,15 @@ STATE = (
     ),
     *_fields("lanes", "1/s", rate="1/dt"),
     # The motion at the start of the step and at its end.
-    *_fields("ways lanes", "rad", tilt="(a, b) = x (cos phi, sin phi)", new_tilt="at the end"),
+    *_fields(
+        "ways lanes", "rad", tilt="(a, b) = x (cos phi, sin phi)", new_tilt="at the end"
+    ),
     *_fields("ways lanes", "rad/s", tilt_rate="its rate", new_tilt_rate="at the end"),
     *_fields("ways lanes", "rad/s2", bend="its acceleration", new_bend="at the end"),
     Field("bends", "stages ways lanes", "rad/s2", "at all stages"),
-    *_fields("axes lanes", "m/s2", shaking="a_g + u_b'', upwards a_v + v_b''", new_shaking="so"),
+    *_fields(
+        "axes lanes", "m/s2", shaking="a_g + u_b'', upwards a_v + v_b''", new_shaking="so"
+    ),
     *_fields("axes lanes", "N", V="base shear, springs and dampers", new_V="at the end"),
     *_fields("lanes", "N", taken="sum of k_1 abs(delta_1) of the ways, out of V"),
     *_fields("axes lanes", "N/s", dV="its rate", new_dV="at the end"),
@@ -406,8 +507,11 @@ STATE = (
         contacts_rise="1: forces of the columns may be, within",
         contacts_near="1: at its start they were near the largest",
     ),
-    # Devices: what they do at a stage, of the beam's force in z, of moments along the tilt.
-    *_fields("lanes", WHOLE, devices="number of devices", tendons="of tendons in a column"),
+    # Devices: what they do at a stage, of the beam's force in z, of moments along the
+    # tilt.
+    *_fields(
+        "lanes", WHOLE, devices="number of devices", tendons="of tendons in a column"
+    ),
     Field("device_kind", f"{SLOTS} lanes", WHOLE, "see `system`"),
     Field("law", f"{SLOTS} 4 lanes", "mixed", "`device_constants` of `system`"),
     Field("own_law", f"{SLOTS} 2 lanes", WHOLE, "addresses, see `system`"),
@@ -421,8 +525,17 @@ STATE = (
         stop_speed="|u_b'| at which friction stops a tilt to any side",
         start_speed="see `system`",
     ),
-    *_fields("lanes", "rad/s", least_error="what a step may err by, where friction turns the tilt"),
-    *_fields("lanes", "N", friction_force="of all friction dampers", tied="by tendons, along it"),
+    *_fields(
+        "lanes",
+        "rad/s",
+        least_error="what a step may err by, where friction turns the tilt",
+    ),
+    *_fields(
+        "lanes",
+        "N",
+        friction_force="of all friction dampers",
+        tied="by tendons, along it",
+    ),
     *_fields("lanes", "N", pull="on the cap beam, downwards"),
     *_fields("lanes", "N m", friction_moment="of all rolling resistance"),
     *_fields("ways lanes", "N", drive="of dampers and stops on the cap beam"),
@@ -433,19 +546,34 @@ STATE = (
         turning_across="of rolling resistance across it",
     ),
     # Sums of linear dampers, and of what has branches or powers; means over the step.
-    *_fields("lanes", "N s/m", viscous="linear dampers", drag_branched="others, over |u_b'|"),
+    *_fields(
+        "lanes", "N s/m", viscous="linear dampers", drag_branched="others, over |u_b'|"
+    ),
     *_fields("lanes", "N", stop_force="of stops that are met"),
     *_fields("lanes", "N m", tendon_moment="of tendons, along the tilt"),
     *_fields("lanes", "-", branched="1: a device has branches or powers"),
-    *_fields("lanes", "m/s", speed="|u_b'| at the start of the step", new_speed="at the end"),
-    *_fields("lanes", "m2/s3", square_rate="rate of its square", new_square_rate="at the end"),
+    *_fields(
+        "lanes", "m/s", speed="|u_b'| at the start of the step", new_speed="at the end"
+    ),
+    *_fields(
+        "lanes", "m2/s3", square_rate="rate of its square", new_square_rate="at the end"
+    ),
     *_fields("lanes", "m/s2", quicker="|u_b''|", new_quicker="at the end"),
-    *_fields("lanes", "-", new_height="C at the end of the step", least_height="least so far"),
+    *_fields(
+        "lanes", "-", new_height="C at the end of the step", least_height="least so far"
+    ),
     *_fields("lanes", "m2/s2", mean_square="of |u_b'|"),
     *_fields("lanes", "m/s", mean_pace="of u_b' against which friction acts"),
-    *_fields("lanes", "rad/s", mean_swing="of the rate against which rolling resistance acts"),
+    *_fields(
+        "lanes", "rad/s", mean_swing="of the rate against which rolling resistance acts"
+    ),
     Field("apart", f"{SLOTS} lanes", "-", "1: a device is looked at by itself"),
-    Field("square_constant", f"{SLOTS} lanes", "N s/m", "of a linear damper: power over u_b'^2"),
+    Field(
+        "square_constant",
+        f"{SLOTS} lanes",
+        "N s/m",
+        "of a linear damper: power over u_b'^2",
+    ),
     Field("pace_constant", f"{SLOTS} lanes", "N", "of a friction damper"),
     Field("swing_constant", f"{SLOTS} lanes", "N m", "of rolling resistance"),
     Field("device_work", f"{SLOTS} lanes", "W", "mean power in the step, of those"),
@@ -454,26 +582,57 @@ STATE = (
     Field("device_velocity", f"{SLOTS} lanes", "m/s", "largest |rate|"),
     # What has come of it so far, and largest demands.
     *(field._replace(sizes="lanes") for field in KEPT),
-    Field("largest", "demands lanes modes", "mixed", "shears, then accelerations, see `floors`"),
+    Field(
+        "largest",
+        "demands lanes modes",
+        "mixed",
+        "shears, then accelerations, see `floors`",
+    ),
     Field("last", "demands lanes modes", "mixed", "when last looked at"),
     Field("room", "demands lanes", "mixed", "no demand rises with a sum to this"),
-    Field("seen_modes", "6 modes", "mixed", "scratch: q and q' in x, perhaps in y, and upwards"),
-    Field("seen", "4 modes", "mixed", "scratch: shears and accelerations in x, perhaps in y"),
-    Field("between", "12 modes", "mixed", "scratch: three shears, three accelerations of each"),
+    Field(
+        "seen_modes",
+        "6 modes",
+        "mixed",
+        "scratch: q and q' in x, perhaps in y, and upwards",
+    ),
+    Field(
+        "seen", "4 modes", "mixed", "scratch: shears and accelerations in x, perhaps in y"
+    ),
+    Field(
+        "between",
+        "12 modes",
+        "mixed",
+        "scratch: three shears, three accelerations of each",
+    ),
     Field("elastic", "2 modes", "N", "scratch: drifts times k in x, perhaps in y"),
     Field("freeing", "2 modes", "mixed", "scratch: what plastic drifts are taken out of"),
     *_fields("rows lanes", "m sqrt(kg)", seen_q="modes when floors were last looked at"),
     *_fields("rows lanes", "m sqrt(kg)/s2", seen_force="their forces"),
     *_fields("ways lanes", "mixed", shear_sum="sum g (q - seen_q)^2 at the end"),
-    *_fields("ways lanes", "mixed", shear_before="at its start", bent="sum g (q' - new_q')^2"),
-    *_fields("ways lanes", "mixed", acceleration_sum="over modal forces", acceleration_before="so"),
+    *_fields(
+        "ways lanes", "mixed", shear_before="at its start", bent="sum g (q' - new_q')^2"
+    ),
+    *_fields(
+        "ways lanes",
+        "mixed",
+        acceleration_sum="over modal forces",
+        acceleration_before="so",
+    ),
     *_fields("lanes", "mixed", bend_ratio="see `system`"),
     Field("max_beam", "ways lanes", "m", "largest |u_b| in either direction"),
-    *_fields("lanes", "W", power_input="mean of the step", power_damped="so", power_bed="so"),
+    *_fields(
+        "lanes", "W", power_input="mean of the step", power_damped="so", power_bed="so"
+    ),
     *_fields("lanes", "W", power_upwards="of the dampers between floors upwards, so"),
     Field("factors", "6 rows lanes", "mixed", "of the exact step, see `standing`"),
     *_fields("lanes", "s", factors_h="step that they are of"),
-    Field("within", "16 rows", "mixed", "factors of velocities within the step of the only lane"),
+    Field(
+        "within",
+        "16 rows",
+        "mixed",
+        "factors of velocities within the step of the only lane",
+    ),
     *_fields("lanes", "s", within_h="step that they are of"),
     Field("piece", "8", "mixed", "scratch of the search for roots"),
     Field("n", "", WHOLE, "storeys, and modes in each direction: the same in all lanes"),
@@ -491,7 +650,9 @@ STATE = (
 RESULT = (
     Field("outcome", "", WHOLE, "how the history ended"),
     Field("phase", "", WHOLE, "phase of motion at its end"),
-    Field("ways", "", WHOLE, "horizontal components: of one, what asks for two is not known"),
+    Field(
+        "ways", "", WHOLE, "horizontal components: of one, what asks for two is not known"
+    ),
     Field("intervals", "", WHOLE, "sampling intervals that it lasted"),
     Field("steps", "", WHOLE, "steps taken"),
     Field("events", f"{EVENT_KINDS}", WHOLE, "of each kind"),
@@ -546,8 +707,8 @@ SAMPLE = (
     Field("shear_top", "2", "N", "F on what stands on the columns"),
     Field("shear_bottom", "2", "N", "F on the columns"),
 )
-"""Displacements and velocities of the floors over the ground, and their absolute accelerations,
-stand in an array of their own: those in x, then those in y."""
+"""Displacements and velocities of the floors over the ground, and their absolute
+accelerations, stand in an array of their own: those in x, then those in y."""
 
 EVENT = (
     Field("time", "", "s", "since the record's start"),
@@ -556,15 +717,27 @@ EVENT = (
     Field("theta_dot_before", "", "rad/s", "theta' just before"),
     Field("theta_dot_after", "", "rad/s", "theta' just after"),
     Field("energy_lost", "", "J", "in the event; negative where it was created"),
-    Field("azimuth", "", "rad", "of the tilt, after a pass that towards which it goes on"),
+    Field(
+        "azimuth", "", "rad", "of the tilt, after a pass that towards which it goes on"
+    ),
     Field("least_tilt", "", "rad", "of a pass: theta_min; else 0"),
-    Field("nearness", "", "-", "of a pass: s = theta_min/(|q| t_c); infinite for t_c = 0"),
+    Field(
+        "nearness", "", "-", "of a pass: s = theta_min/(|q| t_c); infinite for t_c = 0"
+    ),
     Field("loss_share", "", "-", "of a pass: l, of what an impact would lose"),
 )
 
 
 STOREYS_THAT_YIELD = {
-    *("strength", "stiffness", "mark", "middle", "middle_most", "middle_least", "drift_most"),
+    *(
+        "strength",
+        "stiffness",
+        "mark",
+        "middle",
+        "middle_most",
+        "middle_least",
+        "drift_most",
+    ),
     *("yielded", "first_yield", "new_freed", "slipping"),
 }
 """Fields of modes that say something where storeys may yield."""
@@ -574,7 +747,9 @@ OVERLAYS = "words", "device_words", "mode_words", "storey_words"
 
 
 def kind_of_field(field: Field) -> int:
-    """0 of numbers of all lanes; from 1 on of one, as `OVERLAYS`; behind them what is scratch."""
+    """0 of numbers of all lanes; from 1 on of one, as `OVERLAYS`;
+    behind them what is scratch.
+    """
     if not field.sizes:
         return 0
     *sizes, last = field.sizes.split()
@@ -588,13 +763,16 @@ def kind_of_field(field: Field) -> int:
 
 
 @cache
-def record_type(fields: tuple[Field, ...], ways: int = 1, lanes: int = 1) -> np.dtype[Any]:
+def record_type(
+    fields: tuple[Field, ...], ways: int = 1, lanes: int = 1
+) -> np.dtype[Any]:
     """The type of a record of such fields, for so many directions and lanes.
 
-    Fields of one shape stand together, and single numbers before all: a loop over lanes then writes
-    before or behind what it reads, which the compiler can tell. Then come those that a lane keeps
-    from step to step: of itself and of its devices (`words`, `device_words`: number, lane), of its
-    modes and of storeys that yield (`mode_words`, `storey_words`: field, mode, lane).
+    Fields of one shape stand together, and single numbers before all: a loop over lanes
+    then writes before or behind what it reads, which the compiler can tell. Then come
+    those that a lane keeps from step to step: of itself and of its devices (`words`,
+    `device_words`: number, lane), of its modes and of storeys that yield (`mode_words`,
+    `storey_words`: field, mode, lane).
     """
     sizes = {
         "ways": ways,
@@ -614,7 +792,9 @@ def record_type(fields: tuple[Field, ...], ways: int = 1, lanes: int = 1) -> np.
     before = 0
     for field in ordered:
         number = np.int64 if field.unit == WHOLE else np.float64
-        kind = np.dtype((number, tuple(int(sizes.get(z, z)) for z in field.sizes.split())))
+        kind = np.dtype(
+            (number, tuple(int(sizes.get(z, z)) for z in field.sizes.split()))
+        )
         if kinds[field] != before:  # and then all do, of many lanes
             end = -(-end // LINE) * LINE
         before = kinds[field]
@@ -652,7 +832,9 @@ def overlays(of: dict[str, Location]) -> dict[str, Location]:
 
 
 def overlay(members: list[Location], *, each: bool = False) -> Location:
-    """Words of fields that stand together: as rows of lanes, or `each` as a table of its own."""
+    """Words of fields that stand together: as rows of lanes, or
+    `each` as a table of its own.
+    """
     shape = members[0][0].shape
     words = sum(member.itemsize for member, _ in members) // 8
     rows = (words // shape[-1], shape[-1]) if shape else (words,)
@@ -661,11 +843,14 @@ def overlay(members: list[Location], *, each: bool = False) -> Location:
 
 
 PAGE = 4096
-"""Bytes of a page of memory. numpy begins an array anywhere; begun within a page, a lane may take
-half as long again, as its rows fall on other lines of the processor's cache in each process."""
+"""Bytes of a page of memory. numpy begins an array anywhere; begun within a page,
+a lane may take half as long again, as its rows fall on other lines of the
+processor's cache in each process."""
 
 
-def records(fields: tuple[Field, ...], count: int = 1, ways: int = 1, lanes: int = 1) -> Record:
+def records(
+    fields: tuple[Field, ...], count: int = 1, ways: int = 1, lanes: int = 1
+) -> Record:
     """An array (count,) of records of zeros that begins with a page."""
     kind = record_type(fields, ways, lanes)
     size = kind.itemsize * count
@@ -678,9 +863,11 @@ _kept = local()
 
 
 def scratch(ways: int, lanes: int) -> Record:
-    """States that this thread keeps, with whatever their last use left there (1,) or (STATES,).
+    """States that this thread keeps, with whatever their last use left
+    there (1,) or (STATES,).
 
-    A state takes megabytes: made anew for each short history, it would take as long as the history.
+    A state takes megabytes: made anew for each short history, it would
+    take as long as the history.
     """
     kept = vars(_kept)
     name = f"{ways} {lanes}"

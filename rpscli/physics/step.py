@@ -1,8 +1,9 @@
 """A Runge-Kutta step of all lanes together, each by a length of its own (`tableau`).
 
-At rest the same step holds the tilt. Of each stage, modes come first: their displacements give the
-base shear, with it the laws the acceleration of the tilt and of the cap beam, and that what the
-modes do next. Sums are written as they are to be rounded: a history does not know its company.
+At rest the same step holds the tilt. Of each stage, modes come first: their displacements
+give the base shear, with it the laws the acceleration of the tilt and of the cap beam,
+and that what the modes do next. Sums are written as they are to be rounded: a history
+does not know its company.
 """
 
 from __future__ import annotations
@@ -44,10 +45,11 @@ from rpscli.physics.tableau import END, ERROR, SQUARED, STAGES, TIMES, USED
 
 @inlined
 def find(s: Record, at: float, weight: float, equipped: bool) -> None:
-    """Accelerations of all lanes a part of the step behind its start, from `new_tilt` and the like.
+    """Accelerations of all lanes a part of the step behind its start, from
+    `new_tilt` and the like.
 
-    Reads `new_V`; writes `new_bend`, `new_shaking` and the polar values of the tilt, and adds to
-    the work of devices.
+    Reads `new_V`; writes `new_bend`, `new_shaking` and the polar values of the tilt, and
+    adds to the work of devices.
     """
     up = ways_of(s)
     for l in range(lanes_of(s)):
@@ -88,7 +90,9 @@ def accelerate_equipped(s: Record, at: float, weight: float) -> None:
 
 @inlined
 def terms(s: Record, k: int) -> int:
-    """How many terms the sums up to stage k have: for loops over lanes a number that is known."""
+    """How many terms the sums up to stage k have: for loops over
+    lanes a number that is known.
+    """
     return END if lanes_of(s) > 1 else k
 
 
@@ -176,7 +180,9 @@ def find_accelerations(s: Record, k: int) -> None:
 
 @compiled
 def all_stages(s: Record, systems: Record) -> None:
-    """All stages; of lanes side by side written out: the sums become vector instructions."""
+    """All stages; of lanes side by side written out: the sums
+    become vector instructions.
+    """
     if lanes_of(s) == 1:
         for k in range(1, END + 1):
             advance_to(s, systems, k)
@@ -193,7 +199,9 @@ def all_stages(s: Record, systems: Record) -> None:
 
 @compiled
 def take_steps(s: Record, systems: Record) -> None:
-    """Take a step of all lanes: writes the end, and the error of the tilt over what it may be."""
+    """Take a step of all lanes: writes the end, and the error of the
+    tilt over what it may be.
+    """
     lanes = lanes_of(s)
     for axis in range(ways_of(s)):
         for l in range(lanes):
@@ -209,13 +217,15 @@ def take_steps(s: Record, systems: Record) -> None:
 
 
 NOISE = 5e-13
-"""Of what turns the columns back, and of what plastic drifts take from the base shear: what of a
-difference of both rules is rounding."""
+"""Of what turns the columns back, and of what plastic drifts take from the base shear:
+what of a difference of both rules is rounding."""
 
 
 @inlined
 def error_of(s: Record, l: int) -> float:
-    """Difference of the rules of order 6 and 5 in the tilt's rate, over what it may be."""
+    """Difference of the rules of order 6 and 5 in the tilt's
+    rate, over what it may be.
+    """
     missed = 0.0
     speed = 0.0
     for axis in range(ways_of(s)):
@@ -227,14 +237,18 @@ def error_of(s: Record, l: int) -> float:
         fast = abs(s.tilt_rate[axis, l]) + abs(s.new_tilt_rate[axis, l]) + faster
         speed += fast * fast
     limit = s.step_error[l] * math.sqrt(speed) + s.least_error[l]
-    turned = NOISE * s.weigh[l] * s.gravity[l] * s.tan_a[l] + NOISE * pushed_by(s, l, s.taken[l])
+    turned = NOISE * s.weigh[l] * s.gravity[l] * s.tan_a[l] + NOISE * pushed_by(
+        s, l, s.taken[l]
+    )
     limit += s.h[l] * (turned / s.one[l])
     return s.h[l] * math.sqrt(missed) / (limit if limit > 0.0 else 1.0)  # type: ignore[no-any-return]
 
 
 @inlined
 def end_rates(s: Record) -> None:
-    """Rates of the base shear at the ends of steps (10.6); the second of buildings at rest."""
+    """Rates of the base shear at the ends of steps (10.6); the
+    second of buildings at rest.
+    """
     n = s.n
     lanes = lanes_of(s)
     for axis in range(s.axes):
@@ -257,7 +271,9 @@ def end_rates(s: Record) -> None:
 
 @compiled
 def renew(s: Record, l: int) -> None:
-    """Accelerations of one lane at its present state and time: what the next step begins with."""
+    """Accelerations of one lane at its present state and time: what
+    the next step begins with.
+    """
     now = polar(s, l, tilt_of(s, l), rate_of(s, l))
     up = ways_of(s)
     s.w[l], s.dw[l] = patch(s, l, now.x)
@@ -312,7 +328,9 @@ def book_power(
     tilt: tuple[float, float],
     rate: tuple[float, float],
 ) -> None:
-    """Add the power of ground, dampers and bed in the only lane, its velocities in `new_dq`."""
+    """Add the power of ground, dampers and bed in the only lane,
+    its velocities in `new_dq`.
+    """
     supplied = 0.0
     damped = 0.0
     upwards = 0.0

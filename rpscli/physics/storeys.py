@@ -1,8 +1,10 @@
-"""Storeys that yield: springs with a strength and kinematic hardening (Theory, section 15).
+"""Storeys that yield: springs with a strength and kinematic
+hardening (Theory, section 15).
 
-A storey's elastic range has a middle c: k |d - c| <= F. While it yields towards its mark, 1 or -1,
-the middle follows the drift at F/k, else it rests. Its plastic drift is delta = (1 - h) c, its
-shear k (d - delta). The modes of the elastic building feel k delta as a load, `freed`.
+A storey's elastic range has a middle c: k |d - c| <= F. While it yields towards its
+mark, 1 or -1, the middle follows the drift at F/k, else it rests. Its plastic drift is
+delta = (1 - h) c, its shear k (d - delta). The modes of the elastic building feel k
+delta as a load, `freed`.
 """
 
 from __future__ import annotations
@@ -35,13 +37,19 @@ def slip_force(s: Record, l: int, r: int, elastic: float) -> float:
 
 @compiled
 def base_slip(s: Record, l: int, axis: int, elastic: float) -> float:
-    """What the first storey's plastic drift takes from the base shear of the modes [N]."""
+    """What the first storey's plastic drift takes from the
+    base shear of the modes [N].
+    """
     return slip_force(s, l, axis * s.n, elastic) if s.yields[l] > 0 else 0.0
 
 
 @compiled
-def free_rows(s: Record, l: int, system: Record, axis: int, shears: Floats, forces: Floats) -> None:
-    """Take plastic drifts out of rows of k d and of floor accelerations, whose sign is -1 (n,)."""
+def free_rows(
+    s: Record, l: int, system: Record, axis: int, shears: Floats, forces: Floats
+) -> None:
+    """Take plastic drifts out of rows of k d and of floor
+    accelerations, whose sign is -1 (n,).
+    """
     below = 0.0
     for i in range(s.n - 1, -1, -1):
         slip = slip_force(s, l, axis * s.n + i, shears[i])
@@ -54,7 +62,9 @@ def free_rows(s: Record, l: int, system: Record, axis: int, shears: Floats, forc
 def drift_of(
     s: Record, l: int, system: Record, axis: int, i: int, end: int
 ) -> tuple[float, float, float]:
-    """A storey's drift times k with two derivatives, at the start (0) or the end (1) of a step."""
+    """A storey's drift times k with two derivatives, at the start (0)
+    or the end (1) of a step.
+    """
     d = 0.0
     rate = 0.0
     bend = 0.0
@@ -66,7 +76,11 @@ def drift_of(
             rate = rate + each * s.new_dq[r, l]
             bend -= each * (s.Gamma[r, l] * s.new_shaking[axis, l] + s.force[r, l])
         else:
-            force = s.omega2[r, l] * s.q[r, l] + s.two_xi_omega[r, l] * s.dq[r, l] - s.freed[r, l]
+            force = (
+                s.omega2[r, l] * s.q[r, l]
+                + s.two_xi_omega[r, l] * s.dq[r, l]
+                - s.freed[r, l]
+            )
             d = d + each * s.q[r, l]
             rate = rate + each * s.dq[r, l]
             bend -= each * (s.Gamma[r, l] * s.shaking[axis, l] + force)
@@ -119,7 +133,9 @@ def write_load(s: Record, l: int, system: Record, axis: int, elastic: Floats) ->
 
 @compiled
 def slip_rates(s: Record, l: int, axis: int, end: int) -> None:
-    """Take what the first storey yields by from the rates of the base shear (`slipping`)."""
+    """Take what the first storey yields by from the rates of the
+    base shear (`slipping`).
+    """
     rate = 0.0
     bend = 0.0
     for r in range(axis * s.n, (axis + 1) * s.n):
@@ -230,10 +246,11 @@ JUMPED = 1e-9
 
 @compiled
 def review_storeys(s: Record, l: int, systems: Record) -> bool:
-    """Marks and ranges after the beam may have jumped, in velocity or way; True if any changed.
+    """Marks and ranges after the beam may have jumped, in velocity or
+    way; True if any changed.
 
-    A storey that now drifts back, or is no longer at its strength, does not yield; one beyond its
-    strength has yielded by what it is.
+    A storey that now drifts back, or is no longer at its strength, does not yield; one
+    beyond its strength has yielded by what it is.
     """
     n = s.n
     changed = False
@@ -254,7 +271,9 @@ def review_storeys(s: Record, l: int, systems: Record) -> bool:
 
 
 @compiled
-def yield_at_once(s: Record, l: int, system: Record, r: int, middle: float, drift: float) -> None:
+def yield_at_once(
+    s: Record, l: int, system: Record, r: int, middle: float, drift: float
+) -> None:
     """Move the middle of a storey's range, and book what its springs lose."""
     n = s.n
     before = slip_energy(s, l)

@@ -156,7 +156,9 @@ def hold(s: Record, l: int, system: Record) -> None:
 
 @compiled
 def stop_or_turn(s: Record, l: int, system: Record, log: Record) -> None:
-    """What slides too slowly to any side: be held, or go on along what is not held (13.25)."""
+    """What slides too slowly to any side: be held, or go on along
+    what is not held (13.25).
+    """
     grip = grip_at(s, l, 0)
     if grip.margin >= 0.0:
         set_sliding(s, l, system, 0.0, 0.0, 0.0)
@@ -168,8 +170,11 @@ def stop_or_turn(s: Record, l: int, system: Record, log: Record) -> None:
 
 
 @compiled
-def set_sliding(s: Record, l: int, system: Record, d_n: float, d_t: float, speed: float) -> None:
-    """Set the rate of a tilt that hardly slides along a unit vector [speed m/s of the beam].
+def set_sliding(
+    s: Record, l: int, system: Record, d_n: float, d_t: float, speed: float
+) -> None:
+    """Set the rate of a tilt that hardly slides along a unit vector
+    [speed m/s of the beam].
 
     The first device with friction books the difference.
     """
@@ -185,7 +190,9 @@ def set_sliding(s: Record, l: int, system: Record, d_n: float, d_t: float, speed
 
 @compiled
 def slide(s: Record, l: int, system: Record, log: Record, side: int) -> None:
-    """Leave a tilt that friction held, or the end of the bed, to the right or to the left."""
+    """Leave a tilt that friction held, or the end of the bed, to
+    the right or to the left.
+    """
     phase = ROLLING if s.rolls[l] > 0.0 else ROCKING
     if s.x[l] == 0.0 and system.compliant == 0 and ways_of(s) == 1:
         s.side[l] = float(side)  # upright, a tilt grows to either side

@@ -1,8 +1,9 @@
 """J. H. Verner's efficient pair of Runge-Kutta rules of orders 6 and 5, as numbers.
 
-Numerical Algorithms 53 (2010) 383-396. Eight stages and the end, whose acceleration is the next
-step's first: y_k = y_0 + h sum_j A[k, j] y'_j, A being `STAGES`. Of what has a second derivative,
-positions follow by the squared tableau, y_k = y_0 + h C[k] y'_0 + h^2 sum_j (A A)[k, j] y''_j.
+Numerical Algorithms 53 (2010) 383-396. Eight stages and the end, whose acceleration is
+the next step's first: y_k = y_0 + h sum_j A[k, j] y'_j, A being `STAGES`. Of what has a
+second derivative, positions follow by the squared tableau, y_k = y_0 + h C[k] y'_0 + h^2
+sum_j (A A)[k, j] y''_j.
 """
 
 from __future__ import annotations

@@ -1,10 +1,11 @@
 """Near the upright position: uplift, impact or pass, and how a storey comes to rest.
 
-In one plane a column goes over from one edge to the other: an impact (4.7). Of columns that tilt to
-any side the motion becomes one on a cone: what passes near upright turns its azimuth by pi/kappa in
-all, kappa = sqrt(K(0)/A(0)), however near. A real contact takes a time t_c of its own. A pass whose
-own time x/|q| is short beside it loses what an impact does and goes straight on; between the two
-stands a fit, the share l of that loss (13.14) to (13.16).
+In one plane a column goes over from one edge to the other: an impact (4.7). Of columns
+that tilt to any side the motion becomes one on a cone: what passes near upright turns
+its azimuth by pi/kappa in all, kappa = sqrt(K(0)/A(0)), however near. A real contact
+takes a time t_c of its own. A pass whose own time x/|q| is short beside it loses what
+an impact does and goes straight on; between the two stands a fit, the share l of that
+loss (13.14) to (13.16).
 """
 
 from __future__ import annotations
@@ -66,8 +67,9 @@ FIRST_STEP = 3e-5
 
 DIRECTIONLESS = 1e-12
 KEEP_COMING = 8
-"""Passes nearer to upright [rad] leave in a direction that no program resolves: so many of them in
-a row are an accumulation, and become an uplift begun anew along what pushes."""
+"""Passes nearer to upright [rad] leave in a direction that no program
+resolves: so many of them in a row are an accumulation, and become an uplift
+begun anew along what pushes."""
 
 SLOW = 20.0
 """A pass whose v^2 is below this times (|z| + limit) theta_c/A does not leave upright."""
@@ -121,7 +123,9 @@ def move_floors(s: Record, l: int, before: Beam) -> None:
 
 
 @compiled
-def set_polar(s: Record, l: int, x: float, n: float, t: float, p: float, q: float) -> None:
+def set_polar(
+    s: Record, l: int, x: float, n: float, t: float, p: float, q: float
+) -> None:
     """Set tilt and rate of a lane by x, the azimuth, x' and the rate across it."""
     s.x[l] = x
     s.v[l] = p
@@ -134,7 +138,9 @@ def set_polar(s: Record, l: int, x: float, n: float, t: float, p: float, q: floa
 
 @compiled
 def change_rate(s: Record, l: int, system: Record, p: float, q: float) -> float:
-    """Set x' and the rate across it; floors keep their velocities. Returns what is lost [J]."""
+    """Set x' and the rate across it; floors keep their velocities.
+    Returns what is lost [J].
+    """
     energy = total_energy(s, l, system)
     before = beam_now(s, l)
     x, n, t, _, _ = polar(s, l, tilt_of(s, l), rate_of(s, l))
@@ -145,7 +151,9 @@ def change_rate(s: Record, l: int, system: Record, p: float, q: float) -> float:
 
 @compiled
 def restitution_at(s: Record, l: int, system: Record, rate: float) -> float:
-    """e at a rate of the tilt; what an own law gives outside of (0, 1] ends the history."""
+    """e at a rate of the tilt; what an own law gives outside of
+    (0, 1] ends the history.
+    """
     if system.impact_law == 0:
         return float(system.restitution)
     of = system.impact_constants
@@ -162,7 +170,8 @@ def restitution_at(s: Record, l: int, system: Record, rate: float) -> float:
 def loss_share(nearness: float) -> float:
     """l(s): of what an impact loses, what a pass of s = theta_min/(|q| t_c) does (13.14).
 
-    Fitted within .04 to passes of single columns on plastic contacts of t_c from 80 us to 8 ms.
+    Fitted within .04 to passes of single columns on plastic contacts
+    of t_c from 80 us to 8 ms.
     """
     if not nearness < 1e6:
         return 0.0
@@ -171,7 +180,9 @@ def loss_share(nearness: float) -> float:
 
 @compiled
 def pass_upright(s: Record, l: int, system: Record, log: Record, near: bool) -> None:
-    """An impact of one plane, or a pass of free columns; `near`: by the map from theta_c."""
+    """An impact of one plane, or a pass of free columns; `near`:
+    by the map from theta_c.
+    """
     if ways_of(s) == 1:
         impact(s, l, system, log)
         return
@@ -220,20 +231,29 @@ def pass_upright(s: Record, l: int, system: Record, log: Record, near: bool) -> 
         log[row].least_tilt = least
         log[row].nearness = nearness
         log[row].loss_share = share
+    count_pass(s, l, system, least, speed, share)
+    take_up_stops(s, l, log)
+
+
+@compiled
+def count_pass(
+    s: Record, l: int, system: Record, least: float, speed: float, share: float
+) -> None:
+    """Keep how near a pass came, what it lost, and whether its direction is known."""
     s.closest_pass[l] = min(s.closest_pass[l], least / system.alpha)
     s.shortest_pass[l] = min(s.shortest_pass[l], least / max(speed, 1e-300))
     s.passes_as_impacts[l] += 1 if share > 0.5 else 0
     lost_direction = 0.0 < least < DIRECTIONLESS  # in a plane it is known
     s.directionless[l] = s.directionless[l] + 1 if lost_direction else 0
-    take_up_stops(s, l, log)
 
 
 @compiled
 def impact(s: Record, l: int, system: Record, log: Record) -> None:
-    """From the edge on one side to the other (4.7); without a flat part the same motion goes on.
+    """From the edge on one side to the other (4.7); without a flat part
+    the same motion goes on.
 
-    theta'+ = e theta'-, and floors that move with the cap beam jump by
-    -2 R cos(alpha) (1 - e) theta'- (paper, Eq. 6); those that do not keep their own velocity.
+    theta'+ = e theta'-, and floors that move with the cap beam jump by -2 R cos(alpha) (1
+    - e) theta'- (paper, Eq. 6); those that do not keep their own velocity.
     """
     if s.phase[l] != first_phase(system):
         enter_phase(s, l, system, first_phase(system))
@@ -251,7 +271,9 @@ def impact(s: Record, l: int, system: Record, log: Record) -> None:
     jump = -arm * (1.0 - e) * rate
     lost = tilting_energy(s, l, at, arriving, 0.0)
     if system.floors_jump > 0:
-        momentum = relative_momentum(s, l, 0) + s.floors_mass[l] * (arm * rate + 0.5 * jump)
+        momentum = relative_momentum(s, l, 0) + s.floors_mass[l] * (
+            arm * rate + 0.5 * jump
+        )
         lost -= jump * momentum
     else:
         for r in range(s.n):
@@ -286,10 +308,12 @@ def pushes(s: Record, l: int) -> tuple[float, float, float, float]:
 
 @compiled
 def settle(s: Record, l: int, system: Record, log: Record, near: bool) -> None:
-    """After it: come to rest if it is that slow; what is too slow to get away starts anew.
+    """After it: come to rest if it is that slow; what is too slow
+    to get away starts anew.
 
-    Impacts accumulate: each excursion is e^2 times as high as the last. At constant deceleration
-    one reaches v^2/(2 |x''|). Reads the accelerations behind the impact or the pass.
+    Impacts accumulate: each excursion is e^2 times as high as the last. At
+    constant deceleration one reaches v^2/(2 |x''|). Reads the accelerations
+    behind the impact or the pass.
     """
     low = system.recontact_tolerance * system.alpha
     x, _, _, p, q = polar(s, l, tilt_of(s, l), rate_of(s, l))
@@ -317,9 +341,9 @@ def settle(s: Record, l: int, system: Record, log: Record, near: bool) -> None:
 def bounces_left_out(s: Record, l: int, system: Record) -> float:
     """What the bounces left out add to the floors' velocity, over u_b' (3.5).
 
-    Floors that do not jump keep theirs: the beam stops. Friction lets the beam come back with k of
-    the rate with which it left: k = 1 without it, 0 if it holds the beam where it turns (11.17),
-    (11.18).
+    Floors that do not jump keep theirs: the beam stops. Friction lets the beam come back
+    with k of the rate with which it left: k = 1 without it, 0 if it holds the beam where
+    it turns (11.17), (11.18).
     """
     friction = s.friction_force[l] + s.friction_moment[l]
     if system.floors_jump == 0:
@@ -337,9 +361,9 @@ def bounces_left_out(s: Record, l: int, system: Record) -> float:
 def come_to_rest(s: Record, l: int, system: Record, log: Record) -> None:
     """Full contact from now on.
 
-    The floors lose the cap beam's velocity u_b' and would keep the relative one; the bounces that
-    are left out change it by a multiple of u_b' (3.5). What they lose of u_b' is lost: the mean of
-    both velocities times the change.
+    The floors lose the cap beam's velocity u_b' and would keep the relative one; the
+    bounces that are left out change it by a multiple of u_b' (3.5). What they lose of
+    u_b' is lost: the mean of both velocities times the change.
     """
     x, _, _, p, q = polar(s, l, tilt_of(s, l), rate_of(s, l))
     before = beam_now(s, l)
@@ -351,7 +375,9 @@ def come_to_rest(s: Record, l: int, system: Record, log: Record) -> None:
     lost += lifted_mass(s, l) * s.gravity[l] * lift_at(s, l, x)
     for axis in range(s.axes):
         u = before[RATES + axis]
-        carried = relative_momentum(s, l, axis) + 0.5 * (1.0 + kept) * s.floors_mass[l] * u
+        carried = (
+            relative_momentum(s, l, axis) + 0.5 * (1.0 + kept) * s.floors_mass[l] * u
+        )
         lost += (1.0 - kept) * u * carried
         for r in range(axis * s.n, (axis + 1) * s.n):
             s.q[r, l] += s.Gamma[r, l] * before[axis]
@@ -367,7 +393,9 @@ def come_to_rest(s: Record, l: int, system: Record, log: Record) -> None:
 
 @compiled
 def begin_tilt(s: Record, l: int, system: Record, z_x: float, z_y: float) -> None:
-    """Tilt along z, at rest: by 1e-9 where it may be to any side; the work of that is booked."""
+    """Tilt along z, at rest: by 1e-9 where it may be to any side;
+    the work of that is booked.
+    """
     size = math.sqrt(z_x * z_x + z_y * z_y)
     if size == 0.0:  # what falls freely may tilt to any side
         z_x = 1.0
@@ -384,7 +412,9 @@ def begin_tilt(s: Record, l: int, system: Record, z_x: float, z_y: float) -> Non
     if s.phase[l] != FULL_CONTACT:
         x, _, _, p, q = polar(s, l, tilt_of(s, l), rate_of(s, l))
         rise -= x
-        lifted = potential(s, l, system, x) + tilting_energy(s, l, place_of(s, l, x), p, q)
+        lifted = potential(s, l, system, x) + tilting_energy(
+            s, l, place_of(s, l, x), p, q
+        )
     else:
         lifted = potential(s, l, system, 0.0)
     enter_phase(s, l, system, first_phase(system))
@@ -401,7 +431,9 @@ def begin_tilt(s: Record, l: int, system: Record, z_x: float, z_y: float) -> Non
 
 @compiled
 def keep_growing(s: Record, l: int, out: float) -> None:
-    """At the threshold x'' is zero but for rounding, and about to grow, or (-1) to fall."""
+    """At the threshold x'' is zero but for rounding, and about
+    to grow, or (-1) to fall.
+    """
     s.a[l] = out * max(out * s.a[l], 0.0)
     s.bend[0, l] = s.side[l] * s.a[l]
 
@@ -425,7 +457,8 @@ def uplift(s: Record, l: int, system: Record, log: Record, side: int) -> None:
 def pass_on_bed(s: Record, l: int, system: Record, log: Record, enters: bool) -> None:
     """Uplift from a bed, or contact with it again; floors keep their velocities.
 
-    Going outwards x' changes by j, inwards by e/j, and what goes round by e (13.21), (13.22).
+    Going outwards x' changes by j, inwards by e/j, and what goes
+    round by e (13.21), (13.22).
     """
     if s.x[l] < 0.0:  # over to the other side
         s.side[l] = -s.side[l]
@@ -462,7 +495,8 @@ NEAREST_RETURN = 1e-4
 
 @compiled
 def keep_apart(s: Record, l: int, system: Record) -> None:
-    """Let a slow storey leave phi_u a little where the bed pushes out and lifted ends turn back.
+    """Let a slow storey leave phi_u a little where the bed pushes out
+    and lifted ends turn back.
 
     It goes to and fro there until either lets it go.
     """

@@ -1,4 +1,6 @@
-"""The motion within the step just taken: of modes, of the tilt, and what forces may bulge."""
+"""The motion within the step just taken: of modes, of the tilt,
+and what forces may bulge.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +18,9 @@ WITHIN = 1.5
 
 @inlined
 def bulge(s: Record, l: int, first: int, end: int) -> float:
-    """What the forces of springs in some axes may be within the step above both ends [N]."""
+    """What the forces of springs in some axes may be within the
+    step above both ends [N].
+    """
     square = 0.0
     for axis in range(first, end):
         change = s.new_dV[axis, l] - s.dV[axis, l]
@@ -25,8 +29,8 @@ def bulge(s: Record, l: int, first: int, end: int) -> float:
 
 
 PARTS = 8
-"""Of steps that are made for vertical springs, in which the motions of floors turn: a parabola
-through both ends of a part and its middle leaves 4e-6 of a vibration."""
+"""Of steps that are made for vertical springs, in which the motions of floors turn: a
+parabola through both ends of a part and its middle leaves 4e-6 of a vibration."""
 
 
 STRAIGHT = 1e-5
@@ -46,7 +50,9 @@ def mode_path(s: Record, r: int, l: int, axis: int) -> Quintic:
     """A mode's displacement over the step just taken."""
     start = mode_acceleration(s, r, l, axis)
     end = -(s.Gamma[r, l] * s.new_shaking[axis, l]) - s.force[r, l]
-    return quintic(s.h[l], s.q[r, l], s.dq[r, l], start, s.new_q[r, l], s.new_dq[r, l], end)
+    return quintic(
+        s.h[l], s.q[r, l], s.dq[r, l], start, s.new_q[r, l], s.new_dq[r, l], end
+    )
 
 
 @compiled
@@ -68,7 +74,9 @@ def mode_within(s: Record, r: int, l: int, axis: int, t: float) -> tuple[float, 
 
 
 @inlined
-def tilt_within(s: Record, l: int, t: float) -> tuple[tuple[float, float], tuple[float, float]]:
+def tilt_within(
+    s: Record, l: int, t: float
+) -> tuple[tuple[float, float], tuple[float, float]]:
     """The tilt and its rate a fraction t into the step, by quintics through both ends."""
     x = axis_path(s, l, 0)
     per_h = 1.0 / s.h[l] if s.h[l] > 0.0 else 0.0
@@ -79,7 +87,9 @@ def tilt_within(s: Record, l: int, t: float) -> tuple[tuple[float, float], tuple
 
 
 @inlined
-def axis_path(s: Record, l: int, axis: int) -> tuple[float, float, float, float, float, float]:
+def axis_path(
+    s: Record, l: int, axis: int
+) -> tuple[float, float, float, float, float, float]:
     """The quintic of a component of the tilt over the step."""
     return quintic(
         s.h[l],

@@ -24,10 +24,11 @@ if TYPE_CHECKING:
 class Recording(NamedTuple):
     """An earthquake and a station; empty or None where the source does not say.
 
-    `event` is the earthquake with its year, `distance` the closest one to the rupture [m], `vs30`
-    [m/s] that of the ground, `usable_period` the longest that the filters of the record leave [s],
-    `pulse` whether it was found to have a velocity pulse, `origin` the time of the earthquake,
-    `direction` that of the component, and `start` that of its first sample, as the source states.
+    `event` is the earthquake with its year, `distance` the closest one to the rupture
+    [m], `vs30` [m/s] that of the ground, `usable_period` the longest that the filters of
+    the record leave [s], `pulse` whether it was found to have a velocity pulse, `origin`
+    the time of the earthquake, `direction` that of the component, and `start` that of its
+    first sample, as the source states.
     """
 
     event: str = ""
@@ -56,10 +57,12 @@ MOST = 4.0
 
 
 def scale_doubts(name: str, factor: float) -> tuple[str, ...]:
-    """A warning for a record under a factor that is not usual; its sign does not matter."""
+    """A warning for a record under a factor that is not usual;
+    its sign does not matter.
+    """
     doubt = (
-        f"{name} is scaled by {factor:.4g}, beyond the usual {LEAST:g} to {MOST:g}: records of"
-        " another size differ in more than their amplitude"
+        f"{name} is scaled by {factor:.4g}, beyond the usual {LEAST:g} to {MOST:g}:"
+        " records of another size differ in more than their amplitude"
     )
     return () if LEAST <= abs(factor) <= MOST else (doubt,)
 
@@ -68,8 +71,9 @@ def scale_doubts(name: str, factor: float) -> tuple[str, ...]:
 class GroundMotion(Shown):
     """Ground acceleration, sampled uniformly from t = 0 and linear between the samples.
 
-    Positive acceleration is the direction that the record's own sensor calls positive. Before
-    the first sample the ground is at rest; after the last one its acceleration is zero.
+    Positive acceleration is the direction that the record's own sensor calls
+    positive. Before the first sample the ground is at rest; after the last one
+    its acceleration is zero.
 
     Parameters
     ----------
@@ -80,8 +84,8 @@ class GroundMotion(Shown):
     name, source : str
         Short, good for titles and file names; the source as the user wrote it.
     format, description : str
-        What the samples were read from or made by, such as "PEER AT2" or "pulse"; what the reader
-        understood: event, station, units.
+        What the samples were read from or made by, such as "PEER AT2" or "pulse"; what
+        the reader understood: event, station, units.
     warnings : tuple of str
         What the reader wants a human to look at.
     recording : Recording
@@ -90,8 +94,8 @@ class GroundMotion(Shown):
     Raises
     ------
     RecordError
-        If there are fewer than two samples, one of them is not finite or masked, or `dt` is not
-        positive.
+        If there are fewer than two samples, one of them is not finite or masked,
+        or `dt` is not positive.
 
     Examples
     --------
@@ -175,8 +179,8 @@ class GroundMotion(Shown):
     def resampled(self, dt: float) -> GroundMotion:
         """The same motion, linear between its samples, sampled every `dt` seconds.
 
-        A step that is a whole part of the old one changes nothing but the number of samples; a
-        longer one, up to the duration, loses what is between, and says so.
+        A step that is a whole part of the old one changes nothing but the number of
+        samples; a longer one, up to the duration, loses what is between, and says so.
 
         Raises a RecordError if the step is not positive, or longer than the motion.
 
@@ -186,8 +190,8 @@ class GroundMotion(Shown):
         """
         if not (np.isfinite(dt) and 0.0 < dt <= self.duration):
             raise RecordError(
-                f"{self.source}: cannot be sampled every {dt:g} s; give a step above 0 and up to"
-                f" its duration, {self.duration:g} s"
+                f"{self.source}: cannot be sampled every {dt:g} s; give a step above 0"
+                f" and up to its duration, {self.duration:g} s"
             )
         # A sample that rounding puts just behind the end is the last one.
         count = int(np.floor(self.duration / dt * (1.0 + 1e-12))) + 1
@@ -210,12 +214,18 @@ class GroundMotion(Shown):
     def scaled(self, factor: float) -> GroundMotion:
         """The same motion times `factor`, with a description that says so."""
         if not is_number(factor):
-            raise RecordError(f"{self.source}: the factor {told(factor)} must be a finite number")
-        return self.noted(f"scaled by {factor:g}", acceleration=self.acceleration * factor)
+            raise RecordError(
+                f"{self.source}: the factor {told(factor)} must be a finite number"
+            )
+        return self.noted(
+            f"scaled by {factor:g}", acceleration=self.acceleration * factor
+        )
 
     def noted(self, note: str, **changed: Any) -> GroundMotion:
         """A changed motion, with a note on that behind its description."""
-        return replace(self, description=f"{self.description}; {note}".lstrip("; "), **changed)
+        return replace(
+            self, description=f"{self.description}; {note}".lstrip("; "), **changed
+        )
 
     def scaled_to(
         self,
@@ -232,16 +242,19 @@ class GroundMotion(Shown):
         Parameters
         ----------
         measure : str
-            ``PGA``, ``PGV``, ``PGD``, ``Sa``, ``AvgSa``, ``FIV3``, ``Housner``, ``Arias``,
-            ``CAV``, or one that another package adds.
+            ``PGA``, ``PGV``, ``PGD``, ``Sa``, ``AvgSa``, ``FIV3``, ``Housner``,
+            ``Arias``, ``CAV``, or one that another package adds.
         value, period, damping : float [SI, s, share of critical damping]
-            What it is to be; of Sa, AvgSa and FIV3, which need it; of Sa, AvgSa and Housner.
+            What it is to be; of Sa, AvgSa and FIV3, which need it;
+            of Sa, AvgSa and Housner.
         second : GroundMotion, optional
-            The other horizontal component: the measure is that of the pair, and so is the factor.
+            The other horizontal component: the measure is that of the
+            pair, and so is the factor.
         of : str
             What of a pair: ``rotd50``, ``rotd100``, ``geomean``, or ``larger``.
 
-        Raises a RecordError if there is no such measure, the period is missing, or it is zero.
+        Raises a RecordError if there is no such measure, the period
+        is missing, or it is zero.
 
         >>> GroundMotion(np.array([0.0, 2.0, -3.0]), dt=0.5).scaled_to("PGA", 1.5).pga
         1.5
@@ -255,7 +268,9 @@ class GroundMotion(Shown):
         elif measures.needs_period(measure) and period is None:
             fault = f"{measure} is scaled to at a period; give period=... in s"
         elif not (is_number(value) and value > 0.0):
-            fault = f"{measure} = {told(value)} must be a number > 0, in SI, to scale to it"
+            fault = (
+                f"{measure} = {told(value)} must be a number > 0, in SI, to scale to it"
+            )
         if fault:
             raise RecordError(f"{self.source}: {fault}")
         if second is None:
@@ -305,7 +320,9 @@ class MotionComponents(Frozen):
 
     @property
     def named(self) -> dict[str, GroundMotion]:
-        """Those that there are, by their names in documents, in the order of `samples`."""
+        """Those that there are, by their names in documents,
+        in the order of `samples`.
+        """
         every = {"horizontal": self.horizontal, "y": self.y, "vertical": self.vertical}
         return {name: motion for name, motion in every.items() if motion is not None}
 
@@ -330,7 +347,9 @@ class MotionComponents(Frozen):
         motions = [motion.acceleration for motion in self.named.values()]
         if len(motions) == 1:
             return motions[0][None, :]
-        return frozen(np.array([np.pad(each, (0, self.npts - each.size)) for each in motions]))
+        return frozen(
+            np.array([np.pad(each, (0, self.npts - each.size)) for each in motions])
+        )
 
     def row(self, name: str) -> int | None:
         """Of a component among the samples; None if it is not known."""
@@ -354,10 +373,15 @@ class MotionComponents(Frozen):
         return replace(scaled, scale=self.scale * factor, scaled_to="")
 
     def _each(self, change: Callable[[GroundMotion], GroundMotion]) -> MotionComponents:
-        return replace(self, **{name: change(motion) for name, motion in self.named.items()})  # type: ignore[arg-type]
+        changed: dict[str, Any] = {
+            name: change(motion) for name, motion in self.named.items()
+        }
+        return replace(self, **changed)
 
     def turned(self, rotation: float) -> MotionComponents:
-        """A pair turned from x towards y [deg]: what acted along x then acts at that azimuth."""
+        """A pair turned from x towards y [deg]: what acted along x
+        then acts at that azimuth.
+        """
         x = self.horizontal
         y = self.y
         if y is None or rotation % 360.0 == 0.0:
@@ -367,7 +391,9 @@ class MotionComponents(Frozen):
                 rotated(x, y, direction - rotation),
                 name=f"{of.name}_{rotation:g}deg",
                 source=of.source,
-                description=f"{of.description}; pair turned by {rotation:g} deg".lstrip("; "),
+                description=f"{of.description}; pair turned by {rotation:g} deg".lstrip(
+                    "; "
+                ),
             )
             for of, direction in ((x, 0.0), (y, 90.0))
         )
@@ -375,19 +401,26 @@ class MotionComponents(Frozen):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Warnings besides those of the horizontal one: of the others, and of the factor."""
-        doubts = [text for each in (self.y, self.vertical) if each for text in each.warnings]
+        """Warnings besides those of the horizontal one: of the
+        others, and of the factor.
+        """
+        doubts = [
+            text for each in (self.y, self.vertical) if each for text in each.warnings
+        ]
         made = self.horizontal.format == "pulse"
-        return (*doubts, *(() if made else scale_doubts(self.horizontal.name, self.scale)))
+        return (
+            *doubts,
+            *(() if made else scale_doubts(self.horizontal.name, self.scale)),
+        )
 
 
 def require_one_step(one: GroundMotion, other: GroundMotion, name: str) -> None:
     """Refuse components of different time steps; the other one is called by its name."""
     if one.dt != other.dt:
         raise RecordError(
-            f"{other.source}: the {name} record has dt = {other.dt} s, {one.source} {one.dt} s:"
-            " they must agree; resample one of them with"
-            f" `rps record convert {other.source} --resample {one.dt}`"
+            f"{other.source}: the {name} record has dt = {other.dt} s, {one.source}"
+            f" {one.dt} s: they must agree; resample one of them with `rps record convert"
+            f" {other.source} --resample {one.dt}`"
         )
 
 

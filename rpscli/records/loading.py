@@ -1,4 +1,6 @@
-"""From sources to ground motions: files, folders, lists, sets, pulses, synthetic motions."""
+"""From sources to ground motions: files, folders, lists, sets,
+pulses, synthetic motions.
+"""
 
 from __future__ import annotations
 
@@ -22,8 +24,19 @@ from rpscli.errors import (
 )
 from rpscli.machine import mode_of
 from rpscli.records import made, sets
-from rpscli.records.ground_motion import GroundMotion, MotionComponents, rotated, scale_doubts
-from rpscli.records.recordings import channels, earthquake, pairs_among, vertical_of, verticals
+from rpscli.records.ground_motion import (
+    GroundMotion,
+    MotionComponents,
+    rotated,
+    scale_doubts,
+)
+from rpscli.records.recordings import (
+    channels,
+    earthquake,
+    pairs_among,
+    vertical_of,
+    verticals,
+)
 from rpscli.records.source import (
     FILE,
     LIKENESS,
@@ -43,27 +56,38 @@ _MAKERS: dict[str, Callable[[Source], GroundMotion]] = {
 _REMARK = re.compile(r"(?:^|\s)#")
 
 _readable = partial(
-    refused_by_system, fault=RecordError, verb="read", remedy="check the name and the permissions"
+    refused_by_system,
+    fault=RecordError,
+    verb="read",
+    remedy="check the name and the permissions",
 )
 
-OWN = "own"  # in place of a vertical source: the vertical component of the recording itself
+OWN = (
+    "own"  # in place of a vertical source: the vertical component of the recording itself
+)
 
 
 def load_record(
-    source: str, *, folder: Path | None = None, dt: float | None = None, units: str | None = None
+    source: str,
+    *,
+    folder: Path | None = None,
+    dt: float | None = None,
+    units: str | None = None,
 ) -> GroundMotion:
     """Load one ground motion.
 
     Parameters
     ----------
     source : str
-        A file, with options if it needs them (`rec.txt?dt=0.005&units=g`, `rec.V2?channel=1`), or
-        `fema_p695:farfield/1/b`, `pulse:sine?...`, `synthetic:?...`. Two components at an angle
-        from the first towards the second [deg]: `x.at2?second=y.at2&angle=30`,
-        `fema_p695:farfield/1?angle=30`. `factor=1.5` multiplies any of them. Both components
-        together, `fema_p695:farfield/1?both`, are read by `load_components`.
+        A file, with options if it needs them (`rec.txt?dt=0.005&units=g`,
+        `rec.V2?channel=1`), or `fema_p695:farfield/1/b`, `pulse:sine?...`,
+        `synthetic:?...`. Two components at an angle from the first towards the second
+        [deg]: `x.at2?second=y.at2&angle=30`, `fema_p695:farfield/1?angle=30`.
+        `factor=1.5` multiplies any of them. Both components together,
+        `fema_p695:farfield/1?both`, are read by `load_components`.
     folder : Path, optional
-        Where relative paths start (the folder of the case file); else the working directory.
+        Where relative paths start (the folder of the case file);
+        else the working directory.
     dt : float, optional [s]
         Sampling interval of a file that does not state it.
     units : str, optional
@@ -80,8 +104,8 @@ def load_record(
     factor = of.factor
     if of.both:
         raise RecordError(
-            f"{source}: holds two components, and one is wanted here; name one of them, or a"
-            " direction between them by angle=30 in place of both"
+            f"{source}: holds two components, and one is wanted here; name one of them,"
+            " or a direction between them by angle=30 in place of both"
         )
     with _readable(source):
         motion = replace(_unscaled(read.without("factor"), folder), source=of)
@@ -90,7 +114,9 @@ def load_record(
     # Results of different factors go to different folders.
     name = f"{motion.name}_x{factor:.4g}"
     warnings = scale_doubts(motion.name, factor)
-    return replace(motion.scaled(factor), name=name, warnings=(*motion.warnings, *warnings))
+    return replace(
+        motion.scaled(factor), name=name, warnings=(*motion.warnings, *warnings)
+    )
 
 
 def _described(of: Source, **given: object) -> Source:
@@ -100,20 +126,23 @@ def _described(of: Source, **given: object) -> Source:
         raise RecordError(f"{of}: dt and units describe files; leave them out here")
     for name, text in texts.items():
         if (own := of.values.get(name, text)) != text:
-            raise RecordError(f"{of}: {name} = {text} contradicts the {own} in it; keep one")
+            raise RecordError(
+                f"{of}: {name} = {text} contradicts the {own} in it; keep one"
+            )
     return of.plus(**texts)
 
 
 def _unscaled(of: Source, folder: Path | None) -> GroundMotion:
     if of.scheme == LIST:
         raise RecordError(
-            f"{of}: stands for several records; name one of its lines, or give the list by --record"
+            f"{of}: stands for several records; name one of its lines, or give the list"
+            " by --record"
         )
     if (angle := of.angle) is None:
         if "second" in of.values:
             raise RecordError(
-                f"{of}: two components need both options: second=FILE, seen from the folder of"
-                " the first one, and angle=30, in degrees, or both"
+                f"{of}: two components need both options: second=FILE, seen from the"
+                " folder of the first one, and angle=30, in degrees, or both"
             )
         return _MAKERS[of.scheme](of) if of.scheme else _read(of, folder)
     motion = rotated(*_components(of, folder), angle)
@@ -121,7 +150,9 @@ def _unscaled(of: Source, folder: Path | None) -> GroundMotion:
 
 
 def _named(motion: GroundMotion, of: Source, way: str) -> str:
-    """The name of a pair: that of its first component, with the way in place of the side."""
+    """The name of a pair: that of its first component, with the
+    way in place of the side.
+    """
     in_set = of.scheme == SET and of.of_pair
     return motion.name.replace("_a", f"_{way}", 1) if in_set else f"{motion.name}_{way}"
 
@@ -149,7 +180,8 @@ def load_components(
     rotation: float = 0.0,
     **how: Any,
 ) -> MotionComponents:
-    """The components of a motion, read alike: those of a pair if the source, or `y`, says so.
+    """The components of a motion, read alike: those of a pair if the
+    source, or `y`, says so.
 
     Parameters
     ----------
@@ -157,8 +189,9 @@ def load_components(
         As that of `load_record`, or both components: `fema_p695:farfield/1?both`,
         `x.at2?second=y.at2&both`.
     vertical, y : str, optional
-        Sources of the vertical and of the second horizontal component; the vertical one may be
-        `own`: that which lies beside the file, by its name or its header, or in it.
+        Sources of the vertical and of the second horizontal component; the
+        vertical one may be `own`: that which lies beside the file, by its name
+        or its header, or in it.
     rotation : float [deg]
         Of a pair from x towards y, in addition to what its source says.
     how
@@ -190,7 +223,9 @@ _LATE = 10.0  # seconds between the starts of components of one recording at mos
 
 
 def _beside(first: GroundMotion, second: GroundMotion, source: str) -> GroundMotion:
-    """The second component, unless both state to be of different recordings, or the same one."""
+    """The second component, unless both state to be of different
+    recordings, or the same one.
+    """
     one = first.recording
     other = second.recording
     apart = _apart(one.start, other.start)
@@ -203,24 +238,31 @@ def _beside(first: GroundMotion, second: GroundMotion, source: str) -> GroundMot
         told = getattr(one, name), getattr(other, name)
         if all(told) and differ:
             raise RecordError(
-                f"{source}: both components are of one recording, and their headers state the"
-                f" {name} {told[0]!r} and {told[1]!r}; name two of one"
+                f"{source}: both components are of one recording, and their headers state"
+                f" the {name} {told[0]!r} and {told[1]!r}; name two of one"
             )
-    alike = one.direction and one.direction == other.direction and one.station == other.station
+    alike = (
+        one.direction
+        and one.direction == other.direction
+        and one.station == other.station
+    )
     made = first.format in ("pulse", "synthetic")
     if (first.digest == second.digest and not made) or alike:
         raise RecordError(
-            f"{source}: both components are the same one, {one.direction or first.source};"
-            " name two of one recording"
+            f"{source}: both components are the same one,"
+            f" {one.direction or first.source}; name two of one recording"
         )
     for each in filter(lambda of: of.is_vertical, (one, other)):
         raise RecordError(
-            f"{source}: {each.direction} is a vertical component; name two horizontal ones, and"
-            " that as `vertical`"
+            f"{source}: {each.direction} is a vertical component; name two horizontal"
+            " ones, and that as `vertical`"
         )
     if apart <= 0.5 * first.dt:
         return second
-    late = f"its header states the start {other.start}, that of the other component {one.start}"
+    late = (
+        f"its header states the start {other.start}, that of the other component"
+        f" {one.start}"
+    )
     return replace(second, warnings=(*second.warnings, f"{late}: line them up"))
 
 
@@ -240,12 +282,16 @@ def _apart(one: str, other: str) -> float:
     return abs(first[-1] - second[-1]) if first[:-1] == second[:-1] else float("inf")
 
 
-def expanded(sources: Sequence[str], *, folder: Path | None = None) -> tuple[list[str], list[str]]:
-    """The single sources of a list that may hold folders, globs, lists and sets, and notes on it.
+def expanded(
+    sources: Sequence[str], *, folder: Path | None = None
+) -> tuple[list[str], list[str]]:
+    """The single sources of a list that may hold folders, globs, lists
+    and sets, and notes on it.
 
-    What a source stands for keeps its place in the list, sorted by name, and nothing comes twice.
-    Of a folder only files that are recognised as records count, each of their channels, not
-    velocities or displacements, and of the components of a recording not the vertical one.
+    What a source stands for keeps its place in the list, sorted by name, and nothing
+    comes twice. Of a folder only files that are recognised as records count, each of
+    their channels, not velocities or displacements, and of the components of a
+    recording not the vertical one.
     """
     notes = repeated(sources)
     found = [single for source in sources for single in _expand(source, folder, notes)]
@@ -253,7 +299,9 @@ def expanded(sources: Sequence[str], *, folder: Path | None = None) -> tuple[lis
 
 
 def single_source(text: str, folder: Path | None = None) -> Source:
-    """The record that a text names: of a file, folder or list the one pair that is asked for."""
+    """The record that a text names: of a file, folder or list the
+    one pair that is asked for.
+    """
     of = Source.parse(text, folder)
     if not of.of_pair or of.components is not None:
         return of
@@ -314,14 +362,18 @@ def _files(of: Source, folder: Path | None, notes: list[str]) -> list[Source]:
             return [of]
         files = {place: path}  # each of its channels
     held = {name: inside for name, file in files.items() if (inside := contents(file))}
-    refused = {name: inside[0].refusal for name, inside in held.items() if inside[0].refusal}
+    refused = {
+        name: inside[0].refusal for name, inside in held.items() if inside[0].refusal
+    }
     held = {name: inside for name, inside in held.items() if name not in refused}
     why = [
         f"left out: {_some([name for name in refused if refused[name] == text])}: {text}"
         for text in dict.fromkeys(refused.values())
     ]
     if not held:
-        raise RecordError("; ".join([f"{of}: no record file there that can be read", *why[:1]]))
+        raise RecordError(
+            "; ".join([f"{of}: no record file there that can be read", *why[:1]])
+        )
     notes += [f"{of}: {text}" for text in why]
     single = [each for name in held for each in channels(of.at(name), folder)]
     if upright := verticals(single, folder):
@@ -332,7 +384,9 @@ def _files(of: Source, folder: Path | None, notes: list[str]) -> list[Source]:
         ]  # fmt: skip
         notes.append(f"{of}: vertical components left out: {_some(left_out)}")
         single = [each for each in single if each not in upright]
-    return single if of.components else _paired(of, [each.alone for each in single], folder)
+    return (
+        single if of.components else _paired(of, [each.alone for each in single], folder)
+    )
 
 
 def _some(names: Sequence[str]) -> str:
@@ -348,13 +402,17 @@ def _paired(of: Source, single: Iterable[Source], folder: Path | None) -> list[S
 
 
 def _listed(of: Source, folder: Path | None, notes: list[str]) -> Iterator[Source]:
-    """Sources of a list, one a line, files as seen from it; # after a blank begins a remark."""
+    """Sources of a list, one a line, files as seen from it; # after
+    a blank begins a remark.
+    """
     path = _located(of.place, folder)
     _require_file(path, of)
     try:
         lines = path.read_text(encoding="utf-8-sig").splitlines()
     except UnicodeDecodeError:
-        raise RecordError(f"{of}: is not text; name a list with one source a line") from None
+        raise RecordError(
+            f"{of}: is not text; name a list with one source a line"
+        ) from None
     sources = [(n, source) for n, line in enumerate(lines, 1)
                if (source := _without_remark(line, path.parent))]  # fmt: skip
     if not sources:
@@ -369,16 +427,20 @@ def _listed(of: Source, folder: Path | None, notes: list[str]) -> Iterator[Sourc
             if scheme:
                 raise
             raise RecordError(
-                f"{of}:{number}: {beginning(line)} is neither there nor another source; name"
-                " files as seen from the folder of the list"
+                f"{of}:{number}: {beginning(line)} is neither there nor another source;"
+                " name files as seen from the folder of the list"
             ) from None
         if scheme == LIST:
-            raise RecordError(f"{of}: {line}: a list holds no lists; write its sources here")
+            raise RecordError(
+                f"{of}: {line}: a list holds no lists; write its sources here"
+            )
         yield from found
 
 
 def _without_remark(line: str, folder: Path) -> str:
-    """The source in a line; the name of a file that is there may hold the mark of a remark."""
+    """The source in a line; the name of a file that is there may
+    hold the mark of a remark.
+    """
     place = split_options(line.strip())[0]
     named = len(place) if is_file(place, folder) else 0
     return line.strip()[:named] + _REMARK.split(line.strip()[named:])[0].strip()
@@ -388,7 +450,9 @@ def _located(place: str, folder: Path | None) -> Path:
     try:
         path = Path(place).expanduser()
     except RuntimeError:
-        raise RecordError(f"{place}: there is no such user; write the folder out") from None
+        raise RecordError(
+            f"{place}: there is no such user; write the folder out"
+        ) from None
     if "\0" in place:
         raise RecordError(f"{place[:200]!r}: no path holds a zero byte; correct the name")
     require_visible(place, RecordError)
@@ -399,11 +463,17 @@ def _require_file(path: Path, source: str) -> None:
     if stat.S_ISREG(found := mode_of(path)):
         return
     if found:
-        what = "a folder; name one of its files" if stat.S_ISDIR(found) else "not a regular file"
+        what = (
+            "a folder; name one of its files"
+            if stat.S_ISDIR(found)
+            else "not a regular file"
+        )
         raise RecordError(f"{path}: {what}")
     if not path.parent.is_dir():
         raise RecordError(f"{source}: there is no folder {path.parent}")
-    entries = (entry for entry in path.parent.iterdir() if entry.suffix not in {".yaml", ".yml"})
+    entries = (
+        entry for entry in path.parent.iterdir() if entry.suffix not in {".yaml", ".yml"}
+    )
     names = sorted(entry.name for entry in entries)
     close = nearest(path.name, names, LIKENESS)
     suggestion = f"; did you mean {path.parent / close}?" if close else ""

@@ -1,23 +1,22 @@
 """Motions that are made: mathematical pulses, and seeded stochastic ground motions.
 
-`pulse:sine?amplitude=0.4g&period=1.2`: every pulse starts at t = 0. One that starts with a jump
-(cosine) jumps: its first sample is the amplitude; the ground acceleration is zero after the last
-sample.
+`pulse:sine?amplitude=0.4g&period=1.2`: every pulse starts at t = 0. One that starts
+with a jump (cosine) jumps: its first sample is the amplitude; the ground acceleration
+is zero after the last sample.
 
-`synthetic:?pga=0.4g&seed=1`: white noise with the Kanai-Tajimi spectrum of a soil layer, cut at low
-frequencies by the filter of Clough and Penzien; the envelope of Saragoni and Hart grows and decays
-it; a correction of the baseline brings the ground back to rest. A long velocity pulse may be added,
-as near a fault.
+`synthetic:?pga=0.4g&seed=1`: white noise with the Kanai-Tajimi spectrum of a soil layer,
+cut at low frequencies by the filter of Clough and Penzien; the envelope of Saragoni and
+Hart grows and decays it; a correction of the baseline brings the ground back to rest. A
+long velocity pulse may be added, as near a fault.
 
-References
-----------
-G. P. Mavroeidis and A. S. Papageorgiou, Bull. Seism. Soc. Am. 93(3), 2003, equation 3 (pulse).
-N. Ricker, 1943 (wavelets: the second and the third derivative of a Gaussian).
-K. Kanai, Bull. Earthq. Res. Inst. 35, 1957; H. Tajimi, Proc. 2nd WCEE, 1960 (spectrum).
-R. W. Clough and J. Penzien, Dynamics of Structures, 1975, section 28-4 (second filter).
-G. R. Saragoni and G. C. Hart, Earthq. Eng. Struct. Dyn. 2, 1974, in the form of D. M. Boore,
-Pure Appl. Geophys. 160, 2003, equations 9 to 12 (envelope).
-A. Der Kiureghian and A. Neuenhofer, Earthq. Eng. Struct. Dyn. 21, 1992 (values for firm soil).
+References ---------- G. P. Mavroeidis and A. S. Papageorgiou, Bull. Seism. Soc. Am.
+93(3), 2003, equation 3 (pulse). N. Ricker, 1943 (wavelets: the second and the third
+derivative of a Gaussian). K. Kanai, Bull. Earthq. Res. Inst. 35, 1957; H. Tajimi,
+Proc. 2nd WCEE, 1960 (spectrum). R. W. Clough and J. Penzien, Dynamics of Structures,
+1975, section 28-4 (second filter). G. R. Saragoni and G. C. Hart, Earthq. Eng.
+Struct. Dyn. 2, 1974, in the form of D. M. Boore, Pure Appl. Geophys. 160, 2003,
+equations 9 to 12 (envelope). A. Der Kiureghian and A. Neuenhofer, Earthq. Eng.
+Struct. Dyn. 21, 1992 (values for firm soil).
 """
 
 from __future__ import annotations
@@ -38,7 +37,8 @@ from rpscli.records.source import Source, hint
 Array = NDArray[np.float64]
 
 DOUBTFUL = 0.2  # peaks of numbers without unit below this [g] are asked about
-_LEAD = 2.5  # periods before the peak of a Ricker wavelet: at its start it is below 1e-12 of it
+# periods before the peak of a Ricker wavelet: at its start it is below 1e-12 of it
+_LEAD = 2.5
 _STEPS_PER_PERIOD = 2000
 _MAVROEIDIS = "mavroeidis_papageorgiou"
 
@@ -61,7 +61,12 @@ def _ricker(tau: Array) -> Array:
 
 def _ricker_antisymmetric(tau: Array) -> Array:
     x = np.pi * (tau - _LEAD)  # 1.38 brings the peak to one
-    return (4.0 * x**2 / 3.0 - 3.0) * (2.0 * x / math.sqrt(3.0)) * np.exp(-2.0 * x**2 / 3.0) / 1.38
+    return (
+        (4.0 * x**2 / 3.0 - 3.0)
+        * (2.0 * x / math.sqrt(3.0))
+        * np.exp(-2.0 * x**2 / 3.0)
+        / 1.38
+    )
 
 
 def _mavroeidis_papageorgiou(tau: Array, cycles: float, phase: float) -> Array:
@@ -85,10 +90,11 @@ PULSES = (*_PULSES, _MAVROEIDIS)
 def load_pulse(of: Source) -> GroundMotion:
     """Make a pulse.
 
-    `amplitude` is the peak acceleration (for the Mavroeidis-Papageorgiou pulse that of the whole
-    wave), `period` that of the oscillation. `dt` defaults to a 2000th of the period and has to
-    divide pulses of one period. The Mavroeidis-Papageorgiou pulse takes `cycles` (default 2) and
-    `phase` (default 0), and `velocity_amplitude` in place of `amplitude`.
+    `amplitude` is the peak acceleration (for the Mavroeidis-Papageorgiou pulse that
+    of the whole wave), `period` that of the oscillation. `dt` defaults to a 2000th of
+    the period and has to divide pulses of one period. The Mavroeidis-Papageorgiou
+    pulse takes `cycles` (default 2) and `phase` (default 0), and `velocity_amplitude`
+    in place of `amplitude`.
     """
     name = of.place
     if name not in PULSES:
@@ -99,7 +105,9 @@ def load_pulse(of: Source) -> GroundMotion:
     if period <= 0.0:
         raise RecordError(f"{of}: period = {period} s must be positive")
     pulse, amplitude = (
-        _bell_of_waves(of, period) if own else (_PULSES[name], of.acceleration("amplitude"))
+        _bell_of_waves(of, period)
+        if own
+        else (_PULSES[name], of.acceleration("amplitude"))
     )
     if amplitude == 0.0:
         key = "amplitude" if "amplitude" in of.values else "velocity_amplitude"
@@ -113,17 +121,24 @@ def load_pulse(of: Source) -> GroundMotion:
     elif whole > 1e7:
         fault = f"makes {whole:.3g} samples; raise it"
     elif pulse.fits and abs(whole - round(whole)) > 1e-6:
-        fault = f"does not divide the pulse of {length:g} s, which has to end on a sample; the"
+        fault = (
+            f"does not divide the pulse of {length:g} s, which has to end on a sample;"
+            " the"
+        )
         fault += f" nearest that does is dt={length / round(whole):.10g}"
     if fault:
         raise RecordError(f"{of}: dt = {dt:g} s {fault}")
     steps = round(whole) if pulse.fits else math.ceil(whole - 1e-6)
-    # The last sample of a pulse that fits is its end exactly, whatever the rounding of dt.
+    # The last sample of a pulse that fits is its end exactly, whatever the rounding of
+    # dt.
     step = pulse.periods / steps if pulse.fits else dt / period
     peak = abs(amplitude) / STANDARD_GRAVITY
     written = of.values.get("amplitude") or "g"
     bare = written.strip().replace(".", "").isdigit() and peak < DOUBTFUL
-    doubt = f"{of}: an amplitude of {amplitude:g} m/s2 = {peak:.4g} g; was {amplitude:g}g meant?"
+    doubt = (
+        f"{of}: an amplitude of {amplitude:g} m/s2 = {peak:.4g} g; was {amplitude:g}g"
+        " meant?"
+    )
     return GroundMotion(
         amplitude * pulse.shape(np.arange(steps + 1, dtype=np.float64) * step),
         dt,
@@ -143,13 +158,17 @@ def _bell_of_waves(of: Source, period: float) -> tuple[_Pulse, float]:
     dense = np.linspace(0.0, cycles, 1 + 2 * _STEPS_PER_PERIOD * math.ceil(cycles))
     peak = float(np.max(np.abs(_mavroeidis_papageorgiou(dense, cycles, phase))))
     if ("amplitude" in of.values) == ("velocity_amplitude" in of.values):
-        raise RecordError(f"{of}: give either amplitude (peak acceleration) or velocity_amplitude")
+        raise RecordError(
+            f"{of}: give either amplitude (peak acceleration) or velocity_amplitude"
+        )
     if "amplitude" in of.values:
         amplitude = of.acceleration("amplitude")
     else:
         amplitude = of.quantity("velocity_amplitude", "velocity") * peak / period
     pulse = _Pulse(
-        lambda tau: _mavroeidis_papageorgiou(tau, cycles, phase) / peak, cycles, fits=False
+        lambda tau: _mavroeidis_papageorgiou(tau, cycles, phase) / peak,
+        cycles,
+        fits=False,
     )
     return pulse, amplitude
 
@@ -168,9 +187,10 @@ _OPTIONS = (
 def load_synthetic(of: Source) -> GroundMotion:
     """Make a synthetic motion.
 
-    Options: `pga` (needed), `seed` (needed), `duration` (30 s), `dt` (0.01 s), `ground_frequency`
-    (2.39 Hz) and `ground_damping` (0.6) of the soil, `cut_frequency` (0.239 Hz) and `cut_damping`
-    (0.6) of the low cut; with `pulse_velocity`, also `pulse_period` (3 s) and `pulse_cycles` (2).
+    Options: `pga` (needed), `seed` (needed), `duration` (30 s), `dt` (0.01 s),
+    `ground_frequency` (2.39 Hz) and `ground_damping` (0.6) of the soil, `cut_frequency`
+    (0.239 Hz) and `cut_damping` (0.6) of the low cut; with `pulse_velocity`, also
+    `pulse_period` (3 s) and `pulse_cycles` (2).
     """
     of.query(*_OPTIONS)
     seed = of.integer("seed")
@@ -179,14 +199,18 @@ def load_synthetic(of: Source) -> GroundMotion:
     dt = of.quantity("dt", "time", 0.01)
     ground = of.quantity("ground_frequency", "frequency", _FIRM_GROUND)
     cut = of.quantity("cut_frequency", "frequency", _FIRM_CUT)
-    dampings = [of.quantity(f"{name}_damping", "ratio", 0.6) for name in ("ground", "cut")]
+    dampings = [
+        of.quantity(f"{name}_damping", "ratio", 0.6) for name in ("ground", "cut")
+    ]
     if min(pga, dt, ground, cut, *dampings) <= 0.0 or not 20 * dt <= duration <= 1e6 * dt:
         raise RecordError(
             f"{of}: pga, dt, frequencies and dampings must be positive and the duration "
             f"20 to 1 000 000 steps"
         )
     if max(ground, cut) >= 0.5 / dt:
-        raise RecordError(f"{of}: a filter at or above 1/(2 dt) = {0.5 / dt:g} Hz; lower dt")
+        raise RecordError(
+            f"{of}: a filter at or above 1/(2 dt) = {0.5 / dt:g} Hz; lower dt"
+        )
     count = round(duration / dt) + 1
     noise = _filtered_noise(count, dt, seed, (ground, dampings[0]), (cut, dampings[1]))
     shaped = _brought_to_rest(noise * envelope(np.linspace(0.0, 1.0, count)), dt)
@@ -211,7 +235,8 @@ def load_synthetic(of: Source) -> GroundMotion:
         raise RecordError(f"{of}: a pulse needs pulse_velocity=...")
     if (own := float(np.max(np.abs(pulse)))) >= pga:
         raise RecordError(
-            f"{of}: the pulse alone peaks at {own:.4g} m/s2, at or above pga = {pga:.4g} m/s2"
+            f"{of}: the pulse alone peaks at {own:.4g} m/s2, at or above pga = {pga:.4g}"
+            " m/s2"
         )
     # The factor of the noise at which the sum first reaches the peak, at any sample.
     size = np.abs(shaped)
@@ -235,7 +260,11 @@ def envelope(fraction: Array) -> Array:
 
 
 def _filtered_noise(
-    count: int, dt: float, seed: int, ground: tuple[float, float], cut: tuple[float, float]
+    count: int,
+    dt: float,
+    seed: int,
+    ground: tuple[float, float],
+    cut: tuple[float, float],
 ) -> Array:
     # Filtering by FFT gives a stationary (periodic) process: nothing has to settle first.
     white = np.random.Generator(np.random.PCG64(seed)).standard_normal(count)
@@ -248,8 +277,8 @@ def _filtered_noise(
 
 
 def _brought_to_rest(acceleration: Array, dt: float) -> Array:
-    # Subtracts (p + q t) times the envelope, with p and q such that the last velocity and the
-    # last displacement vanish: nothing changes where the ground is quiet.
+    # Subtracts (p + q t) times the envelope, with p and q such that the last velocity and
+    # the last displacement vanish: nothing changes where the ground is quiet.
     fraction = np.linspace(0.0, 1.0, acceleration.size)
     basis = [envelope(fraction), envelope(fraction) * fraction]
 

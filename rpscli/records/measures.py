@@ -1,11 +1,13 @@
-"""Measures of a ground motion, and of a pair of them: velocity, intensities; scaling to one.
+"""Measures of a ground motion, and of a pair of them: velocity,
+intensities; scaling to one.
 
-A measure of one component depends on how the sensors stood. Of a pair it is taken over the 180
-directions 0, 1, ... 179 deg from the first component towards the second, and one number made of
-them: ``rotd50``, their median, or ``rotd100``, the largest (D. M. Boore, Bull. Seism. Soc. Am. 100,
-2010; directions count by themselves at each period); ``geomean``, the geometric mean of both
-components as recorded, ``larger`` the larger of both, ``x`` the first one. ``component`` is no
-measure of a pair: each component by itself.
+A measure of one component depends on how the sensors stood. Of a pair it is taken
+over the 180 directions 0, 1, ... 179 deg from the first component towards the
+second, and one number made of them: ``rotd50``, their median, or ``rotd100``, the
+largest (D. M. Boore, Bull. Seism. Soc. Am. 100, 2010; directions count by themselves
+at each period); ``geomean``, the geometric mean of both components as recorded,
+``larger`` the larger of both, ``x`` the first one. ``component`` is no measure of a
+pair: each component by itself.
 """
 
 from __future__ import annotations
@@ -36,7 +38,9 @@ def velocity(acceleration: Array, dt: float) -> Array:
 
 
 def displacement(acceleration: Array, dt: float) -> Array:
-    """Displacement at the samples, zero at first; v dt + (2 a_0 + a_1) dt^2/6 in each step."""
+    """Displacement at the samples, zero at first; v dt + (2 a_0 +
+    a_1) dt^2/6 in each step.
+    """
     start = velocity(acceleration, dt)[:-1]
     step = dt * start + dt**2 * (2.0 * acceleration[:-1] + acceleration[1:]) / 6.0
     result = np.zeros_like(acceleration)
@@ -51,20 +55,24 @@ class IntensityMeasures:
     pga: float
     pgv: float
     pgd: float
-    """Peak ground acceleration, velocity and displacement; the ground starts from rest and no
-    baseline is corrected [m/s2, m/s, m]."""
-    arias: float  # Arias intensity, pi/(2 g) times the integral of the squared acceleration [m/s]
-    cav: float  # cumulative absolute velocity, the integral of the absolute acceleration [m/s]
+    """Peak ground acceleration, velocity and displacement; the ground starts from rest
+    and no baseline is corrected [m/s2, m/s, m]."""
+    # Arias intensity, pi/(2 g) times the integral of the squared acceleration [m/s]
+    arias: float
+    # cumulative absolute velocity, the integral of the absolute acceleration [m/s]
+    cav: float
     d5_75: float
-    d5_95: float  # significant durations, from 5 % to 75 % and to 95 % of the Arias intensity [s]
+    # significant durations, from 5 % to 75 % and to 95 % of the Arias intensity [s]
+    d5_95: float
 
 
 def intensity_measures(motion: GroundMotion) -> IntensityMeasures:
     """All measures of a motion.
 
-    Squares and absolute values are integrated by the trapezoidal rule, which is what published
-    values use: for motions without content near the Nyquist frequency it is the more accurate
-    one, while squares of the straight lines between samples fall short by dt/6 sum (a' dt)^2.
+    Squares and absolute values are integrated by the trapezoidal rule, which is what
+    published values use: for motions without content near the Nyquist frequency it is
+    the more accurate one, while squares of the straight lines between samples fall
+    short by dt/6 sum (a' dt)^2.
 
     A. Arias, in Seismic Design for Nuclear Power Plants, MIT Press, 1970.
     M. D. Trifunac and A. G. Brady, Bull. Seism. Soc. Am. 65, 1975 (duration to 95 %);
@@ -94,7 +102,9 @@ def intensity_measures(motion: GroundMotion) -> IntensityMeasures:
 
 
 _SAMPLES_PER_PERIOD = 50  # so that the largest sample is within 0.2 % of the peak
-_FINEST = 64  # parts of a step; oscillators with periods below a step just follow the ground
+_FINEST = (
+    64  # parts of a step; oscillators with periods below a step just follow the ground
+)
 
 SHORTEST = 1e-6  # of periods [s]; 0 is the rigid oscillator
 DAMPING = 0.05
@@ -153,7 +163,9 @@ def response_spectrum(
             f" {str(periods)[:60]}"
         )
     if not 0.0 <= damping < 1.0:
-        raise RecordError(f"the damping of a response spectrum, {damping}, must be in [0, 1)")
+        raise RecordError(
+            f"the damping of a response spectrum, {damping}, must be in [0, 1)"
+        )
     peaks = np.tile([0.0, motion.pga], (wanted.size, 1))
     for place in np.flatnonzero(wanted):
         histories = _histories(motion, float(wanted[place]), damping)
@@ -165,8 +177,12 @@ def response_spectrum(
     return ResponseSpectrum(wanted, damping, peaks[:, 0], pseudo, peaks[:, 1])
 
 
-def pseudo_acceleration_history(motion: GroundMotion, period: float, damping: float) -> Array:
-    """Relative displacement of an oscillator times (2 pi/T)^2 [m/s2], on a step of its own."""
+def pseudo_acceleration_history(
+    motion: GroundMotion, period: float, damping: float
+) -> Array:
+    """Relative displacement of an oscillator times (2 pi/T)^2
+    [m/s2], on a step of its own.
+    """
     if period == 0.0:
         return motion.acceleration
     return (2.0 * math.pi / period) ** 2 * _histories(motion, period, damping)[0]
@@ -183,11 +199,16 @@ def _histories(motion: GroundMotion, period: float, damping: float) -> list[Arra
     ground = np.concatenate([fine.acceleration, quiet])
     w = 2.0 * math.pi / period
     s = w * complex(-damping, math.sqrt(1.0 - damping**2))
-    # Re(q), Im(q), the acceleration and its slope, as the closed formulae of the integrals lose
-    # all digits where w dt is small.
+    # Re(q), Im(q), the acceleration and its slope, as the closed formulae of the
+    # integrals lose all digits where w dt is small.
     a = s.real * fine.dt
     b = s.imag * fine.dt
-    rows = [[a, -b, 1.0, 0.0], [b, a, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0], [0.0, 0.0, 0.0, 0.0]]
+    rows = [
+        [a, -b, 1.0, 0.0],
+        [b, a, 0.0, 0.0],
+        [0.0, 0.0, 0.0, 1.0],
+        [0.0, 0.0, 0.0, 0.0],
+    ]
     step = expm(np.array(rows))
     grown, _, level, slope = step[0] + 1j * step[1]
     last = fine.dt * slope
@@ -206,14 +227,16 @@ def drawn_spectrum(motion: GroundMotion) -> ResponseSpectrum:
 
 
 def filtered_incremental_velocity(motion: GroundMotion, period: float) -> float:
-    """FIV3 [m/s]: the three largest increments of filtered ground velocity in 0.7 T, added up.
+    """FIV3 [m/s]: the three largest increments of filtered ground
+    velocity in 0.7 T, added up.
 
-    V(t) is the integral from t to t + 0.7 T of the acceleration behind a Butterworth low-pass
-    filter of second order with the corner 0.85/T. FIV3 is the larger of the sum of the three
-    largest maxima of V(t) and of the three smallest minima without their sign. The ground is at
-    rest before and after the record. The filter runs forwards and backwards, as in the public
-    programs EzGM and stickModel; others run it forwards alone (the paper was not at hand), which
-    gives 4 to 61 % more, 16 % in the median, for the far-field records of FEMA P695.
+    V(t) is the integral from t to t + 0.7 T of the acceleration behind a Butterworth
+    low-pass filter of second order with the corner 0.85/T. FIV3 is the larger of the sum
+    of the three largest maxima of V(t) and of the three smallest minima without their
+    sign. The ground is at rest before and after the record. The filter runs forwards and
+    backwards, as in the public programs EzGM and stickModel; others run it forwards alone
+    (the paper was not at hand), which gives 4 to 61 % more, 16 % in the median, for the
+    far-field records of FEMA P695.
 
     H. Davalos and E. Miranda, Earthq. Eng. Struct. Dyn. 48, 2019, 1384-1405.
     """
@@ -240,22 +263,27 @@ def filtered_incremental_velocity(motion: GroundMotion, period: float) -> float:
 
 
 def _average_acceleration(spectra: Array, _: Array) -> Array:
-    """AvgSa [m/s2] (...), the geometric mean of Sa (..., 10) at ten periods from 0.2 T to 3 T.
+    """AvgSa [m/s2] (...), the geometric mean of Sa (..., 10) at ten
+    periods from 0.2 T to 3 T.
 
-    The range is that of L. Eads, E. Miranda and D. G. Lignos, Earthq. Eng. Struct. Dyn. 44, 2015,
-    who space the periods by 0.01 s; ten periods, evenly spaced, are those of the ground motion
-    models that give hazard curves of it. At T = 1 s they give 7 % less to 17 % more, 3 % more in
-    the median, for the far-field records of FEMA P695.
+    The range is that of L. Eads, E. Miranda and D. G. Lignos, Earthq. Eng. Struct. Dyn.
+    44, 2015, who space the periods by 0.01 s; ten periods, evenly spaced, are those of
+    the ground motion models that give hazard curves of it. At T = 1 s they give 7 % less
+    to 17 % more, 3 % more in the median, for the far-field records of FEMA P695.
     """
-    with np.errstate(divide="ignore"):  # a motion of zeros has no logarithm, and measures nothing
+    with np.errstate(
+        divide="ignore"
+    ):  # a motion of zeros has no logarithm, and measures nothing
         return np.asarray(np.exp(np.mean(np.log(spectra), axis=-1)))
 
 
 def _spectrum_intensity(spectra: Array, periods: Array) -> Array:
-    """Housner's intensity [m] (...), the integral of the pseudo-velocity over 0.1 to 2.5 s.
+    """Housner's intensity [m] (...), the integral of the
+    pseudo-velocity over 0.1 to 2.5 s.
 
-    It is that of Sa (..., periods) by trapezia every 0.025 s, which is within 0.3 % for recorded
-    motions. G. W. Housner, in Proc. Symposium on Earthquake and Blast Effects on Structures, 1952.
+    It is that of Sa (..., periods) by trapezia every 0.025 s, which is within 0.3 %
+    for recorded motions. G. W. Housner, in Proc. Symposium on Earthquake and Blast
+    Effects on Structures, 1952.
     """
     return np.asarray(np.trapezoid(spectra * periods / (2.0 * math.pi), periods, axis=-1))
 
@@ -267,8 +295,9 @@ Measure = str  # a name in `MEASURES`
 class IntensityMeasure:
     """A measure of ground motions in an SI `unit`.
 
-    It is `of` a motion, a period [s] and a share of critical damping; the period is NaN for one
-    that is not `at_period`. The measure grows by the `power` of the factor on a motion.
+    It is `of` a motion, a period [s] and a share of critical damping; the
+    period is NaN for one that is not `at_period`. The measure grows by the
+    `power` of the factor on a motion.
     """
 
     unit: str
@@ -291,7 +320,9 @@ class _OfSpectrum(NamedTuple):
 
     def of(self, motion: GroundMotion, period: float, damping: float) -> float:
         at = self.periods(period)
-        return float(self.value(response_spectrum(motion, at, damping).pseudo_acceleration, at))
+        return float(
+            self.value(response_spectrum(motion, at, damping).pseudo_acceleration, at)
+        )
 
 
 _SPECTRAL: dict[str, _OfSpectrum] = {
@@ -308,7 +339,9 @@ _HISTORIES: dict[str, Callable[[Array, float], Array]] = {
 
 
 def _summary(name: str) -> Callable[[GroundMotion, float, float], float]:
-    return lambda motion, _period, _damping: float(getattr(intensity_measures(motion), name))
+    return lambda motion, _period, _damping: float(
+        getattr(intensity_measures(motion), name)
+    )
 
 
 MEASURES = Registry(
@@ -320,7 +353,9 @@ MEASURES = Registry(
         "Sa": IntensityMeasure("m/s2", _SPECTRAL["Sa"].of, at_period=True),
         "AvgSa": IntensityMeasure("m/s2", _SPECTRAL["AvgSa"].of, at_period=True),
         "FIV3": IntensityMeasure(
-            "m/s", lambda m, T, _damping: filtered_incremental_velocity(m, T), at_period=True
+            "m/s",
+            lambda m, T, _damping: filtered_incremental_velocity(m, T),
+            at_period=True,
         ),
         "Housner": IntensityMeasure("m", _SPECTRAL["Housner"].of),
         "Arias": IntensityMeasure("m/s", _summary("arias"), power=2.0),
@@ -336,11 +371,16 @@ def needs_period(measure: Measure | None) -> bool:
 
 
 def measured(
-    motion: GroundMotion, measure: Measure, period: float | None = None, damping: float = 0.05
+    motion: GroundMotion,
+    measure: Measure,
+    period: float | None = None,
+    damping: float = 0.05,
 ) -> float:
     """A measure of a motion, SI units."""
     found = MEASURES[measure]
-    assert period is not None or not found.at_period, f"{measure} is asked for at a period"
+    assert period is not None or not found.at_period, (
+        f"{measure} is asked for at a period"
+    )
     return float(found.of(motion, math.nan if period is None else period, damping))
 
 
@@ -404,11 +444,16 @@ def over_directions(
 
 
 def spectra_over_directions(
-    first: GroundMotion, second: GroundMotion, periods: Sequence[float] | Array, damping: float
+    first: GroundMotion,
+    second: GroundMotion,
+    periods: Sequence[float] | Array,
+    damping: float,
 ) -> Array:
     """(180, periods) pseudo-acceleration of the pair turned to each direction [m/s2]."""
     pair = [rotated(first, second, angle) for angle in (0.0, 90.0)]  # of one length
-    histories = ((pseudo_acceleration_history(m, float(t), damping) for m in pair) for t in periods)
+    histories = (
+        (pseudo_acceleration_history(m, float(t), damping) for m in pair) for t in periods
+    )
     return np.column_stack([_peaks(*each) for each in histories])
 
 
@@ -421,7 +466,9 @@ def pair_measure(
     damping: float = 0.05,
 ) -> float:
     """A measure of a pair, SI units."""
-    return float(of_directions(over_directions(first, second, measure, period, damping), of))
+    return float(
+        of_directions(over_directions(first, second, measure, period, damping), of)
+    )
 
 
 def _peaks(x: Array, y: Array) -> Array:

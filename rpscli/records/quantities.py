@@ -10,10 +10,12 @@ import re
 
 from rpscli.units import si_factor
 
-# Digits are matched in one way only: otherwise a long word of them is tried at every division.
+# Digits are matched in one way only: otherwise a long word of them is tried at every
+# division.
 _UNSIGNED = r"(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[EeDd][+-]?[0-9]+)?"
 _NUMBER = re.compile(rf"[+-]?{_UNSIGNED}")
-# Fixed columns leave no blank before a minus sign; digits glued without one stay unreadable.
+# Fixed columns leave no blank before a minus sign; digits glued without one stay
+# unreadable.
 _GLUED = re.compile(rf"[+-]?{_UNSIGNED}(?:[+-]{_UNSIGNED})*")
 # `float` alone would also take nan, inf, 1_000 and the digits of other scripts.
 _NUMERIC_LINE = re.compile(r"[-+.0-9EeDd,\s]*")
@@ -30,7 +32,8 @@ UNIT_PATTERN = (
     r"|gals?(?![A-Za-z0-9])|gravity\b|g's(?![A-Za-z0-9])"
     r"|g(?![A-Za-z0-9/])"
 )
-"""A regular expression (ignoring case) for the spellings of `canonical_unit` in running text."""
+"""A regular expression (ignoring case) for the spellings of
+`canonical_unit` in running text."""
 
 
 def to_float(numeral: str) -> float:
@@ -40,7 +43,8 @@ def to_float(numeral: str) -> float:
 
 def numbers_in(line: str) -> list[float] | None:
     """The finite numbers of a line that holds nothing else, or None."""
-    # Commas separate if each field holds one number: decimal commas are not read as separators.
+    # Commas separate if each field holds one number: decimal commas are not read as
+    # separators.
     if not _NUMERIC_LINE.fullmatch(line):
         return None
     fields = line.split()
@@ -51,15 +55,22 @@ def numbers_in(line: str) -> list[float] | None:
     except ValueError:
         if not all(_GLUED.fullmatch(field) for field in fields):
             return None
-        row = [to_float(numeral) for field in fields for numeral in _NUMBER.findall(field)]
+        row = [
+            to_float(numeral) for field in fields for numeral in _NUMBER.findall(field)
+        ]
     return row if all(map(math.isfinite, row)) else None
 
 
 def why_no_numbers(line: str) -> str:
-    """The punctuation that keeps a line from being read as numbers, in words; else nothing."""
+    """The punctuation that keeps a line from being read as
+    numbers, in words; else nothing.
+    """
     if re.fullmatch(r"[-+.,0-9EeDd;\s]*[0-9][-+.,0-9EeDd;\s]*", line):
         if re.search("[0-9],[0-9]", line) and ";" in line:
-            return " (decimal commas and semicolons: write points, and commas or blanks between)"
+            return (
+                " (decimal commas and semicolons: write points, and commas or blanks"
+                " between)"
+            )
         if re.search("[0-9],[0-9]", line):
             return " (decimal commas: write points)"
         if ";" in line:
@@ -76,7 +87,8 @@ def last_digit(numeral: str) -> float:
     """The unit of the last digit that is printed."""
     mantissa, _, exponent = re.sub("[dD]", "E", numeral.upper()).partition("E")
     decimals = len(mantissa.partition(".")[2])
-    # Beyond these the unit is zero or infinite anyway, however many digits the exponent has.
+    # Beyond these the unit is zero or infinite anyway, however many digits the exponent
+    # has.
     power = float(exponent or 0.0) - decimals
     return math.pow(10.0, max(min(power, 308.0), -400.0))
 

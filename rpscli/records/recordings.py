@@ -1,24 +1,27 @@
 """Recordings and earthquakes that sources are of: statistics draw them as a whole.
 
-Histories under motions that hang together do not tell as much as so many motions would. `clusters`
-numbers sources so that those that hang together have one number, by their *recordings* or by their
-*events*. Of one recording are
+Histories under motions that hang together do not tell as much as so many motions would.
+`clusters` numbers sources so that those that hang together have one number, by their
+*recordings* or by their *events*. Of one recording are
 
-* an angle, both components together, a factor, and the normalised values of a source, and itself;
-* both components of a pair: those of a set (`fema_p695:farfield/1/a` and `/b`), a file and its
-  `second`, all channels of one file, and files of one folder whose names differ in the component
-  alone: `RSN953_NORTHR_MUL009.AT2` and `RSN953_NORTHR_MUL279.AT2` (number of the PEER flatfile),
-  `MUL009.AT2` and `MUL279.AT2`, `TCU045-E.AT2` and `TCU045-N.AT2` (two such files, 90 deg apart),
-  `AOM001.EW` and `AOM001.NS` (K-NET), `IT.NRC..HGE.D.asc` and `IT.NRC..HGN.D.asc` (codes of ESM),
-  `motion_x.at2` and `motion_y.at2`;
+* an angle, both components together, a factor, and the normalised values
+  of a source, and itself;
+* both components of a pair: those of a set (`fema_p695:farfield/1/a` and `/b`), a file
+  and its `second`, all channels of one file, and files of one folder whose names
+  differ in the component alone: `RSN953_NORTHR_MUL009.AT2` and
+  `RSN953_NORTHR_MUL279.AT2` (number of the PEER flatfile), `MUL009.AT2` and
+  `MUL279.AT2`, `TCU045-E.AT2` and `TCU045-N.AT2` (two such files, 90 deg apart),
+  `AOM001.EW` and `AOM001.NS` (K-NET), `IT.NRC..HGE.D.asc` and `IT.NRC..HGN.D.asc`
+  (codes of ESM), `motion_x.at2` and `motion_y.at2`;
 * files whose headers state one station and one earthquake;
 * synthetic motions of one seed.
 
-Any other source is a recording of its own. Of one event are recordings whose files state the same
-origin time or name an earthquake of the same name and year; other recordings are events of their
-own.
+Any other source is a recording of its own. Of one event are recordings whose files state
+the same origin time or name an earthquake of the same name and year; other recordings
+are events of their own.
 
-`pairs` tells which sources are measured as a pair, by `pair_measure`, and both components of these.
+`pairs` tells which sources are measured as a pair, by `pair_measure`, and
+both components of these.
 """
 
 from __future__ import annotations
@@ -54,7 +57,8 @@ _VERTICAL = re.compile(
     r"(.*?)(?:[-_.]?(?:UP|UD|DWN|VERT?)|[-_][VZ]|(?<=[A-Z])V(?=\.at2)|(?<=\.[A-Z]{2})Z)[12]?(?:\.\w+)*",
     re.IGNORECASE,
 )
-"""The name of a vertical component: what it shares with others of its recording, and the rest."""
+"""The name of a vertical component: what it shares with others of its
+recording, and the rest."""
 
 _SEED = re.compile(r"[A-Z]{2}[A-Z\d]\d*")  # of a direction: band, instrument, component
 _NAME = re.compile(r"\s*([^,_\d]+?)(?:\s+EQ\b|-\d+\b|[,_]|\s+(?=\d))", re.IGNORECASE)
@@ -62,7 +66,9 @@ _YEAR = re.compile(r"\b((?:19|20)\d\d)\b|\d/\d+/(\d\d)\b")
 
 
 def channels(of: Source, folder: Path | None) -> list[Source]:
-    """Each channel of a file, or the file itself if it has one or its source names one."""
+    """Each channel of a file, or the file itself if it has one
+    or its source names one.
+    """
     held = _contents(of, folder)
     if len(held) < 2 or "channel" in of.values:
         return [of] * bool(held)
@@ -85,7 +91,8 @@ def stated(of: Source, folder: Path | None) -> Recording:
         held = _contents(of, folder)
         channel = (of.values.get("channel") or "").partition(",")[0]
         return next(
-            (c.recording for c in held if f"{c.number}" == channel or len(held) == 1), UNKNOWN
+            (c.recording for c in held if f"{c.number}" == channel or len(held) == 1),
+            UNKNOWN,
         )
     except (RecordError, OSError, ValueError, RuntimeError):
         return UNKNOWN  # told where it is needed
@@ -95,13 +102,15 @@ def event_of(recording: Recording) -> str | None:
     """The earthquake of a recording, by its origin time, or by name and year."""
     if recording.origin:
         return f"at {recording.origin}"
-    # Without numbers of shocks: sets call `Northridge` what flatfiles call `Northridge-01`, and
-    # shocks of one sequence are not independent.
+    # Without numbers of shocks: sets call `Northridge` what flatfiles call
+    # `Northridge-01`, and shocks of one sequence are not independent.
     return earthquake(recording.event) or None
 
 
 def earthquake(text: str) -> str:
-    """The name and the year of an earthquake that a text begins with; empty without a name."""
+    """The name and the year of an earthquake that a text begins
+    with; empty without a name.
+    """
     found = _NAME.match(text)
     year = _YEAR.search(text)
     number = (year[1] or f"19{year[2]}") if year else ""
@@ -109,25 +118,39 @@ def earthquake(text: str) -> str:
 
 
 def _stated_name(recording: Recording) -> set[str]:
-    """The name of a recording by its station, its earthquake or start, and its instrument."""
+    """The name of a recording by its station, its earthquake or
+    start, and its instrument.
+    """
     when = recording.origin or recording.start or earthquake(recording.event)
     kind = recording.direction[:2] if _SEED.fullmatch(recording.direction) else ""
-    return {f"{recording.station} {kind} at {when}"} if recording.station and when else set()
+    return (
+        {f"{recording.station} {kind} at {when}"} if recording.station and when else set()
+    )
 
 
 def clusters(
     sources: Sequence[str], folder: Path | None = None, by: By = "recordings"
 ) -> tuple[int, ...]:
-    """Numbers of the recordings or events of sources, from 0 in their order; headers are read."""
+    """Numbers of the recordings or events of sources, from 0 in their
+    order; headers are read.
+    """
     parsed = [Source.parse(source, folder) for source in sources]
-    places = [[name for name in (of.place, of.second) if name is not None] for of in parsed]
+    places = [
+        [name for name in (of.place, of.second) if name is not None] for of in parsed
+    ]
     # Beginnings of the names of two files that end with azimuths of 90 deg between them.
     azimuths: dict[str, list[int]] = {}
-    for match in map(_AZIMUTH.fullmatch, sorted({name for names in places for name in names})):
+    for match in map(
+        _AZIMUTH.fullmatch, sorted({name for names in places for name in names})
+    ):
         if match:
             azimuth = _COMPASS.get(match[2].upper())
-            azimuths.setdefault(match[1], []).append(int(match[2]) if azimuth is None else azimuth)
-    apart = {of for of, at in azimuths.items() if len(at) == 2 and (at[1] - at[0]) % 180 == 90}
+            azimuths.setdefault(match[1], []).append(
+                int(match[2]) if azimuth is None else azimuth
+            )
+    apart = {
+        of for of, at in azimuths.items() if len(at) == 2 and (at[1] - at[0]) % 180 == 90
+    }
     groups: dict[str, int] = {}
     first_names = list[str]()
     for number, (of, own) in enumerate(zip(parsed, places, strict=True)):
@@ -147,7 +170,9 @@ def clusters(
 
 
 def _family(of: Source, place: str, apart: set[str]) -> str:
-    """The name of a recording: a place of a source without what tells its components apart."""
+    """The name of a recording: a place of a source without what
+    tells its components apart.
+    """
     if of.scheme == SET:
         return f"{SET}:{re.sub('/[ab]$', '', place)}"
     if of.scheme == "synthetic":
@@ -164,9 +189,13 @@ def _family(of: Source, place: str, apart: set[str]) -> str:
 
 
 def verticals(sources: Iterable[Source], folder: Path | None) -> list[Source]:
-    """Vertical components among sources, by name beside others of their recording or by header."""
+    """Vertical components among sources, by name beside others of
+    their recording or by header.
+    """
     every = dict.fromkeys(sources)
-    single = Counter(of.place for of in every)  # channels of a file are not told by its name
+    single = Counter(
+        of.place for of in every
+    )  # channels of a file are not told by its name
     marked = {
         of: match
         for of in every
@@ -183,19 +212,29 @@ def verticals(sources: Iterable[Source], folder: Path | None) -> list[Source]:
 
 
 def vertical_of(of: Source, folder: Path | None) -> Source:
-    """The vertical component of the recording of a file: another channel, or a file beside it."""
+    """The vertical component of the recording of a file: another
+    channel, or a file beside it.
+    """
     alone = of.alone.without("channel")
     found = channels(alone, folder) if of.scheme == FILE else []
     several = len(found) > 1
     if found and not several:
-        beside = sorted(((folder or Path()) / Path(of.place).expanduser()).parent.iterdir())
-        places = (alone.at(str(PurePath(of.place).with_name(file.name))) for file in beside)
+        beside = sorted(
+            ((folder or Path()) / Path(of.place).expanduser()).parent.iterdir()
+        )
+        places = (
+            alone.at(str(PurePath(of.place).with_name(file.name))) for file in beside
+        )
         found = [each for place in places for each in channels(place, folder)]
     found = verticals(found, folder)
     if not several:
         own = _stated_name(stated(of, folder))
         alike = [each for each in found if own & _stated_name(stated(each, folder))]
-        named = [each for each in found if of.place.startswith(_VERTICAL.sub(r"\1", each.place))]
+        named = [
+            each
+            for each in found
+            if of.place.startswith(_VERTICAL.sub(r"\1", each.place))
+        ]
         found = alike or named
     if len(found) != 1:
         names = ", ".join(each.place for each in found[:3])
@@ -208,9 +247,13 @@ def vertical_of(of: Source, folder: Path | None) -> Source:
 
 
 def pairs_among(
-    single: Iterable[Source], text: str, asked: Mapping[str, str | None], folder: Path | None
+    single: Iterable[Source],
+    text: str,
+    asked: Mapping[str, str | None],
+    folder: Path | None,
 ) -> list[Source]:
-    """Pairs of the components of each recording, under their common options and those asked for.
+    """Pairs of the components of each recording, under their common
+    options and those asked for.
 
     Of a set either component names its pair. Of files both have to be there.
     """
@@ -218,7 +261,9 @@ def pairs_among(
     members: dict[int, list[Source]] = {}
     for of, number in zip(given, clusters(given, folder), strict=True):
         if of.of_pair:
-            raise RecordError(f"{of}: is of two components already, which {text} asks for again")
+            raise RecordError(
+                f"{of}: is of two components already, which {text} asks for again"
+            )
         if of.scheme not in (FILE, SET):
             raise RecordError(f"{of}: has no second component, which {text} asks for")
         members.setdefault(number, []).append(of)
@@ -227,16 +272,18 @@ def pairs_among(
         options = first.without("channel").values
         if any(each.without("channel").values != options for each in rest):
             raise RecordError(
-                f"{text}: {first} and {rest[0]} are of one recording and differ in their options;"
-                " both act together under one factor"
+                f"{text}: {first} and {rest[0]} are of one recording and differ in their"
+                " options; both act together under one factor"
             )
-        both = [first, first] if first.scheme == SET else _horizontal([first, *rest], folder)
+        both = (
+            [first, first] if first.scheme == SET else _horizontal([first, *rest], folder)
+        )
         if len(both) != 2:
             some = ", ".join(each.place for each in (first, *rest[:2]))
             raise RecordError(
-                f"{text}: {some}: names do not tell two horizontal components of one recording, as"
-                " MUL009.AT2 and MUL279.AT2, AOM001.EW and AOM001.NS do; leave it out, or name each"
-                " pair, as in x.at2?second=y.at2&both"
+                f"{text}: {some}: names do not tell two horizontal components of one"
+                " recording, as MUL009.AT2 and MUL279.AT2, AOM001.EW and AOM001.NS do;"
+                " leave it out, or name each pair, as in x.at2?second=y.at2&both"
             )
         found.append(both[0].together(both[1]).plus(**asked))
     return found
@@ -248,8 +295,8 @@ def _horizontal(sources: Sequence[Source], folder: Path | None) -> list[Source]:
 
 
 ONE_FACTOR = (
-    "of: component would give every angle or component a factor of its own; a pair has one factor:"
-    " use rotd50, or x, which is that of the first component"
+    "of: component would give every angle or component a factor of its own; a pair has"
+    " one factor: use rotd50, or x, which is that of the first component"
 )
 
 
@@ -257,9 +304,9 @@ def pairs(
     sources: Sequence[str], of: Of | None = None, folder: Path | None = None
 ) -> tuple[Pair | None, ...]:
     """Both components by which each source is measured, or None where it is by itself."""
-    # Without `of` it is the pair where its recording stands in several directions among the
-    # sources, at an angle or as both components: one factor then suits all of them. A measure `of`
-    # a pair is that of every source.
+    # Without `of` it is the pair where its recording stands in several directions among
+    # the sources, at an angle or as both components: one factor then suits all of them. A
+    # measure `of` a pair is that of every source.
     parsed = [Source.parse(source, folder) for source in sources]
     if of == "component":
         for pair in (p for p in parsed if p.of_pair):
@@ -274,11 +321,18 @@ def pairs(
     for source, number, p in zip(sources, numbers, parsed, strict=True):
         known = p.components
         if known is None and p.scheme == FILE:
-            # Both components of the recording that are among the sources, under the factor of one.
-            every = (each for m in members[number].values() for each in m.components or (m,))
-            both = _horizontal(sorted({each.alone.without("factor") for each in every}), folder)
+            # Both components of the recording that are among the sources, under the
+            # factor of one.
+            every = (
+                each for m in members[number].values() for each in m.components or (m,)
+            )
+            both = _horizontal(
+                sorted({each.alone.without("factor") for each in every}), folder
+            )
             if len(both) == 2 and p.alone.without("factor") in both:
-                factor = {name: value for name, value in p.values.items() if name == "factor"}
+                factor = {
+                    name: value for name, value in p.values.items() if name == "factor"
+                }
                 known = both[0].plus(**factor), both[1].plus(**factor)
         if of is not None and known is None:
             raise RecordError(

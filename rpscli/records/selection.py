@@ -1,4 +1,5 @@
-"""Motions, or pairs of them, and factors whose spectra fit a target; the search for the best set.
+"""Motions, or pairs of them, and factors whose spectra fit a target; the
+search for the best set.
 
 The best set is that of all, or sought by exchange.
 """
@@ -22,7 +23,14 @@ from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.loading import load_record
 from rpscli.records.recordings import clusters, event_of, pairs
 from rpscli.records.source import Source
-from rpscli.records.target import RULES, Component, Periods, Requirements, Rule, TargetSpectrum
+from rpscli.records.target import (
+    RULES,
+    Component,
+    Periods,
+    Requirements,
+    Rule,
+    TargetSpectrum,
+)
 from rpscli.units import bare_or_si
 
 Array = NDArray[np.float64]
@@ -41,7 +49,8 @@ _RANGES = {
     "d5_75": "s",
     "d5_95": "s",
 }
-"""Quantities that have a range, with SI units; significant durations are those of the motion."""
+"""Quantities that have a range, with SI units; significant durations
+are those of the motion."""
 
 
 class Filter(NamedTuple):
@@ -53,7 +62,9 @@ class Filter(NamedTuple):
     high: float
 
     def keeps(self, motion: GroundMotion) -> bool | None:
-        """True if a motion may be a candidate; None if the quantity is not known of it."""
+        """True if a motion may be a candidate; None if the
+        quantity is not known of it.
+        """
         durations = self.name.startswith("d5")
         of = measures.intensity_measures(motion) if durations else motion.recording
         value = getattr(of, self.name)
@@ -63,12 +74,17 @@ class Filter(NamedTuple):
 def kept(
     motions: Sequence[GroundMotion], filters: Iterable[Filter]
 ) -> tuple[list[GroundMotion], dict[str, dict[str, int]]]:
-    """Motions that pass every filter, and how many each keeps out, or knows nothing of."""
+    """Motions that pass every filter, and how many each keeps
+    out, or knows nothing of.
+    """
     passing = list(motions)
     left_out = {}
     for each in filters:
         verdicts = [each.keeps(motion) for motion in passing]
-        left_out[each.text] = {"outside": verdicts.count(False), "not_known": verdicts.count(None)}
+        left_out[each.text] = {
+            "outside": verdicts.count(False),
+            "not_known": verdicts.count(None),
+        }
         passing = list(itertools.compress(passing, verdicts))
     return passing, left_out
 
@@ -94,7 +110,9 @@ def parse_filter(text: str) -> Filter:
         try:
             texts = low.strip() or "-inf", high.strip() or "inf"
             ends = [bare_or_si(end, _RANGES[name]) for end in texts]
-            fault = "" if ends[0] <= ends[1] else "must not fall; write the lower end first"
+            fault = (
+                "" if ends[0] <= ends[1] else "must not fall; write the lower end first"
+            )
         except ValueError as error:
             fault = f"an end of the range {error}"
     if fault:
@@ -104,10 +122,12 @@ def parse_filter(text: str) -> Filter:
 
 @dataclass(frozen=True, eq=False)
 class Candidate:
-    """One motion that may be chosen, or a pair under one factor, with its event if that is known.
+    """One motion that may be chosen, or a pair under one factor, with
+    its event if that is known.
 
-    `acceleration` (n,) [m/s2] is its unscaled spectrum, `pga`, `pgv` and `pgd` its unscaled peaks,
-    `factor` what brings it nearest to the target. A `clamped` factor is at one of its bounds.
+    `acceleration` (n,) [m/s2] is its unscaled spectrum, `pga`, `pgv` and `pgd` its
+    unscaled peaks, `factor` what brings it nearest to the target. A `clamped` factor
+    is at one of its bounds.
     """
 
     motions: tuple[GroundMotion, ...]
@@ -121,7 +141,9 @@ class Candidate:
 
     @property
     def name(self) -> str:
-        """Of the motion, or of the pair by its first component, without the side in a set."""
+        """Of the motion, or of the pair by its first component,
+        without the side in a set.
+        """
         name = self.motions[0].name
         return name if len(self.motions) == 1 else name.removesuffix("_a")
 
@@ -129,7 +151,11 @@ class Candidate:
     def source(self) -> Source:
         """Of the motion, or of both components together."""
         first, *others = (Source.parse(motion.source) for motion in self.motions)
-        return first.together(others[0]).plus(both=None) if others and not first.both else first
+        return (
+            first.together(others[0]).plus(both=None)
+            if others and not first.both
+            else first
+        )
 
     @property
     def scaled(self) -> Array:
@@ -139,11 +165,13 @@ class Candidate:
 
 @dataclass(frozen=True, eq=False)
 class Selection:
-    """The choice, in the order of the candidates, beside its target at `periods` (n,) [s].
+    """The choice, in the order of the candidates, beside its
+    target at `periods` (n,) [s].
 
-    `common` is the factor on all motions after their own. `candidates` counts the motions or pairs
-    that were looked at, `refused` those that would need a factor out of bounds to have the PGV, or
-    the conditioning ordinate; `whole` is true if all sets were looked at.
+    `common` is the factor on all motions after their own. `candidates` counts the
+    motions or pairs that were looked at, `refused` those that would need a factor
+    out of bounds to have the PGV, or the conditioning ordinate; `whole` is true if
+    all sets were looked at.
     """
 
     target: TargetSpectrum
@@ -164,7 +192,9 @@ class Selection:
 
     @cached_property
     def mean(self) -> Array:
-        """(n,) of the scaled spectra [m/s2], a geometric one where the target has a deviation."""
+        """(n,) of the scaled spectra [m/s2], a geometric one where
+        the target has a deviation.
+        """
         spectra = np.array([one.scaled[1:] for one in self.chosen])
         if self.target.deviation is None:
             return np.asarray(spectra.mean(axis=0))
@@ -175,7 +205,9 @@ class Selection:
         """(n,) of ln Sa of the scaled spectra, where the target has one."""
         if self.target.deviation is None:
             return None
-        return np.asarray(np.log([one.scaled[1:] for one in self.chosen]).std(axis=0, ddof=1))
+        return np.asarray(
+            np.log([one.scaled[1:] for one in self.chosen]).std(axis=0, ddof=1)
+        )
 
     @property
     def misfit(self) -> float:
@@ -204,21 +236,27 @@ class Selection:
 
     @property
     def errors(self) -> tuple[float, float] | None:
-        """Largest errors of mean and standard deviation of ln Sa, where the target has both."""
+        """Largest errors of mean and standard deviation of ln Sa,
+        where the target has both.
+        """
         if self.target.deviation is None or (scatter := self.deviation) is None:
             return None
-        off = np.log(self.mean / self.wanted), scatter - self.target.deviation(self.periods)
+        off = (
+            np.log(self.mean / self.wanted),
+            scatter - self.target.deviation(self.periods),
+        )
         return float(np.abs(off[0]).max()), float(np.abs(off[1]).max())
 
 
 @dataclass(frozen=True)
 class SelectionRequest:
-    """What is asked for: `count` motions, or pairs, whose spectra are compared in `periods` [s].
+    """What is asked for: `count` motions, or pairs, whose spectra are
+    compared in `periods` [s].
 
-    `factors` bound those on a motion, `per_event` the motions from one earthquake. A `pgv` [m/s] is
-    that of every motion, in place of the factor that fits it best. `rules` name what a code asks
-    of the set, enforced and judged, None what the target's asks; its range of periods is about
-    those of the `structure`.
+    `factors` bound those on a motion, `per_event` the motions from one earthquake. A
+    `pgv` [m/s] is that of every motion, in place of the factor that fits it best. `rules`
+    name what a code asks of the set, enforced and judged, None what the target's asks;
+    its range of periods is about those of the `structure`.
     """
 
     count: int
@@ -238,7 +276,9 @@ class SelectionRequest:
         if not 0.0 < low <= high < np.inf:
             raise RecordError(f"--factors {low:g} {high:g}: must be > 0 and not fall")
         if self.count < 1 or self.per_event < 1:
-            raise RecordError("the numbers of motions and of motions per event must be >= 1")
+            raise RecordError(
+                "the numbers of motions and of motions per event must be >= 1"
+            )
         if self.pgv is not None and not 0.0 < self.pgv < np.inf:
             raise RecordError(f"--pgv {self.pgv:g}: must be > 0, in m/s")
 
@@ -251,17 +291,19 @@ def select(
 ) -> Selection:
     """The motions and factors whose mean spectrum is nearest to the target.
 
-    Each motion alone gets the factor that makes the mean over the periods of ln(spectrum/target)
-    zero, which is the best one in least squares, or the bound next to it; then all of them one
-    common factor, which brings the mean spectrum nearest to the target and, if it must, up to what
-    the code asks for. With a PGV each motion is brought to that, and there is no common factor.
-    A target with a standard deviation is met in the mean and in the deviation of ln Sa, as by
-    J. W. Baker and C. Lee, J. Earthq. Eng. 22, 2018, without their simulated spectra: each motion
-    is scaled to the target at the period at which that does not scatter; without such a period, to
-    one of several levels of it.
+    Each motion alone gets the factor that makes the mean over the periods of
+    ln(spectrum/target) zero, which is the best one in least squares, or the bound next
+    to it; then all of them one common factor, which brings the mean spectrum nearest to
+    the target and, if it must, up to what the code asks for. With a PGV each motion is
+    brought to that, and there is no common factor. A target with a standard deviation
+    is met in the mean and in the deviation of ln Sa, as by J. W. Baker and C. Lee, J.
+    Earthq. Eng. 22, 2018, without their simulated spectra: each motion is scaled to the
+    target at the period at which that does not scatter; without such a period, to one
+    of several levels of it.
 
-    Of one recording one component, or the pair, is chosen at most. `watched` goes through the
-    numbers of candidates while their spectra are computed, and may show how far that is.
+    Of one recording one component, or the pair, is chosen at most. `watched`
+    goes through the numbers of candidates while their spectra are computed, and
+    may show how far that is.
     """
     asked = None if target.deviation else RULES.get(request.rules or target.rules)
     periods, goal = _goal(target, request, asked, PERIODS)
@@ -287,14 +329,26 @@ def select(
     # Codes ask for all periods: the common factor and the verdicts are from a finer grid.
     periods, goal = _goal(target, request, asked, FINER * PERIODS)
     best = [fitting[place] for place in places]
-    spectra = [_spectrum(one.motions, target.damping, periods, request.of) for one in best]
-    finer = [replace(one, acceleration=s[1:]) for one, s in zip(best, spectra, strict=True)]
+    spectra = [
+        _spectrum(one.motions, target.damping, periods, request.of) for one in best
+    ]
+    finer = [
+        replace(one, acceleration=s[1:]) for one, s in zip(best, spectra, strict=True)
+    ]
     features = goal.features(np.array([one.scaled for one in finer]))
     _, common = goal.of_set(features, np.array([one.factor for one in finer]))
     chosen = tuple(_under(common, one, request) for one in finer)
     refused = sum(not scaled for scaled in fits)
     found = Selection(
-        target, request.of, periods, chosen, len(every), refused, common, asked, whole=whole
+        target,
+        request.of,
+        periods,
+        chosen,
+        len(every),
+        refused,
+        common,
+        asked,
+        whole=whole,
     )
     if asked is None:
         return found
@@ -307,7 +361,10 @@ def select(
 
 
 def _goal(
-    target: TargetSpectrum, request: SelectionRequest, asked: Requirements | None, count: int
+    target: TargetSpectrum,
+    request: SelectionRequest,
+    asked: Requirements | None,
+    count: int,
 ) -> tuple[Array, Goal]:
     """Periods (n,) [s], and what the set is to have there and of its PGA."""
     low, high = request.periods
@@ -315,8 +372,8 @@ def _goal(
     if target.pinned is not None:
         if not low <= target.pinned <= high:
             raise RecordError(
-                f"{target.source}: does not scatter at {target.pinned:g} s, which must be within"
-                f" --periods {low:g} {high:g}"
+                f"{target.source}: does not scatter at {target.pinned:g} s, which must be"
+                f" within --periods {low:g} {high:g}"
             )
         periods = np.union1d(periods, target.pinned)
     pga = target.ground_acceleration
@@ -335,15 +392,24 @@ def misfit(spectra: Array, wanted: Array) -> Array:
     return np.asarray(np.sqrt(np.mean(np.log(spectra / wanted) ** 2, axis=-1)))
 
 
-def _sources(motions: list[GroundMotion], of: Component) -> list[tuple[GroundMotion, ...]]:
+def _sources(
+    motions: list[GroundMotion], of: Component
+) -> list[tuple[GroundMotion, ...]]:
     """Motions by themselves, or the pairs that they belong to."""
     sources = [motion.source for motion in motions]
     found = pairs(sources, "rotd50" if of == "srss" else of)
     if of == "component":
         return [(motion,) for motion in motions]
-    both = {pair: source for pair, source in zip(found, sources, strict=True) if pair is not None}
+    both = {
+        pair: source
+        for pair, source in zip(found, sources, strict=True)
+        if pair is not None
+    }
     return [
-        (replace(load_record(x), source=given if Source.parse(given).both else x), load_record(y))
+        (
+            replace(load_record(x), source=given if Source.parse(given).both else x),
+            load_record(y),
+        )
         for (x, y), given in both.items()
     ]
 
@@ -368,7 +434,11 @@ def _measured(
     pgv, pgd = (
         measures.measured(first, measure)
         if len(motions) == 1
-        else float(measures.of_directions(measures.over_directions(first, motions[1], measure), of))
+        else float(
+            measures.of_directions(
+                measures.over_directions(first, motions[1], measure), of
+            )
+        )
         for measure in ("PGV", "PGD")
     )
     if not spectrum.all() or pgv <= 0.0:
@@ -378,7 +448,11 @@ def _measured(
 
 
 def _scaled(
-    one: Candidate, target: TargetSpectrum, periods: Array, wanted: Array, request: SelectionRequest
+    one: Candidate,
+    target: TargetSpectrum,
+    periods: Array,
+    wanted: Array,
+    request: SelectionRequest,
 ) -> list[Candidate]:
     """A motion under the factors that it may have; none if those are out of bounds."""
     low, high = request.factors
@@ -388,7 +462,9 @@ def _scaled(
     elif target.pinned is not None:
         factors = [float(np.exp(offset[np.searchsorted(periods, target.pinned)]))]
     elif target.deviation is not None:
-        factors = np.exp((offset + LEVELS[:, None] * target.deviation(periods)).mean(axis=1))
+        factors = np.exp(
+            (offset + LEVELS[:, None] * target.deviation(periods)).mean(axis=1)
+        )
     else:
         best = float(np.exp(offset.mean()))
         held = replace(one, clamped=not low <= best <= high)
@@ -411,29 +487,36 @@ def _require_enough(
     counts = Counter(event for _, event in known)
     room = sum(min(count, request.per_event) for count in counts.values())
     if request.count < 2 and target.deviation is not None:
-        raise RecordError(f"{target.source}: has a sigma_ln, which takes two motions at least")
+        raise RecordError(
+            f"{target.source}: has a sigma_ln, which takes two motions at least"
+        )
     if room < request.count:
         noun = "motions" if request.of == "component" else "pairs"
         raise RecordError(
-            f"only {room} of {every} {noun} may be chosen together, {request.count} are wanted:"
-            f" {len(known)} recordings keep within the factors {request.factors[0]:g} to"
-            f" {request.factors[1]:g}, from {len(counts)} events with at most {request.per_event}"
-            " each, and of one recording one component is taken; give more motions or wider bounds"
+            f"only {room} of {every} {noun} may be chosen together, {request.count} are"
+            f" wanted: {len(known)} recordings keep within the factors"
+            f" {request.factors[0]:g} to {request.factors[1]:g}, from {len(counts)}"
+            f" events with at most {request.per_event} each, and of one recording one"
+            " component is taken; give more motions or wider bounds"
         )
 
 
 WHOLE = 2_000_000  # most sets that are searched exhaustively
 ROUNDS = 50  # searches, of which the best one counts
 STARTS = 5  # first choices of a search at random, each improved by exchange
-KICKS = 50  # times that the best of them is left by three motions at random, and improved again
+# times that the best of them is left by three motions at random, and improved again
+KICKS = 50
 ROUNDING = 2e-5  # by which a least value is passed: factors are written with six digits
-SHORT = 10.0  # weight of what is missing to a requirement [1/ln]: more than any fit can win
+SHORT = (
+    10.0  # weight of what is missing to a requirement [1/ln]: more than any fit can win
+)
 
 
 class Pool(NamedTuple):
     """Candidates: `spectra` (m, 1 + n) under `factors` (m,), the PGA before the periods.
 
-    Of one of the `recordings` (m,) one is chosen at most; `events` (m,) number the earthquakes.
+    Of one of the `recordings` (m,) one is chosen at most; `events`
+    (m,) number the earthquakes.
     """
 
     spectra: Array
@@ -446,9 +529,9 @@ class Pool(NamedTuple):
 class Goal:
     """The aim of the mean of a set, or of the mean and the deviation of ln Sa.
 
-    `wanted` is (1 + n,), `deviation` (n,). Of the mean over `wanted` at least `least` is required
-    at all periods, and 1 of the `pga`. One common factor may bring the set there, within the
-    `bounds` of every single factor, unless they are `fixed`.
+    `wanted` is (1 + n,), `deviation` (n,). Of the mean over `wanted` at least `least` is
+    required at all periods, and 1 of the `pga`. One common factor may bring the set
+    there, within the `bounds` of every single factor, unless they are `fixed`.
     """
 
     wanted: Array
@@ -465,12 +548,20 @@ class Goal:
         logarithms = np.log(spectra[:, 1:])
         return np.hstack([logarithms, logarithms**2])
 
-    def judged(self, total: Array, size: int, least: Array, most: Array) -> tuple[Array, Array]:
-        """Cost and logarithm of the common factor, (...), of sets with sums (..., features)."""
+    def judged(
+        self, total: Array, size: int, least: Array, most: Array
+    ) -> tuple[Array, Array]:
+        """Cost and logarithm of the common factor, (...), of sets
+        with sums (..., features).
+        """
         if self.deviation is not None:
             first, second = np.split(total / size, 2, axis=-1)
-            scatter = np.sqrt(np.maximum(second - first**2, 0.0) * size / max(size - 1, 1))
-            errors = (first - np.log(self.wanted[1:])) ** 2 + (scatter - self.deviation) ** 2
+            scatter = np.sqrt(
+                np.maximum(second - first**2, 0.0) * size / max(size - 1, 1)
+            )
+            errors = (first - np.log(self.wanted[1:])) ** 2 + (
+                scatter - self.deviation
+            ) ** 2
             return np.sqrt(errors.mean(axis=-1)), np.zeros(errors.shape[:-1])
         ratio = np.log(total / size / self.wanted)
         shape = ratio[..., 1:]
@@ -483,19 +574,25 @@ class Goal:
         common = np.zeros(offset.shape)
         if not self.fixed:
             low, high = (math.log(bound) if bound else -math.inf for bound in self.bounds)
-            common = np.clip(np.maximum(-offset, needed), low - np.log(least), high - np.log(most))
+            common = np.clip(
+                np.maximum(-offset, needed), low - np.log(least), high - np.log(most)
+            )
         missing = np.maximum(needed - common, 0.0)
         cost = np.sqrt(shape.var(axis=-1) + (offset + common) ** 2) + SHORT * missing
         return cost, common
 
     def of_set(self, features: Array, factors: Array) -> tuple[float, float]:
-        """Cost and common factor of one set, with features (size, ...) under factors (size,)."""
+        """Cost and common factor of one set, with features (size,
+        ...) under factors (size,).
+        """
         total = features.sum(axis=0)
         cost, common = self.judged(total, len(factors), factors.min(), factors.max())
         return float(cost), math.exp(float(common))
 
 
-def best_choice(pool: Pool, goal: Goal, count: int, per_event: int) -> tuple[list[int], bool]:
+def best_choice(
+    pool: Pool, goal: Goal, count: int, per_event: int
+) -> tuple[list[int], bool]:
     """Places of the best set, in order, and whether all sets were looked at.
 
     Of more sets than `WHOLE` it is the best that is found, the same for the same motions.
@@ -532,7 +629,9 @@ class _Search:
         return np.asarray(~taken & (kin < self.per_event))
 
     def best_of_all(self) -> list[int]:
-        """Places of the best of all sets that keep the rules about recordings and events."""
+        """Places of the best of all sets that keep the rules
+        about recordings and events.
+        """
         _, every, recordings, events = self.pool
         choices = itertools.combinations(range(len(every)), self.count)
         best = (math.inf, list[int]())
@@ -545,14 +644,18 @@ class _Search:
             total = np.zeros((len(sets), self.features.shape[1]))
             for place in range(self.count):
                 total += self.features[sets[:, place]]
-            cost, _ = self.goal.judged(total, self.count, factors.min(axis=1), factors.max(axis=1))
+            cost, _ = self.goal.judged(
+                total, self.count, factors.min(axis=1), factors.max(axis=1)
+            )
             if len(sets):
                 least = int(np.argmin(cost))
                 best = min(best, (float(cost[least]), sets[least].tolist()))
         return best[1]
 
     def filled(self, places: list[int], random: np.random.Generator) -> list[int]:
-        """These places and others at random; fewer than wanted where none is free any more."""
+        """These places and others at random; fewer than wanted
+        where none is free any more.
+        """
         while len(places) < self.count:
             free = np.flatnonzero(self.free(np.array(places, dtype=np.int64)))
             if not free.size:

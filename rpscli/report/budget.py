@@ -1,4 +1,6 @@
-"""What moves the results of one history: inputs changed one at a time, and what comes of each."""
+"""What moves the results of one history: inputs changed one at a
+time, and what comes of each.
+"""
 
 from __future__ import annotations
 
@@ -30,15 +32,19 @@ FACTOR = 2.0  # by which a result changes its order of magnitude
 SHARES = (LOW, 0.5, HIGH)
 RECORDS = "records"  # the cause of all rows that are other records
 REMARK = (
-    "one input at a time, without the error of the model itself; the default loss is 0.3 for"
-    " plane contact, 1 for edges"
+    "one input at a time, without the error of the model itself; the default loss is 0.3"
+    " for plane contact, 1 for edges"
 )
 NO_CHANGE = "no change"
-CAPTION = "orange: factor 2, red: other verdict, dots: records; overturned at the right end"
+CAPTION = (
+    "orange: factor 2, red: other verdict, dots: records; overturned at the right end"
+)
 
 
 class Row(NamedTuple):
-    """One change, by options of `rps timehistory`: its results [SI], or why there are none."""
+    """One change, by options of `rps timehistory`: its results
+    [SI], or why there are none.
+    """
 
     cause: str
     change: str
@@ -82,7 +88,9 @@ class Effect(NamedTuple):
 
 @dataclass(frozen=True)
 class Budget:
-    """All rows under a case, the first as the case is, and what they do to each result."""
+    """All rows under a case, the first as the case is, and
+    what they do to each result.
+    """
 
     case: Case
     every: list[Row]
@@ -127,11 +135,16 @@ class Budget:
         of = Counter(row.cause for row in self.rows)
         name = effect.name
         turned, moved = (
-            ", ".join(f"{cause} ({n} of {of[cause]})" for cause, n in Counter(causes).items())
+            ", ".join(
+                f"{cause} ({n} of {of[cause]})" for cause, n in Counter(causes).items()
+            )
             for which in (effect.turned, effect.moved)
             for causes in [[self.rows[row].cause for row in np.flatnonzero(which)]]
         )
-        told = f"{name} changes by a factor of {FACTOR:g} or more with: {moved or NO_CHANGE}."
+        told = (
+            f"{name} changes by a factor of {FACTOR:g} or more with:"
+            f" {moved or NO_CHANGE}."
+        )
         if effect.limit is None:
             return told
         word = "EXCEEDED" if effect.exceeded[0] else "met"
@@ -161,14 +174,22 @@ class Budget:
         lines = [(row.label, v, word) for row, v, word in every if row.cause != RECORDS]
         number = len(self.rows) - len(lines)
         for share, value in zip(SHARES, effect.spread, strict=True):
-            lines.append((f"{RECORDS}: {100.0 * share:g} % fractile of {number}", value, ""))
+            lines.append(
+                (f"{RECORDS}: {100.0 * share:g} % fractile of {number}", value, "")
+            )
         cells = []
         for name, value, word in lines:
-            text = "overturned" if np.isinf(value) else shown(large(value, quantity.unit)[0])
+            text = (
+                "overturned" if np.isinf(value) else shown(large(value, quantity.unit)[0])
+            )
             ratio = value / effect.values[0] if effect.values[0] else np.nan
-            cells.append([name, text, f"{ratio:.3g}" if np.isfinite(ratio) else "-", word])
+            cells.append(
+                [name, text, f"{ratio:.3g}" if np.isfinite(ratio) else "-", word]
+            )
         bound = "" if effect.limit is None else bound_text(effect.limit)
-        return Table.of_texts(["", headed(quantity.label, quantity.unit), "ratio", bound], cells)
+        return Table.of_texts(
+            ["", headed(quantity.label, quantity.unit), "ratio", bound], cells
+        )
 
     def document(self) -> dict[str, Any]:
         """All rows, and of each result what turns or moves it."""
@@ -190,8 +211,12 @@ class Budget:
 
     def files(self, look: Look) -> Files:
         """`budget.csv`, and a picture of each result."""
-        known = {e.name: f"{e.name} [{e.quantity.unit}]" for e in self.effects if e.quantity}
-        cells = [(*row[:4], row.refused, *map(row.values.get, known)) for row in self.every]
+        known = {
+            e.name: f"{e.name} [{e.quantity.unit}]" for e in self.effects if e.quantity
+        }
+        cells = [
+            (*row[:4], row.refused, *map(row.values.get, known)) for row in self.every
+        ]
         heads = ", ".join(("cause, change, options, outcome, refused", *known.values()))
         yield "budget.csv", csv_text(columns_of(heads, cells))
         draws = {e.name: partial(self.figure, e) for e in self.effects if e.quantity}
@@ -206,7 +231,9 @@ class Budget:
         return Section("Sensitivity of the results", [*blocks, *self.tables()])
 
     def figure(self, effect: Effect, figure: style.Figure) -> None:
-        """Bars from the value as it is to each changed one, records as points, limits as lines."""
+        """Bars from the value as it is to each changed one, records as
+        points, limits as lines.
+        """
         assert effect.quantity is not None, "events have no picture"
         label = effect.quantity.label
         unit = effect.quantity.unit
@@ -222,15 +249,21 @@ class Budget:
         far = 1.15 * np.max(sizes[np.isfinite(sizes)], initial=0.0)
         factor = large(1.0, unit)[0] or 1.0
         places = np.arange(len(names))
-        style.begin(figure, (self.case.title, CAPTION), 1.2 + (0.07 + 0.12 * most) * len(names))
+        style.begin(
+            figure, (self.case.title, CAPTION), 1.2 + (0.07 + 0.12 * most) * len(names)
+        )
         axes = figure.subplots()
         kind = np.array([style.BLUE, style.ORANGE, style.RED])
         kinds = np.where(effect.turned, 2, effect.moved)[~others]
-        ends, points = (factor * np.clip(v, -far, far) for v in (values, effect.values[others]))
+        ends, points = (
+            factor * np.clip(v, -far, far) for v in (values, effect.values[others])
+        )
         axes.barh(places, ends - ends[0], left=ends[0], height=0.65, color=kind[kinds])
         axes.plot(points, [len(names)] * len(points), ".", color=style.GREY, alpha=0.6)
         for value, colour, dash in lines:
             axes.axvline(factor * min(value, far), color=colour, ls=dash)
-        axes.set_yticks([*places, len(names)], [*names, RECORDS], fontsize=7, parse_math=False)
+        axes.set_yticks(
+            [*places, len(names)], [*names, RECORDS], fontsize=7, parse_math=False
+        )
         axes.invert_yaxis()
         axes.set_xlabel(headed(label, unit))

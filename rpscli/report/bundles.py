@@ -53,7 +53,12 @@ def modal_files(result: ModalResult, title: str, look: Look = USUAL) -> Files:
     yield "modes.csv", csv_text(mode_columns(result))
     yield "shapes.csv", csv_text(shape_columns(result))
     rows = [
-        (name, index // 2, value.real, value.imag)  # two a mode, mode 0 is the podium's own
+        (
+            name,
+            index // 2,
+            value.real,
+            value.imag,
+        )  # two a mode, mode 0 is the podium's own
         for name, modes in result.uplifted.items()
         for index, value in enumerate(modes.eigenvalues.tolist())
     ]
@@ -64,7 +69,9 @@ def modal_files(result: ModalResult, title: str, look: Look = USUAL) -> Files:
 
 
 def pushover_files(result: PushoverResult, title: str, look: Look = USUAL) -> Files:
-    """Files of the static characteristics; without a building there are no capacity curves."""
+    """Files of the static characteristics; without a building
+    there are no capacity curves.
+    """
     curve = [Column(q.name, q.unit, getattr(result.curve, q.name)) for q in STOREY_CURVE]
     yield "storey_curve.csv", csv_text(curve)  # one row a point, from the uplift on
     figures: dict[str, Draw] = {
@@ -72,7 +79,10 @@ def pushover_files(result: PushoverResult, title: str, look: Look = USUAL) -> Fi
         "storey_curve": partial(structure.storey_curve_figure, result, title),
     }
     if result.capacity:
-        heads = "pattern, roof_displacement [m], cap_beam_displacement [m], sum_of_floor_forces [N]"
+        heads = (
+            "pattern, roof_displacement [m], cap_beam_displacement [m],"
+            " sum_of_floor_forces [N]"
+        )
         rows = [
             (each.pattern, *point)
             for each in result.capacity
@@ -106,14 +116,20 @@ def timehistory_files(result: TimeHistoryResult, title: str, look: Look = USUAL)
     )
     figures: dict[str, Draw] = {
         **{stem: partial(draw, result, title) for stem, draw, there in known if there},
-        "moment_rotation": style.single(history.draw_moment, result, (*words, *along), 4.2, 6.0),
+        "moment_rotation": style.single(
+            history.draw_moment, result, (*words, *along), 4.2, 6.0
+        ),
         "energy": style.single(history.draw_energy, result, words, 3.4),
     }
     yield from _figures(figures, result, title, look)
 
 
-def floor_spectra_files(result: TimeHistoryResult, title: str, look: Look = USUAL) -> Files:
-    """Spectra of the floors, a row each and period from the bottom; none without a building."""
+def floor_spectra_files(
+    result: TimeHistoryResult, title: str, look: Look = USUAL
+) -> Files:
+    """Spectra of the floors, a row each and period from the bottom;
+    none without a building.
+    """
     if not result.structure.storeys:
         return
     isolated = isolated_floor_spectra(result)
@@ -135,8 +151,13 @@ def floor_spectra_files(result: TimeHistoryResult, title: str, look: Look = USUA
 
 
 def mode_columns(result: ModalResult) -> list[Column]:
-    """`modes.csv`: one row a vibration mode of each state; those uplifted in both orders."""
-    heads = "state, mode, frequency [rad/s], period [s], damping, frequency_ratio, damping_ratio"
+    """`modes.csv`: one row a vibration mode of each state; those
+    uplifted in both orders.
+    """
+    heads = (
+        "state, mode, frequency [rad/s], period [s], damping, frequency_ratio,"
+        " damping_ratio"
+    )
     heads += ", first_order_frequency [rad/s], first_order_damping"
     rows: list[tuple[Any, ...]] = []
     for state, modes, of_itself in (
@@ -146,7 +167,9 @@ def mode_columns(result: ModalResult) -> list[Column]:
     ):
         pairs = np.transpose([modes.frequencies, modes.damping]).tolist() if modes else ()
         for i, (w, xi) in enumerate(pairs, 1):
-            rows.append((state, i, w, 2.0 * math.pi / w, xi, of_itself, of_itself, None, None))
+            rows.append(
+                (state, i, w, 2.0 * math.pi / w, xi, of_itself, of_itself, None, None)
+            )
     for name, modes_of_state in result.vibrations():
         for i, (w, *others) in enumerate(modes_of_state.tolist(), 1):
             rows.append((name, i, w, 2.0 * math.pi / w, *others))
@@ -154,8 +177,12 @@ def mode_columns(result: ModalResult) -> list[Column]:
 
 
 def shape_columns(result: ModalResult) -> list[Column]:
-    """`shapes.csv`: one row a level of each mode; mode 0 is the podium's own, level 0 the beam."""
-    profiles = {(name, 0): [*modes.profiles().values()] for name, modes in result.uplifted.items()}
+    """`shapes.csv`: one row a level of each mode; mode 0 is the
+    podium's own, level 0 the beam.
+    """
+    profiles = {
+        (name, 0): [*modes.profiles().values()] for name, modes in result.uplifted.items()
+    }
     full = result.full_contact
     if result.fixed_base is not None:
         fixed = result.fixed_base.profiles()["shapes"]
@@ -164,7 +191,13 @@ def shape_columns(result: ModalResult) -> list[Column]:
         elastic = full.shapes.T - full.shapes[0][:, None]
         profiles = {("full_contact", 1): [full.shapes.T, elastic], **profiles}
     rows = [
-        (state, first + mode, level, float(shapes[mode, level]), float(elastic[mode, level]))
+        (
+            state,
+            first + mode,
+            level,
+            float(shapes[mode, level]),
+            float(elastic[mode, level]),
+        )
         for (state, first), (shapes, elastic) in profiles.items()
         for mode, level in np.ndindex(*shapes.shape)
     ]
@@ -186,14 +219,27 @@ def storey_columns(result: TimeHistoryResult) -> list[Column]:
 
 
 def history_columns(result: TimeHistoryResult) -> list[Column]:
-    """`timehistory.csv`: one row a sample of the record, on through the free vibration."""
+    """`timehistory.csv`: one row a sample of the record, on
+    through the free vibration.
+    """
     return [Column(*each) for each in sampled(result.structure, result.trace)]
 
 
 def event_columns(events: tuple[Event, ...]) -> list[Column]:
     """`events.csv`: one row an event, in the order of time."""
     units = {"time": "s", "kind": "-", "rotation": "rad"}
-    units |= {"rotation_rate_before": "rad/s", "rotation_rate_after": "rad/s", "energy_lost": "J"}
+    units |= {
+        "rotation_rate_before": "rad/s",
+        "rotation_rate_after": "rad/s",
+        "energy_lost": "J",
+    }
     if any(event.azimuth is not None for event in events):
-        units |= {"azimuth": "rad", "least_tilt": "rad", "nearness": "-", "loss_share": "-"}
-    return [Column(name, of, [getattr(e, name) for e in events]) for name, of in units.items()]
+        units |= {
+            "azimuth": "rad",
+            "least_tilt": "rad",
+            "nearness": "-",
+            "loss_share": "-",
+        }
+    return [
+        Column(name, of, [getattr(e, name) for e in events]) for name, of in units.items()
+    ]

@@ -1,4 +1,6 @@
-"""Sections of pages: what a case is, its ground motions, and the history that was computed."""
+"""Sections of pages: what a case is, its ground motions, and the
+history that was computed.
+"""
 
 from __future__ import annotations
 
@@ -44,8 +46,8 @@ def motion_pictures(
     """Acceleration, velocity, displacement and response spectrum of a motion, with T1."""
     period = None if building is None else float(building.periods[0])
     caption = (
-        f"{motion.name}: acceleration, velocity and displacement of the ground, and the response"
-        f" spectrum at {style.percent(DAMPING)} of critical damping."
+        f"{motion.name}: acceleration, velocity and displacement of the ground, and the"
+        f" response spectrum at {style.percent(DAMPING)} of critical damping."
     )
     draw = partial(record_figure, motion, drawn_spectrum(motion), period)
     return _picture(draw, look, caption)
@@ -66,7 +68,13 @@ def motions_section(
     """Records of a study, or of several histories: peaks, digests and spectra."""
     blocks: list[Block] = [*unreadable]
     if motions:
-        heads = ("record", "SHA-256 begins with", "duration [s]", "PGA [m/s2]", "PGV [m/s]")
+        heads = (
+            "record",
+            "SHA-256 begins with",
+            "duration [s]",
+            "PGA [m/s2]",
+            "PGV [m/s]",
+        )
         rows = []
         for each in motions[:MOST_ROWS]:
             of = intensity_measures(each)
@@ -75,10 +83,12 @@ def motions_section(
         blocks.append(Table.of_texts((*heads, "5-95 % [s]"), rows, words=2))
         spectra = [drawn_spectrum(each) for each in motions[:MOST_SPECTRA]]
         caption = (
-            f"Response spectra of {len(spectra)} records {which}, at {style.percent(DAMPING)} of"
-            " critical damping, with their median."
+            f"Response spectra of {len(spectra)} records {which}, at"
+            f" {style.percent(DAMPING)} of critical damping, with their median."
         )
-        blocks.append(_picture(style.single(draw_spectra, spectra, (title,), 3.2), look, caption))
+        blocks.append(
+            _picture(style.single(draw_spectra, spectra, (title,), 3.2), look, caption)
+        )
     if len(motions) > MOST_ROWS:
         blocks.append(f"The table shows the first {MOST_ROWS} of {len(motions)} records.")
     return Section("Ground motions", blocks)
@@ -86,28 +96,41 @@ def motions_section(
 
 CAPTIONS = {
     "s": "The structure at rest.",
-    "bearing": "A column at rest, where rolling ends and at the critical rotation, to one scale;"
-    " one of its ends enlarged; and the horizontal force at the cap beam that holds it there."
-    " R runs from the middle of the column to the edge of the flat part of its end; dots are"
-    " contacts.",
-    "orbit": "From above: the path of the cap beam over the ground, and the moment of ground and"
-    " building about the contacts, beyond whose circle upright columns uplift; time in colour.",
-    "column": "The most loaded column when its moment is largest: forces at its ends, to a scale of"
-    " their own, and axial force, shear and moment along it.",
-    "rotation": "Ground acceleration, rotation of the columns with the phases of the motion, and"
-    " the events.",
+    "bearing": (
+        "A column at rest, where rolling ends and at the critical rotation, to one"
+        " scale; one of its ends enlarged; and the horizontal force at the cap beam"
+        " that holds it there. R runs from the middle of the column to the edge of the"
+        " flat part of its end; dots are contacts."
+    ),
+    "orbit": (
+        "From above: the path of the cap beam over the ground, and the moment of ground"
+        " and building about the contacts, beyond whose circle upright columns uplift;"
+        " time in colour."
+    ),
+    "column": (
+        "The most loaded column when its moment is largest: forces at its ends, to a"
+        " scale of their own, and axial force, shear and moment along it."
+    ),
+    "rotation": (
+        "Ground acceleration, rotation of the columns with the phases of the motion,"
+        " and the events."
+    ),
     "displacements": "Displacements relative to the ground against time.",
     "moment_rotation": "Driving and restoring moment about the contact points against rotation.",
     "energy": "Balance of the energy supplied by the ground.",
     "storey_shears": "Largest storey shears on the bearings and on a fixed base.",
-    "storey_loops": "Shear of the springs of storeys that yield against their drift, and the lines"
-    " on which they yield.",
+    "storey_loops": (
+        "Shear of the springs of storeys that yield against their drift, and the lines"
+        " on which they yield."
+    ),
     "devices": "Force against displacement of each device between ground and cap beam.",
 }
 
 DIGITS = 6
 THEORY = "THEORY.md"
-HIDDEN = "| assumed |"  # begins the table of the theory that says what the model cannot tell
+HIDDEN = (
+    "| assumed |"  # begins the table of the theory that says what the model cannot tell
+)
 
 
 def page_sections(
@@ -124,7 +147,9 @@ def page_sections(
     both: bool,
     which: Sequence[Block] = (),
 ) -> list[Section]:
-    """All of a page in its order; `which` says of which system structure and formulas are."""
+    """All of a page in its order; `which` says of which system
+    structure and formulas are.
+    """
     structure = case.structure
     podium = case.document["podium"]
     told = [Notice(f"Warning: {text}") for text in warnings]
@@ -146,7 +171,9 @@ def page_sections(
 
 def listing(rows: Iterable[tuple[str, str]]) -> Table:
     """Rows above the input, and the versions of what made the numbers."""
-    made = ", ".join(f"{name} {version}" for name, version in versions().items() if version)
+    made = ", ".join(
+        f"{name} {version}" for name, version in versions().items() if version
+    )
     return Table.listing([*rows, ("made by", made)])
 
 
@@ -177,12 +204,21 @@ def _storeys(structure: PodiumStructure) -> Table:
     }
     if (across := structure.superstructure_y) is not None:
         columns["stiffness in y [kN/m]"] = across.stiffnesses * 1e-3
-    return Table([Column(name, "-", each[::-1], name, _number) for name, each in columns.items()])
+    return Table(
+        [Column(name, "-", each[::-1], name, _number) for name, each in columns.items()]
+    )
 
 
-def input_table(content: Mapping[str, Any], written: Mapping[str, Any] | None = None) -> Table:
-    """Every key of a case in SI units, defaults written out, beside what the user wrote."""
-    rows = [(key, _plain(value), unit(key).removeprefix("-")) for key, value in leaves(content)]
+def input_table(
+    content: Mapping[str, Any], written: Mapping[str, Any] | None = None
+) -> Table:
+    """Every key of a case in SI units, defaults written out,
+    beside what the user wrote.
+    """
+    rows = [
+        (key, _plain(value), unit(key).removeprefix("-"))
+        for key, value in leaves(content)
+    ]
     if not written:
         return Table.of_texts(("key", "value", "unit"), rows, words=3)
     own = {key: _as_typed(value) for key, value in leaves(written)}
@@ -192,16 +228,21 @@ def input_table(content: Mapping[str, Any], written: Mapping[str, Any] | None = 
 
 def _as_typed(value: object) -> str:
     """A value of the file, lists of texts without their quotes."""
-    return f"[{', '.join(map(_as_typed, value))}]" if isinstance(value, list) else _plain(value)
+    return (
+        f"[{', '.join(map(_as_typed, value))}]"
+        if isinstance(value, list)
+        else _plain(value)
+    )
 
 
 def derived_blocks(structure: PodiumStructure, podium: Mapping[str, Any]) -> list[Block]:
     """Derived quantities with formulas, and with the numbers put in."""
     text = (
-        "Angles are in radians, everything else in SI units. The numbers put in are rounded to"
-        f" {DIGITS} digits; the values follow from unrounded ones. The formulas are derived in"
-        f" {THEORY}, sections 1 to 7, 12, 14 and 16. f, κ and e_given are factor, loss and"
-        " restitution of podium.impact, I is podium.bearing.inertia_ratio."
+        "Angles are in radians, everything else in SI units. The numbers put in are"
+        f" rounded to {DIGITS} digits; the values follow from unrounded ones. The"
+        f" formulas are derived in {THEORY}, sections 1 to 7, 12, 14 and 16. f, κ and"
+        " e_given are factor, loss and restitution of podium.impact, I is"
+        " podium.bearing.inertia_ratio."
     )
     return [text, _derived(derived.derivations(structure, podium))]
 
@@ -229,7 +270,9 @@ def hidden_table(*, both: bool) -> Table:
     rows = []
     for table in (plane, space) if both else (plane,):
         lines = (HIDDEN + table).split("\n\n", 1)[0].splitlines()
-        heads, _, *found = ([cell.strip() for cell in line.strip("|").split("|")] for line in lines)
+        heads, _, *found = (
+            [cell.strip() for cell in line.strip("|").split("|")] for line in lines
+        )
         rows += [row for row in found if not (both and row[0] == "plane motion")]
     bare = [[cell.replace("`", "") for cell in row[:3]] for row in rows]
     return Table.of_texts(heads[:3], bare, words=3)
@@ -264,14 +307,18 @@ def history_short(
     yield from filter(None, [timehistory.direction_note(both, planar)])
 
 
-def ground_section(ground: MotionComponents, structure: PodiumStructure, look: Look) -> Section:
+def ground_section(
+    ground: MotionComponents, structure: PodiumStructure, look: Look
+) -> Section:
     """The motion of one history, and the periods of the building in its spectra."""
     across = structure.superstructure_y
     drawn = [
         motion_pictures(each, look, (name == "y" and across) or structure.superstructure)
         for name, each in ground.named.items()
     ]
-    measured = [record_table(each, intensity_measures(each)) for each in horizontal(ground)]
+    measured = [
+        record_table(each, intensity_measures(each)) for each in horizontal(ground)
+    ]
     return Section("Ground motion", [*measured, *drawn])
 
 
@@ -289,7 +336,9 @@ def response_section(
 ) -> Section:
     """The tables of a history, and all of its figures or some."""
     wanted = {*figures} or CAPTIONS.keys() - {"column"}
-    drawn = [(CAPTIONS[stem], each) for stem, each in pictures(files).items() if stem in wanted]
+    drawn = [
+        (CAPTIONS[stem], each) for stem, each in pictures(files).items() if stem in wanted
+    ]
     shown = [Picture(each, caption) for caption, each in drawn]
     return Section(title, [*timehistory.demand_tables(result), *shown])
 
@@ -297,19 +346,25 @@ def response_section(
 def column_sections(
     result: TimeHistoryResult, files: Iterable[tuple[str, object]]
 ) -> Iterator[Section]:
-    """What the most loaded column has to carry, with the numbers of its worst instants put in."""
+    """What the most loaded column has to carry, with the numbers of
+    its worst instants put in.
+    """
     if result.column_demand is None:
         return
     drawn = pictures(files).get("column")
     without = listed([*result.left_out_of_columns, WITHOUT_IMPULSE], "and")
     codes = (
-        "f is podium.column.contact_strength. By EN 1992-1-1, formula 6.63, concrete in a strip at"
-        " the edge of a column has f_cd, since there is nothing outside it; under an arc the line"
-        " lies inside, and a wider plate has up to 3 f_cd. Steel on steel by EN 1337-4 has"
-        f" 2.0 f_u on lines, for rotations up to {STEEL_ROTATION:g} rad."
+        "f is podium.column.contact_strength. By EN 1992-1-1, formula 6.63, concrete in"
+        " a strip at the edge of a column has f_cd, since there is nothing outside it;"
+        " under an arc the line lies inside, and a wider plate has up to 3 f_cd. Steel"
+        " on steel by EN 1337-4 has 2.0 f_u on lines, for rotations up to"
+        f" {STEEL_ROTATION:g} rad."
     )
     yield Section("Forces and pressures of a column", [
-        f"Maxima at instants of a dense trace under {result.record.name}, without {without}.",
+        (
+            f"Maxima at instants of a dense trace under {result.record.name}, without"
+            f" {without}."
+        ),
         *timehistory.column_table(result),
         *([Picture(drawn, CAPTIONS["column"])] if drawn else []),
         "With numbers, in SI units (THEORY.md, section 16):",

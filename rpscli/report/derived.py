@@ -1,7 +1,9 @@
-"""Quantities that follow from a case before any analysis, as `rps check` has them, and formulas.
+"""Quantities that follow from a case before any analysis, as `rps
+check` has them, and formulas.
 
-A formula is written once, as an expression that can be evaluated. Its letters become symbols in one
-column and numbers in another, so that a checker can follow with a pocket calculator.
+A formula is written once, as an expression that can be evaluated. Its letters
+become symbols in one column and numbers in another, so that a checker can follow
+with a pocket calculator.
 """
 
 from __future__ import annotations
@@ -22,7 +24,9 @@ if TYPE_CHECKING:
 
 
 class Derived(NamedTuple):
-    """One quantity: its name in JSON, words, symbol, SI unit, and where a structure has it."""
+    """One quantity: its name in JSON, words, symbol, SI unit, and
+    where a structure has it.
+    """
 
     name: str
     label: str
@@ -57,8 +61,8 @@ GEOMETRY = (
     Derived("overturns", "overturning", "", "-",
             lambda s: "rolling" if s.bearing.overturns_rolling else "rocking"),
 )  # fmt: skip
-"""Shape of the columns. `rho_cr_paper` is the first-order formula of the paper, `rho_cr_exact` the
-curvature ratio at which theta_cr = beta (Theory (1.14))."""
+"""Shape of the columns. `rho_cr_paper` is the first-order formula of the paper,
+`rho_cr_exact` the curvature ratio at which theta_cr = beta (Theory (1.14))."""
 
 DYNAMICS = (
     Derived("columns_mass", "all columns", "N m_c", "kg"),
@@ -104,15 +108,25 @@ BOTH = (
 """Where both horizontal components act."""
 
 CONTACT = (
-    Derived("period_ratio", "period in full contact over T1", "r", "-", "bed.period_ratio"),
+    Derived(
+        "period_ratio", "period in full contact over T1", "r", "-", "bed.period_ratio"
+    ),
     Derived("contact_period", "first period in full contact", "T", "s", "bed.period"),
-    Derived("contact_stiffness", "stiffness in full contact", "K_s", "N/m", "bed.stiffness"),
+    Derived(
+        "contact_stiffness", "stiffness in full contact", "K_s", "N/m", "bed.stiffness"
+    ),
     Derived("settlement", "settlement of a joint", "D_0", "m", "bed.settlement"),
     Derived(
-        "joint_stiffness", "mean stiffness of all joints", "W/D_0", "N/m", "bed.joint_stiffness"
+        "joint_stiffness",
+        "mean stiffness of all joints",
+        "W/D_0",
+        "N/m",
+        "bed.joint_stiffness",
     ),
     Derived("lifts_from", "ends begin to lift at", "phi_u", "rad", "bed.uplift_rotation"),
-    Derived("lifts_from_ratio", "over the slenderness angle", "phi_u/alpha", "-", "bed.ratio"),
+    Derived(
+        "lifts_from_ratio", "over the slenderness angle", "phi_u/alpha", "-", "bed.ratio"
+    ),
     Derived("contact_mass", "columns and cap beam at u_b", "m_0", "kg", "bed.mass"),
     Derived("contact_share", "contact length at 0.1 alpha", "", "-", "bed.contact_share"),
 )
@@ -126,7 +140,8 @@ def _steps_for_springs(structure: PodiumStructure) -> float:
 
     above = structure.superstructure
     assert above is not None, "floors on springs are floors"
-    # Riding on the beam a heavy building may leave no restitution, which steps do not ask for.
+    # Riding on the beam a heavy building may leave no restitution, which steps do not ask
+    # for.
     above = replace(above, vertical_period=None)
     law = ImpactLaw(loss=0.0)
     riding = replace(structure, superstructure=above, impact_law=law)
@@ -162,7 +177,9 @@ def _column_at_rest(structure: PodiumStructure) -> dict[str, float]:
 
 
 def _ends(structure: PodiumStructure, x: float, N: float) -> dict[str, float]:
-    """Pressure on arcs at a tilt [rad] and the edge under N of a column [N], by letters."""
+    """Pressure on arcs at a tilt [rad] and the edge under N of
+    a column [N], by letters.
+    """
     import numpy as np  # slow
 
     b = structure.bearing
@@ -187,12 +204,26 @@ def _at_rest(letter: str) -> Callable[[PodiumStructure], float | None]:
 COLUMN = (
     Derived("column_rest_force", "weight on a column", "N_0", "N", _at_rest("N_0")),
     Derived(
-        "column_rest_moment", "moment of a column at 0.1 alpha", "M_end", "N m", _at_rest("moment")
+        "column_rest_moment",
+        "moment of a column at 0.1 alpha",
+        "M_end",
+        "N m",
+        _at_rest("moment"),
     ),
     Derived(
-        "contact_rest_pressure", "pressure on its arcs there", "p_0", "Pa", _at_rest("pressure")
+        "contact_rest_pressure",
+        "pressure on its arcs there",
+        "p_0",
+        "Pa",
+        _at_rest("pressure"),
     ),
-    Derived("crushed_rest_ratio", "crushed width at its edge", "b_c/2B'", "-", _at_rest("crushed")),
+    Derived(
+        "crushed_rest_ratio",
+        "crushed width at its edge",
+        "b_c/2B'",
+        "-",
+        _at_rest("crushed"),
+    ),
 )
 """Of `podium.column`."""
 
@@ -201,13 +232,22 @@ FIRST_PERIOD = Derived("T1", "first period on a fixed base", "T1", "s",
 
 
 def derived_quantities(structure: PodiumStructure) -> dict[str, Any]:
-    """All of them under their names; lists by mode or storey are empty without a building."""
+    """All of them under their names; lists by mode or storey are
+    empty without a building.
+    """
     building = structure.superstructure
     lists = ("periods", "damping_ratios", "stiffnesses")
-    some = ((CONTACT, structure.bed), (UPWARDS, structure.upwards), (COLUMN, structure.column))
+    some = (
+        (CONTACT, structure.bed),
+        (UPWARDS, structure.upwards),
+        (COLUMN, structure.column),
+    )
     further = [row for rows, has in some if has for row in rows]
     return {
-        **{row.name: row.value(structure) for row in (*GEOMETRY, *AT_CRITICAL, *DYNAMICS, *BOTH)},
+        **{
+            row.name: row.value(structure)
+            for row in (*GEOMETRY, *AT_CRITICAL, *DYNAMICS, *BOTH)
+        },
         "storeys": structure.storeys,
         **{row.name: row.value(structure) for row in (FIRST_PERIOD, *further)},
         **{name: getattr(building, name) if building else [] for name in lists},
@@ -230,7 +270,9 @@ FUNCTIONS = ("sin", "cos", "tan", "asin", "atan", "sqrt")
 
 
 class Derivation(NamedTuple):
-    """One quantity: words, symbol, value, unit, formula, empty for inputs, and it with numbers."""
+    """One quantity: words, symbol, value, unit, formula, empty for
+    inputs, and it with numbers.
+    """
 
     name: str
     label: str
@@ -252,7 +294,9 @@ BEFORE = {
 """What is no result of its own, but stands in the next formula."""
 
 
-def derivations(structure: PodiumStructure, podium: Mapping[str, Any]) -> Iterator[Derivation]:
+def derivations(
+    structure: PodiumStructure, podium: Mapping[str, Any]
+) -> Iterator[Derivation]:
     """All derived quantities that are numbers, in the order in which they follow."""
     letters = _letters(structure)
     formulas = _formulas(structure, podium)
@@ -296,16 +340,28 @@ def column_derivations(result: TimeHistoryResult) -> Iterator[Derivation]:
                 carried += f" + M_{way} / (columns * l_{way})"
             rows = [
                 ("axial force, by moments of the podium", "N", N, "N", carried),
-                ("axial force at its end", "P", P, "N", "N_1 * cos(x) + s * F_1 * sin(x)"),
+                (
+                    "axial force at its end",
+                    "P",
+                    P,
+                    "N",
+                    "N_1 * cos(x) + s * F_1 * sin(x)",
+                ),
                 ("shear at its end", "Q", Q, "N", "s * F_1 * cos(x) - N_1 * sin(x)"),
                 ("largest moment", "M", each.moment, "N m", "e * P - d * Q"),
             ]
-        elif each.largest == "contact_pressure_ratio" and each.contact_pressure is not None:
+        elif (
+            each.largest == "contact_pressure_ratio" and each.contact_pressure is not None
+        ):
             formula = _of_column(structure, 0.0)["contact_rest_pressure"]
-            rows = [("largest pressure on arcs", "p_0", each.contact_pressure, "Pa", formula)]
+            rows = [
+                ("largest pressure on arcs", "p_0", each.contact_pressure, "Pa", formula)
+            ]
         elif each.largest == "crushed_width_ratio":
             formula = _of_column(structure, letters["crushed"])["crushed_rest_ratio"]
-            rows = [("largest crushed width", "b_c/2B'", letters["crushed"], "-", formula)]
+            rows = [
+                ("largest crushed width", "b_c/2B'", letters["crushed"], "-", formula)
+            ]
         for label, symbol, value, unit, formula in rows:
             own = formula.replace("N_0", "N_1")
             texts = symbolic(own), numeric(own, letters)
@@ -314,13 +370,14 @@ def column_derivations(result: TimeHistoryResult) -> Iterator[Derivation]:
 
 EDGES = {
     "flexible": (
-        "(I - 2 * sin(alpha)^2 + 4 * gamma * cos(2 * alpha) - 4 * gamma * eta * sin(alpha)^2)"
-        " / (I + 4 * gamma + 4 * gamma * eta * sin(alpha)^2)"
+        "(I - 2 * sin(alpha)^2 + 4 * gamma * cos(2 * alpha) - 4 * gamma * eta *"
+        " sin(alpha)^2) / (I + 4 * gamma + 4 * gamma * eta * sin(alpha)^2)"
     ),
     "springs": "(I - 2 * sin(alpha)^2 + 4 * gamma * cos(2 * alpha)) / (I + 4 * gamma)",
     "rigid": "1 - 2 * sin(alpha)^2 * (1 + 4 * gamma_t) / (I + 4 * gamma_t)",
 }
-"""Restitution beside an impulse at the edges of the flat part (Theory (4.6), (4.8), (14.5))."""
+"""Restitution beside an impulse at the edges of the flat part
+(Theory (4.6), (4.8), (14.5))."""
 
 
 def _formulas(structure: PodiumStructure, podium: Mapping[str, Any]) -> dict[str, str]:
@@ -337,7 +394,9 @@ def _formulas(structure: PodiumStructure, podium: Mapping[str, Any]) -> dict[str
     first_order = "(1 - tan_alpha / tan_alpha_w) / 2"
     own_ratio = "radius / height" if sizes else ""
     rolls = bearing.curvature_ratio <= bearing.critical_curvature_ratio_of_paper
-    of_beta, of_exact = (f"asin((tan_alpha_w - tan_alpha) / (2 * {r}))" for r in ("rho", "rho_cr"))
+    of_beta, of_exact = (
+        f"asin((tan_alpha_w - tan_alpha) / (2 * {r}))" for r in ("rho", "rho_cr")
+    )
     slope = "" if flat else " * (1 - 2 * rho * cos(alpha)^2)"
     by_mass = "M / eta" if by_eta else "" if "cap_beam_mass" in podium else "gamma * m_c"
     by_beam = "M / m_b" if beam else "0"
@@ -352,12 +411,18 @@ def _formulas(structure: PodiumStructure, podium: Mapping[str, Any]) -> dict[str
         "alpha": "atan(width / height)" if sizes else "atan(tan_alpha)",
         "alpha_wedge": "atan(tan_alpha_w)",
         "beta": "0" if flat else of_beta,
-        "curvature_ratio": first_order if given.get("curvature_ratio") == "critical" else own_ratio,
+        "curvature_ratio": first_order
+        if given.get("curvature_ratio") == "critical"
+        else own_ratio,
         "rho_cr_paper": first_order,
-        "rho_cr_exact": "0" if flat else f"(1 - 2 * rho_cr) * tan({of_exact}) = tan_alpha",
+        "rho_cr_exact": "0"
+        if flat
+        else f"(1 - 2 * rho_cr) * tan({of_exact}) = tan_alpha",
         "critical_rotation": _critical(flat=flat, rolls=bearing.overturns_rolling),
         "critical_rotation_paper": _critical(flat=flat, rolls=rolls),
-        "columns_mass": "m_b / gamma" if beam and "column_mass" not in podium else "N * m_column",
+        "columns_mass": "m_b / gamma"
+        if beam and "column_mass" not in podium
+        else "N * m_column",
         "cap_beam_mass": by_mass,
         "superstructure_mass": "n * m_i"
         if len(set(floors)) == 1
@@ -365,7 +430,9 @@ def _formulas(structure: PodiumStructure, podium: Mapping[str, Any]) -> dict[str
         "gamma": "" if "cap_beam_mass_ratio" in podium else "m_b / (m_c)",
         "eta": "" if by_eta else by_beam,
         "gamma_total": "gamma * (1 + eta)",
-        "restitution": "f * e_given" if law == "value" else "f * (1 - kappa * (1 - e_edge))",
+        "restitution": "f * e_given"
+        if law == "value"
+        else "f * (1 - kappa * (1 - e_edge))",
         "uplift_acceleration": "g * tan_alpha",
         "uplift_force": "W * tan_alpha",
         "static_base_shear": "M * g * tan_alpha",
@@ -384,12 +451,15 @@ def _formulas(structure: PodiumStructure, podium: Mapping[str, Any]) -> dict[str
         "lifts_from_ratio": "phi_u / alpha",
         "contact_mass": "m_c * ((I - 1) / C_u^2 + 1 + 4 * gamma) / 4",
         "contact_share": "sqrt(phi_u / (alpha / 10))",
-        **_of_column(structure, _column_at_rest(structure)["crushed"] if structure.column else 0.0),
+        **_of_column(
+            structure, _column_at_rest(structure)["crushed"] if structure.column else 0.0
+        ),
     }
 
 
 def _of_column(structure: PodiumStructure, crushed: float) -> dict[str, str]:
-    """Of a column (Theory (16.2), (16.4) to (16.6)); a and b of an ellipse are those of (16.5).
+    """Of a column (Theory (16.2), (16.4) to (16.6)); a and b of an
+    ellipse are those of (16.5).
 
     A round end whose edge is `crushed` over its whole width bears everywhere.
     """
@@ -432,7 +502,9 @@ def _letters(structure: PodiumStructure) -> dict[str, float]:
     b = structure.bearing
     law = structure.impact_law
     building = structure.superstructure
-    letters: dict[str, float] = {name: attrgetter(of)(structure) for name, of in LETTERS.items()}
+    letters: dict[str, float] = {
+        name: attrgetter(of)(structure) for name, of in LETTERS.items()
+    }
     letters["height"] = 2.0 * b.half_height
     letters["width"] = 2.0 * b.half_width
     letters["m_column"] = structure.columns_mass / structure.columns
@@ -461,7 +533,9 @@ def _letters(structure: PodiumStructure) -> dict[str, float]:
         letters |= {f"m_{i}": mass for i, mass in enumerate(building.masses.tolist(), 1)}
         letters |= {"n": building.storeys, "m_i": letters["m_1"]}
         letters["sum_m"] = float(building.masses @ shape**2)
-        letters["sum_k"] = float(k[0] * shape[0] ** 2 + k[1:] @ (shape[1:] - shape[:-1]) ** 2)
+        letters["sum_k"] = float(
+            k[0] * shape[0] ** 2 + k[1:] @ (shape[1:] - shape[:-1]) ** 2
+        )
     return letters
 
 
@@ -504,13 +578,16 @@ _LETTER = re.compile(r"[A-Za-z_]\w*")
 
 
 UPPER = (
-    "strengths follow the shears of the first mode on a fixed base, so upper storeys yield most:"
-    " modes of uplifted columns are stiffer, and load upper storeys more than that mode does"
+    "strengths follow the shears of the first mode on a fixed base, so upper storeys"
+    " yield most: modes of uplifted columns are stiffer, and load upper storeys more"
+    " than that mode does"
 )
 
 
 def strength_tables(structure: PodiumStructure) -> Iterator[Part]:
-    """Strength of each storey beside its shear at uplift, the roof on top; in y if that differs."""
+    """Strength of each storey beside its shear at uplift, the roof on
+    top; in y if that differs.
+    """
     from rpscli.model.statics import storey_strengths  # numpy is slow
 
     heads = "strength kN", "of V_st", "shear at uplift kN", "under slow ground motion"

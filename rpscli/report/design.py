@@ -1,4 +1,6 @@
-"""The answer of a search for a design: JSON, tables for readers, CSV, notes and figures."""
+"""The answer of a search for a design: JSON, tables for
+readers, CSV, notes and figures.
+"""
 
 from __future__ import annotations
 
@@ -51,7 +53,9 @@ def objective_label(objective: Objective) -> str:
     terms = []
     for name, term in objective.items():
         known = LIMITS.get(name)
-        fractile = "median" if term.fractile == 0.5 else f"{100.0 * term.fractile:g} % fractile"
+        fractile = (
+            "median" if term.fractile == 0.5 else f"{100.0 * term.fractile:g} % fractile"
+        )
         words = symbol(name) if known is None else f"{known.label}, {fractile}"
         terms.append(words if term.times == 1.0 else f"{term.times:g} {words}")
     return " + ".join(terms)
@@ -68,8 +72,12 @@ def objective_unit(objective: Objective) -> str:
 def requirement_rows(
     answer: Answer, verdicts: Sequence[Verdict]
 ) -> Iterator[tuple[int, Requirement, Verdict]]:
-    """Each requirement with its number, and the verdict of the best design's own study on it."""
-    if len(verdicts) == len(answer.requirements):  # not where all histories at one level failed
+    """Each requirement with its number, and the verdict of the best
+    design's own study on it.
+    """
+    if len(verdicts) == len(
+        answer.requirements
+    ):  # not where all histories at one level failed
         yield from zip(itertools.count(), answer.requirements, verdicts, strict=False)
 
 
@@ -84,7 +92,9 @@ def answer_document(answer: Answer, verdicts: Sequence[Verdict]) -> dict[str, An
         "aims": {name: float(answer.objectives[0, place])},
         "passing_share": float(answer.passing_share[place]),
     }
-    intervals = {key: answer.interval(column) for column, key in enumerate(answer.task.keys)}
+    intervals = {
+        key: answer.interval(column) for column, key in enumerate(answer.task.keys)
+    }
     return {
         "designs": {
             "looked_at": len(answer.places),
@@ -122,7 +132,9 @@ def answer_tables(answer: Answer, verdicts: Sequence[Verdict]) -> Iterator[Part]
     """The best design, its requirements, and how it hangs on the choice of records."""
     place = answer.closest
     objective = answer.task.file.minimise
-    minimised = {name for name, term in objective.items() if len(objective) == term.times == 1}
+    minimised = {
+        name for name, term in objective.items() if len(objective) == term.times == 1
+    }
     title = ("best", "least violated")[answer.best is None]
     interval = _interval(answer.interval())
     rows = []
@@ -130,11 +142,17 @@ def answer_tables(answer: Answer, verdicts: Sequence[Verdict]) -> Iterator[Part]
         # As it was judged: no digit less.
         value = f"{answer.values[place, column]:.10g}"
         ends = _interval(answer.interval(column))
-        rows.append((axis_label(key), "minimised" if key in minimised else "", value, ends))
+        rows.append(
+            (axis_label(key), "minimised" if key in minimised else "", value, ends)
+        )
     if not minimised & {*answer.task.keys}:
         unit = objective_unit(objective)
         factor, name = large(1.0, unit)
-        head = f"{objective_label(objective)} [{name}]" if name else objective_label(objective)
+        head = (
+            f"{objective_label(objective)} [{name}]"
+            if name
+            else objective_label(objective)
+        )
         value = shown(large(float(answer.objectives[0, place]), unit)[0], DIGITS)
         interval = _interval(end * (factor or 1.0) for end in answer.interval())
         rows.append((head, "minimised", value, interval))
@@ -149,7 +167,9 @@ def answer_tables(answer: Answer, verdicts: Sequence[Verdict]) -> Iterator[Part]
         judged.append((requirement_label(requirement), word, asked, result, met_by))
     yield Table.of_texts((*VERDICT, "designs that meet it"), judged, words=5)
     if answer.best is not None and answer.resamples:
-        share = f"{100.0 * answer.passing_share[place]:.0f} % of {answer.resamples} resamples"
+        share = (
+            f"{100.0 * answer.passing_share[place]:.0f} % of {answer.resamples} resamples"
+        )
         listing = [("the best design passes in", share)]
         if without := answer.resamples - len(answer.best_of_resamples[0]):
             listing.append(("no design passes in", f"{without} of them"))
@@ -161,7 +181,9 @@ def _interval(interval: Iterable[float]) -> str:
 
 
 def answer_notes(answer: Answer, faults: Iterable[str]) -> Iterator[str]:
-    """What the user should know about the answer; `faults` are those of designs without a case."""
+    """What the user should know about the answer; `faults` are those
+    of designs without a case.
+    """
     if invalid := int((~answer.valid).sum()):
         yield f"{invalid} designs are not valid cases and count as failing: {next(iter(faults))}"
     if not answer.resamples and answer.task.file.search.resamples:
@@ -173,8 +195,9 @@ def answer_notes(answer: Answer, faults: Iterable[str]) -> Iterator[str]:
         yield from neighbours_note(answer, answer.best)
     if answer.best is not None and answer.passing_share[answer.best] < ROBUST:
         yield (
-            f"no design passes in {100.0 * ROBUST:g} % of the resamples of the records; the best"
-            f" one passes in {100.0 * answer.passing_share[answer.best]:.0f} % of them"
+            f"no design passes in {100.0 * ROBUST:g} % of the resamples of the records;"
+            f" the best one passes in {100.0 * answer.passing_share[answer.best]:.0f} %"
+            " of them"
         )
 
 
@@ -183,16 +206,18 @@ NEAREST = 6
 
 
 def neighbours_note(answer: Answer, best: int) -> Iterator[str]:
-    """A warning where the best design stands alone: at most one of those nearest to it passes."""
+    """A warning where the best design stands alone: at most one of
+    those nearest to it passes.
+    """
     # At the edge of what passes, where the best design lies, half of them fail.
     apart = np.linalg.norm(answer.places - answer.places[best], axis=1)
     beside = np.argsort(apart, kind="stable")[1 : NEAREST + 1]
     fail = int((~answer.passes[0, beside]).sum())
     if len(beside) == NEAREST and fail >= NEAREST - 1:
         yield (
-            f"of the {NEAREST} designs tried next to the best one {fail} fail: it stands alone, and"
-            " a little more of a key or of the motion may undo it; demand a margin (a stricter"
-            " `limits`), more records, or `perturb` them"
+            f"of the {NEAREST} designs tried next to the best one {fail} fail: it stands"
+            " alone, and a little more of a key or of the motion may undo it; demand a"
+            " margin (a stricter `limits`), more records, or `perturb` them"
         )
 
 
@@ -204,17 +229,19 @@ def nothing_passes(answer: Answer) -> str:
     for row in rows[np.argsort(answer.excess[rows, place], kind="stable")].tolist():
         requirement = answer.requirements[row]
         lines.append(
-            f"{requirement_label(requirement)}: {requirement_text(requirement.condition)};"
-            f" {reached_text(requirement.condition, float(answer.results[row, 0, place]))} in the"
-            " least violated design,"
-            f" {100.0 * answer.excess[row, place]:.3g} % of the records too many;"
-            f" {answer.met[row, 0].sum()} designs meet it"
+            f"{requirement_label(requirement)}:"
+            f" {requirement_text(requirement.condition)};"
+            f" {reached_text(requirement.condition, float(answer.results[row, 0, place]))}"
+            f" in the least violated design, {100.0 * answer.excess[row, place]:.3g} % of"
+            f" the records too many; {answer.met[row, 0].sum()} designs meet it"
         )
     return "\n".join(lines)
 
 
 def design_columns(answer: Answer) -> list[Column]:
-    """One row a design: its keys, whether it passes, the objective, and values of requirements."""
+    """One row a design: its keys, whether it passes, the objective,
+    and values of requirements.
+    """
 
     def column(name: str, unit: str, values: Array) -> Column:
         return Column(name, unit, [reached(value) for value in values.tolist()])
@@ -238,7 +265,11 @@ def design_columns(answer: Answer) -> list[Column]:
 
 
 MARKS = (
-    ("no valid case", "x", style.GREY), ("fails", "v", style.RED), ("passes", "o", style.BLUE),
+    ((
+        "no"
+        " valid"
+        " case"
+    ), "x", style.GREY), ("fails", "v", style.RED), ("passes", "o", style.BLUE),
 )  # fmt: skip
 MOST_PAIRS = 6
 SHARES = (0.0, 0.05, 0.25, 0.5, 0.75, 0.95, 1.0)
@@ -258,7 +289,9 @@ def figures(answer: Answer, title: str) -> Mapping[str, style.Draw]:
 
 
 def requirements_figure(answer: Answer, title: str, figure: style.Figure) -> None:
-    """One unknown: the value of every requirement against it, with its limit and the answer."""
+    """One unknown: the value of every requirement against it, with
+    its limit and the answer.
+    """
     order = np.argsort(answer.values[:, 0])
     best = answer.best
     key = answer.values[order, 0]
@@ -295,13 +328,17 @@ def requirements_figure(answer: Answer, title: str, figure: style.Figure) -> Non
             words = LIMITS[name].label
             known = LIMITS[name].axis_label
         axes.set_ylabel(known)
-        axes.set_title(style.typeset(requirement_label(requirement).replace(name, words, 1)))
+        axes.set_title(
+            style.typeset(requirement_label(requirement).replace(name, words, 1))
+        )
     grid[-1].set_xlabel(axis_label(answer.task.keys[0]))
     style.legend_below(figure, grid)
 
 
 def region_figure(answer: Answer, title: str, figure: style.Figure) -> None:
-    """Designs that pass and fail for each pair of unknowns, in the colour of their resamples."""
+    """Designs that pass and fail for each pair of unknowns, in the
+    colour of their resamples.
+    """
     pairs = list(itertools.combinations(range(len(answer.task.unknowns)), 2))
     shown = pairs[:MOST_PAIRS]
     columns = 1 if style.narrow(figure) else min(3, len(shown))
@@ -327,12 +364,21 @@ def region_figure(answer: Answer, title: str, figure: style.Figure) -> None:
             share = answer.passing_share[of[name]]
             kind: dict[str, Any] = {"color": colour}
             if answer.resamples and name != "no valid case":
-                kind = {"c": share, "cmap": colours, "norm": norm, "edgecolors": style.BLACK}
+                kind = {
+                    "c": share,
+                    "cmap": colours,
+                    "norm": norm,
+                    "edgecolors": style.BLACK,
+                }
             if len(share):
                 axes.scatter(at[x], at[y], marker=marker, label=name, **look, **kind)
         if answer.best is not None:
-            axes.plot(answer.values[answer.best, x], answer.values[answer.best, y], **BEST)
-        axes.set(xlabel=axis_label(answer.task.keys[x]), ylabel=axis_label(answer.task.keys[y]))
+            axes.plot(
+                answer.values[answer.best, x], answer.values[answer.best, y], **BEST
+            )
+        axes.set(
+            xlabel=axis_label(answer.task.keys[x]), ylabel=axis_label(answer.task.keys[y])
+        )
     if answer.resamples:
         words = "share of resamples of the records that pass"
         figure.colorbar(ScalarMappable(norm, colours), ax=grid, label=words)

@@ -1,4 +1,6 @@
-"""Documents and files of results: whole or not at all, and never over what is not their own."""
+"""Documents and files of results: whole or not at all, and never
+over what is not their own.
+"""
 
 from __future__ import annotations
 
@@ -39,10 +41,17 @@ def json_text(document: Mapping[str, Any]) -> str:
 def _text(value: Any, indent: str) -> str:
     deeper = indent + "  "
     if isinstance(value, dict) and value:
-        items = (f"{deeper}{json.dumps(key)}: {_text(item, deeper)}" for key, item in value.items())
+        items = (
+            f"{deeper}{json.dumps(key)}: {_text(item, deeper)}"
+            for key, item in value.items()
+        )
         return "{\n" + ",\n".join(items) + f"\n{indent}}}"
     if isinstance(value, list) and any(isinstance(item, dict | list) for item in value):
-        return "[\n" + ",\n".join(deeper + _text(item, deeper) for item in value) + f"\n{indent}]"
+        return (
+            "[\n"
+            + ",\n".join(deeper + _text(item, deeper) for item in value)
+            + f"\n{indent}]"
+        )
     return json.dumps(value, allow_nan=False)
 
 
@@ -82,8 +91,11 @@ def failure_document(kind: str, message: str, exit_code: int) -> Document:
 
 
 def read_json(path: Path, kinds: Any) -> Document:
-    """A document of an earlier run, checked whole; a ValueError says what is wrong and where."""
-    # Kinds are types, lists of one kind, tuples of one that may be missing, mappings of kinds.
+    """A document of an earlier run, checked whole; a ValueError says
+    what is wrong and where.
+    """
+    # Kinds are types, lists of one kind, tuples of one that may be missing, mappings of
+    # kinds.
     try:
         document = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, RecursionError) as error:
@@ -105,7 +117,9 @@ def _checked(value: Any, kinds: Any, place: str) -> Any:
     if isinstance(kinds, list):
         return [_checked(each, kinds[0], f"{place}[{n}]") for n, each in enumerate(value)]
     if isinstance(kinds, dict):
-        return value | {key: _checked(value.get(key), of, key) for key, of in kinds.items()}
+        return value | {
+            key: _checked(value.get(key), of, key) for key, of in kinds.items()
+        }
     return value
 
 
@@ -114,7 +128,9 @@ MADE_ANEW = {"files", "rps_version", "case", "verdicts", "passed", "exit_code", 
 
 
 def leaves(value: object, name: str = "") -> Iterator[tuple[str, Any]]:
-    """Values of nested mappings and of lists of mappings under dotted names; other lists whole."""
+    """Values of nested mappings and of lists of mappings under dotted
+    names; other lists whole.
+    """
     if isinstance(value, list) and any(isinstance(item, dict) for item in value):
         value = {str(index): item for index, item in enumerate(value)}
     if not isinstance(value, dict) or not value:
@@ -136,13 +152,18 @@ def as_text(value: object) -> str:
 
 
 _writing = partial(
-    refused_by_system, fault=OutputError, verb="written", remedy="name another place with -o"
+    refused_by_system,
+    fault=OutputError,
+    verb="written",
+    remedy="name another place with -o",
 )
 
 
 @dataclass
 class Drawing:
-    """A file that is drawn when called, after results are written; empty if that fails."""
+    """A file that is drawn when called, after results are
+    written; empty if that fails.
+    """
 
     name: str
     draw: Callable[[], bytes]
@@ -172,8 +193,8 @@ def undrawn(drawings: Iterable[object]) -> list[str]:
         if isinstance(each, Drawing) and each.reason:
             names.setdefault(each.reason, []).append(each.name)
     return [
-        f"{listed(failed, 'and')} {'are' if len(failed) > 1 else 'is'} not drawn: {reason}; the"
-        " results are not concerned"
+        f"{listed(failed, 'and')} {'are' if len(failed) > 1 else 'is'} not drawn:"
+        f" {reason}; the results are not concerned"
         for reason, failed in names.items()
     ]
 
@@ -191,7 +212,9 @@ def encoded(text: str) -> bytes:
 
 
 def write_whole(contents: Mapping[Path, Written]) -> None:
-    """Write files so that each appears whole or not at all, in folders that are made if needed."""
+    """Write files so that each appears whole or not at all, in folders
+    that are made if needed.
+    """
     ready: dict[Path, Path] = {}
     try:
         for path, data in contents.items():
@@ -219,8 +242,9 @@ def locked(folder: Path) -> Iterator[None]:
     with _writing(folder):
         folder.mkdir(parents=True, exist_ok=True)
     with ExitStack() as lock:
-        # The system lets go when the process ends, however it ends. Where folders cannot be locked
-        # (Windows, some file systems of networks), two processes must not write to one.
+        # The system lets go when the process ends, however it ends. Where folders cannot
+        # be locked (Windows, some file systems of networks), two processes must not write
+        # to one.
         with suppress(ImportError, OSError):
             import fcntl  # not on every system
 
@@ -231,15 +255,25 @@ def locked(folder: Path) -> Iterator[None]:
 
 
 def require_writable(folder: Path) -> None:
-    """Refuse a folder that cannot be made or written to: better before the work than after."""
+    """Refuse a folder that cannot be made or written to: better
+    before the work than after.
+    """
     if "\0" in str(folder):
-        raise OutputError(f"{str(folder)[:200]!r}: no path holds a zero byte; correct the name")
+        raise OutputError(
+            f"{str(folder)[:200]!r}: no path holds a zero byte; correct the name"
+        )
     with _writing(folder):
-        existing = next(place for place in (folder, *folder.absolute().parents) if mode_of(place))
+        existing = next(
+            place for place in (folder, *folder.absolute().parents) if mode_of(place)
+        )
     if not existing.is_dir():
-        raise OutputError(f"{folder}: cannot be a folder of results, {existing} is a file")
+        raise OutputError(
+            f"{folder}: cannot be a folder of results, {existing} is a file"
+        )
     if not os.access(existing, os.W_OK | os.X_OK):
-        raise OutputError(f"{folder}: no permission to write there; name another place with -o")
+        raise OutputError(
+            f"{folder}: no permission to write there; name another place with -o"
+        )
 
 
 def require_writable_file(file: Path) -> None:
@@ -260,7 +294,9 @@ RUN_KINDS = {
 
 @dataclass(frozen=True)
 class Run:
-    """The subject of a command; one without a file is known by the SHA-256 of its text."""
+    """The subject of a command; one without a file is known by
+    the SHA-256 of its text.
+    """
 
     command: str
     name: str
@@ -271,10 +307,12 @@ class Run:
 
 
 class OutputFolder:
-    """The files that one run leaves behind, in a folder that is made when they are written."""
+    """The files that one run leaves behind, in a folder that is
+    made when they are written.
+    """
 
-    # A later run of the same command on the same file under the same record may replace them,
-    # though the file's content or the options have changed.
+    # A later run of the same command on the same file under the same record may replace
+    # them, though the file's content or the options have changed.
     def __init__(self, folder: Path, run: Run, *, force: bool = False) -> None:
         self.folder = folder
         self.run = run
@@ -311,7 +349,9 @@ class OutputFolder:
             self.add(name, content)
 
     def add_at(self, path: Path, content: str | Content) -> None:
-        """Collect a file that stands elsewhere; it is guarded like those of the folder."""
+        """Collect a file that stands elsewhere; it is guarded
+        like those of the folder.
+        """
         self.contents[path] = encoded(content) if isinstance(content, str) else content
 
     def write(self) -> None:
@@ -321,9 +361,13 @@ class OutputFolder:
             self._earlier = self._claimed()
             for path in self.contents:
                 if path.exists() and self._known_as(path) not in self._own:
-                    self._refuse(f"{path} exists and is not an earlier output of this command")
+                    self._refuse(
+                        f"{path} exists and is not an earlier output of this command"
+                    )
             run = self.folder / RUN_FILE
-            results = {p: c for p, c in self.contents.items() if not isinstance(c, Drawing)}
+            results = {
+                p: c for p, c in self.contents.items() if not isinstance(c, Drawing)
+            }
             document = {
                 "schema_version": SCHEMA_VERSION,
                 "command": self.run.command,
@@ -336,13 +380,17 @@ class OutputFolder:
                 "files": [self._known_as(path) for path in self.contents],
             }
             write_whole({**results, run: json_text(document).encode()})
-            for stale in self._own - {self._known_as(path) for path in (*self.contents, run)}:
+            for stale in self._own - {
+                self._known_as(path) for path in (*self.contents, run)
+            }:
                 if Path(stale).name == stale and (self.folder / stale).is_file():
                     (self.folder / stale).unlink()  # never outside the folder
                     self.removed.append(stale)
             for path, drawing in self.contents.items():
                 if isinstance(drawing, Drawing):
-                    path.unlink(missing_ok=True)  # that of an earlier run shows other results
+                    path.unlink(
+                        missing_ok=True
+                    )  # that of an earlier run shows other results
                     if drawn := drawing():
                         write_whole({path: drawn})
 
@@ -357,7 +405,8 @@ class OutputFolder:
         }
 
     def _known_as(self, path: Path) -> str:
-        # Relative to the folder: a project that is moved as a whole keeps knowing its results.
+        # Relative to the folder: a project that is moved as a whole keeps knowing its
+        # results.
         try:
             return Path(os.path.relpath(path, self.folder)).as_posix()
         except ValueError:  # another drive
@@ -390,5 +439,7 @@ class OutputFolder:
 
     def _refuse(self, reason: str) -> dict[str, Any]:
         if not self.force:
-            raise Refused(f"{reason}; name another place with -o, or overwrite with --force")
+            raise Refused(
+                f"{reason}; name another place with -o, or overwrite with --force"
+            )
         return {}

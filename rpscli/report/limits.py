@@ -30,8 +30,14 @@ def _bound(condition: Condition) -> str:
 
 def reached_text(condition: Condition, value: float, overturned: int = 0) -> str:
     """A demand in the unit of its limit; of so many overturned records."""
-    if math.isinf(value):  # friction is asked for without bound where contact is lost as well
-        return "overturned" if overturned or condition.name != "friction_ratio" else "unbounded"
+    if math.isinf(
+        value
+    ):  # friction is asked for without bound where contact is lost as well
+        return (
+            "overturned"
+            if overturned or condition.name != "friction_ratio"
+            else "unbounded"
+        )
     return measured(value, limit_unit(condition.name), condition.limit)
 
 
@@ -49,7 +55,9 @@ def requirement_text(condition: Condition) -> str:
     percent = f"{100.0 * condition.share:g} %"
     if condition.name in EVENTS:
         return f"at most {percent} of the records" if condition.share else "no record"
-    rest = f" except in {percent} of the records" if condition.share else " in every record"
+    rest = (
+        f" except in {percent} of the records" if condition.share else " in every record"
+    )
     return f"{bound_text(condition)}{rest}"
 
 
@@ -66,7 +74,9 @@ def verdict_text(verdict: Verdict) -> str:
 
 
 def _shown_by(verdict: Verdict) -> str:
-    """How many recordings, or events, would show that a limit is met: with no more beyond."""
+    """How many recordings, or events, would show that a limit is
+    met: with no more beyond.
+    """
     return f"; {verdict.shown_by} would show it" if verdict.shown_by else ""
 
 
@@ -76,7 +86,10 @@ def worst_text(verdict: Verdict) -> str:
     value = reached_text(verdict.condition, verdict.value, verdict.overturned)
     worst = f", {which} {value} ({verdict.record})"
     worst = "" if verdict.condition.name in EVENTS else worst
-    return f"{verdict.beyond.number} of {verdict.beyond.of} beyond{worst}{_shown_by(verdict)}"
+    return (
+        f"{verdict.beyond.number} of {verdict.beyond.of}"
+        f" beyond{worst}{_shown_by(verdict)}"
+    )
 
 
 def excess_text(verdict: Verdict) -> str:
@@ -109,14 +122,21 @@ def counts_of_limits(verdicts: Sequence[Verdict]) -> Table:
     for verdict in verdicts:
         row = verdict.condition.name, requirement_text(verdict.condition)
         counts.setdefault(row, Counter())[verdict.word] += 1
-    rows = [(*row, *(str(found[word]) for word in words)) for row, found in counts.items()]
+    rows = [
+        (*row, *(str(found[word]) for word in words)) for row, found in counts.items()
+    ]
     return Table.of_texts(("limit", "requirement", *words), rows, words=2)
 
 
 def verdict_texts(verdict: Verdict) -> tuple[str, str, str, str]:
     """A verdict as a row of a table."""
     condition = verdict.condition
-    return condition.name, verdict.word, requirement_text(condition), verdict_text(verdict)
+    return (
+        condition.name,
+        verdict.word,
+        requirement_text(condition),
+        verdict_text(verdict),
+    )
 
 
 def limits_table(verdicts: Sequence[Verdict]) -> Table:
@@ -127,6 +147,9 @@ def limits_table(verdicts: Sequence[Verdict]) -> Table:
         numbers = "", "not allowed"
         if condition.name not in EVENTS:
             value = math.inf if verdict.overturned else verdict.value
-            numbers = reached_text(condition, value, verdict.overturned), bound_text(condition)
+            numbers = (
+                reached_text(condition, value, verdict.overturned),
+                bound_text(condition),
+            )
         rows.append((condition.name, verdict.word, condition.source, *numbers))
     return Table.of_texts(["limit", "", "from", "value", "requirement"], rows, words=3)

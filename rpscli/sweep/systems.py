@@ -1,4 +1,6 @@
-"""The systems of a study in order, the product of its axes and its sample, each examined first."""
+"""The systems of a study in order, the product of its axes and its
+sample, each examined first.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +15,12 @@ import numpy as np
 
 from rpscli.analyses.result_quantities import HISTORY, NEEDS, SAMPLED, YIELDING
 from rpscli.case.case import Case, case_from_mapping
-from rpscli.case.conditions import Condition, conditions_of, unknown_of_pairs, with_friction
+from rpscli.case.conditions import (
+    Condition,
+    conditions_of,
+    unknown_of_pairs,
+    with_friction,
+)
 from rpscli.case.overrides import Override
 from rpscli.case.plausibility import Doubt, doubts_of_directions
 from rpscli.case.study.schema import PerturbSection, RangeSection, SampleSection, Values
@@ -83,7 +90,9 @@ def _values(unit: Array, given: RangeSection) -> Array:
         return mean + math.sqrt(3.0) * deviation * (2.0 * unit - 1.0)
     kinds = {
         "normal": norm(mean, deviation),
-        "lognormal": lognorm(math.sqrt(math.log1p(cov**2)), scale=mean / math.sqrt(1.0 + cov**2)),
+        "lognormal": lognorm(
+            math.sqrt(math.log1p(cov**2)), scale=mean / math.sqrt(1.0 + cov**2)
+        ),
     }
     # A scrambled sequence may hit zero, whose quantile is minus infinity.
     return np.asarray(kinds[given.distribution].ppf(np.maximum(unit, 1e-16)))
@@ -98,7 +107,9 @@ class Change(NamedTuple):
 
 
 def changes(section: PerturbSection | None) -> tuple[Change, ...]:
-    """The members of an ensemble, uniform within the given shares; the first is unperturbed."""
+    """The members of an ensemble, uniform within the given shares;
+    the first is unperturbed.
+    """
     unchanged = Change(1.0, 1.0)
     if section is None:
         return (unchanged,)
@@ -117,10 +128,11 @@ def changes(section: PerturbSection | None) -> tuple[Change, ...]:
 class SystemProperties(NamedTuple):
     """Properties of a system for the layout of points and statistics, SI units.
 
-    `values` are those of the varied keys; `period` is T1 on a fixed base, `frequency_parameter`
-    that of the rigid frame, p_hat; `building` is a digest of the superstructure, empty without one;
-    `limits` are those of the study or, where it has none, of the case; `lacking` names results that
-    the system cannot have; `doubts` are what is unusual.
+    `values` are those of the varied keys; `period` is T1 on a fixed base,
+    `frequency_parameter` that of the rigid frame, p_hat; `building` is a digest of
+    the superstructure, empty without one; `limits` are those of the study or, where
+    it has none, of the case; `lacking` names results that the system cannot have;
+    `doubts` are what is unusual.
     """
 
     values: Values
@@ -148,8 +160,9 @@ def examined(
 ) -> tuple[SystemProperties, ...]:
     """Properties of all systems; the first ones are kept in the context.
 
-    The sample `drawn` (size, keys), (1, 0) if there is none, runs faster than the axes. A system
-    that is no valid case, perhaps by an unknown key, is refused at the places of its values.
+    The sample `drawn` (size, keys), (1, 0) if there is none, runs faster than the
+    axes. A system that is no valid case, perhaps by an unknown key, is refused at
+    the places of its values.
     """
     plan = context.plan
     of = plan.measure.of if plan.measure else None
@@ -165,17 +178,25 @@ def examined(
         values = (*itertools.chain.from_iterable(varied), *drawn[rows[-1]].tolist())
         try:
             written = _overrides(study, plan, values, rows)
-            case = case_from_mapping(study.base, plan.base_name, study.base_folder, written)
+            case = case_from_mapping(
+                study.base, plan.base_name, study.base_folder, written
+            )
             system = System.of_case(case)
             own = None if study.sources else _own_record(case, of)
             request = own and requests.setdefault(own, own)
             both = pairs if own is None else own.is_pair
-            properties.append(_properties(study, values, case, system.digest, request, both=both))
+            properties.append(
+                _properties(study, values, case, system.digest, request, both=both)
+            )
             if number < SYSTEMS_KEPT:
                 context.system(number, values, system)
             _refuse_restitution(study, case, members)
             _refuse_missing(study, context, case)
-            if both and plan.analysis == "timehistory" and (why := case.structure.planar_only):
+            if (
+                both
+                and plan.analysis == "timehistory"
+                and (why := case.structure.planar_only)
+            ):
                 raise CaseError(f"both components together: {why}")  # noqa: TRY301 -- placed below
         except CaseError as error:
             complaints |= dict.fromkeys(str(error).splitlines())
@@ -195,7 +216,14 @@ def _own_record(case: Case, of: Of | None) -> RecordRequest | None:
         pair = case.record_pair(of)
     except RecordError as error:
         raise CaseError(str(error)) from None
-    what = record.vertical, record.dt, record.units, pair, record.y, record.rotation or 0.0
+    what = (
+        record.vertical,
+        record.dt,
+        record.units,
+        pair,
+        record.y,
+        record.rotation or 0.0,
+    )
     return RecordRequest(case.record_source, str(case.folder), *what)
 
 
@@ -222,7 +250,9 @@ def _properties(
         static_base_shear=structure.static_base_shear,
         building=b"".join(
             hashlib.sha256(
-                repr(each.damping).encode() + each.masses.tobytes() + each.stiffnesses.tobytes()
+                repr(each.damping).encode()
+                + each.masses.tobytes()
+                + each.stiffnesses.tobytes()
             ).digest()
             for each in buildings
         ),
@@ -235,9 +265,15 @@ def _properties(
 
 
 def _limits(study: Study, case: Case, *, both: bool) -> tuple[Condition, ...]:
-    """Limits of the study or, where it has none of its own, of the case; friction where given."""
+    """Limits of the study or, where it has none of its own, of the
+    case; friction where given.
+    """
     own = study.file.limits
-    given = (case.limits, "limits of the case") if own is None else (own, "limits of the study")
+    given = (
+        (case.limits, "limits of the case")
+        if own is None
+        else (own, "limits of the study")
+    )
     limits = conditions_of(*given)
     if both and (lines := unknown_of_pairs(limits, case.structure)):
         raise CaseError("\n".join(lines))
@@ -246,8 +282,12 @@ def _limits(study: Study, case: Case, *, both: bool) -> tuple[Condition, ...]:
 
 def lacking(study: Study, case: Case) -> frozenset[str]:
     """Names of the results that histories of this case will not have."""
-    without = {q.name for q in OF_HISTORIES if q.needs and not HAS[q.needs](case.structure)}
-    return frozenset(without | (set() if study.file.whole_histories else {q.name for q in SAMPLED}))
+    without = {
+        q.name for q in OF_HISTORIES if q.needs and not HAS[q.needs](case.structure)
+    }
+    return frozenset(
+        without | (set() if study.file.whole_histories else {q.name for q in SAMPLED})
+    )
 
 
 def needs_of(name: str, which: str = "not every") -> str:
@@ -266,10 +306,13 @@ def _device_with(result: str) -> Callable[[PodiumStructure], bool]:
 HAS: dict[str, Callable[[PodiumStructure], bool]] = {
     "superstructure": lambda structure: structure.superstructure is not None,
     "superstructure.storey_height": lambda structure: (
-        structure.superstructure is not None and structure.superstructure.storey_heights is not None
+        structure.superstructure is not None
+        and structure.superstructure.storey_heights is not None
     ),
     "superstructure, flat part": lambda structure: structure.static_base_shear > 0.0,
-    "superstructure, devices": lambda structure: bool(structure.storeys and structure.devices),
+    "superstructure, devices": lambda structure: bool(
+        structure.storeys and structure.devices
+    ),
     "superstructure.yield": lambda structure: structure.yields,
     "superstructure.yield, storey_height": lambda structure: (
         structure.yields and HAS["superstructure.storey_height"](structure)
@@ -293,7 +336,9 @@ HAS: dict[str, Callable[[PodiumStructure], bool]] = {
 """True of structures that have what a result needs, by the names of `NEEDS`."""
 
 
-def _overrides(study: Study, plan: Plan, values: Values, rows: Sequence[int]) -> list[Override]:
+def _overrides(
+    study: Study, plan: Plan, values: Values, rows: Sequence[int]
+) -> list[Override]:
     """The values of a system, at the places where the study wrote them."""
     places: list[Place] = [
         axis.place(key, row)
@@ -312,7 +357,10 @@ def _refuse_restitution(study: Study, case: Case, members: Sequence[Change]) -> 
     e = case.structure.restitution
     largest = max(change.restitution for change in members)
     if e * largest > 1.0 and not case.structure.bearing.is_spherical:
-        text = f"perturb.restitution raises the restitution {e:.4g} of a system above 1; use less"
+        text = (
+            f"perturb.restitution raises the restitution {e:.4g} of a system above 1; use"
+            " less"
+        )
         text += f" than {1.0 / e - 1.0:.3g}"
         study.document.refuse([Fault(("perturb", "restitution"), text)])
 
@@ -329,13 +377,20 @@ def _refuse_missing(study: Study, context: StudyContext, case: Case) -> None:
     if own is not None and study.file.scale is None:
         # The case at the base may scale its record, all of them as it does.
         target = own.measure, (own.value,), own.period, own.of
-        same = measure and (measure.measure, measure.values, measure.period, measure.of) == target
+        same = (
+            measure
+            and (measure.measure, measure.values, measure.period, measure.of) == target
+        )
         if not same:
-            text = "record.scale_to cannot vary in a study; vary `scale: {measure: ..., values:"
+            text = (
+                "record.scale_to cannot vary in a study; vary `scale:"
+                " {measure: ..., values:"
+            )
             study.document.refuse([Fault((), f"{text} [...]}}`")])
     at_first_period = measure and needs_period(measure.measure) and measure.period is None
     if measure and at_first_period and case.structure.superstructure is None:
         text = (
-            f"scale.period is missing: without storeys {measure.measure} has no T1 to be taken at"
+            f"scale.period is missing: without storeys {measure.measure} has no T1 to be"
+            " taken at"
         )
         study.document.refuse([Fault(("scale",), text, at_key=True)])

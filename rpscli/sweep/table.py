@@ -1,4 +1,6 @@
-"""All results of a study as columns, in its order: in memory, as `points.csv`, by groups."""
+"""All results of a study as columns, in its order: in memory, as
+`points.csv`, by groups.
+"""
 
 from __future__ import annotations
 
@@ -60,8 +62,9 @@ def unit_of(name: str) -> str:
 class Outcomes(Frozen):
     """Outcomes and scalar results of histories, which need not be independent.
 
-    `outcomes` are (points,) words, `columns` (points,) of each scalar result under its name, NaN
-    where there is none; `clusters` are (points,) numbers of what is `independent`.
+    `outcomes` are (points,) words, `columns` (points,) of each scalar result
+    under its name, NaN where there is none; `clusters` are (points,) numbers
+    of what is `independent`.
     """
 
     outcomes: NDArray[np.str_]
@@ -86,9 +89,9 @@ class Outcomes(Frozen):
 class Intensity(NamedTuple):
     """A measure of the scaled records.
 
-    `values` are (points,), NaN where a record cannot be read; `period` is that of Sa and the like,
-    None for T1 of each system; `of` says what of pairs it is, None where no record is measured as
-    a pair.
+    `values` are (points,), NaN where a record cannot be read; `period` is that of Sa and
+    the like, None for T1 of each system; `of` says what of pairs it is, None where no
+    record is measured as a pair.
     """
 
     measure: Measure
@@ -107,9 +110,9 @@ class Intensity(NamedTuple):
 class Table(Outcomes):
     """Outcomes of all points of a study, laid out.
 
-    `scale` (points,) are factors on the records, NaN where one is not known; `messages` are reasons
-    of failed points, by their number; `storey_shears` (points, most storeys) are the largest from
-    the bottom [N], NaN above the roof.
+    `scale` (points,) are factors on the records, NaN where one is not known; `messages`
+    are reasons of failed points, by their number; `storey_shears` (points, most storeys)
+    are the largest from the bottom [N], NaN above the roof.
     """
 
     layout: StudyPoints
@@ -118,7 +121,9 @@ class Table(Outcomes):
     storey_shears: Array
 
     @classmethod
-    def of(cls, layout: StudyPoints, read: Callable[[Sequence[str]], PointResults]) -> Table:
+    def of(
+        cls, layout: StudyPoints, read: Callable[[Sequence[str]], PointResults]
+    ) -> Table:
         """From what is read of results by their names, in the order of the study."""
         names = SCALARS[layout.plan.analysis]
         stored = read([*names, "scale", STOREY_SHEARS.name])
@@ -134,21 +139,30 @@ class Table(Outcomes):
             independent=layout.independent,
             layout=layout,
             scale=stored.columns.get("scale", unknown),
-            messages={row: text or "no reason was given" for row, text in stored.messages.items()},
+            messages={
+                row: text or "no reason was given"
+                for row, text in stored.messages.items()
+            },
             storey_shears=shears,
         )
 
     @property
     def factors(self) -> Array | None:
-        """(points,) on the records, known before unless a measure decides; None without records."""
+        """(points,) on the records, known before unless a measure
+        decides; None without records.
+        """
         if self.layout.plan.analysis != "timehistory":
             return None
         return self.layout.factors if self.layout.plan.measure is None else self.scale
 
     def intensity(
-        self, measure: Measure | None = None, period: float | None = None, damping: float = 0.05
+        self,
+        measure: Measure | None = None,
+        period: float | None = None,
+        damping: float = 0.05,
     ) -> Intensity:
-        """A measure of the ground motion at every point, T1 of each system unless at a period.
+        """A measure of the ground motion at every point, T1 of each
+        system unless at a period.
 
         By default it is the one that the study scales to, else PGV.
         """
@@ -173,7 +187,9 @@ class Table(Outcomes):
                 what = measure, own if needs_period(measure) else None, damping
                 factor = float(self.scale[point.number])
                 try:
-                    unscaled = context.records.intensity(point.record, *what, layout.plan.of)
+                    unscaled = context.records.intensity(
+                        point.record, *what, layout.plan.of
+                    )
                 except RecordError:
                     continue
             values[point.number] = unscaled * abs(factor) ** MEASURES[measure].power
@@ -187,8 +203,12 @@ class Group(NamedTuple):
     points: Indices
 
 
-def groups(layout: StudyPoints, keys: Sequence[str], within: Indices | None = None) -> list[Group]:
-    """All points, or some, grouped by the values of keys, in the order in which these are named."""
+def groups(
+    layout: StudyPoints, keys: Sequence[str], within: Indices | None = None
+) -> list[Group]:
+    """All points, or some, grouped by the values of keys, in the order
+    in which these are named.
+    """
     numbers = np.arange(len(layout)) if within is None else within
     axes = layout.study.axes
     known: dict[str, tuple[int, Sequence[object]]] = {
@@ -196,7 +216,10 @@ def groups(layout: StudyPoints, keys: Sequence[str], within: Indices | None = No
         for number, axis in enumerate(axes)
         for place, key in enumerate(axis.keys)
     }
-    known["record"] = len(axes) + 1, [record and record.source for record in layout.records]
+    known["record"] = (
+        len(axes) + 1,
+        [record and record.source for record in layout.records],
+    )
     known["scale"] = len(axes) + 2, layout.scales
     asked = [known[key] for key in keys]
     chosen = [*dict.fromkeys(axis for axis, _ in asked)]
@@ -208,7 +231,9 @@ def groups(layout: StudyPoints, keys: Sequence[str], within: Indices | None = No
     order = np.argsort(codes, kind="stable")
     parts = np.split(order, np.flatnonzero(np.diff(codes[order])) + 1)
     return [
-        Group(tuple(values[places[axis][part[0]]] for axis, values in asked), numbers[part])
+        Group(
+            tuple(values[places[axis][part[0]]] for axis, values in asked), numbers[part]
+        )
         for part in parts
         if len(part)
     ]
@@ -223,7 +248,11 @@ def _shown_results(layout: StudyPoints) -> dict[str, ResultQuantity]:
     """Scalar results by their paths, those of yielding only where a system yields."""
     elastic = all("ductility" in properties.lacking for properties in layout.properties)
     every = SCALARS[layout.plan.analysis].items()
-    return {path: quantity for path, quantity in every if not (elastic and quantity in YIELDING)}
+    return {
+        path: quantity
+        for path, quantity in every
+        if not (elastic and quantity in YIELDING)
+    }
 
 
 def units_of_columns(layout: StudyPoints) -> dict[str, str]:
@@ -246,7 +275,9 @@ def points_csv(table: Table) -> Iterator[str]:
         (layout.places[of], [_cell(value, units[name]) for value in values])
         for name, (of, values) in layout.identifying.items()
     ]
-    results = [(table.columns[name], q.whole) for name, q in _shown_results(layout).items()]
+    results = [
+        (table.columns[name], q.whole) for name, q in _shown_results(layout).items()
+    ]
     buffer = io.StringIO()
     writer = csv.writer(buffer, lineterminator="\n")
     writer.writerow(f"{name} [{unit}]" for name, unit in units.items())
@@ -265,7 +296,9 @@ def points_csv(table: Table) -> Iterator[str]:
 def _numbers(values: Array, *, whole: bool = False) -> list[str]:
     text = (lambda value: str(int(value))) if whole else repr
     finite = np.isfinite(values).tolist()
-    return [text(v) if known else "" for v, known in zip(values.tolist(), finite, strict=True)]
+    return [
+        text(v) if known else "" for v, known in zip(values.tolist(), finite, strict=True)
+    ]
 
 
 def _cell(value: object, unit: str) -> str:
@@ -277,7 +310,9 @@ def _cell(value: object, unit: str) -> str:
 
 
 def point_columns(table: Table) -> Columns:
-    """(points,) of each column of `points.csv` by name: SI numbers, NaN for none, else objects."""
+    """(points,) of each column of `points.csv` by name: SI numbers,
+    NaN for none, else objects.
+    """
     layout = table.layout
     units = units_of_columns(table.layout)
     columns = {
@@ -293,7 +328,9 @@ def point_columns(table: Table) -> Columns:
 def array(values: Iterable[Any]) -> NDArray[Any]:
     """Numbers if all of them are, with NaN for None; else objects."""
     kept = list(values)
-    numbers = [np.nan if value is None else np.inf if value == "inf" else value for value in kept]
+    numbers = [
+        np.nan if value is None else np.inf if value == "inf" else value for value in kept
+    ]
     if all(isinstance(value, int | float) for value in numbers):
         return np.array(numbers)
     objects = np.empty(len(kept), dtype=object)
@@ -302,20 +339,26 @@ def array(values: Iterable[Any]) -> NDArray[Any]:
 
 
 FixedBaseReferences = dict[tuple[int, RecordRequest], Array]
-"""Largest storey shears (n,) [N] of a system on a fixed base, under an unscaled record."""
+"""Largest storey shears (n,) [N] of a system on a fixed base,
+under an unscaled record."""
 
 
-def fixed_base_references(layout: StudyPoints, store: Store, jobs: int) -> FixedBaseReferences:
-    """Those of all systems with a building; what is not in the store is computed and stored.
+def fixed_base_references(
+    layout: StudyPoints, store: Store, jobs: int
+) -> FixedBaseReferences:
+    """Those of all systems with a building; what is not in the
+    store is computed and stored.
 
-    The response is linear: one run at scale 1 serves every scale, and systems that differ in their
-    bearings alone share it.
+    The response is linear: one run at scale 1 serves every scale, and systems that differ
+    in their bearings alone share it.
     """
     known = store.fixed_base()
     records = layout.context.records
     found: dict[tuple[int, RecordRequest], bytes] = {}
     runs: dict[bytes, tuple[PodiumStructure, MotionComponents]] = {}
-    structures: dict[bytes, PodiumStructure] = {}  # buildings of many systems are the same
+    structures: dict[
+        bytes, PodiumStructure
+    ] = {}  # buildings of many systems are the same
     for system, properties in enumerate(layout.properties):
         building = properties.building
         for request in dict.fromkeys(
@@ -375,7 +418,9 @@ class StoredPoints:
 
         layout = self.table.layout
         given = layout.context.history(layout[number])
-        result = time_history(given.structure, given.motion.scaled(given.scale), given.settings)
+        result = time_history(
+            given.structure, given.motion.scaled(given.scale), given.settings
+        )
         fixed = spectra.fixed_base_floor_spectra(result, damping=damping)
         assert fixed is not None, "every system has a building"
         both = spectra.isolated_floor_spectra(result, damping=damping), fixed

@@ -32,7 +32,9 @@ BUILDING = replace(podium(3), impact_law=ImpactLaw("flexible"))
 def wave(period: float, size: float, seconds: float = 4.0) -> GroundMotion:
     t = np.arange(round(seconds / DT) + 1) * DT
     fade = np.minimum(1.0, 2.0 * (seconds - t) / seconds)
-    return GroundMotion(size * fade * np.sin(2.0 * np.pi * t / period), DT, f"wave {period:g} s")
+    return GroundMotion(
+        size * fade * np.sin(2.0 * np.pi * t / period), DT, f"wave {period:g} s"
+    )
 
 
 @pytest.fixture(scope="module")
@@ -70,21 +72,29 @@ def test_samples_do_not_exceed_the_largest_values(result: TimeHistoryResult) -> 
     turning = t.rotation * known(t.azimuth_rate)
     slow = 2.5e-2 * np.hypot(t.rotation_rate, turning) <= t.rotation
     friction = np.max((t.size("shear_bottom") / t.normal_bottom)[slow])
-    assert 0.9 * result.friction_demand < friction <= result.friction_demand * (1.0 + 1e-9)
+    assert (
+        0.9 * result.friction_demand < friction <= result.friction_demand * (1.0 + 1e-9)
+    )
     assert result.max_cap_beam_displacement_x == pytest.approx(
         np.max(np.abs(t.cap_beam_displacement)), rel=1e-3
     )
-    assert result.max_base_shear_y == pytest.approx(np.abs(y.storey_shears[:, 0]).max(), rel=0.02)
+    assert result.max_base_shear_y == pytest.approx(
+        np.abs(y.storey_shears[:, 0]).max(), rel=0.02
+    )
     assert known(result.max_base_shear_x) <= result.max_base_shear
 
 
 @pytest.mark.evidence("both components", "exact")
-def test_a_turned_pair_turns_results(result: TimeHistoryResult, motion: MotionComponents) -> None:
+def test_a_turned_pair_turns_results(
+    result: TimeHistoryResult, motion: MotionComponents
+) -> None:
     other = time_history(BUILDING, motion.turned(30.0), result.settings)
     assert other.max_rotation == pytest.approx(result.max_rotation, rel=1e-9)
     assert other.max_base_shear == pytest.approx(result.max_base_shear, rel=1e-9)
     assert other.max_floor_velocity == pytest.approx(result.max_floor_velocity, rel=1e-6)
-    assert other.max_roof_displacement == pytest.approx(result.max_roof_displacement, rel=1e-6)
+    assert other.max_roof_displacement == pytest.approx(
+        result.max_roof_displacement, rel=1e-6
+    )
     ahead = known(other.max_rotation_azimuth) - known(result.max_rotation_azimuth)
     assert np.cos(ahead - np.radians(30.0)) == pytest.approx(1.0, abs=1e-9)
     one, turned = known(result.fixed_base), known(other.fixed_base)
@@ -110,7 +120,9 @@ def test_files_have_both_directions(result: TimeHistoryResult) -> None:
     assert len(passes) == result.passes
     closest = min(event.least_tilt or 0.0 for event in passes)
     assert closest / result.structure.bearing.alpha == pytest.approx(result.closest_pass)
-    assert {"azimuth", "loss_share"} <= {column.name for column in event_columns(result.events)}
+    assert {"azimuth", "loss_share"} <= {
+        column.name for column in event_columns(result.events)
+    }
     document = json.loads(json_text(timehistory_document(result)))
     for name in ("max_base_shear_y", "passes_as_impacts", "torsion_lever"):
         assert document[name] == getattr(result, name)
@@ -139,13 +151,18 @@ def test_largest_forces_hardly_depend_on_the_contact_time() -> None:
 
     def median(contact_time: float, period: float | None) -> float:
         of = on_floors(period, contact_time)
-        weight = of.gravity * (of.cap_beam_mass + of.superstructure_mass + of.columns_mass)
+        weight = of.gravity * (
+            of.cap_beam_mass + of.superstructure_mass + of.columns_mass
+        )
         peak, found = 1.8 * of.uplift_acceleration, []
         for seed in range(8):
             motion = MotionComponents(
-                waves(10.0, 0.01, peak, seed=2 * seed), y=waves(10.0, 0.01, peak, seed=2 * seed + 1)
+                waves(10.0, 0.01, peak, seed=2 * seed),
+                y=waves(10.0, 0.01, peak, seed=2 * seed + 1),
             )
-            found.append(time_history(of, motion, settings).max_column_force * of.columns / weight)
+            found.append(
+                time_history(of, motion, settings).max_column_force * of.columns / weight
+            )
         return float(np.median(found))
 
     with_floors = [median(t_c, 0.1) for t_c in (5e-4, 2e-3, 1e-2)]

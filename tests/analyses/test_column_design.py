@@ -6,7 +6,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from paper_structures import building, ground, known, needs_compiled_kernels, podium, waves
+from paper_structures import (
+    building,
+    ground,
+    known,
+    needs_compiled_kernels,
+    podium,
+    waves,
+)
 
 from rpscli.analyses.column_forces import no_bound
 from rpscli.analyses.settings import TimeHistorySettings
@@ -60,10 +67,14 @@ def test_flat_ends_turn_the_force_at_their_edge_into_moment() -> None:
     tilted = t.rotation != 0.0
     x, s = np.abs(t.rotation)[tilted], np.sign(t.rotation)[tilted]
     pressed = t.normal_bottom[tilted] * np.cos(x) + s * t.shear_bottom[tilted] * np.sin(x)
-    assert result.column_moment == pytest.approx(b.half_width * np.max(pressed) / 4.0, rel=1e-9)
+    assert result.column_moment == pytest.approx(
+        b.half_width * np.max(pressed) / 4.0, rel=1e-9
+    )
     N = np.max(t.normal_bottom[tilted]) / 4.0
     depth = N / (25e6 * 0.45)
-    assert result.crushed_width_ratio == pytest.approx(depth / (2.0 * b.half_width), rel=1e-9)
+    assert result.crushed_width_ratio == pytest.approx(
+        depth / (2.0 * b.half_width), rel=1e-9
+    )
     assert result.contact_pressure_ratio is None
 
 
@@ -79,7 +90,9 @@ def test_worst_instants_of_a_building() -> None:
     around = time_history(replace(of, column=ROUND), result.record)
     for design, found in ((SQUARE, result), (ROUND, around)):
         pressure, *_ = design.pressed(b, x[rolls], force[rolls])
-        assert found.contact_pressure_ratio == pytest.approx(np.max(pressure) / 25e6, rel=1e-12)
+        assert found.contact_pressure_ratio == pytest.approx(
+            np.max(pressure) / 25e6, rel=1e-12
+        )
     assert known(result.column_demand).instants[1].axial_force == result.max_column_force
 
 
@@ -91,7 +104,9 @@ def test_the_moment_ends_as_the_upper_end_asks(rho: float) -> None:
     of = designed(rho)
     result = time_history(of, waves(6.0, 0.01, 1.8 * of.uplift_acceleration, seed=2))
     state, H = known(result.column_demand).at_largest_moment, of.bearing.half_height
-    P, Q, M = state.section_forces(of.bearing, of.columns_mass / 16, np.array([0.0, 2.0 * H]))
+    P, Q, M = state.section_forces(
+        of.bearing, of.columns_mass / 16, np.array([0.0, 2.0 * H])
+    )
     assert abs(M[0]) == pytest.approx(result.column_moment, rel=1e-12)
     assert M[1] == pytest.approx(-(state.lever * P[1] - state.rise * Q[1]), rel=1e-9)
     assert M[1] == pytest.approx(-M[0], rel=0.05)
@@ -99,7 +114,9 @@ def test_the_moment_ends_as_the_upper_end_asks(rho: float) -> None:
 
 
 @needs_compiled_kernels
-def test_a_pair_in_one_direction_is_the_plane_and_a_square_column_has_no_pressure() -> None:
+def test_a_pair_in_one_direction_is_the_plane_and_a_square_column_has_no_pressure() -> (
+    None
+):
     push = waves(3.0, 0.01, 4.0, seed=3)
     of = frame(0.5, ROUND)
     plane = time_history(of, push, AT_ONCE)

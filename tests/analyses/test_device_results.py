@@ -11,7 +11,13 @@ from paper_structures import known, needs_compiled_kernels, podium, waves
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
-from rpscli.model.devices import FrictionDamper, RollingResistance, Stop, Tendon, ViscousDamper
+from rpscli.model.devices import (
+    FrictionDamper,
+    RollingResistance,
+    Stop,
+    Tendon,
+    ViscousDamper,
+)
 from rpscli.model.podium import Device
 from rpscli.physics.state import FULL_CONTACT, ROCKING, ROLLING, STUCK
 from rpscli.report.bundles import history_columns
@@ -50,9 +56,13 @@ def test_base_shear_over_that_at_uplift_with_devices(result: TimeHistoryResult) 
     s, b = STRUCTURE, STRUCTURE.bearing
     force = (s.weight + 4 * P) * 0.15 + F_D + s.weight * 2e-3 / b.half_height
     shear = s.superstructure_mass * force / (s.weight / s.gravity)
-    assert result.uplift_shear_ratio == pytest.approx(result.max_base_shear / shear, rel=1e-12)
+    assert result.uplift_shear_ratio == pytest.approx(
+        result.max_base_shear / shear, rel=1e-12
+    )
     static = s.superstructure_mass * s.gravity * 0.15
-    assert result.base_shear_ratio == pytest.approx(result.max_base_shear / static, rel=1e-12)
+    assert result.base_shear_ratio == pytest.approx(
+        result.max_base_shear / static, rel=1e-12
+    )
 
 
 def test_the_audit_closes_at_every_sample(result: TimeHistoryResult) -> None:
@@ -74,7 +84,9 @@ def test_forces_obey_the_laws(result: TimeHistoryResult) -> None:
     assert np.all(np.abs(friction) <= F_D * (1.0 + 1e-12))
     rests = t.phase == FULL_CONTACT
     assert not rolling[rests].any()
-    assert viscous == pytest.approx(-C * np.sign(velocity) * np.abs(velocity) ** A, abs=1e-3)
+    assert viscous == pytest.approx(
+        -C * np.sign(velocity) * np.abs(velocity) ** A, abs=1e-3
+    )
     assert np.all((tension >= 0.0) & (tension <= P_Y * (1.0 + 1e-9)))
     u = t.cap_beam_displacement
     assert not stop[np.abs(u) < GAP].any()
@@ -115,7 +127,9 @@ def test_tables_and_documents(result: TimeHistoryResult) -> None:
     names = {column.name: list(column.values) for column in history_columns(result)}
     assert names["device_1_tendon_force"] == result.trace.devices.force[:, 1].tolist()
     document = timehistory_document(result)
-    assert [entry["kind"] for entry in document["devices"]] == [d.kind for d in result.devices]
+    assert [entry["kind"] for entry in document["devices"]] == [
+        d.kind for d in result.devices
+    ]
     assert document["energy"]["devices"] == result.energy.devices
     assert len(list(timehistory_tables(result, [], "x"))) >= 4
 
@@ -147,11 +161,15 @@ def test_steps_are_as_good_as_without_devices(device: Device | None) -> None:
     devices = STRUCTURE.devices if device is None else (device,)
     structure = replace(STRUCTURE, devices=devices)
     coarse, fine = (
-        time_history(structure, RECORD, TimeHistorySettings(free_vibration=0.0, accuracy=accuracy))
+        time_history(
+            structure, RECORD, TimeHistorySettings(free_vibration=0.0, accuracy=accuracy)
+        )
         for accuracy in (2.0, 8.0)  # the powers of dampers are linear up to less and less
     )
     assert coarse.max_rotation == pytest.approx(fine.max_rotation, rel=1e-8)
     assert coarse.max_base_shear == pytest.approx(fine.max_base_shear, rel=3e-5)
-    residuals = [abs(result.energy.residual) / result.energy.input for result in (coarse, fine)]
+    residuals = [
+        abs(result.energy.residual) / result.energy.input for result in (coarse, fine)
+    ]
     assert residuals[0] < 1e-8
     assert residuals[1] < max(residuals[0] / 4.0**5, 2e-11)  # or rounding

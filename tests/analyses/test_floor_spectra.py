@@ -38,7 +38,9 @@ def test_a_sudden_acceleration_counts_twice_without_damping() -> None:
     # Peaks between samples: fifty a period leave 0.2 %.
     wanted = np.array([[2.0], [6.0]]) * np.ones(3)
     np.testing.assert_allclose(found.pseudo_acceleration, wanted, rtol=2e-3)
-    np.testing.assert_allclose(found.displacement, wanted * (PERIODS / (2 * np.pi)) ** 2, rtol=2e-3)
+    np.testing.assert_allclose(
+        found.displacement, wanted * (PERIODS / (2 * np.pi)) ** 2, rtol=2e-3
+    )
 
 
 @pytest.mark.evidence("floor spectra", "exact")
@@ -46,9 +48,14 @@ def test_a_sudden_acceleration_counts_twice_without_damping() -> None:
 def test_a_building_that_stands_has_the_spectra_of_a_fixed_base() -> None:
     result = shaken("synthetic:?pga=0.02g&seed=3&duration=8&dt=0.01")
     assert result.outcome == "at_rest"
-    isolated, fixed = isolated_floor_spectra(result), known(fixed_base_floor_spectra(result))
+    isolated, fixed = (
+        isolated_floor_spectra(result),
+        known(fixed_base_floor_spectra(result)),
+    )
     # The free vibration after the record is cut at different times.
-    np.testing.assert_allclose(isolated.pseudo_acceleration, fixed.pseudo_acceleration, rtol=5e-5)
+    np.testing.assert_allclose(
+        isolated.pseudo_acceleration, fixed.pseudo_acceleration, rtol=5e-5
+    )
 
 
 @pytest.mark.evidence("floor spectra", "program")
@@ -83,12 +90,22 @@ def test_fixed_base_against_a_building_with_its_equipment() -> None:
 @needs_compiled_kernels
 def test_floor_spectra_of_the_command(tmp_path: Path) -> None:
     source = "synthetic:?pga=0.5g&seed=1&duration=6&dt=0.01"
-    words = ["timehistory", str(CASE), "--record", source, "-o", str(tmp_path / "made"), "-q"]
+    words = [
+        "timehistory",
+        str(CASE),
+        "--record",
+        source,
+        "-o",
+        str(tmp_path / "made"),
+        "-q",
+    ]
     CliRunner().invoke(program, [*words, "--floor-spectra", "--figures", "png"])
     assert (tmp_path / "made/floor_spectra.png").read_bytes().startswith(b"\x89PNG")
     rows = csv_rows("floor_spectra.csv", tmp_path / "made")
     found = isolated_floor_spectra(shaken(source)).pseudo_acceleration
     assert [int(row["floor [-]"]) for row in rows] == np.repeat(range(1, 7), 50).tolist()
     np.testing.assert_allclose(
-        [float(row["pseudo_acceleration [m/s2]"]) for row in rows], found.ravel(), rtol=1e-9
+        [float(row["pseudo_acceleration [m/s2]"]) for row in rows],
+        found.ravel(),
+        rtol=1e-9,
     )

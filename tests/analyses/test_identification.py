@@ -8,13 +8,27 @@ from typing import Any
 
 import numpy as np
 import pytest
-from paper_structures import Array, block, ground, known, let_go, needs_compiled_kernels, podium
+from paper_structures import (
+    Array,
+    block,
+    ground,
+    known,
+    let_go,
+    needs_compiled_kernels,
+    podium,
+)
 from scipy.integrate import solve_ivp
 from scipy.signal import lsim
 from shown_commands import VERIFICATION, told
 
 from rpscli.analyses import identification
-from rpscli.analyses.identification import Estimate, Identified, Vibration, rocking, vibration
+from rpscli.analyses.identification import (
+    Estimate,
+    Identified,
+    Vibration,
+    rocking,
+    vibration,
+)
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.errors import AnalysisError
@@ -45,7 +59,13 @@ def test_a_block_of_another_integrator_has_its_restitution() -> None:
     time, theta = np.arange(0.0, 4.0, dt), np.zeros(2000)
     while start < 4.0:
         swing: Any = solve_ivp(
-            rates, (start, 5.0), y, events=falls, dense_output=True, rtol=1e-10, atol=1e-12
+            rates,
+            (start, 5.0),
+            y,
+            events=falls,
+            dense_output=True,
+            rtol=1e-10,
+            atol=1e-12,
         )
         end = float(swing.t[-1])
         inside = (time >= start) & (time < end)
@@ -56,7 +76,10 @@ def test_a_block_of_another_integrator_has_its_restitution() -> None:
     read = rocking(case, time + 7.0, theta)
     assert ("loss", "-") not in read.estimates
     assert held(e, read.estimates["restitution", "-"])
-    assert read.estimates["restitution", "-"].high - read.estimates["restitution", "-"].low < 2e-3
+    assert (
+        read.estimates["restitution", "-"].high - read.estimates["restitution", "-"].low
+        < 2e-3
+    )
     assert 0.5 < read.misfit < 1.6
     assert not read.ensembles
     # A swing whose top the record cuts is none.
@@ -105,9 +128,13 @@ def test_what_determines_no_period_is_refused() -> None:
     ):
         with pytest.raises(AnalysisError, match=said):
             vibration(0.4, 0.01, floor, free=free)
-    with pytest.raises(AnalysisError, match=r"samples every 0\.01 s do not show a period of 0\.00"):
+    with pytest.raises(
+        AnalysisError, match=r"samples every 0\.01 s do not show a period of 0\.00"
+    ):
         vibration(0.003, 0.01, noise)
-    empty = np.resize([1.0, -1.0], 3000)  # nothing but the fastest motion that samples show
+    empty = np.resize(
+        [1.0, -1.0], 3000
+    )  # nothing but the fastest motion that samples show
     with pytest.raises(AnalysisError, match="no vibration before uplift fits"):
         vibration(0.4, 0.01, empty, free=True)
     with pytest.raises(AnalysisError, match="no vibration before uplift fits"):
@@ -117,7 +144,9 @@ def test_what_determines_no_period_is_refused() -> None:
 def test_searches_that_go_astray_print_nothing(capfd: pytest.CaptureFixture[str]) -> None:
     """LAPACK would write about numbers that are not finite, which it does not take."""
     for worst in (math.nan, math.inf):
-        assert np.isinf(identification._unexplained(np.full((4, 2), worst), np.ones(4))).all()
+        assert np.isinf(
+            identification._unexplained(np.full((4, 2), worst), np.ones(4))
+        ).all()
         assert np.isinf(identification._inverse(np.full((2, 2), worst))).all()
     assert capfd.readouterr() == ("", "")
 
@@ -134,7 +163,9 @@ def made_up(number: int) -> tuple[PodiumStructure, float]:
     return structure, float(rng.uniform(0.3, 1.0))
 
 
-def released(structure: PodiumStructure, part: float, seconds: float) -> tuple[Array, Array]:
+def released(
+    structure: PodiumStructure, part: float, seconds: float
+) -> tuple[Array, Array]:
     trace = let_go(structure, part * structure.critical_rotation, seconds, DT).trace
     return trace.time, trace.rotation
 
@@ -206,8 +237,12 @@ def shaken(structure: PodiumStructure, T: float, test: str, rng: Any) -> Vibrati
     count = round({"ambient": 400, "release": 30, "earthquake": 50}[test] * T / DT)
     push = rng.normal(0.0, 1e-3, round(3.0 * T / DT) if free else count)
     settings = TimeHistorySettings(free_vibration=count * DT if free else 0.0)
-    trace = time_history(structure, ground(push, DT), settings, with_fixed_base=False).trace
-    floor = trace.floor_accelerations[slice(len(push) + 1, None) if free else slice(count), -1]
+    trace = time_history(
+        structure, ground(push, DT), settings, with_fixed_base=False
+    ).trace
+    floor = trace.floor_accelerations[
+        slice(len(push) + 1, None) if free else slice(count), -1
+    ]
     floor = floor + rng.normal(0.0, 0.1 * floor.std(), len(floor))
     shaking = push if test == "earthquake" else None
     return vibration(0.9 * T, DT, floor, shaking, free=free)
@@ -218,5 +253,9 @@ def test_a_ratio_next_to_one_stays_above_it() -> None:
     time = np.arange(0.0, 20.0, 0.01)
     floor = np.exp(-0.02 * time) * np.cos(2.0 * math.pi / 0.3001 * time)
     columns = {"time": time, "floor_acceleration": floor}
-    written = identification.identified(podium(3, law=ImpactLaw()), "release", columns).keys
-    assert float(written["podium.contact.period_ratio"]) == pytest.approx(0.3001 / 0.3, abs=1e-6)
+    written = identification.identified(
+        podium(3, law=ImpactLaw()), "release", columns
+    ).keys
+    assert float(written["podium.contact.period_ratio"]) == pytest.approx(
+        0.3001 / 0.3, abs=1e-6
+    )

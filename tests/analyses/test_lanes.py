@@ -7,7 +7,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from paper_structures import COMPILED, FLAT, building, ground, needs_compiled_kernels, podium, waves
+from paper_structures import (
+    COMPILED,
+    FLAT,
+    building,
+    ground,
+    needs_compiled_kernels,
+    podium,
+    waves,
+)
 
 from rpscli.analyses.demand import Request, demand, demands
 from rpscli.analyses.kernels.history import sampled_history
@@ -82,7 +90,9 @@ def ensemble(
         for i in range(each):
             structure = choices[int(rng.integers(len(choices)))]
             motion, settings = MOTIONS[int(rng.integers(4))], SETTINGS[i % len(SETTINGS)]
-            requests.append(Request(structure, motion, settings, float(rng.choice(scales))))
+            requests.append(
+                Request(structure, motion, settings, float(rng.choice(scales)))
+            )
     # and one whose motion is soon no longer finite, which must not spread
     requests.append(replace(requests[0], scale=2.0**800))
     return [requests[i] for i in rng.permutation(len(requests))]
@@ -137,7 +147,9 @@ def test_lanes_give_them_of_any_height(groups: list[tuple[int, bool]], each: int
     check(ensemble(groups, each))
 
 
-MIXED = ensemble([(0, False), (1, False), (2, True), (3, False), (3, True)], 12, POWERS_OF_TWO)
+MIXED = ensemble(
+    [(0, False), (1, False), (2, True), (3, False), (3, True)], 12, POWERS_OF_TWO
+)
 
 
 @needs_compiled_kernels
@@ -150,7 +162,10 @@ def test_a_history_alone_is_that_of_the_scaled_record() -> None:
     together = all_bits(MIXED, ALONE)
     assert together[::-1] == all_bits(MIXED[::-1], ALONE)
     for request, found in zip(MIXED, together, strict=True):
-        of = {name: each.scaled(request.scale) for name, each in request.motion.named.items()}
+        of = {
+            name: each.scaled(request.scale)
+            for name, each in request.motion.named.items()
+        }
         motion = MotionComponents(of["horizontal"], of.get("vertical"), y=of.get("y"))
         with np.errstate(all="ignore"):
             run = sampled_history(request.structure, motion, request.settings)
@@ -171,7 +186,9 @@ def test_the_histories_compared_are_of_all_kinds() -> None:
 
 def test_histories_without_end_are_refused_before_they_begin() -> None:
     record = ground([0.0, 1.0, 0.0], 1e18)
-    with pytest.raises(CaseError, match=r"must not be more than 1e\+10: the record is too long"):
+    with pytest.raises(
+        CaseError, match=r"must not be more than 1e\+10: the record is too long"
+    ):
         demands([Request(podium(0), MotionComponents(record), TimeHistorySettings())])
 
 
@@ -193,12 +210,20 @@ def test_who_waits_for_a_lane_keeps_its_bits(pairs: bool) -> None:
     """More histories than all groups have places, of which many move at once and some never do."""
     system = replace(structures(2, modal=False)[2], impact_law=ImpactLaw("flexible"))
     scales = np.linspace(0.05, 1.2, (STATES + 1) * LANES)
-    motion = MotionComponents(RECORDS[0], y=waves(2.5, 0.02, 3.0, seed=45) if pairs else None)
+    motion = MotionComponents(
+        RECORDS[0], y=waves(2.5, 0.02, 3.0, seed=45) if pairs else None
+    )
     settings = TimeHistorySettings(free_vibration=0.2)
     requests = [Request(system, motion, settings, float(scale)) for scale in scales]
-    together = [each.history.tobytes() for each in demands(requests, worth_lanes=SIDE_BY_SIDE)]
+    together = [
+        each.history.tobytes() for each in demands(requests, worth_lanes=SIDE_BY_SIDE)
+    ]
     some = slice(None, None, 13)
-    alone = [each.history.tobytes() for each in demands(requests[some], worth_lanes=ALONE)]
+    alone = [
+        each.history.tobytes() for each in demands(requests[some], worth_lanes=ALONE)
+    ]
     assert alone == together[some]
-    moved = [each.history["events"][UPLIFT] > 0 for each in demands(requests, worth_lanes=1)]
+    moved = [
+        each.history["events"][UPLIFT] > 0 for each in demands(requests, worth_lanes=1)
+    ]
     assert 2 * LANES < sum(moved) < len(moved)

@@ -23,7 +23,9 @@ def test_no_step_that_holds_the_largest_value_is_passed_over(steepness: float) -
         at = np.concatenate((cubic(turns), values))
         # Rounding of polynomials whose terms are `steepness` times their values.
         error = 1e-12 * (1.0 + steepness)
-        assert largest_of_cubics(values, rates, STEP) == pytest.approx(abs(at).max(), abs=error)
+        assert largest_of_cubics(values, rates, STEP) == pytest.approx(
+            abs(at).max(), abs=error
+        )
 
 
 def test_a_cubic_passes_its_ends_by_four_twenty_sevenths_of_its_rate() -> None:

@@ -24,7 +24,9 @@ SIZES += [(50, FLAT), (50, 0.5), (100, 1.5)]
 
 
 @pytest.mark.parametrize(("storeys", "rho"), SIZES)
-def test_frequencies_and_damping_belong_to_their_eigenvalues(storeys: int, rho: float) -> None:
+def test_frequencies_and_damping_belong_to_their_eigenvalues(
+    storeys: int, rho: float
+) -> None:
     for modes in modal(podium(storeys, 0.15, rho)).uplifted.values():
         first, second = modes.eigenvalues[2::2], modes.eigenvalues[3::2]
         products = np.sqrt((first * second).real)
@@ -38,7 +40,9 @@ def test_frequencies_and_damping_belong_to_their_eigenvalues(storeys: int, rho: 
 
 
 @pytest.mark.parametrize(("storeys", "ratio"), [(30, 0.05), (30, 0.2), (100, 0.05)])
-def test_overdamped_modes_are_paired_as_without_damping(storeys: int, ratio: float) -> None:
+def test_overdamped_modes_are_paired_as_without_damping(
+    storeys: int, ratio: float
+) -> None:
     """High modes of tall buildings: the product of the paired roots is the squared frequency.
 
     For C = a1 K and gravity neglected each mode has the undamped frequency however damped it is.
@@ -66,10 +70,14 @@ def test_without_damping_no_mode_is_damped() -> None:
     """Not by rounding either, of any sign; the podium's own mode has roots of one size."""
     for rho in (FLAT, 0.5, 1.5):
         undamped = building(3, damping=ModalDamping(0.0))
-        for modes in modal(podium(3, 0.15, rho, superstructure=undamped)).uplifted.values():
+        for modes in modal(
+            podium(3, 0.15, rho, superstructure=undamped)
+        ).uplifted.values():
             assert modes.damping.tolist() == [0.0] * 3
             assert not np.signbit(modes.damping).any()
-            assert np.all((modes.eigenvalues.real == 0.0) | (modes.eigenvalues.imag == 0.0))
+            assert np.all(
+                (modes.eigenvalues.real == 0.0) | (modes.eigenvalues.imag == 0.0)
+            )
     # Vertical vibrations alone are damped, which nothing couples where columns stand on a point.
     above = replace(building(10, damping=ModalDamping(0.0)), vertical_period=0.1)
     usual = podium(10, law=ImpactLaw(), superstructure=above)
@@ -89,7 +97,9 @@ def test_one_root_grows_where_the_stiffness_is_negative(storeys: int) -> None:
         assert np.all(rest.real < 0.0)
         growth = modes.frequency_parameter
         assert growth == pytest.approx(math.sqrt(-(own[0] * own[1]).real), rel=1e-12)
-        assert abs(modes.shapes[0, 0]) == pytest.approx(np.max(np.abs(modes.shapes[:, 0])))
+        assert abs(modes.shapes[0, 0]) == pytest.approx(
+            np.max(np.abs(modes.shapes[:, 0]))
+        )
 
 
 @pytest.mark.parametrize(("tan_alpha", "period"), [(0.05, 0.1), (0.15, 0.3), (0.3, 1.0)])
@@ -101,7 +111,10 @@ def test_one_storey_in_closed_form(tan_alpha: float, period: float) -> None:
     structure = podium(1, tan_alpha, 0.5, superstructure=building(1, period))
     modes = known(modal(structure).rolling)
     total, a = structure.superstructure_mass, structure.bearing.alpha
-    for found, B, C in ((modes, math.sin(a), math.cos(a)), (known(modes.first_order), a, 1.0)):
+    for found, B, C in (
+        (modes, math.sin(a), math.cos(a)),
+        (known(modes.first_order), a, 1.0),
+    ):
         base = structure.columns_mass / 3.0 + structure.cap_beam_mass + total * B**2
         factor = math.sqrt(1.0 + C**2 * total / base)
         assert found.frequency_ratio[0] == pytest.approx(factor, rel=1e-7)
@@ -168,12 +181,17 @@ def test_the_podiums_own_mode_in_words() -> None:
     rolling, falling = modal(podium(0, 0.15, 1.0)).uplifted.values()
     swings, falls = known(rolling.first_order), known(falling.first_order)
     assert swings.own_period == pytest.approx(2.0 * math.pi / 1.82253, rel=1e-5)
-    assert (swings.own_growth_time, swings.own_motion) == (None, "swings with T = 3.448 s")
+    assert (swings.own_growth_time, swings.own_motion) == (
+        None,
+        "swings with T = 3.448 s",
+    )
     assert falls.own_growth_time == pytest.approx(1.0 / 1.82253, rel=1e-5)
     assert (falls.own_period, falls.own_motion) == (None, "diverges, e-fold in 0.5487 s")
     for storeys, damper in product((0, 1, 5, 12), (0.0, 5.0, 5e5, 5e7)):
         devices = (ViscousDamper(damper),) if damper else ()
-        neutral = known(modal(replace(podium(storeys, 0.15, 0.5), devices=devices)).rolling)
+        neutral = known(
+            modal(replace(podium(storeys, 0.15, 0.5), devices=devices)).rolling
+        )
         assert neutral.own_motion == "is in neutral equilibrium"
         assert neutral.frequency_parameter == 0.0
         assert np.count_nonzero(neutral.eigenvalues[:2]) == len(devices)
@@ -187,7 +205,9 @@ def test_the_storey_that_yields_first_in_a_mode() -> None:
     structure = podium(3, 0.15, 0.5, superstructure=above)
     found = modal(structure).first_yield
     assert found["full_contact"]["base_shear"] == pytest.approx(1e6, rel=1e-9)
-    M, _, K = linearised_matrices(structure, uplifted_state(structure.bearing, rolling=True))
+    M, _, K = linearised_matrices(
+        structure, uplifted_state(structure.bearing, rolling=True)
+    )
     _, vectors = eigh(K, M)
     height = math.cos(structure.bearing.alpha)
     shears = above.stiffnesses * np.diff(vectors[1:, 1], prepend=height * vectors[0, 1])

@@ -10,7 +10,15 @@ import pytest
 from oracles.devices import Equipment
 from oracles.devices import Tendon as OracleTendon
 from oracles.storey_lagrangian import Contact, StoreyLagrangian
-from paper_structures import FLAT, Array, building, known, oracle_devices, oracle_system, podium
+from paper_structures import (
+    FLAT,
+    Array,
+    building,
+    known,
+    oracle_devices,
+    oracle_system,
+    podium,
+)
 
 from rpscli.analyses.modal import UpliftedModes, modal
 from rpscli.model.bearing import Bearing
@@ -43,7 +51,9 @@ def jacobian(structure: PodiumStructure, *, rolling: bool) -> Array:
     y = np.zeros(2 * n + 2)
     y[0] = start
     gear.unload(start, rolling=rolling)
-    endless = {"yield_force": math.inf}  # as long as it is unloaded: drawn further it would yield
+    endless = {
+        "yield_force": math.inf
+    }  # as long as it is unloaded: drawn further it would yield
     gear.devices = tuple(
         replace(each, **endless) if isinstance(each, OracleTendon) else each
         for each in gear.devices
@@ -64,7 +74,9 @@ def jacobian(structure: PodiumStructure, *, rolling: bool) -> Array:
     for j, step in enumerate(steps):
         if j == 0:  # the tilt only grows: elongations have a kink at 0
             slopes = (-25.0, 48.0, -36.0, 16.0, -3.0)
-            found[:, j] = sum(c * rates(y + k * step) for k, c in enumerate(slopes)) / 12e-4
+            found[:, j] = (
+                sum(c * rates(y + k * step) for k, c in enumerate(slopes)) / 12e-4
+            )
         else:
             found[:, j] = (rates(y + step) - rates(y - step)) / 2e-4
     return found
@@ -84,13 +96,17 @@ def test_eigenvalues_are_those_of_the_jacobian(
         # differences round; a double zero is found to the root of that only
         zero = 1e-5 if modes.frequency_parameter == 0.0 else 0.0
         for value in modes.eigenvalues:
-            assert np.min(np.abs(expected - value)) < 1e-6 * np.max(np.abs(expected)) + zero
+            assert (
+                np.min(np.abs(expected - value)) < 1e-6 * np.max(np.abs(expected)) + zero
+            )
 
 
 @pytest.mark.evidence("floors on vertical springs", "exact")
 @pytest.mark.parametrize("shape", [*SHAPES, (0.0, 0.3, 0.8)], ids=str)
 @pytest.mark.parametrize("storeys", [1, 3])
-def test_springs_in_tilt_drifts_and_lifts(storeys: int, shape: tuple[float, float, float]) -> None:
+def test_springs_in_tilt_drifts_and_lifts(
+    storeys: int, shape: tuple[float, float, float]
+) -> None:
     """Second derivatives of the energies in [theta, drifts, lifts over the beam].
 
     Weight and springs cancel where floors have sagged, so lifts add nothing but their springs.
@@ -123,7 +139,9 @@ def test_springs_in_tilt_drifts_and_lifts(storeys: int, shape: tuple[float, floa
         assert len(modes.eigenvalues) == len(expected) == 4 * n + 2
         zero = 1e-5 if modes.frequency_parameter == 0.0 else 0.0
         for value in modes.eigenvalues:
-            assert np.min(np.abs(expected - value)) < 1e-9 * np.max(np.abs(expected)) + zero
+            assert (
+                np.min(np.abs(expected - value)) < 1e-9 * np.max(np.abs(expected)) + zero
+            )
         assert len(modes.frequencies) == len(modes.vertical_frequencies) == n
         # a beam that is lifted with the floors is stiffer than one that stands
         assert np.all(modes.vertical_frequencies > 0.99 * np.sqrt(squares))
@@ -161,7 +179,9 @@ def test_first_order_is_the_limit_for_small_alpha(rho: float, devices: str) -> N
     ("tan_alpha", "per_cent"),
     [(0.15, (0.54, 0.37, -0.26)), (0.3, (2.04, 1.57, -0.90)), (0.6, (6.37, 5.74, -2.11))],
 )
-def test_what_first_order_leaves_out(tan_alpha: float, per_cent: tuple[float, ...]) -> None:
+def test_what_first_order_leaves_out(
+    tan_alpha: float, per_cent: tuple[float, ...]
+) -> None:
     """Three storeys, flat ends, in per cent as THEORY has them."""
     found = off_to_first_order(modal(podium(3, tan_alpha, FLAT)).rocking)
     assert 100.0 * found == pytest.approx(per_cent, abs=0.006)

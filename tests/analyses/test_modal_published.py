@@ -61,14 +61,18 @@ def test_frequency_parameter_of_six_storeys(rho: float, R: float) -> None:
     modes = uplifted(6, rho, R)
     assert modes.frequency_parameter == known(model)
     assert modes.frequency_parameter_rigid == known(rigid)
-    assert f"{model:.3f} / {rigid:.3f}" in " ".join(VERIFICATION.read_text("utf-8").split())
+    assert f"{model:.3f} / {rigid:.3f}" in " ".join(
+        VERIFICATION.read_text("utf-8").split()
+    )
 
 
 def test_figure_3() -> None:
     """More amplification in rolling than in rocking; rho_cr and 0.5 alike, 1.5 larger."""
     for n in range(1, 11):
         rocking = uplifted(n, ROCKING).frequency_ratio[0]
-        cr, half, large = (uplifted(n, rho).frequency_ratio[0] for rho in (0.25, 0.5, 1.5))
+        cr, half, large = (
+            uplifted(n, rho).frequency_ratio[0] for rho in (0.25, 0.5, 1.5)
+        )
         assert rocking < cr < half < large
         assert half / cr < 1.012
         if n > 1:
@@ -81,7 +85,9 @@ def test_figure_4() -> None:
     assert uplifted(6, 0.5).frequency_parameter == 0.0
     for R in (0.5, 1.0, 1.5, 3.0):
         modes = uplifted(6, 0.25, R)
-        assert modes.frequency_parameter == pytest.approx(modes.frequency_parameter_rigid, rel=0.02)
+        assert modes.frequency_parameter == pytest.approx(
+            modes.frequency_parameter_rigid, rel=0.02
+        )
     off = [
         1.0 - modes.frequency_parameter / modes.frequency_parameter_rigid
         for modes in (uplifted(6, 1.5, 3.0), uplifted(6, 1.5), uplifted(6, 1.5, 0.5))

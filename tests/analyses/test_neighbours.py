@@ -25,7 +25,9 @@ def result() -> TimeHistoryResult:
     return time_history(podium(3), RECORD, SHORT)
 
 
-def test_they_are_histories_of_motions_that_were_scaled_before(result: TimeHistoryResult) -> None:
+def test_they_are_histories_of_motions_that_were_scaled_before(
+    result: TimeHistoryResult,
+) -> None:
     *motions, law = neighbours(result)
     assert [each.factor for each in motions] == list(FACTORS)
     for each in motions:
@@ -34,7 +36,9 @@ def test_they_are_histories_of_motions_that_were_scaled_before(result: TimeHisto
         assert each.rotation_ratio == pytest.approx(alone.rotation_ratio, rel=1e-6)
         assert each.max_base_shear == pytest.approx(alone.max_base_shear, rel=1e-6)
     half = replace(podium(3), impact_law=replace(podium(3).impact_law, loss=0.5))
-    assert 1.0 - law.restitution == pytest.approx(0.5 * (1.0 - podium(3).restitution), rel=1e-12)
+    assert 1.0 - law.restitution == pytest.approx(
+        0.5 * (1.0 - podium(3).restitution), rel=1e-12
+    )
     assert law.rotation_ratio == time_history(half, RECORD, SHORT).rotation_ratio
 
 
@@ -55,9 +59,13 @@ def test_motions_that_overturn_are_counted() -> None:
         low, high = (low, middle) if outcome.startswith("overturned") else (middle, high)
     result = time_history(rock, RECORD.scaled(low), SHORT)
     found = neighbours(result)
-    fallen = sum(each.outcome.startswith("overturned") for each in found if each.factor != 1.0)
+    fallen = sum(
+        each.outcome.startswith("overturned") for each in found if each.factor != 1.0
+    )
     assert 0 < fallen < len(FACTORS)
-    assert f"it overturns in {fallen} of {len(FACTORS)}" in next(neighbours_texts(result, found))
+    assert f"it overturns in {fallen} of {len(FACTORS)}" in next(
+        neighbours_texts(result, found)
+    )
 
 
 def test_a_measured_restitution_has_no_other_law() -> None:
@@ -76,7 +84,9 @@ def test_long_histories_say_that_nothing_was_looked_at(
     assert "steps are too many" in text
 
 
-def test_floors_are_held_against_those_of_the_fixed_base(result: TimeHistoryResult) -> None:
+def test_floors_are_held_against_those_of_the_fixed_base(
+    result: TimeHistoryResult,
+) -> None:
     """A stiff building in full contact has the same accelerations; on bearings others."""
     still = time_history(podium(2), RECORD.scaled(1e-3), SHORT)
     assert still.outcome == "at_rest"

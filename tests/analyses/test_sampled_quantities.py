@@ -7,7 +7,16 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from paper_structures import block, building, ground, known, let_go, podium, stillness, waves
+from paper_structures import (
+    block,
+    building,
+    ground,
+    known,
+    let_go,
+    podium,
+    stillness,
+    waves,
+)
 
 from rpscli.analyses.demand import demand
 from rpscli.analyses.results import TimeHistoryResult
@@ -39,9 +48,14 @@ def test_columns_at_rest_carry_the_weight_and_the_mass_times_acceleration() -> N
     result = time_history(frame, ground([0.0, 1.0, 0.0], 0.1), AT_ONCE)
     top, bottom = result.column_forces["top"], result.column_forces["bottom"]
     assert (top.shear, bottom.shear) == pytest.approx((50e3, 55e3), rel=1e-12)
-    assert top.largest_normal == top.least_normal == pytest.approx(50e3 * 9.80665, rel=1e-12)
+    assert (
+        top.largest_normal == top.least_normal == pytest.approx(50e3 * 9.80665, rel=1e-12)
+    )
     assert bottom.largest_normal == pytest.approx(55e3 * 9.80665, rel=1e-12)
-    assert (result.max_column_shear, result.max_column_force) == (55e3, bottom.largest_normal)
+    assert (result.max_column_shear, result.max_column_force) == (
+        55e3,
+        bottom.largest_normal,
+    )
     assert result.min_column_force == top.least_normal
     assert (result.max_roof_displacement, result.max_floor_velocity) == (None, None)
 
@@ -50,7 +64,9 @@ def test_a_released_roof_starts_above_its_cap_beam() -> None:
     """Unstrained, it is as far from its place as the cap beam."""
     structure = podium(2, 0.15, 0.5)
     _, u, _ = structure.path(np.array([0.05]))
-    assert let_go(structure, 0.05, 0.0).max_roof_displacement == pytest.approx(u[0], rel=1e-12)
+    assert let_go(structure, 0.05, 0.0).max_roof_displacement == pytest.approx(
+        u[0], rel=1e-12
+    )
 
 
 BLOCK = block(0.3, 0.4)
@@ -62,7 +78,11 @@ def test_a_building_that_stands_again_has_no_residual() -> None:
     result = time_history(podium(2), waves(3.0, 0.02, 4.0, seed=21))
     assert (result.outcome, result.trace.phase[-1]) == ("survived", 0)
     assert (result.residual_rotation, result.residual_displacement) == (0.0, 0.0)
-    assert (result.friction_ratio, result.slides, result.sliding_time) == (None, None, None)
+    assert (result.friction_ratio, result.slides, result.sliding_time) == (
+        None,
+        None,
+        None,
+    )
     assert result.max_floor_acceleration == max(result.floor_accelerations)
 
 
@@ -74,14 +94,19 @@ def test_a_storey_that_still_moves_has_the_rotation_of_its_last_sample() -> None
     # flat ends: u_b = 2 R (sin a - sin(a - x)), with sin a = 0.6
     by_hand = 0.6 - math.sin(math.atan2(0.3, 0.4) - result.residual_rotation)
     assert result.residual_displacement == pytest.approx(by_hand, rel=1e-12)
-    assert demand(BLOCK, stillness(0.02), settings).residual_rotation == result.residual_rotation
+    assert (
+        demand(BLOCK, stillness(0.02), settings).residual_rotation
+        == result.residual_rotation
+    )
     assert result.max_floor_acceleration is None
 
 
 def test_the_lift_is_that_of_the_largest_rotation() -> None:
     """v_b = 2 R (cos(a - x) - cos a); released at half of theta_cr: 0.94868 - 0.8."""
     start = 0.5 * BLOCK.critical_rotation
-    result = time_history(BLOCK, stillness(0.02), TimeHistorySettings(initial_rotation=start))
+    result = time_history(
+        BLOCK, stillness(0.02), TimeHistorySettings(initial_rotation=start)
+    )
     assert result.max_lift == pytest.approx(0.148683, abs=1e-6)
 
 
@@ -106,7 +131,9 @@ def test_rotations_near_the_critical_one_are_told(share: float, near: bool) -> N
     result = released(share)
     assert result.outcome == "survived"
     assert result.is_near_critical is near
-    assert any(f"{share:g} of the critical one" in text for text in result.warnings) is near
+    assert (
+        any(f"{share:g} of the critical one" in text for text in result.warnings) is near
+    )
 
 
 def test_a_passage_of_the_critical_rotation_is_told_with_its_time() -> None:

@@ -61,7 +61,9 @@ def test_maxima_are_not_below_the_samples(result: TimeHistoryResult) -> None:
     rotation = np.abs(trace.rotation)
     # turning points lie between samples: x'' dt^2/8 above the nearest at most
     assert 0.0 <= result.max_rotation - rotation.max() <= 50.0 * 0.02**2 / 8.0
-    assert result.max_rotation_time == pytest.approx(trace.time[rotation.argmax()], abs=0.02)
+    assert result.max_rotation_time == pytest.approx(
+        trace.time[rotation.argmax()], abs=0.02
+    )
     if result.structure.storeys == 0:
         assert result.max_base_shear == 0.0
         assert result.base_shear_ratio is None
@@ -72,7 +74,9 @@ def test_maxima_are_not_below_the_samples(result: TimeHistoryResult) -> None:
     accelerations = np.max(np.abs(trace.floor_accelerations), axis=0)
     assert np.all(result.floor_accelerations >= (1.0 - 1e-9) * accelerations)
     stiffnesses = known(result.structure.superstructure).stiffnesses
-    assert result.max_drifts == pytest.approx(result.storey_shears / stiffnesses, rel=1e-11)
+    assert result.max_drifts == pytest.approx(
+        result.storey_shears / stiffnesses, rel=1e-11
+    )
     ratio = result.storey_shears[0] / result.structure.static_base_shear
     assert result.base_shear_ratio == pytest.approx(ratio, rel=1e-11)
 
@@ -80,14 +84,18 @@ def test_maxima_are_not_below_the_samples(result: TimeHistoryResult) -> None:
 def test_floors_stand_on_the_cap_beam(result: TimeHistoryResult) -> None:
     trace, above = result.trace, result.structure.superstructure
     _, u, lift = result.structure.path(np.abs(trace.rotation))
-    assert trace.cap_beam_displacement == pytest.approx(np.sign(trace.rotation) * u, abs=1e-15)
+    assert trace.cap_beam_displacement == pytest.approx(
+        np.sign(trace.rotation) * u, abs=1e-15
+    )
     assert trace.lift == pytest.approx(lift, abs=1e-15)
     assert np.all(trace.lift >= -1e-16)
     if above is None:
         return
     stacked = trace.cap_beam_displacement[:, None] + np.cumsum(trace.drifts, axis=1)
     assert trace.floor_displacements == pytest.approx(stacked, abs=1e-14)
-    assert trace.storey_shears == pytest.approx(above.stiffnesses * trace.drifts, rel=1e-15)
+    assert trace.storey_shears == pytest.approx(
+        above.stiffnesses * trace.drifts, rel=1e-15
+    )
 
 
 def test_the_record_is_zero_after_its_end(result: TimeHistoryResult) -> None:
@@ -102,7 +110,12 @@ def test_the_record_is_zero_after_its_end(result: TimeHistoryResult) -> None:
 def test_the_energy_audit_closes_at_every_sample(result: TimeHistoryResult) -> None:
     trace, energy = result.trace, result.energy
     assert result.impacts > 0
-    gap = trace.energy_input - trace.energy_damped - trace.energy_impact - trace.energy_stored
+    gap = (
+        trace.energy_input
+        - trace.energy_damped
+        - trace.energy_impact
+        - trace.energy_stored
+    )
     # order 7 uplifted, 6 for damping in full contact, w h = 1/2: (1/2)^7/7! of the largest flow
     assert np.max(np.abs(gap)) < 1.5e-6 * energy.input
     assert energy.residual == pytest.approx(gap[-1], abs=1e-9 * energy.input)
@@ -137,7 +150,9 @@ def test_events_are_in_order_and_make_sense(result: TimeHistoryResult) -> None:
             assert event.rotation_rate_before == event.rotation_rate_after
     # what leaves full contact returns to it, or ends uplifted
     kinds = [event.kind for event in events if event.kind in {"uplift", "recontact"}]
-    assert kinds == ["uplift", "recontact"] * (len(kinds) // 2) + ["uplift"] * (len(kinds) % 2)
+    assert kinds == ["uplift", "recontact"] * (len(kinds) // 2) + ["uplift"] * (
+        len(kinds) % 2
+    )
 
 
 def test_phases_of_the_samples_fit_their_rotations(result: TimeHistoryResult) -> None:
@@ -160,7 +175,10 @@ def test_scalars_are_plain_and_complete(result: TimeHistoryResult) -> None:
     scalars = result.scalars()
     assert scalars["outcome"] == result.outcome
     assert scalars["max_rotation"] == result.max_rotation
-    assert scalars["rotation_ratio"] == result.max_rotation / result.structure.critical_rotation
+    assert (
+        scalars["rotation_ratio"]
+        == result.max_rotation / result.structure.critical_rotation
+    )
     assert {type(value) for value in scalars.values()} <= {type(None), str, int, float}
     assert scalars.get("failure") is None
 
@@ -201,7 +219,9 @@ def test_slow_rocking_is_driven_by_what_restores_it() -> None:
 
 def test_drift_ratios_need_storey_heights() -> None:
     above = building(2)
-    tall = Superstructure(above.masses, above.stiffnesses, above.damping, np.array([4.0, 2.0]))
+    tall = Superstructure(
+        above.masses, above.stiffnesses, above.damping, np.array([4.0, 2.0])
+    )
     with_heights = time_history(podium(2, superstructure=tall), RECORD, SETTINGS)
     expected = float(np.max(with_heights.max_drifts / [4.0, 2.0]))
     assert with_heights.drift_ratio == pytest.approx(expected, rel=1e-15)
@@ -212,7 +232,9 @@ def test_a_shorter_component_goes_on_as_zero() -> None:
     structure = podium(1)
     longer = ground(np.concatenate((RECORD.acceleration, np.zeros(30))), 0.02)
     settings = replace(SETTINGS, free_vibration=0.0)
-    one = time_history(structure, RECORD, replace(SETTINGS, free_vibration=0.6), vertical=VERTICAL)
+    one = time_history(
+        structure, RECORD, replace(SETTINGS, free_vibration=0.6), vertical=VERTICAL
+    )
     two = time_history(structure, longer, settings, vertical=VERTICAL)
     assert len(one.trace.time) == len(two.trace.time)
     assert two.trace.rotation == pytest.approx(one.trace.rotation, abs=1e-12)
@@ -241,13 +263,19 @@ def test_a_log_that_overflows_is_written_again() -> None:
 
 @needs_compiled_kernels
 @pytest.mark.parametrize(("law", "creates"), [("rigid", True), ("flexible", False)])
-def test_energy_created_by_a_release_is_told_with_a_remedy(law: str, creates: bool) -> None:
+def test_energy_created_by_a_release_is_told_with_a_remedy(
+    law: str, creates: bool
+) -> None:
     """A tall building of short period against the rigid law; no ground motion supplies energy."""
-    structure = podium(30, 0.15, FLAT, superstructure=building(30, 0.5), law=ImpactLaw(law))
+    structure = podium(
+        30, 0.15, FLAT, superstructure=building(30, 0.5), law=ImpactLaw(law)
+    )
     settings = TimeHistorySettings(free_vibration=1.5, initial_rotation=0.03)
     result = time_history(structure, stillness(0.01), settings)
     assert result.energy.input == 0.0
-    assert (result.energy.created > 0.02 * result.trace.energy_stored[0]) is np.bool_(creates)
+    assert (result.energy.created > 0.02 * result.trace.energy_stored[0]) is np.bool_(
+        creates
+    )
     assert any("law: flexible" in warning for warning in result.warnings) is creates
     assert any("still moves at the end" in warning for warning in result.warnings)
     if not creates:
@@ -259,14 +287,18 @@ def test_a_storey_that_never_stops_is_told() -> None:
     """Without loss the free vibration `auto` gives up after its longest time."""
     above = building(1, damping=RayleighDamping(0.0))
     structure = podium(1, 0.15, 0.5, law=ImpactLaw("value", 1.0), superstructure=above)
-    result = time_history(structure, stillness(0.05), TimeHistorySettings(initial_rotation=0.1))
+    result = time_history(
+        structure, stillness(0.05), TimeHistorySettings(initial_rotation=0.1)
+    )
     assert result.duration == pytest.approx(0.05 + LONGEST_FREE_VIBRATION, rel=1e-12)
     assert any("not at rest" in warning for warning in result.warnings)
 
 
 def test_the_yardstick_sees_the_whole_record_when_the_structure_falls() -> None:
     record = waves(6.0, 0.02, 10.0, seed=1)
-    results = [time_history(of, record) for of in (podium(2, 0.10, FLAT), podium(2, 0.9, 1.5))]
+    results = [
+        time_history(of, record) for of in (podium(2, 0.10, FLAT), podium(2, 0.9, 1.5))
+    ]
     assert [result.overturned for result in results] == [True, False]
     fallen, stout = (known(result.fixed_base) for result in results)
     swaying = np.abs(fallen.floor_displacements[:, 0])
@@ -354,7 +386,9 @@ def test_histories_over_the_ceiling_are_refused() -> None:
     record = ground(np.zeros(2), 1e-5)
     rows = 12_000_003
     assert rows * numbers_of_a_sample(many) > MOST_NUMBERS
-    with pytest.raises(CaseError, match=re.escape(f"{rows} samples of 40 storeys")) as refusal:
+    with pytest.raises(
+        CaseError, match=re.escape(f"{rows} samples of 40 storeys")
+    ) as refusal:
         time_history(many, record)
     assert "GB" in str(refusal.value)
     assert "give a shorter analysis.free_vibration" in str(refusal.value)

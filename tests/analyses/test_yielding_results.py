@@ -36,7 +36,9 @@ pytestmark = [
 ]  # fmt: skip
 
 HEIGHTS = np.array([4.0, 3.0, 3.0])
-ABOVE = replace(yielding(building(3), 1.2 * podium(3).static_base_shear), storey_heights=HEIGHTS)
+ABOVE = replace(
+    yielding(building(3), 1.2 * podium(3).static_base_shear), storey_heights=HEIGHTS
+)
 STRUCTURE = podium(3, superstructure=ABOVE, law=ImpactLaw())
 RECORD, OTHER = waves(6.0, 0.002, 6.0, seed=12), waves(6.0, 0.002, 3.0, seed=3)
 SETTINGS = TimeHistorySettings(free_vibration=6.0)
@@ -62,7 +64,9 @@ def test_largest_demands_are_those_of_the_samples(result: TimeHistoryResult) -> 
     assert result.ductilities == pytest.approx(largest * K / F, rel=1e-3)
     assert result.max_drifts == pytest.approx(largest, rel=1e-3)
     assert trace.storey_shears == pytest.approx(K * (trace.drifts - plastic), abs=1e-6)
-    assert result.storey_shears == pytest.approx(np.abs(trace.storey_shears).max(axis=0), rel=1e-3)
+    assert result.storey_shears == pytest.approx(
+        np.abs(trace.storey_shears).max(axis=0), rel=1e-3
+    )
     assert result.plastic_drifts == pytest.approx(np.ptp(plastic, axis=0), rel=1e-9)
     assert result.residual_drifts == pytest.approx(np.abs(plastic[-1]), rel=1e-9)
     path = np.abs(np.diff(plastic, axis=0)).sum(axis=0)
@@ -75,7 +79,9 @@ def test_largest_demands_are_those_of_the_samples(result: TimeHistoryResult) -> 
     assert result.energy.yielded == pytest.approx(known(result.energy_yielded), rel=1e-9)
     assert abs(result.energy.residual) < 1e-6 * result.energy.input
     lines = np.abs(trace.storey_shears - 0.05 * K * trace.drifts)
-    assert np.all(lines <= 0.95 * F * (1.0 + 1e-9))  # none is beyond the lines on which it yields
+    assert np.all(
+        lines <= 0.95 * F * (1.0 + 1e-9)
+    )  # none is beyond the lines on which it yields
 
 
 def test_largest_demands_need_no_samples(result: TimeHistoryResult) -> None:
@@ -85,21 +91,29 @@ def test_largest_demands_need_no_samples(result: TimeHistoryResult) -> None:
         assert np.array_equal(one, other), quantity.name
 
 
-def test_of_both_components_results_are_resultants_or_the_larger(pair: TimeHistoryResult) -> None:
+def test_of_both_components_results_are_resultants_or_the_larger(
+    pair: TimeHistoryResult,
+) -> None:
     x, y = pair.trace, known(pair.trace.y)
     slips = np.stack([known(x.plastic_drifts), known(y.plastic_drifts)])
     across = known(pair.structure.superstructure_y)
     yields = np.stack([F / K, known(across.strengths) / across.stiffnesses])
     drifts = np.abs(np.stack([x.drifts, y.drifts])).max(axis=1)
     assert pair.ductilities == pytest.approx((drifts / yields).max(axis=0), rel=1e-2)
-    assert pair.plastic_drifts == pytest.approx(np.ptp(slips, axis=1).max(axis=0), rel=1e-9)
+    assert pair.plastic_drifts == pytest.approx(
+        np.ptp(slips, axis=1).max(axis=0), rel=1e-9
+    )
     assert pair.residual_drifts == pytest.approx(np.hypot(*slips[:, -1]), rel=1e-9)
     assert pair.max_drifts == pytest.approx(np.hypot(*drifts), rel=1e-2)
     assert np.all(pair.max_drifts >= np.hypot(x.drifts, y.drifts).max(axis=0))
-    assert y.storey_shears == pytest.approx(across.stiffnesses * (y.drifts - slips[1]), abs=1e-6)
+    assert y.storey_shears == pytest.approx(
+        across.stiffnesses * (y.drifts - slips[1]), abs=1e-6
+    )
 
 
-def test_files_and_tables_have_them(result: TimeHistoryResult, pair: TimeHistoryResult) -> None:
+def test_files_and_tables_have_them(
+    result: TimeHistoryResult, pair: TimeHistoryResult
+) -> None:
     document = timehistory_document(result)
     for quantity in (*YIELDING, *STOREYS_YIELDING):
         assert quantity.name in document
@@ -113,8 +127,13 @@ def test_files_and_tables_have_them(result: TimeHistoryResult, pair: TimeHistory
     assert "energy_yielded" in history
     parts = [*timehistory_tables(result, (), "a title")]
     told = " ".join(part for part in parts if isinstance(part, str))
-    assert "storey 3, not the first, has the largest ductility: strengths follow the shears" in told
-    assert "elastic, fixed base" in repr([part for part in parts if not isinstance(part, str)])
+    assert (
+        "storey 3, not the first, has the largest ductility: strengths follow the shears"
+        in told
+    )
+    assert "elastic, fixed base" in repr(
+        [part for part in parts if not isinstance(part, str)]
+    )
 
 
 def test_an_elastic_building_has_none_of_it() -> None:
@@ -125,7 +144,9 @@ def test_an_elastic_building_has_none_of_it() -> None:
     assert "yielded" not in document["energy"]
     assert all(getattr(elastic, quantity.name) is None for quantity in YIELDING)
     assert elastic.trace.plastic_drifts is None
-    heads = [column.name for column in (*history_columns(elastic), *storey_columns(elastic))]
+    heads = [
+        column.name for column in (*history_columns(elastic), *storey_columns(elastic))
+    ]
     assert not [head for head in heads if "plastic" in head or "yield" in head]
 
 
@@ -157,8 +178,13 @@ def test_studies_vary_strengths_and_judge_the_ductility() -> None:
     assert "on the fixed base every building is elastic" in " ".join(points.notes)
     heads = next(points_csv(points.results.table)).partition("\n")[0]
     assert "residual_drift_ratio [-]" in heads
-    without = {"base": str(case.with_name("six_storey.yaml")), "limits": {"rotation_ratio": 1}}
-    elastic = rpscli.load_study(asked | without | {"vary": [{"superstructure.storeys": [3]}]})
+    without = {
+        "base": str(case.with_name("six_storey.yaml")),
+        "limits": {"rotation_ratio": 1},
+    }
+    elastic = rpscli.load_study(
+        asked | without | {"vary": [{"superstructure.storeys": [3]}]}
+    )
     assert "ductility" not in next(points_csv(elastic.run().results.table))
 
 

@@ -32,7 +32,11 @@ from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.model.bearing import Bearing
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import PodiumStructure
-from rpscli.model.superstructure import RayleighDamping, Superstructure, profile_stiffnesses
+from rpscli.model.superstructure import (
+    RayleighDamping,
+    Superstructure,
+    profile_stiffnesses,
+)
 from rpscli.physics.laws.geometry import Phase
 from rpscli.physics.state import IMPACT, LANES
 from rpscli.records.ground_motion import GroundMotion, MotionComponents
@@ -74,7 +78,12 @@ class Landing:
 
     def __init__(self, podium: PodiumStructure) -> None:
         (building, a0, a1), R = building_of(podium), podium.bearing.semi_diagonal
-        n, gamma, eta, alpha = podium.storeys, podium.gamma, podium.eta, podium.bearing.alpha
+        n, gamma, eta, alpha = (
+            podium.storeys,
+            podium.gamma,
+            podium.eta,
+            podium.bearing.alpha,
+        )
         sine, cosine = math.sin(alpha), math.cos(alpha)
         self.storeys, self.restitution = n, podium.restitution
         self.beam = 2.0 * R * cosine
@@ -140,14 +149,21 @@ def equations(podium: PodiumStructure) -> list[tuple[Any, Any]]:
     ]
     drags = [a0 * (v[i] - beam_rate) for i in range(n)]
     V = hy.sum([shears[0], *(masses[i] * drags[i] for i in range(n))])
-    A = podium.bearing.inertia_ratio - 1.0 + (1.0 + 4.0 * gamma) * S + 4.0 * gamma * eta * B * B
+    A = (
+        podium.bearing.inertia_ratio
+        - 1.0
+        + (1.0 + 4.0 * gamma) * S
+        + 4.0 * gamma * eta * B * B
+    )
     D = B * ((1.0 + 4.0 * gamma) * c - 4.0 * gamma * eta * rise)
     weight = podium.gravity / R * (1.0 + 2.0 * gamma + 2.0 * gamma * eta) * B
     push = (1.0 + 2.0 * gamma) / R * across - 2.0 / (podium.columns_mass * R) * V
     pulls = [shears[i] - shears[i + 1] if i + 1 < n else shears[i] for i in range(n)]
     bends = [-(1.0 / masses[i]) * pulls[i] - drags[i] - across for i in range(n)]
     speeds = [w, *v]
-    return list(zip(y, [*speeds, -(weight + C * push + D * w * w) / A, *bends], strict=True))
+    return list(
+        zip(y, [*speeds, -(weight + C * push + D * w * w) / A, *bends], strict=True)
+    )
 
 
 class HeyokaStanding:
@@ -183,7 +199,12 @@ class HeyokaStanding:
         )
 
     def stand(
-        self, z: Floats, slopes: list[float], intercepts: list[float], interval: int, after: float
+        self,
+        z: Floats,
+        slopes: list[float],
+        intercepts: list[float],
+        interval: int,
+        after: float,
     ) -> tuple[int, float, float]:
         """From `after` seconds into an interval to the next uplift, or to the record's end.
 
@@ -217,7 +238,10 @@ class HeyokaRocking:
 
         podium = self.podium = structure
         self.rolling, self.rocking = structure.bearing.rolling, structure.bearing.rocking
-        self.level, self.limit = structure.bearing.beta, 2.0 * structure.bearing.critical_rotation
+        self.level, self.limit = (
+            structure.bearing.beta,
+            2.0 * structure.bearing.critical_rotation,
+        )
         self.dt, self.landing = dt, Landing(podium)
         self.standing = HeyokaStanding(podium, dt, tol)
         x = hy.make_vars("x")
@@ -349,8 +373,14 @@ def installed(module: str) -> bool:
     """Whether a peer can be imported; says so at once if not."""
     try:
         importlib.import_module(module)
-    except (ImportError, OSError, RuntimeError) as error:  # of system libraries that are missing
-        _CONSOLE.print(f"{module} is left out: {error} (pip install -e '.[bench]' brings all)")
+    except (
+        ImportError,
+        OSError,
+        RuntimeError,
+    ) as error:  # of system libraries that are missing
+        _CONSOLE.print(
+            f"{module} is left out: {error} (pip install -e '.[bench]' brings all)"
+        )
         return False
     return True
 
@@ -360,7 +390,9 @@ def structure(storeys: int) -> PodiumStructure:
     masses = np.full(storeys, 2e5)
     stiffnesses = profile_stiffnesses(masses, storeys / 10, "sine")
     building = Superstructure(masses, stiffnesses, RayleighDamping(0.05, (1, 2)))
-    return PodiumStructure(Bearing(1.5, 0.15, 0.30, 0.5), 2e4, 2e5, building, ImpactLaw("rigid"))
+    return PodiumStructure(
+        Bearing(1.5, 0.15, 0.30, 0.5), 2e4, 2e5, building, ImpactLaw("rigid")
+    )
 
 
 @dataclass(frozen=True)
@@ -380,7 +412,9 @@ class Contest:
 
 
 def run(
-    name: str, program: Callable[[GroundMotion], PeerHistory], records: Sequence[GroundMotion]
+    name: str,
+    program: Callable[[GroundMotion], PeerHistory],
+    records: Sequence[GroundMotion],
 ) -> Contest:
     """Each record by itself, the least time of five rounds through all of them."""
     program(records[0])  # may compile
@@ -392,7 +426,9 @@ def run(
             found[i] = program(record)
             times[i] = min(times[i], time.perf_counter() - start)
     answers = [found[i] for i in range(len(records))]
-    return Contest(name, times, [a.max_rotation for a in answers], [a.impacts for a in answers])
+    return Contest(
+        name, times, [a.max_rotation for a in answers], [a.impacts for a in answers]
+    )
 
 
 def contests(
@@ -430,7 +466,9 @@ def contests(
     yield Contest(f"rps, {len(often)} in {LANES} lanes", each, rotations, impacts)
 
 
-def rows(storeys: int, records: Sequence[GroundMotion], *, heyoka: bool) -> Iterator[list[str]]:
+def rows(
+    storeys: int, records: Sequence[GroundMotion], *, heyoka: bool
+) -> Iterator[list[str]]:
     """All lines for one building."""
     building = structure(storeys)
     settings = TimeHistorySettings(free_vibration=0.0, accuracy=TIGHT)
@@ -441,7 +479,10 @@ def rows(storeys: int, records: Sequence[GroundMotion], *, heyoka: bool) -> Iter
     one, lanes = (float(np.sum(c.times)) for c in found[-2:])
     for c in found:
         spent = float(np.sum(c.times))
-        numbers = (f"{z:.3g}" for z in (spent / one, spent / lanes, 1e3 * float(np.mean(c.times))))
+        numbers = (
+            f"{z:.3g}"
+            for z in (spent / one, spent / lanes, 1e3 * float(np.mean(c.times)))
+        )
         impacts = f"{np.mean(c.impacts):.0f}"
         yield [str(storeys), c.name, *numbers, c.close(exact, limit), impacts]
 
@@ -449,7 +490,10 @@ def rows(storeys: int, records: Sequence[GroundMotion], *, heyoka: bool) -> Iter
 def main() -> None:
     """Measure, and print one table that Markdown understands."""
     heyoka = installed("heyoka")
-    sources = (f"synthetic:?pga=0.5g&duration=40&dt={STEP}&seed={i}" for i in range(1, RECORDS + 1))
+    sources = (
+        f"synthetic:?pga=0.5g&duration=40&dt={STEP}&seed={i}"
+        for i in range(1, RECORDS + 1)
+    )
     records = [load_record(source) for source in sources]
     title = "One history of 40 s at 200 Hz on one core; ratios: times that rps is faster"
     table = Table(*COLUMNS, title=title, title_justify="left", box=box.MARKDOWN)

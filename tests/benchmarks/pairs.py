@@ -19,7 +19,12 @@ from rpscli.records.loading import load_components
 
 ROUNDS = 7
 SCALES = tuple(np.linspace(0.5, 1.6, 12).tolist())
-ARCS = {"semi_diagonal": 1.5, "slenderness": 0.15, "wedge_slenderness": 0.3, "curvature_ratio": 0.5}
+ARCS = {
+    "semi_diagonal": 1.5,
+    "slenderness": 0.15,
+    "wedge_slenderness": 0.3,
+    "curvature_ratio": 0.5,
+}
 SPHERICAL = {**ARCS, "slenderness": 0.0, "curvature_ratio": 0.8}
 JOINT = {"damping": 0.03, "period_ratio": 1.2}
 PLANE, EDGES = {"kind": "plane", **JOINT}, {"kind": "edges", **JOINT}
@@ -28,10 +33,21 @@ ROLLING = {"kind": "rolling_resistance", "lever": 0.005}
 VISCOUS = {"kind": "viscous", "coefficient": 2e5}
 
 
-def structure(bearing: dict[str, Any], devices: list[Any], **more: Any) -> PodiumStructure:
+def structure(
+    bearing: dict[str, Any], devices: list[Any], **more: Any
+) -> PodiumStructure:
     """The paper's three storeys."""
-    podium = {"bearing": bearing, "cap_beam_mass_ratio": 10, "superstructure_mass_ratio": 3}
-    building = {"storeys": 3, "storey_mass": 2e5, "period": 0.3, "damping": {"ratio": 0.05}}
+    podium = {
+        "bearing": bearing,
+        "cap_beam_mass_ratio": 10,
+        "superstructure_mass_ratio": 3,
+    }
+    building = {
+        "storeys": 3,
+        "storey_mass": 2e5,
+        "period": 0.3,
+        "damping": {"ratio": 0.05},
+    }
     podium |= {"devices": devices, **more}
     return load_case(
         {"rps": 1, "title": "-", "superstructure": building, "podium": podium}
@@ -59,7 +75,9 @@ def main() -> None:
     best = dict.fromkeys(KINDS, np.inf)
     for _ in range(ROUNDS + 1):  # the first may compile
         for name, of in KINDS.items():
-            requests = [Request(of, pair, scale=scale) for pair in pairs for scale in SCALES]
+            requests = [
+                Request(of, pair, scale=scale) for pair in pairs for scale in SCALES
+            ]
             begin = time.process_time()
             demands(requests)
             best[name] = min(best[name], (time.process_time() - begin) / len(requests))

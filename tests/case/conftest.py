@@ -61,7 +61,9 @@ FLAT = (
 )  # fmt: skip
 """Ends that may bear on joints, put over the building; and joints."""
 
-PLANE, EDGES = (f"podium.contact={{kind: {of}, period_ratio: 1.2}}" for of in ("plane", "edges"))
+PLANE, EDGES = (
+    f"podium.contact={{kind: {of}, period_ratio: 1.2}}" for of in ("plane", "edges")
+)
 
 
 def case_of(*overrides: str, text: str = BUILDING) -> Case:
@@ -69,7 +71,9 @@ def case_of(*overrides: str, text: str = BUILDING) -> Case:
     return parse_case(text, name="c.yaml", overrides=overrides)
 
 
-def refusal(text: str, old: str = "", new: str = "", overrides: Sequence[str] = ()) -> str:
+def refusal(
+    text: str, old: str = "", new: str = "", overrides: Sequence[str] = ()
+) -> str:
     """What a case is refused with, after one replacement in its text."""
     assert old in text
     with pytest.raises(CaseError) as refused:

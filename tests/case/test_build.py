@@ -60,12 +60,16 @@ def test_the_building_of_ratios() -> None:
 
 def test_lists_go_from_the_bottom() -> None:
     masses = "superstructure.storey_mass=[3 t, 2 t, 1 t]"
-    above = floors(masses, "superstructure.profile=linear", "superstructure.damping={ratio: 0.02}")
+    above = floors(
+        masses, "superstructure.profile=linear", "superstructure.damping={ratio: 0.02}"
+    )
     assert above.masses.tolist() == [3000.0, 2000.0, 1000.0]
     expected = profile_stiffnesses([3000.0, 2000.0, 1000.0], 0.3, "linear")
     assert above.stiffnesses == pytest.approx(expected, rel=ROUNDING)
     assert above.damping == ModalDamping(0.02)
-    text = BUILDING.replace("  period: 0.3\n  profile: sine", "  stiffness: [3 kN/mm, 2e6, 1e6]")
+    text = BUILDING.replace(
+        "  period: 0.3\n  profile: sine", "  stiffness: [3 kN/mm, 2e6, 1e6]"
+    )
     assert floors(text=text).stiffnesses.tolist() == [3e6, 2e6, 1e6]
 
 
@@ -100,9 +104,13 @@ def test_strengths_follow_a_ratio_or_are_given() -> None:
 
 def test_spherical_ends_have_no_ratio_of_strengths() -> None:
     round_ends = "podium.bearing.slenderness=0", "podium.bearing.curvature_ratio=0.6"
-    with pytest.raises(CaseError, match=r"yield.ratio: columns without a flat part have no V_st"):
+    with pytest.raises(
+        CaseError, match=r"yield.ratio: columns without a flat part have no V_st"
+    ):
         case_of(*round_ends, "superstructure.yield={ratio: 1.3}")
-    assert case_of(*round_ends, "superstructure.yield={shears: 1 MN}").structure.superstructure
+    assert case_of(
+        *round_ends, "superstructure.yield={shears: 1 MN}"
+    ).structure.superstructure
 
 
 RATIOS = "cap_beam_mass_ratio: 10\n  superstructure_mass_ratio: 3"
@@ -112,18 +120,40 @@ MASSES = "cap_beam_mass: 200 t\n  column_mass: 5 t\n  columns: 4"
 @pytest.mark.parametrize(
     ("text", "old", "given", "columns", "beam"),
     [
-        (BUILDING, RATIOS, "column_mass: 5 t\n  columns: 4\n  cap_beam_mass: 150 t", 2e4, 1.5e5),
+        (
+            BUILDING,
+            RATIOS,
+            "column_mass: 5 t\n  columns: 4\n  cap_beam_mass: 150 t",
+            2e4,
+            1.5e5,
+        ),
         (FRAME, MASSES, "cap_beam_mass: 100 t\n  cap_beam_mass_ratio: 10", 1e4, 1e5),
-        (FRAME, MASSES, "cap_beam_mass_ratio: 10\n  column_mass: 5 t\n  columns: 4", 2e4, 2e5),
-        (FRAME, MASSES, "cap_beam_mass: 100 t\n  column_mass: 5 t\n  columns: 4", 2e4, 1e5),
+        (
+            FRAME,
+            MASSES,
+            "cap_beam_mass_ratio: 10\n  column_mass: 5 t\n  columns: 4",
+            2e4,
+            2e5,
+        ),
+        (
+            FRAME,
+            MASSES,
+            "cap_beam_mass: 100 t\n  column_mass: 5 t\n  columns: 4",
+            2e4,
+            1e5,
+        ),
         (FRAME, MASSES, "cap_beam_mass_ratio: 0\n  column_mass: 5 t", 5e3, 0.0),
         (FRAME, MASSES, "cap_beam_mass: 0\n  column_mass: 5 t\n  columns: 3", 1.5e4, 0.0),
     ],
 )
-def test_masses_in_every_way(text: str, old: str, given: str, columns: float, beam: float) -> None:
+def test_masses_in_every_way(
+    text: str, old: str, given: str, columns: float, beam: float
+) -> None:
     assert old in text
     structure = built(text=text.replace(old, given))
-    assert (structure.columns_mass, structure.cap_beam_mass) == pytest.approx((columns, beam))
+    assert (structure.columns_mass, structure.cap_beam_mass) == pytest.approx(
+        (columns, beam)
+    )
     assert (structure.superstructure is None) == (text == FRAME)
 
 
@@ -187,7 +217,9 @@ def test_flat_ends_ignore_the_wedge(wedge: str) -> None:
 
 
 def test_critical_curvature_and_spherical_ends() -> None:
-    case = case_of("podium.bearing.curvature_ratio=critical", "podium.bearing.slenderness=0.2")
+    case = case_of(
+        "podium.bearing.curvature_ratio=critical", "podium.bearing.slenderness=0.2"
+    )
     assert case.structure.bearing.curvature_ratio == pytest.approx(0.5 * (1 - 0.2 / 0.3))
     assert case.document["podium"]["bearing"]["curvature_ratio"] == "critical"
     for slenderness, rho in ((0, 0.7), (0.01, 0.5)):
@@ -255,7 +287,10 @@ PAIR = "{x: 'pulse:sine?amplitude=1&period=1', y: 'pulse:sine?amplitude=2&period
 def test_a_pair_of_sources() -> None:
     case = case_of(f"record={PAIR}")
     assert case.record is not None
-    assert (case.record.source[-19:], case.record.rotation) == ("mplitude=1&period=1", 30.0)
+    assert (case.record.source[-19:], case.record.rotation) == (
+        "mplitude=1&period=1",
+        30.0,
+    )
     assert case.document["record"]["source"] == case.record.source
     again = case_of(text=str(case.document).replace("None", "null"))
     assert again.document == case.document
@@ -301,7 +336,9 @@ def test_a_rotation_beyond_the_overturning_limit_is_refused() -> None:
     case = load_case(RIGID_FRAME)
     limit = case.analysis.overturning_limit * case.structure.critical_rotation
     load_case(RIGID_FRAME, [f"analysis.initial_rotation={limit * (1 - 1e-9)!r}"])
-    with pytest.raises(CaseError, match=r"initial_rotation = .* must stay below .* use a smaller"):
+    with pytest.raises(
+        CaseError, match=r"initial_rotation = .* must stay below .* use a smaller"
+    ):
         load_case(RIGID_FRAME, [f"analysis.initial_rotation={limit!r}"])
 
 
@@ -331,7 +368,9 @@ def test_what_counts_as_overturned_is_the_lesser_of_what_the_case_names() -> Non
         ({"displacement": "0.1", "limit": "1.5"}, at_the_moat),
     ]
     for values, limit in named:
-        overrides = [f"analysis.overturning_{name}={value}" for name, value in values.items()]
+        overrides = [
+            f"analysis.overturning_{name}={value}" for name, value in values.items()
+        ]
         settings = load_case(RIGID_FRAME, overrides).analysis
         assert settings.overturning_limit == pytest.approx(limit, rel=1e-12)
     moat = "analysis.overturning_displacement=0.1"
@@ -353,7 +392,9 @@ def test_a_moat_counts_as_overturning(share: float, overturns: bool) -> None:
     record = load_record("pulse:sine?amplitude=0.3g&period=0.8")
     free = load_case(RIGID_FRAME)
     reached = demand(free.structure, record, free.analysis).max_cap_beam_displacement
-    moat = load_case(RIGID_FRAME, [f"analysis.overturning_displacement={share * reached!r}"])
+    moat = load_case(
+        RIGID_FRAME, [f"analysis.overturning_displacement={share * reached!r}"]
+    )
     assert demand(moat.structure, record, moat.analysis).overturned == overturns
 
 

@@ -46,11 +46,15 @@ def test_keys_and_their_defaults() -> None:
 def printed(command: str, contact: str, folder: Path) -> str:
     """What a command prints, blanks as one."""
     case = folder / "c.yaml"
-    case.write_text(BUILDING.replace("record: {source: motion.at2}\n", ""), encoding="utf-8")
+    case.write_text(
+        BUILDING.replace("record: {source: motion.at2}\n", ""), encoding="utf-8"
+    )
     words = [word for each in (*FLAT, contact) for word in ("--set", each)]
     if command != "check":
         words += ["-o", str(folder / f"{command} {contact}")]
-    result = CliRunner().invoke(program, [command, str(case), *words], env={"COLUMNS": "200"})
+    result = CliRunner().invoke(
+        program, [command, str(case), *words], env={"COLUMNS": "200"}
+    )
     assert result.exit_code == 0, result.stderr
     return " ".join(result.stdout.split())
 
@@ -78,7 +82,9 @@ def test_what_commands_print(tmp_path: Path) -> None:
     length = float(check.split("contact length at 0.1 alpha ")[1].split()[0])
     assert length == pytest.approx(math.sqrt(10.0 * phi_u / alpha), rel=1e-3)
     edges = printed("check", EDGES, tmp_path)
-    assert float(edges.split(" phi_u ")[1].split()[0]) == pytest.approx(3.0 * told, rel=2e-3)
+    assert float(edges.split(" phi_u ")[1].split()[0]) == pytest.approx(
+        3.0 * told, rel=2e-3
+    )
     assert "contact length" not in edges
 
     modes = printed("modal", PLANE, tmp_path)
@@ -124,7 +130,9 @@ def test_moments_of_plane_joints_end_before_the_critical_rotation() -> None:
 def test_the_picture_of_modes_has_the_cap_beam_that_moves_in_full_contact() -> None:
     result, figure = modal(structure_of(PLANE)), Figure()
     draw_mode(figure.subplots(), result, "rocking", 1)
-    dashed = next(line for line in figure.axes[0].lines if line.get_label() == "full contact")
+    dashed = next(
+        line for line in figure.axes[0].lines if line.get_label() == "full contact"
+    )
     shapes = known(result.full_contact).shapes
     assert np.asarray(dashed.get_xdata()).tolist() == [0.0, *shapes[:, 0].tolist()]
     assert shapes[0, 0] > 0.05  # on a fixed base it would not move

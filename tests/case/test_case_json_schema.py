@@ -47,7 +47,13 @@ def key(path: tuple[str | int, ...]) -> dict[str, Any]:
 
 def walk(value: object) -> Iterator[object]:
     yield value
-    items = value.values() if isinstance(value, dict) else value if isinstance(value, list) else ()
+    items = (
+        value.values()
+        if isinstance(value, dict)
+        else value
+        if isinstance(value, list)
+        else ()
+    )
     for item in items:
         yield from walk(item)
 
@@ -78,11 +84,18 @@ def test_bounds_words_lists_and_defaults() -> None:
 
 
 def test_closed_and_without_null() -> None:
-    sections = [at for at in walk(SCHEMA) if isinstance(at, dict) and at.get("type") == "object"]
+    sections = [
+        at for at in walk(SCHEMA) if isinstance(at, dict) and at.get("type") == "object"
+    ]
     # A limit may be a mapping, which is described once for all of a unit and a bound.
-    rules = {(q.unit in KINDS and q.unit, q.whole or q.from_below, q.from_below) for q in LIMITED}
+    rules = {
+        (q.unit in KINDS and q.unit, q.whole or q.from_below, q.from_below)
+        for q in LIMITED
+    }
     assert len(sections) == 20 + len(rules)
     assert all(section["additionalProperties"] is False for section in sections)
-    assert None not in [item for item in walk(SCHEMA) if not isinstance(item, dict | list)]
+    assert None not in [
+        item for item in walk(SCHEMA) if not isinstance(item, dict | list)
+    ]
     assert "null" not in list(walk(SCHEMA))
     assert set(SCHEMA["required"]) == {"rps", "superstructure", "podium"}

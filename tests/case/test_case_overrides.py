@@ -17,7 +17,9 @@ from rpscli.errors import CaseError
 from .conftest import BUILDING, FRAME, case_of, refusal
 
 
-def override_refusal(overrides: Overrides, label: str = "--set", text: str = BUILDING) -> str:
+def override_refusal(
+    overrides: Overrides, label: str = "--set", text: str = BUILDING
+) -> str:
     with pytest.raises(CaseError) as error:
         apply_overrides(read_yaml(text, "c.yaml"), overrides, label=label)
     return str(error.value)
@@ -45,7 +47,9 @@ def test_values_are_yaml() -> None:
     assert changed.at(("limits",)) == {"rotation_ratio": 0.5, "drift_ratio": 5e-3}
     assert changed.at(("title",)) == "no"
     assert document.content == before
-    assert str(document.value_place(("podium", "bearing", "slenderness"))) == "c.yaml:12:18"
+    assert (
+        str(document.value_place(("podium", "bearing", "slenderness"))) == "c.yaml:12:18"
+    )
 
 
 def test_sections_that_are_not_written_come_into_being() -> None:
@@ -54,7 +58,9 @@ def test_sections_that_are_not_written_come_into_being() -> None:
 
 
 def test_null_takes_a_key_out() -> None:
-    without = case_of("podium.superstructure_mass_ratio=null", "podium.cap_beam_mass=150 t")
+    without = case_of(
+        "podium.superstructure_mass_ratio=null", "podium.cap_beam_mass=150 t"
+    )
     assert without.structure.eta == pytest.approx(4.0, rel=1e-15)
     assert case_of("record=null", "record.vertical=null").record is None
 
@@ -80,7 +86,9 @@ def test_python_values_of_a_study() -> None:
 def test_a_fault_of_a_value_is_placed_at_its_override() -> None:
     case = read_yaml(BUILDING, "c.yaml")
     with pytest.raises(CaseError) as error:
-        case_from_mapping(case, "c.yaml", None, {"podium.bearing.slenderness": -0.5}, label="vary")
+        case_from_mapping(
+            case, "c.yaml", None, {"podium.bearing.slenderness": -0.5}, label="vary"
+        )
     start = "vary podium.bearing.slenderness=-0.5: podium.bearing.slenderness = -0.5 must be >= 0"
     assert str(error.value) == start
     message = refusal(BUILDING, overrides=["podium.cap_beam_mass=1"])
@@ -92,7 +100,10 @@ def test_a_fault_of_a_value_is_placed_at_its_override() -> None:
 @pytest.mark.parametrize(
     ("override", "parts"),
     [
-        ("podium.bering.slenderness=1", ["podium.bering is not a key", "mean podium.bearing?"]),
+        (
+            "podium.bering.slenderness=1",
+            ["podium.bering is not a key", "mean podium.bearing?"],
+        ),
         ("podium.bearing.slendernes=1", ["did you mean podium.bearing.slenderness?"]),
         ("slenderness=1", ["slenderness belongs under podium.bearing"]),
         ("xyz=1", ["xyz is not a key", "known here: rps, title"]),
@@ -102,7 +113,10 @@ def test_a_fault_of_a_value_is_placed_at_its_override() -> None:
         ("superstructure.damping.modes.2=1", ["modes has 2 values", "there is no 2"]),
         ("superstructure.damping.modes.0=null", ["cannot be taken out"]),
         ("superstructure.damping.modes.0.1=3", ["= 1 is a single value"]),
-        ("podium.devices[0].force=1", ["devices[0] is not a key", "mean podium.devices.0?"]),
+        (
+            "podium.devices[0].force=1",
+            ["devices[0] is not a key", "mean podium.devices.0?"],
+        ),
         ("podium.0=1", ["podium is not a list"]),
         ("0=1", ["an index alone"]),
         ("podium..columns=1", ["is not a key"]),
@@ -128,10 +142,17 @@ def test_a_key_below_a_list() -> None:
 
 
 def test_keys_of_a_study_are_checked_together() -> None:
-    lines = override_refusal({"podium.foo": 1, "record.bar": 2}, label="vary").splitlines()
-    assert [line.split(":")[0] for line in lines] == ["vary podium.foo=1", "vary record.bar=2"]
+    lines = override_refusal(
+        {"podium.foo": 1, "record.bar": 2}, label="vary"
+    ).splitlines()
+    assert [line.split(":")[0] for line in lines] == [
+        "vary podium.foo=1",
+        "vary record.bar=2",
+    ]
 
 
 def test_a_document_without_positions() -> None:
     document = Document("base", {"podium": {"columns": 2}})
-    assert apply_overrides(document, ["podium.columns=3"]).content == {"podium": {"columns": 3}}
+    assert apply_overrides(document, ["podium.columns=3"]).content == {
+        "podium": {"columns": 3}
+    }

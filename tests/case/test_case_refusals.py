@@ -8,7 +8,17 @@ from rpscli.case.case import case_from_mapping
 from rpscli.case.schema.keys import REMOVED
 from rpscli.errors import CaseError
 
-from .conftest import BUILDING, COLUMNS, EDGES, EQUIPPED, FLAT, FRAME, PLANE, case_of, refusal
+from .conftest import (
+    BUILDING,
+    COLUMNS,
+    EDGES,
+    EQUIPPED,
+    FLAT,
+    FRAME,
+    PLANE,
+    case_of,
+    refusal,
+)
 
 Row = tuple[str, ...]
 
@@ -210,10 +220,14 @@ def test_a_refusal(text: str, row: Row) -> None:
 
 
 @pytest.mark.parametrize(
-    ("key", "now"), [item for item in REMOVED.items() if not item[0].startswith("reports.")]
+    ("key", "now"),
+    [item for item in REMOVED.items() if not item[0].startswith("reports.")],
 )
 def test_a_removed_key_says_what_to_do_without_it(key: str, now: str) -> None:
-    assert refusal(BUILDING, overrides=[f"{key}=1"]) == f"--set {key}=1: {key} is gone: {now}"
+    assert (
+        refusal(BUILDING, overrides=[f"{key}=1"])
+        == f"--set {key}=1: {key} is gone: {now}"
+    )
 
 
 def test_a_section_under_the_wrong_parent() -> None:
@@ -233,7 +247,11 @@ PLAIN_FRAME = (
     "podium.cap_beam_mass=9 t",
     "podium.column_mass=1 t",
 )
-CARRIES = ("podium.plan={length: 1}", "superstructure.vertical_period=0.1", "podium.columns=4")
+CARRIES = (
+    "podium.plan={length: 1}",
+    "superstructure.vertical_period=0.1",
+    "podium.columns=4",
+)
 ROUND = "podium.column={section: round, modulus: 35 GPa, poisson: 0.2, contact_strength: 25 MPa}"
 TENDON = "[{kind: tendon, prestress: 1 kN, stiffness: 1 kN/mm}]"
 
@@ -297,10 +315,16 @@ def test_what_they_are_put_over_is_valid(overrides: tuple[str, ...]) -> None:
 
 
 def test_faults_of_keys_together_in_order_then_those_between_keys() -> None:
-    text = BUILDING.replace("period: 0.3", "period: -1").replace("law: rigid", "lw: rigid")
-    text = text.replace("    curvature_ratio: 0.5\n", "    curvature_ratio: 0.5\n    x: 1\n")
+    text = BUILDING.replace("period: 0.3", "period: -1").replace(
+        "law: rigid", "lw: rigid"
+    )
+    text = text.replace(
+        "    curvature_ratio: 0.5\n", "    curvature_ratio: 0.5\n    x: 1\n"
+    )
     text = text.replace("  cap_beam_mass_ratio: 10\n", "")
-    message = refusal(text, "rps: 1", "rps: 3", ["record.scale=big", "limits.rotation_ratio=0"])
+    message = refusal(
+        text, "rps: 1", "rps: 3", ["record.scale=big", "limits.rotation_ratio=0"]
+    )
     places = [line.split(": ")[0] for line in message.splitlines()]
     assert places == [
         "c.yaml:1:6",
@@ -310,7 +334,9 @@ def test_faults_of_keys_together_in_order_then_those_between_keys() -> None:
         "--set record.scale=big",
         "--set limits.rotation_ratio=0",
     ]
-    text = BUILDING.replace("  cap_beam_mass_ratio: 10\n", "").replace("  period: 0.3\n", "")
+    text = BUILDING.replace("  cap_beam_mass_ratio: 10\n", "").replace(
+        "  period: 0.3\n", ""
+    )
     message = refusal(text, "    slenderness: 0.15\n", "")
     places = [line.split(": ")[0] for line in message.splitlines()]
     assert places == ["c.yaml:2:1", "c.yaml:8:1", "c.yaml:9:3"]
@@ -325,7 +351,9 @@ def test_a_section_that_is_no_mapping(text: str) -> None:
 
 def test_a_mapping_in_memory_has_its_name_for_a_place() -> None:
     with pytest.raises(CaseError) as error:
-        case_from_mapping({"rps": 1, "superstructure": {"storeys": 0}, "podium": {}}, "base of x")
+        case_from_mapping(
+            {"rps": 1, "superstructure": {"storeys": 0}, "podium": {}}, "base of x"
+        )
     assert str(error.value).splitlines()[0].startswith("base of x: podium")
 
 

@@ -38,12 +38,16 @@ def test_it_loads_and_comes_back(name: str) -> None:
     assert second.document == first.document
     assert second.limits == first.limits
     assert second.analysis == first.analysis
-    of_kernels = [stacked_systems([(each.structure, each.analysis)]) for each in (first, second)]
+    of_kernels = [
+        stacked_systems([(each.structure, each.analysis)]) for each in (first, second)
+    ]
     assert of_kernels[0].tobytes() == of_kernels[1].tobytes()
 
 
 def test_every_case_of_the_folder_is_tested() -> None:
-    folder = {path.stem for path in FOLDER.glob("*.yaml") if "\nbase:" not in path.read_text()}
+    folder = {
+        path.stem for path in FOLDER.glob("*.yaml") if "\nbase:" not in path.read_text()
+    }
     assert folder == set(NAMES)
 
 
@@ -56,16 +60,26 @@ def test_the_measured_column_in_ratios() -> None:
 
 def test_the_block_is_the_one_of_its_comment() -> None:
     bearing = case("free_standing_block").structure.bearing
-    assert (bearing.half_width, bearing.half_height) == pytest.approx((0.5, 1.5), rel=1e-15)
+    assert (bearing.half_width, bearing.half_height) == pytest.approx(
+        (0.5, 1.5), rel=1e-15
+    )
     assert case("free_standing_block").structure.gamma == 0.0
 
 
 def test_what_the_starter_offers_as_alternatives_is_valid() -> None:
     """Its commented lines, put in the place of those that they replace."""
-    text = starter_text().replace("  # stiffness", "  stiffness").replace("  period: ", "  # ")
-    text = text.replace("  profile: ", "  # ").replace("    # dimensions", "    dimensions")
+    text = (
+        starter_text()
+        .replace("  # stiffness", "  stiffness")
+        .replace("  period: ", "  # ")
+    )
+    text = text.replace("  profile: ", "  # ").replace(
+        "    # dimensions", "    dimensions"
+    )
     for name in ("semi_diagonal", "slenderness", "wedge_slenderness", "curvature_ratio"):
         text = text.replace(f"    {name}:", f"    # {name}:")
     structure = parse_case(text, name="starter.yaml").structure
-    assert structure.bearing.semi_diagonal == pytest.approx(1.5, abs=2e-3)  # sizes in whole mm
+    assert structure.bearing.semi_diagonal == pytest.approx(
+        1.5, abs=2e-3
+    )  # sizes in whole mm
     assert structure.bearing.wedge_slenderness == pytest.approx(0.30, abs=5e-4)

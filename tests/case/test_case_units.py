@@ -115,7 +115,9 @@ def test_any_text_is_a_number_or_refused(text: str) -> None:
 
 
 @pytest.mark.parametrize(("unit", "written"), FACTORS.items())
-def test_factors_are_those_of_the_definitions(unit: str, written: dict[str, float]) -> None:
+def test_factors_are_those_of_the_definitions(
+    unit: str, written: dict[str, float]
+) -> None:
     # Units of the first rank agree in every digit, whichever way they are written.
     for name, factor in written.items():
         assert si_factor(name, unit) == factor, name
@@ -134,11 +136,18 @@ def test_units_that_messages_propose_are_common(unit: str) -> None:
 
 def test_values_at_equal_spaces() -> None:
     assert ValueRange(low=0.1, high=0.3, count=3).values == (0.1, 0.2, 0.3)
-    assert ValueRange(low=0.1, high=10.0, count=3, spacing="log").values == (0.1, 1.0, 10.0)
+    assert ValueRange(low=0.1, high=10.0, count=3, spacing="log").values == (
+        0.1,
+        1.0,
+        10.0,
+    )
 
 
 def test_what_a_record_is_scaled_to() -> None:
-    assert (scale_to_of("PGV=50 cm/s").value, scale_to_of("Sa(0.6 s)=0.5 g").period) == (0.5, 0.6)
+    assert (scale_to_of("PGV=50 cm/s").value, scale_to_of("Sa(0.6 s)=0.5 g").period) == (
+        0.5,
+        0.6,
+    )
     assert scale_to_of("PGV(RotD100)=0.5").of == "rotd100"
     assert scale_to_of("Sa(0.6 s, geomean)=1 g").of == "geomean"
 
@@ -146,4 +155,7 @@ def test_what_a_record_is_scaled_to() -> None:
 def test_values_of_observed_systems() -> None:
     diagonal = "podium.bearing.semi_diagonal"
     assert comparable(diagonal, "1500 mm") == comparable(diagonal, 1.5) == "1.5"
-    assert (comparable("title", "tower A"), comparable("scale", "0.50")) == ("tower A", "0.5")
+    assert (comparable("title", "tower A"), comparable("scale", "0.50")) == (
+        "tower A",
+        "0.5",
+    )

@@ -113,7 +113,9 @@ def test_devices_are_refused(device: str) -> None:
     assert "is a device; name a file" in of_file(device)
 
 
-def test_a_pipe_is_read_if_somebody_writes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_pipe_is_read_if_somebody_writes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     pipe = tmp_path / "pipe"
     os.mkfifo(pipe)
     monkeypatch.setattr(files, "_PATIENCE", 0.05)
@@ -132,7 +134,9 @@ def test_sizes_are_refused_before_they_are_read(tmp_path: Path) -> None:
 
 
 def test_of_many_faults_the_first_hundred_are_told() -> None:
-    lines = refusal("title: t\n" + "".join(f"key_{n}: 1\n" for n in range(3000))).splitlines()
+    lines = refusal(
+        "title: t\n" + "".join(f"key_{n}: 1\n" for n in range(3000))
+    ).splitlines()
     assert len(lines) == 101
     assert lines[-1].startswith("c.yaml: 29")
     assert lines[-1].endswith("more faults; correct these first")
@@ -152,7 +156,9 @@ def test_a_decimal_comma_in_braces_is_named() -> None:
     text = "rps: 1\nsuperstructure: {storeys: 3, period: 0,3, storey_height: 3}\n"
     lines = refusal(text).splitlines()
     named = [line for line in lines if "period" in line]
-    assert named == ["c.yaml:2:38: superstructure.period = 0,3 has a decimal comma; write 0.3"]
+    assert named == [
+        "c.yaml:2:38: superstructure.period = 0,3 has a decimal comma; write 0.3"
+    ]
     assert not any("the key 3" in line for line in lines)
     assert "the key 3 must be text" in refusal("a: {b: 0, 3}\n")
 
@@ -162,7 +168,9 @@ TABLES: dict[str, Callable[[Path], object]] = {
     "PGV [cm/s],rate [1/year]": lambda file: read_hazard(file, "PGV"),
     "time [s],rotation [rad]": lambda file: measured(str(file), "rocking", None, None),
     "problem,quantity,value": lambda file: answers_of_file(file.read_text(), str(file)),
-    "record,overturned": lambda at: read_observed(str(at), at.parent, (), Document("s.yaml", {})),
+    "record,overturned": lambda at: read_observed(
+        str(at), at.parent, (), Document("s.yaml", {})
+    ),
 }
 
 

@@ -27,7 +27,9 @@ def limited(text: str) -> tuple[Condition, ...]:
     return conditions_of(case_of(text=changed).limits, "the case")
 
 
-def condition(of: str, at: float, share: float = 0.0, fractile: float | None = None) -> Condition:
+def condition(
+    of: str, at: float, share: float = 0.0, fractile: float | None = None
+) -> Condition:
     return Condition(of, at, "the case", share, fractile)
 
 
@@ -54,7 +56,9 @@ def condition(of: str, at: float, share: float = 0.0, fractile: float | None = N
          condition("full_contact_share", 0.5, 0.1), "at least 0.5 except in 10 % of the records"),
     ],
 )  # fmt: skip
-def test_a_limit_may_have_a_share_or_a_fractile(text: str, expected: Condition, words: str) -> None:
+def test_a_limit_may_have_a_share_or_a_fractile(
+    text: str, expected: Condition, words: str
+) -> None:
     (found,) = limited(text)
     assert found == expected
     assert requirement_text(found) == words
@@ -71,4 +75,6 @@ def test_conditions_of_options() -> None:
     assert parse_condition("max_base_shear=2 kN").limit == 2000.0
     with pytest.raises(UsageError, match="or '0"):
         parse_condition("max_base_shear=2 m")
-    assert parse_condition("rotation_ratio=0.5") == Condition("rotation_ratio", 0.5, "--fail-on")
+    assert parse_condition("rotation_ratio=0.5") == Condition(
+        "rotation_ratio", 0.5, "--fail-on"
+    )

@@ -76,7 +76,9 @@ def test_slips_are_told_with_their_number(old: str, new: str, told: list[str]) -
 
 def test_the_first_period_is_looked_at() -> None:
     """One storey of 200 t on 900 N/m: T1 = 2 pi sqrt(200000/900) = 93.66 s."""
-    text = CASE.replace("storeys: 3", "storeys: 1").replace("[200 t, 200 t, 240 t]", "200 t")
+    text = CASE.replace("storeys: 3", "storeys: 1").replace(
+        "[200 t, 200 t, 240 t]", "200 t"
+    )
     text = text.replace("[850 kN/mm, 600 kN/mm, 400 kN/mm]", "900").replace(
         "  storey_height: 3.0\n", ""
     )

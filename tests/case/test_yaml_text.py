@@ -18,7 +18,9 @@ from .conftest import refusal
 
 
 def test_positions_of_keys_and_values() -> None:
-    document = read_yaml("a:\n  b: 1\n  c: [x, {d: 2}]\ne: &one {x: 1}\nf: *one\n", "c.yaml")
+    document = read_yaml(
+        "a:\n  b: 1\n  c: [x, {d: 2}]\ne: &one {x: 1}\nf: *one\n", "c.yaml"
+    )
     assert document.content["a"] == {"b": 1, "c": ["x", {"d": 2}]}
     assert str(document.key_place(("a", "c"))) == "c.yaml:3:3"
     assert str(document.value_place(("a", "c", 1, "d"))) == "c.yaml:3:14"
@@ -65,7 +67,10 @@ BOMB = [f"l{i}: &l{i} [{', '.join([f'*l{i - 1}'] * 9)}]" for i in range(1, 9)]
         ("{a: " * 5000, ["nested"]),
         ("- " * 60, ["five levels deep: close brackets, or remove indentation"]),
         ("\n".join(" " * n + "a:" for n in range(60)), ["five levels deep"]),
-        ("rps: 1\nperiod: [" + "1," * 50_000 + "1]", ["no case or study has so many values"]),
+        (
+            "rps: 1\nperiod: [" + "1," * 50_000 + "1]",
+            ["no case or study has so many values"],
+        ),
         ("l0: &l0 [1]\n" + "\n".join(BOMB), ["more than 20000 values; do aliases"]),
     ],
 )
@@ -93,15 +98,21 @@ def test_syntax_is_refused_with_place_and_remedy(text: str, parts: list[str]) ->
         ("a: [200,5 t, 3 t]\n", "1:4", ["write 200.5 t, or for two numbers a blank"]),
     ],
 )
-def test_what_reading_survives_is_told_as_well(text: str, place: str, parts: list[str]) -> None:
+def test_what_reading_survives_is_told_as_well(
+    text: str, place: str, parts: list[str]
+) -> None:
     lines = refusal(text).splitlines()
-    assert any(line.startswith(f"c.yaml:{place}: ") and parts[0] in line for line in lines)
+    assert any(
+        line.startswith(f"c.yaml:{place}: ") and parts[0] in line for line in lines
+    )
     assert all(part in "\n".join(lines) for part in parts)
     assert any("podium is missing" in line for line in lines)
 
 
 def test_lists_without_a_decimal_comma_are_read() -> None:
-    read = read_yaml("a: [1,2]\nb: [1,2,3, 4]\nc: [1.5,2, 0.5]\nd: [a,1, b]\n", "c.yaml").content
+    read = read_yaml(
+        "a: [1,2]\nb: [1,2,3, 4]\nc: [1.5,2, 0.5]\nd: [a,1, b]\n", "c.yaml"
+    ).content
     assert [len(read[key]) for key in "abcd"] == [2, 4, 3, 3]
 
 

@@ -66,7 +66,9 @@ class Hit(NamedTuple):
 class RigidFrame:
     """A rigid frame or block that swings freely, with devices or without; |theta| below its end."""
 
-    def __init__(self, system: OracleSystem, devices: tuple[OracleDevice, ...] = ()) -> None:
+    def __init__(
+        self, system: OracleSystem, devices: tuple[OracleDevice, ...] = ()
+    ) -> None:
         self.motion, self.devices = StoreyLagrangian(system), devices
         self.weight = self.motion.lifted_mass * system.gravity
 
@@ -117,7 +119,9 @@ class RigidFrame:
         found = [0.0, self.motion.beta]
         gaps = [device.gap for device in self.devices if isinstance(device, Stop)]
         reached = (gap for gap in gaps if self.moved(high, 0.0).real > gap > 0.0)
-        found += [tilt_at(lambda x: self.moved(x, 0.0).real, gap, high) for gap in reached]
+        found += [
+            tilt_at(lambda x: self.moved(x, 0.0).real, gap, high) for gap in reached
+        ]
         return [*sorted(x for x in set(found) if x < high), high]
 
     def duration(self, high: float, low: float, way: int) -> float:
@@ -130,7 +134,9 @@ class RigidFrame:
         total = sum(integral(slowness, a, b) for a, b in pairwise(places[:-1]))
         span = high - places[-2]
         # x = high - span s^2 takes the root out of the last piece
-        return total + integral(lambda s: 2.0 * span * s * slowness(high - span * s * s), 0.0, 1.0)
+        return total + integral(
+            lambda s: 2.0 * span * s * slowness(high - span * s * s), 0.0, 1.0
+        )
 
     def impacts(self, release: float, count: int) -> list[Hit]:
         """Of a release at rest, with theta'+ = e theta'-."""
@@ -155,7 +161,11 @@ class RigidFrame:
         least = release * (1.0 - 1e-6)
         return side * float(
             brentq(
-                lambda x: self.duration(release, x, -1) - rest, 0.0, least, xtol=1e-16, rtol=1e-15
+                lambda x: self.duration(release, x, -1) - rest,
+                0.0,
+                least,
+                xtol=1e-16,
+                rtol=1e-15,
             )
         )
 
@@ -191,7 +201,9 @@ def uplifted_roots(system: OracleSystem) -> Array:
     """Eigenvalues of small motions on one side from tilt 0, in tilt and drifts."""
     motion, n = StoreyLagrangian(system), len(system.masses)
     _, slope, bend = motion.cap_beam(0.0, rolling=motion.beta > 0.0)
-    stiffness = np.diag([motion.lifted_mass * system.gravity * bend.imag, *system.stiffnesses])
+    stiffness = np.diag(
+        [motion.lifted_mass * system.gravity * bend.imag, *system.stiffnesses]
+    )
     damping = np.zeros((n + 1, n + 1))
     damping[1:, 1:] = motion.drift_damping
     flow = np.zeros((2 * n + 2, 2 * n + 2))
@@ -218,7 +230,9 @@ def uplift_time(system: OracleSystem, a_g: Array, dt: float) -> float:
         for i in range(steps):
             begun = expm(flow * (i * dt / steps)) @ state
             if spare(dt / steps, begun) > 0.0:
-                tau = brentq(spare, 0.0, dt / steps, args=(begun,), xtol=1e-17, rtol=1e-15)
+                tau = brentq(
+                    spare, 0.0, dt / steps, args=(begun,), xtol=1e-17, rtol=1e-15
+                )
                 return (j + i / steps) * dt + float(tau)
         state = expm(flow * dt) @ state
     raise RuntimeError("it does not lift")
@@ -295,7 +309,9 @@ class Problem:
     @cached_property
     def motion(self) -> MotionComponents:
         record = known(self.case.record)
-        moved = load_components(record.source, record.vertical, record.y, folder=self.case.folder)
+        moved = load_components(
+            record.source, record.vertical, record.y, folder=self.case.folder
+        )
         return moved.scaled(record.scale)
 
     @property
@@ -311,7 +327,9 @@ class Problem:
         """With the restitution that the part `loss` of what impulses at the edges take leaves."""
         system = oracle_system(self.structure)
         e = StoreyLagrangian(system).restitution
-        return replace(system, restitution=1.0 - self.structure.impact_law.loss * (1.0 - e))
+        return replace(
+            system, restitution=1.0 - self.structure.impact_law.loss * (1.0 - e)
+        )
 
     @property
     def devices(self) -> tuple[OracleDevice, ...]:
@@ -331,7 +349,8 @@ class Problem:
         if self.name == "parting_motions":
             runs = (replace(analysis, initial_rotation=float(start)) for start in STARTS)
             ends = (
-                time_history(structure, self.motion, each, with_fixed_base=False) for each in runs
+                time_history(structure, self.motion, each, with_fixed_base=False)
+                for each in runs
             )
             return [float(end.trace.rotation[-1]) for end in ends]
         found = answers(self.name, structure, self.motion, analysis)
@@ -367,7 +386,9 @@ def overturning(problem: Problem) -> Iterable[float]:
         start, y = 2.0 * problem.dt * g * slope / peak, np.zeros(2)
         places = [start, *(float(t) for t in knots if t > start)]
         for a, b in pairwise(places):
-            y = solve_ivp(rates, (a, b), y, "DOP853", args=(peak,), rtol=3e-14, atol=1e-17).y[:, -1]
+            y = solve_ivp(
+                rates, (a, b), y, "DOP853", args=(peak,), rtol=3e-14, atol=1e-17
+            ).y[:, -1]
         top = motion.cap_beam(math.atan(slope), rolling=False)[0].imag
         return sum(motion.energies(right, y)) - motion.lifted_mass * g * top
 
@@ -420,7 +441,9 @@ def wobble(problem: Problem) -> Iterator[float]:
 def second_wobble(problem: Problem, structure: PodiumStructure) -> Iterator[float]:
     """No case says the turning at the start."""
     across, accuracy = problem.start * TURNING, problem.case.analysis.accuracy
-    found = released(structure, problem.start, across, max(problem.times), accuracy=accuracy)
+    found = released(
+        structure, problem.start, across, max(problem.times), accuracy=accuracy
+    )
     yield from (float(found.passes[0].least_tilt), float(found.passes[0].time))
     for j in problem.rows(0.01):
         yield from (float(found.tilt[j].real), float(found.tilt[j].imag))

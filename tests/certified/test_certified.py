@@ -31,7 +31,9 @@ SAMPLE = "parting_motions"
 def distance(a: Sequence[float], b: Sequence[float]) -> float:
     """Kolmogorov's, by its definition."""
     one, other = np.array(a), np.array(b)
-    return max(abs(float(np.mean(one <= x)) - float(np.mean(other <= x))) for x in (*a, *b))
+    return max(
+        abs(float(np.mean(one <= x)) - float(np.mean(other <= x))) for x in (*a, *b)
+    )
 
 
 def given(folder: Path, names: Iterable[str], change: Change) -> Path:
@@ -51,7 +53,9 @@ def given(folder: Path, names: Iterable[str], change: Change) -> Path:
 
 
 def scored(file: Path, *options: str) -> tuple[int, dict[str, Any]]:
-    result = CliRunner().invoke(program, ["verify", "--score", str(file), "--json", *options])
+    result = CliRunner().invoke(
+        program, ["verify", "--score", str(file), "--json", *options]
+    )
     document = json.loads(result.stdout)
     assert result.exit_code == document["exit_code"]
     return result.exit_code, document
@@ -63,11 +67,19 @@ def test_the_program_has_nearly_all_digits_that_are_certified(tmp_path: Path) ->
     code, document = scored(given(tmp_path, PROBLEMS, unchanged), "--digits", "9")
     assert code == 0
     for line in document["comparisons"]:
-        assert line["digits"] is None or line["digits"] > min(11, line["certified_digits"] - 0.1)
+        assert line["digits"] is None or line["digits"] > min(
+            11, line["certified_digits"] - 0.1
+        )
     assert document["not_answered"] == []
-    assert document["compared"] == sum(len(problem.asked) for problem in PROBLEMS.values())
+    assert document["compared"] == sum(
+        len(problem.asked) for problem in PROBLEMS.values()
+    )
     short = [line for line in document["comparisons"] if line["certified_digits"] < 12]
-    assert {line["group"] for line in short} == {"plane_joints", "edges", "parting_motions"}
+    assert {line["group"] for line in short} == {
+        "plane_joints",
+        "edges",
+        "parting_motions",
+    }
 
 
 def losing(loss: float) -> Change:
@@ -86,7 +98,9 @@ def test_a_program_whose_impacts_take_nothing_scores_low_after_the_first_impact(
     untouched = ("spherical_swing", "capacity", "uplifted_modes", "free_wobble")
     releases = ("block_release", "flat_release", "stop_release", "friction_release")
     shaken = ("one_storey", "three_storeys", "vertical_motion", "edges")
-    code, document = scored(given(tmp_path, (*untouched, *releases, *shaken), losing(0.0)))
+    code, document = scored(
+        given(tmp_path, (*untouched, *releases, *shaken), losing(0.0))
+    )
     assert code == 6
     for line in document["comparisons"]:
         before = "impact 1" in line["quantity"] or line["quantity"] == "time of uplift"
@@ -119,7 +133,9 @@ def test_what_is_not_answered_is_told(tmp_path: Path) -> None:
         "capacity,critical rotation,rad,\n"
         "flat_release,time of impact 1,s,\n"
     )
-    result = CliRunner().invoke(program, ["verify", "--score", str(file)], env={"COLUMNS": "200"})
+    result = CliRunner().invoke(
+        program, ["verify", "--score", str(file)], env={"COLUMNS": "200"}
+    )
     assert result.exit_code == 6
     assert "5.2 digits" in result.stdout
     assert result.stdout.count("missing") == 5
@@ -132,13 +148,22 @@ def test_what_is_not_answered_is_told(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "complaint"),
     [
-        ("problem,value\n", "names no column quantity; begin with `problem,quantity,unit,value`"),
+        (
+            "problem,value\n",
+            "names no column quantity; begin with `problem,quantity,unit,value`",
+        ),
         (
             "problem,quantity,value\ncapacity,uplift forces,1\n",
             "did you mean capacity, uplift force?",
         ),
-        ("problem,quantity,value\nflat_releas,x,1\n", "line 2: flat_releas, x is not asked"),
-        ("problem,quantity,value\ncapacity,uplift force,1 kN\n", "'1 kN' must be a finite number"),
+        (
+            "problem,quantity,value\nflat_releas,x,1\n",
+            "line 2: flat_releas, x is not asked",
+        ),
+        (
+            "problem,quantity,value\ncapacity,uplift force,1 kN\n",
+            "'1 kN' must be a finite number",
+        ),
         ("problem,quantity,value\ncapacity,uplift force,\n", "answers nothing"),
     ],
 )
@@ -163,10 +188,14 @@ def test_a_stranger_finds_all_there_is(tmp_path: Path) -> None:
     for name, problem in PROBLEMS.items():
         assert f"]({name}.md) | {len(problem.asked)} |" in listed
         page = (folder / f"{name}.md").read_text(encoding="utf-8")
-        assert load_case(folder / f"{name}.yaml").title == page.splitlines()[0].removeprefix("# ")
+        assert load_case(folder / f"{name}.yaml").title == page.splitlines()[
+            0
+        ].removeprefix("# ")
         for quantity, (unit, digits, (value, *_)) in problem.asked.items():
             if name != SAMPLE:
-                assert f"| {quantity} [{unit}] | {value:.{digits + 1}g} | {digits} |" in page
+                assert (
+                    f"| {quantity} [{unit}] | {value:.{digits + 1}g} | {digits} |" in page
+                )
 
 
 @pytest.mark.parametrize("name", PROBLEMS)
@@ -185,7 +214,10 @@ def test_a_page_says_the_numbers_of_its_case(name: str) -> None:
         "slenderness of the flat part": [bearing.slenderness],
         "semi-diagonal": [bearing.semi_diagonal],
         "mass of all columns": [structure.columns_mass],
-        "inertia of a column about an edge of its flat part, over its mass and": [4.0, 3.0],
+        "inertia of a column about an edge of its flat part, over its mass and": [
+            4.0,
+            3.0,
+        ],
     }
     if bearing.curvature_ratio:
         expected["radius of the arcs over the height"] = [bearing.curvature_ratio]
@@ -201,7 +233,9 @@ def test_a_page_says_the_numbers_of_its_case(name: str) -> None:
         # a_0 only where there are two modes
         *a_0, a_1 = (float(z) for z in re.findall(r"= (\S+)", told[row]))
         C = sum(a_0) * above.mass_matrix + a_1 * above.stiffness_matrix
-        np.testing.assert_allclose(above.damping_matrix, C, rtol=0.0, atol=1e-12 * C.max())
+        np.testing.assert_allclose(
+            above.damping_matrix, C, rtol=0.0, atol=1e-12 * C.max()
+        )
     for row, values in expected.items():
         assert numbers(row) == pytest.approx(values, rel=1e-13), row
 
@@ -228,7 +262,9 @@ def test_both_roads_lead_to_the_certified_numbers(name: str) -> None:
             ((_, _, sample),) = problem.asked.values()
             assert distance(sample, road) < 0.2
             continue
-        for found, (_, digits, (value,)) in zip(road, problem.asked.values(), strict=True):
+        for found, (_, digits, (value,)) in zip(
+            road, problem.asked.values(), strict=True
+        ):
             # Half of the last digit that is written, one of those that are certified; weights of
             # the kernel's rule, of up to 176, multiply its rounding: 9.9e-12 in one number.
             assert abs(found / value - 1.0) < max(1.5 * 10.0**-digits, 1e-11)

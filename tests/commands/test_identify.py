@@ -48,11 +48,15 @@ def measured(workplace: Path, rps: Invoke) -> Path:
     swings = history(workplace / "r", "cap_beam_displacement [m]")
     lines = [f"{1e3 * float(time)},{1e3 * float(moved):.2f}" for time, moved in swings]
     file = workplace / "release.csv"
-    file.write_text("\n".join(["time [ms],cap_beam_displacement [mm]", *lines]), encoding="utf-8")
+    file.write_text(
+        "\n".join(["time [ms],cap_beam_displacement [mm]", *lines]), encoding="utf-8"
+    )
     return file
 
 
-def test_a_release_gives_a_loss(measured: Path, rps_json: Callable[..., Any], rps: Invoke) -> None:
+def test_a_release_gives_a_loss(
+    measured: Path, rps_json: Callable[..., Any], rps: Invoke
+) -> None:
     found = rps_json("identify", "frame.yaml", "release.csv", "rocking")
     by_name = {each["name"]: each for each in found["estimates"]}
     # hundredths of a millimetre are rounded, of 180
@@ -61,12 +65,16 @@ def test_a_release_gives_a_loss(measured: Path, rps_json: Callable[..., Any], rp
     e = rps_json("check", "frame.yaml", "--set", "podium.impact.loss=0.6")["restitution"]
     assert by_name["restitution"]["low"] < e < by_name["restitution"]["high"]
     assert len(found["residuals"]) == 12
-    shown = rps("identify", "frame.yaml", "release.csv", "rocking", "--from", "0.001").stdout
+    shown = rps(
+        "identify", "frame.yaml", "release.csv", "rocking", "--from", "0.001"
+    ).stdout
     assert "residuals are" in shown
     assert "--set podium.impact.loss=0.6" in shown
 
 
-def test_the_period_of_a_pull(workplace: Path, rps: Invoke, rps_json: Callable[..., Any]) -> None:
+def test_the_period_of_a_pull(
+    workplace: Path, rps: Invoke, rps_json: Callable[..., Any]
+) -> None:
     shake = ("--record", "pulse:sine?amplitude=0.02g&period=0.3&dt=0.005", "--figures", "none",
              "--set", "analysis.free_vibration=8")  # fmt: skip
     rps("timehistory", "small.yaml", *shake, "-o", "r")
@@ -80,7 +88,9 @@ def test_the_period_of_a_pull(workplace: Path, rps: Invoke, rps_json: Callable[.
     assert by_name["damping"]["value"] == pytest.approx(0.05, rel=0.02)
 
 
-def test_a_longer_period_tells_how_ends_bear(workplace: Path, rps_json: Callable[..., Any]) -> None:
+def test_a_longer_period_tells_how_ends_bear(
+    workplace: Path, rps_json: Callable[..., Any]
+) -> None:
     """Three storeys of the paper at r = 1.2: 63.4 MN/m and 47 um, from another derivation."""
     masses = ("[200000, 200000, 150000]", "20 t")
     write_case("paper.yaml", masses, ("curvature_ratio: 0.5", "curvature_ratio: 0"))
@@ -110,14 +120,39 @@ def test_a_longer_period_tells_how_ends_bear(workplace: Path, rps_json: Callable
         (("rocking",), "", 3, "no column `time [s]`"),
         (("ambient",), "time [s],floor_acceleration [g]\n", 2, "no period before uplift"),
         (("rocking",), "time [s],rotation [mrad]\n", 4, "four are needed"),
-        (("rocking",), "time [s],rotation [rad]\n", 4, "2 rad is beyond the critical one of"),
-        (("rocking",), "time [s],rotation [rad]\n0,0\n1,nan\n", 3, "csv:3: column rotation: nan"),
-        (("rocking",), SLOW, 4, "no structure of this kind rocks in this way: the swings of"),
-        (("rocking", "--from", "9"), "time [s],rotation [rad]\n", 2, "between --from and --to"),
+        (
+            ("rocking",),
+            "time [s],rotation [rad]\n",
+            4,
+            "2 rad is beyond the critical one of",
+        ),
+        (
+            ("rocking",),
+            "time [s],rotation [rad]\n0,0\n1,nan\n",
+            3,
+            "csv:3: column rotation: nan",
+        ),
+        (
+            ("rocking",),
+            SLOW,
+            4,
+            "no structure of this kind rocks in this way: the swings of",
+        ),
+        (
+            ("rocking", "--from", "9"),
+            "time [s],rotation [rad]\n",
+            2,
+            "between --from and --to",
+        ),
     ],
 )
 def test_refusals_say_what_to_do(
-    workplace: Path, rps: Invoke, words: tuple[str, ...], text: str, code: int, reason: str
+    workplace: Path,
+    rps: Invoke,
+    words: tuple[str, ...],
+    text: str,
+    code: int,
+    reason: str,
 ) -> None:
     (workplace / "frame.yaml").write_text(FRAME, encoding="utf-8")
     if text.count("\n") == 1:

@@ -27,7 +27,9 @@ def test_starters_are_a_case_and_a_study(rps: Invoke) -> None:
     rps("init", says="case.yaml")
     rps("check", "case.yaml")
     rps("init", "--study")
-    assert "30" in rps("sweep", "study.yaml", "--dry-run").stdout  # 3 shapes x 5 motions x 2 scales
+    assert (
+        "30" in rps("sweep", "study.yaml", "--dry-run").stdout
+    )  # 3 shapes x 5 motions x 2 scales
 
 
 def test_init_overwrites_nothing(rps: Invoke, rps_json: InvokeJson) -> None:
@@ -67,7 +69,11 @@ def test_studies_keep_their_schema(rps: Invoke) -> None:
     validator = jsonschema.Draft202012Validator(schema)
     studies = sorted((ROOT / "cases").rglob("*.yaml"))
     contents = [read_yaml(read_text(file), file.name).content for file in studies]
-    studied = [content for content in contents if "base" in content and "variables" not in content]
+    studied = [
+        content
+        for content in contents
+        if "base" in content and "variables" not in content
+    ]
     assert len(studied) > 5
     for content in studied:
         validator.validate(content)
@@ -104,7 +110,10 @@ def test_a_case_and_a_study_are_told_apart(rps: Invoke) -> None:
         ("superstructure.stiffness", ["N/m"]),
         ("friction_demand", ["friction demand |F|/N", "limits.friction_demand"]),
         ("p_ext", ["frequency parameter"]),
-        ("demand", ["demand, a report of studies", "its bilinear summary", "option series"]),
+        (
+            "demand",
+            ["demand, a report of studies", "its bilinear summary", "option series"],
+        ),
         ("uplifts and comes back", ["survived", "uplift, and no overturning"]),
         ("met, not shown", ["too few to exclude"]),
         ("base shear over uplift with devices", ["uplift_shear_ratio, a result"]),
@@ -119,7 +128,10 @@ def test_what_a_word_means(rps: Invoke, word: str, said: list[str]) -> None:
 
 
 def test_meanings_are_one_line(rps_json: InvokeJson) -> None:
-    said = [*rps_json("explain", "of")["keys"], *rps_json("explain", "inertia_ratio_axial")["keys"]]
+    said = [
+        *rps_json("explain", "of")["keys"],
+        *rps_json("explain", "inertia_ratio_axial")["keys"],
+    ]
     assert not any("\n" in item["meaning"] for item in said)
 
 
@@ -139,7 +151,9 @@ def completed(rps: Invoke, *words: str) -> list[str]:
         "COMP_WORDS": " ".join(["rps", *words]),
         "COMP_CWORD": str(len(words)),
     }
-    return str(rps(env={**os.environ, **environment}, prog_name="rps").stdout).splitlines()
+    return str(
+        rps(env={**os.environ, **environment}, prog_name="rps").stdout
+    ).splitlines()
 
 
 @pytest.mark.parametrize(
@@ -171,7 +185,9 @@ def test_the_lines_of_a_shell(rps: Invoke, shell: str) -> None:
 def test_bash_completes_by_them(shell: Callable[..., Any], tmp_path: Path) -> None:
     # The shell asks the program itself, which is no function then.
     rps = tmp_path / "rps"
-    rps.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m rpscli "$@"\n', encoding="utf-8")
+    rps.write_text(
+        f'#!/bin/sh\nexec "{sys.executable}" -m rpscli "$@"\n', encoding="utf-8"
+    )
     rps.chmod(0o755)
     lines = f"""
 eval "$(rps completion bash)"
@@ -186,14 +202,18 @@ def test_options_inside_reports_are_explained(rps: Invoke, rps_json: InvokeJson)
     (option,) = rps_json("explain", "modelling")["options"]
     assert option["key"] == "dispersion.modelling"
     assert "of the reports fragility, risk" in rps("explain", "dispersion").stdout
-    limits = [o for o in rps_json("explain", "risk")["options"] if o["key"].startswith("limits")]
+    limits = [
+        o for o in rps_json("explain", "risk")["options"] if o["key"].startswith("limits")
+    ]
     assert [o["key"] for o in limits] == ["limits"]
     said_once = rps("explain", "share").stdout
     assert said_once.count("share of the records that may exceed") == 1
     assert "likewise" in said_once
 
 
-def test_every_example_is_written_with_what_it_names(rps: Invoke, rps_json: InvokeJson) -> None:
+def test_every_example_is_written_with_what_it_names(
+    rps: Invoke, rps_json: InvokeJson
+) -> None:
     names = rps_json("init", "--example")["examples"]
     files = sorted((ROOT / "cases").rglob("*.yaml"))
     assert sorted(names) == sorted(
@@ -211,12 +231,18 @@ def test_every_example_is_written_with_what_it_names(rps: Invoke, rps_json: Invo
 @pytest.mark.parametrize(
     ("name", "others", "then"),
     [
-        ("rigid_frame", ["records/synthetic_far_field.at2"], "check cases/rigid_frame.yaml"),
+        (
+            "rigid_frame",
+            ["records/synthetic_far_field.at2"],
+            "check cases/rigid_frame.yaml",
+        ),
         ("studies/ida_fragility", ["acceptance.yaml", "studies/hazard_pgv.csv"], "sweep"),
         ("measured_column", [], "check cases/measured_column.yaml"),
     ],
 )
-def test_an_example_goes_on_working(rps: Invoke, name: str, others: list[str], then: str) -> None:
+def test_an_example_goes_on_working(
+    rps: Invoke, name: str, others: list[str], then: str
+) -> None:
     result = rps("init", "--example", name, says=f"next: rps {then}")
     assert all(Path("cases", each).is_file() for each in others)
     if then == "sweep":

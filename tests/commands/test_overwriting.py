@@ -14,7 +14,9 @@ def contents(folder: str) -> dict[str, bytes]:
     return {file.name: file.read_bytes() for file in Path(folder).iterdir()}
 
 
-def test_the_same_run_gives_the_same_bytes_and_an_edited_case_says_so(rps: Invoke) -> None:
+def test_the_same_run_gives_the_same_bytes_and_an_edited_case_says_so(
+    rps: Invoke,
+) -> None:
     rps("modal", "small.yaml", "-o", "out")
     first = contents("out")
     result = rps("modal", "small.yaml", "-o", "out")
@@ -30,7 +32,14 @@ def test_another_command_or_case_is_refused(rps: Invoke) -> None:
     before = contents("out")
     write_case("other.yaml")
     for command, case in (("pushover", "small.yaml"), ("modal", "other.yaml")):
-        rps(command, case, "-o", "out", exit_code=7, says=("`rps modal` on small", "--force"))
+        rps(
+            command,
+            case,
+            "-o",
+            "out",
+            exit_code=7,
+            says=("`rps modal` on small", "--force"),
+        )
         assert contents("out") == before
     rps("pushover", "small.yaml", "-o", "out", "--force")
     assert json.loads(Path("out/run.json").read_bytes())["command"] == "pushover"
@@ -46,7 +55,11 @@ def test_strange_files_are_refused_unless_nothing_touches_them(rps: Invoke) -> N
 
 
 def test_a_case_from_a_pipe_is_known_by_its_text(rps: Invoke) -> None:
-    for text, exit_code in ((SMALL_CASE, 0), (SMALL_CASE, 0), (SMALL_CASE + "# other", 7)):
+    for text, exit_code in (
+        (SMALL_CASE, 0),
+        (SMALL_CASE, 0),
+        (SMALL_CASE + "# other", 7),
+    ):
         rps("modal", "-", "-o", "out", input=text, exit_code=exit_code)
 
 

@@ -79,9 +79,13 @@ def forgotten() -> Iterator[None]:
 @pytest.fixture
 def example(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, forgotten: None) -> None:
     """The example, as its own `pyproject.toml` installs it."""
-    project = tomllib.loads((EXAMPLE / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    project = tomllib.loads((EXAMPLE / "pyproject.toml").read_text(encoding="utf-8"))[
+        "project"
+    ]
     groups = project["entry-points"].items()
-    lines = (f"[{g}]\n" + "".join(f"{k} = {v}\n" for k, v in e.items()) for g, e in groups)
+    lines = (
+        f"[{g}]\n" + "".join(f"{k} = {v}\n" for k, v in e.items()) for g, e in groups
+    )
     as_installed(tmp_path / "site", project["name"], "".join(lines))
     monkeypatch.syspath_prepend(tmp_path / "site")
     monkeypatch.syspath_prepend(EXAMPLE)
@@ -101,7 +105,9 @@ def test_a_format(example: None, tmp_path: Path) -> None:
     assert (motion.format, motion.dt) == ("TIDY", 0.01)
     assert motion.acceleration.tolist() == [1.0, -3.0, 0.5]
     file.write_text("TIDY dt=0.01 unit=cm/s2\nhundred\n", encoding="utf-8")
-    with pytest.raises(RecordError, match=r"one\.tidy: could not convert.*; write one number"):
+    with pytest.raises(
+        RecordError, match=r"one\.tidy: could not convert.*; write one number"
+    ):
         rpscli.load_record(str(file))
 
 
@@ -112,7 +118,9 @@ def test_a_measure(example: None) -> None:
     spectrum = rpscli.response_spectrum(scaled, periods).pseudo_acceleration
     assert np.trapezoid(spectrum, periods) == pytest.approx(2.0, rel=1e-12)
     assert scale_to_of("ASI=150 cm/s").value == 1.5
-    with pytest.raises(ValueError, match="belongs to measures such as Sa, AvgSa, FIV3; ASI has"):
+    with pytest.raises(
+        ValueError, match="belongs to measures such as Sa, AvgSa, FIV3; ASI has"
+    ):
         scale_to_of("ASI(1 s)=150 cm/s")
     with pytest.raises(ValueError, match="ASII is not a measure; did you mean ASI"):
         scale_to_of("ASII=1")
@@ -167,11 +175,15 @@ def test_what_is_installed_is_listed(example: None, rps_json: InvokeJson) -> Non
 
 
 OIL = "{kind: oil, closed_coefficient: 2 MN s/m, relief_force: 300 kN, open_share: 0.1}"
-CRUSHING = "{law: crushing, slow_restitution: 0.95, fast_restitution: 0.7, usual_rate: 0.3}"
+CRUSHING = (
+    "{law: crushing, slow_restitution: 0.95, fast_restitution: 0.7, usual_rate: 0.3}"
+)
 WITH_LAWS = ("--set", f"podium.devices=[{OIL}]", "--set", f"podium.impact={CRUSHING}")
 
 
-def test_laws_in_a_case(example: None, rps: Invoke, rps_json: InvokeJson, workplace: Path) -> None:
+def test_laws_in_a_case(
+    example: None, rps: Invoke, rps_json: InvokeJson, workplace: Path
+) -> None:
     found = rps_json("timehistory", "small.yaml", *WITH_LAWS, "-o", "here")
     (damper,) = found["devices"]
     assert damper["kind"] == "oil"
@@ -186,15 +198,26 @@ def test_laws_in_a_case(example: None, rps: Invoke, rps_json: InvokeJson, workpl
     assert "relief_force" in str(schema_of("case"))
     refused = rps("export", "small.yaml", "mujoco", *WITH_LAWS, exit_code=2)
     assert "podium.devices is not exported" in refused.stderr
-    rps("export", "small.yaml", "opensees", *WITH_LAWS[2:], exit_code=2, says="podium.impact")
+    rps(
+        "export",
+        "small.yaml",
+        "opensees",
+        *WITH_LAWS[2:],
+        exit_code=2,
+        says="podium.impact",
+    )
 
 
-def test_constants_of_laws_are_axes(example: None, rps_json: InvokeJson, workplace: Path) -> None:
+def test_constants_of_laws_are_axes(
+    example: None, rps_json: InvokeJson, workplace: Path
+) -> None:
     devices = f"  devices: [{OIL}]\n  impact: {CRUSHING}\nrecord:"
     write_case("laws.yaml", ("record:", devices))
     vary = "vary: [{podium.devices.0.relief_force: [200 kN, 400 kN]},"
     vary += " {podium.impact.fast_restitution: [0.6, 0.9]}]\n"
-    study = STUDY.replace("small.yaml", "laws.yaml").replace("ASI, values: [1", "PGA, values: [3")
+    study = STUDY.replace("small.yaml", "laws.yaml").replace(
+        "ASI, values: [1", "PGA, values: [3"
+    )
     study = study.split("reports")[0]
     (workplace / "study.yaml").write_text(study + vary, encoding="utf-8")
     rps_json("sweep", "study.yaml", "-o", "here")
@@ -208,28 +231,45 @@ def test_constants_of_laws_are_axes(example: None, rps_json: InvokeJson, workpla
 @pytest.mark.parametrize(
     ("given", "said"),
     [
-        (OIL.replace("300 kN", "3 m"), r"relief_force = '3 m' is a length, but must be a force"),
+        (
+            OIL.replace("300 kN", "3 m"),
+            r"relief_force = '3 m' is a length, but must be a force",
+        ),
         (OIL.replace("0.1", "2"), r"open_share = 2 must be >= 0 and <= 1 \(of c\)"),
         (OIL.replace(", open_share: 0.1", ""), "open_share is missing: of oil"),
         (OIL.replace("}", ", gap: 1}"), "gap is not a key of kind: oil, which has"),
-        (OIL.replace("open_share", "open_shar"), "did you mean podium.devices.0.open_share"),
+        (
+            OIL.replace("open_share", "open_shar"),
+            "did you mean podium.devices.0.open_share",
+        ),
         (OIL.replace("oil", "oill"), "must be viscous, .* or oil; did you mean oil"),
-        ("{kind: viscous, relief_force: 1}", "relief_force is not a key .*known here: kind"),
+        (
+            "{kind: viscous, relief_force: 1}",
+            "relief_force is not a key .*known here: kind",
+        ),
     ],
 )
-def test_constants_are_checked(example: None, workplace: Path, given: str, said: str) -> None:
-    rpscli.load_case("small.yaml", [f"podium.devices=[{OIL}]"])  # its keys are known from here on
+def test_constants_are_checked(
+    example: None, workplace: Path, given: str, said: str
+) -> None:
+    rpscli.load_case(
+        "small.yaml", [f"podium.devices=[{OIL}]"]
+    )  # its keys are known from here on
     with pytest.raises(CaseError, match=said):
         rpscli.load_case("small.yaml", [f"podium.devices=[{given}]"])
 
 
-def test_what_is_broken_is_told_and_stays_alone(broken: None, rps: Invoke, workplace: Path) -> None:
+def test_what_is_broken_is_told_and_stays_alone(
+    broken: None, rps: Invoke, workplace: Path
+) -> None:
     motion = rpscli.load_record("pulse:sine?amplitude=0.3g&period=0.5")
     assert motion.scaled_to("PGV", 1.0).npts == motion.npts  # ours stays ours
     named = r"XYZ of broken-plugins 1\.0 \(no_such_module:X\): ModuleNotFoundError"
     with pytest.raises(PluginError, match=named):
         motion.scaled_to("XYZ", 1.0)
-    with pytest.raises(PluginError, match=r"flat of broken-plugins .* is 9.80665, and must be a f"):
+    with pytest.raises(
+        PluginError, match=r"flat of broken-plugins .* is 9.80665, and must be a f"
+    ):
         load_target("flat:?a=1")
     with pytest.raises(PluginError, match=r"steep of broken-plugins .*: TypeError"):
         load_target("steep:?a=1")
@@ -325,7 +365,9 @@ LYING = {
 @pytest.fixture
 def liars(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, forgotten: None) -> None:
     """A package that gives what it should not, under names that it should not have either."""
-    groups = {kind: {name: f"liars:{name}" for name in names} for kind, names in LYING.items()}
+    groups = {
+        kind: {name: f"liars:{name}" for name in names} for kind, names in LYING.items()
+    }
     groups["figures"] |= {"../x": "liars:writes", "png": "liars:writes"}
     groups["dampers"] = {name: f"liars:{name}" for name in ("sound", *LAWS)}
     groups["impact_laws"] = {"bounces": "liars:bounces"}
@@ -337,30 +379,52 @@ def liars(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, forgotten: None) -> N
     monkeypatch.delitem(sys.modules, "liars", raising=False)
 
 
-def test_what_lies_is_named(liars: None, figures: None, rps: Invoke, workplace: Path) -> None:
+def test_what_lies_is_named(
+    liars: None, figures: None, rps: Invoke, workplace: Path
+) -> None:
     """Wrong values, names and ends of the process are faults of the package, and told as such."""
     motion = rpscli.load_record("pulse:sine?amplitude=0.3g&period=0.5")
     for name in LYING["measures"]:
-        with pytest.raises(PluginError, match=f"{name} of liars 1.0 .*(finite number|SystemExit)"):
+        with pytest.raises(
+            PluginError, match=f"{name} of liars 1.0 .*(finite number|SystemExit)"
+        ):
             motion.scaled_to(name, 1.0)
     for name in ("target", "quits"):
-        with pytest.raises(PluginError, match=f"{name} of liars 1.0 .*(TargetSpectrum|bye)"):
+        with pytest.raises(
+            PluginError, match=f"{name} of liars 1.0 .*(TargetSpectrum|bye)"
+        ):
             load_target(f"{name}:?")
     for name in ("short", "holed"):
-        with pytest.raises(PluginError, match=f"{name} of liars 1.0 .*must be finite, a number"):
+        with pytest.raises(
+            PluginError, match=f"{name} of liars 1.0 .*must be finite, a number"
+        ):
             load_target(f"{name}:?").acceleration(np.array([0.1, 0.2]))
     for name in ("f.form", "b.txt"):
         (workplace / name).write_text(f"{name[0]} 0.1 0.2\n", encoding="utf-8")
         with pytest.raises(PluginError, match=r"of liars 1\.0 .* must be GroundMotion"):
             rpscli.load_record(f"{workplace / name}?units=g&dt=0.1")
-    for name, reason in (("writes", "read-only"), ("garbles", "ValueError"), ("../x", "letters")):
-        words = ("timehistory", "small.yaml", "-o", "r", "--force", "--figures", f"png,{name}")
+    for name, reason in (
+        ("writes", "read-only"),
+        ("garbles", "ValueError"),
+        ("../x", "letters"),
+    ):
+        words = (
+            "timehistory",
+            "small.yaml",
+            "-o",
+            "r",
+            "--force",
+            "--figures",
+            f"png,{name}",
+        )
         result = rps(*words, exit_code=None, says=(f"{name} of liars 1.0", reason))
         assert "internal" not in result.stderr
     for name in LYING["reports"]:
         text = STUDY.replace("worst: {count: 3}", name).replace("ASI", "PGA")
         (workplace / "study.yaml").write_text(text, encoding="utf-8")
-        result = rps("sweep", "study.yaml", "-o", "s", exit_code=None, says=f"{name} of liars 1.0")
+        result = rps(
+            "sweep", "study.yaml", "-o", "s", exit_code=None, says=f"{name} of liars 1.0"
+        )
         assert "internal" not in result.stderr
     assert not [*workplace.parent.glob("x.*"), *workplace.rglob("x.*")]
     listed = rps("explain", "plugins").stdout
@@ -382,11 +446,15 @@ def test_laws_that_lie_are_named(liars: None, workplace: Path) -> None:
         rpscli.load_case("small.yaml", ["podium.impact=bounces"])
 
 
-def test_stored_points_know_the_file_of_a_law(liars: None, tmp_path: Path, workplace: Path) -> None:
+def test_stored_points_know_the_file_of_a_law(
+    liars: None, tmp_path: Path, workplace: Path
+) -> None:
     case = rpscli.load_case("small.yaml", ["podium.devices=[{kind: sound, c_own: 1000}]"])
     before = System.of_case(case).digest
     assert System.of_case(case).digest == before
-    (tmp_path / "site" / "liars.py").write_text(f"{LIARS}# another law\n", encoding="utf-8")
+    (tmp_path / "site" / "liars.py").write_text(
+        f"{LIARS}# another law\n", encoding="utf-8"
+    )
     assert System.of_case(case).digest != before
 
 
@@ -396,12 +464,16 @@ def test_nobody_is_asked_for_names_of_ours(
     entry_points = importlib.metadata.entry_points
 
     def asked(**given: str) -> Any:
-        assert not given.get("group", "").startswith("rpscli"), "other packages were looked for"
+        assert not given.get("group", "").startswith("rpscli"), (
+            "other packages were looked for"
+        )
         return entry_points(**given)  # of numba
 
     monkeypatch.setattr("importlib.metadata.entry_points", asked)
     case = rpscli.load_case(workplace / "small.yaml")
-    motion = rpscli.load_record("pulse:sine?amplitude=0.3g&period=0.5").scaled_to("PGA", 1.0)
+    motion = rpscli.load_record("pulse:sine?amplitude=0.3g&period=0.5").scaled_to(
+        "PGA", 1.0
+    )
     rpscli.demand(case.structure, motion)
     text = STUDY.replace("ASI", "Housner").replace("worst: {count: 3}", "overturning")
     (workplace / "study.yaml").write_text(text, encoding="utf-8")
@@ -418,13 +490,17 @@ def test_the_example_is_installed_by_pip(tmp_path: Path, workplace: Path) -> Non
     site = tmp_path / "site"
     install, *lines = of_blocks(EXAMPLE / "README.md")
     shutil.copytree(EXAMPLE, tmp_path / "package")  # where what is built may stay
-    install = install.replace("-e .", f"--no-deps --quiet --target {site} {tmp_path / 'package'}")
+    install = install.replace(
+        "-e .", f"--no-deps --quiet --target {site} {tmp_path / 'package'}"
+    )
     search = os.pathsep.join([str(site), str(ROOT)])
     run_in_shell(install)
     printed = []
     for line in lines:
         words = [sys.executable, "-m", "rpscli", *command(line).words]
-        words = [str(ROOT / word) if word.startswith("cases/") else word for word in words]
+        words = [
+            str(ROOT / word) if word.startswith("cases/") else word for word in words
+        ]
         printed.append(run_in_shell(shlex.join(words), PYTHONPATH=search))
     assert printed[0].count("rps-example 1.0") == 7
     assert "ASI" in printed[1]

@@ -30,7 +30,9 @@ def test_info(rps_json: InvokeJson, rps: Invoke) -> None:
     assert "m/s2 = 0.3000 g" in table
 
 
-def test_a_file_that_states_neither_step_nor_unit(rps: Invoke, rps_json: InvokeJson) -> None:
+def test_a_file_that_states_neither_step_nor_unit(
+    rps: Invoke, rps_json: InvokeJson
+) -> None:
     Path("bare.txt").write_text("0.0\n0.1\n-0.2\n0.05\n", encoding="utf-8")
     rps("record", "info", "bare.txt", exit_code=3)
     document = rps_json("record", "info", "bare.txt", "--dt", "0.02", "--units", "g")
@@ -38,7 +40,9 @@ def test_a_file_that_states_neither_step_nor_unit(rps: Invoke, rps_json: InvokeJ
     assert document["duration"] == pytest.approx(0.06, rel=1e-12)
 
 
-def test_both_components_are_told_drawn_and_written(rps: Invoke, rps_json: InvokeJson) -> None:
+def test_both_components_are_told_drawn_and_written(
+    rps: Invoke, rps_json: InvokeJson
+) -> None:
     """What is written is a pair again; turned by 90 deg, what acted along x acts along y."""
     for name, seed in (("a.txt", 6), ("b.txt", 7)):
         rps("record", "convert", NOISE.replace("seed=5", f"seed={seed}"), "-o", name)
@@ -58,7 +62,9 @@ def test_both_components_are_told_drawn_and_written(rps: Invoke, rps_json: Invok
     pair = load_components(again)
     for values, read in ((along, pair.horizontal), (across, known(pair.y))):
         # AT2 has seven digits of g
-        np.testing.assert_allclose(read.acceleration[: 2 * len(values) : 2], values, atol=2e-6)
+        np.testing.assert_allclose(
+            read.acceleration[: 2 * len(values) : 2], values, atol=2e-6
+        )
     rps("record", "convert", source, "-o", "both.at2", exit_code=2, says="name a folder")
 
 
@@ -101,7 +107,9 @@ def test_a_converted_record_is_the_same_record(
 
 def test_a_scaled_conversion(rps: Invoke) -> None:
     rps("record", "convert", SINE, "--scale", "2", "-o", "twice.at2")
-    assert load_record("twice.at2").pga == pytest.approx(2.0 * load_record(SINE).pga, rel=1e-7)
+    assert load_record("twice.at2").pga == pytest.approx(
+        2.0 * load_record(SINE).pga, rel=1e-7
+    )
 
 
 def test_a_file_is_not_overwritten(rps: Invoke) -> None:
@@ -118,7 +126,16 @@ def test_synth_says_that_nobody_recorded_it(rps: Invoke) -> None:
     rps("record", "synth", "made.at2", exit_code=2, says="convert")
 
 
-SELECT = ("record", "select", "--target", "en1998:?ag=0.2g&soil=B", "--per-event", "1", "-n", "2")
+SELECT = (
+    "record",
+    "select",
+    "--target",
+    "en1998:?ag=0.2g&soil=B",
+    "--per-event",
+    "1",
+    "-n",
+    "2",
+)
 
 
 def test_select(rps_json: InvokeJson, rps: Invoke) -> None:
@@ -130,7 +147,10 @@ def test_select(rps_json: InvokeJson, rps: Invoke) -> None:
     document = rps_json(*SELECT, "pool", "-o", "made/inside", *few)
     assert len(document["motions"]) == 2
     assert (document["component"], document["clamped"]) == ("component", 0)
-    assert [rule["verdict"] for rule in document["requirements"]["rules"]] == ["met", "met"]
+    assert [rule["verdict"] for rule in document["requirements"]["rules"]] == [
+        "met",
+        "met",
+    ]
     assert document["least_ratio"] >= 0.9
     assert document["candidates"] == 4
     assert document["target"]["pgd"] == pytest.approx(0.025 * 0.24 * 9.80665 * 0.5 * 2.0)
@@ -155,7 +175,16 @@ def test_select(rps_json: InvokeJson, rps: Invoke) -> None:
     assert "number of motions >= 3 2 NOT MET" in said
     assert "not met: number of motions, 2; required >= 3" in made.stderr
     by_pgv = rps_json(
-        *SELECT, "pool", "-o", "made/inside", "--scale-by", "PGV", "--pgv", "0.2", "--rules", "none"
+        *SELECT,
+        "pool",
+        "-o",
+        "made/inside",
+        "--scale-by",
+        "PGV",
+        "--pgv",
+        "0.2",
+        "--rules",
+        "none",
     )
     assert by_pgv["mean_pgv"] == pytest.approx(0.2, rel=1e-5)
     assert by_pgv["requirements"] is None
@@ -169,9 +198,13 @@ def test_select_for_a_case(rps_json: InvokeJson, rps: Invoke) -> None:
         rps("record", "synth", synthetic, "-o", f"pool/m{seed}.at2")
     case = Path("case.yaml")
     rps("init", str(case))
-    longest = max(intensity_measures(load_record(s)).d5_95 for s in expand_sources(["pool"]))
+    longest = max(
+        intensity_measures(load_record(s)).d5_95 for s in expand_sources(["pool"])
+    )
     shorter = f"d5_95=..{longest - 0.01} s"
-    document = rps_json(*SELECT, "pool", "--case", str(case), "--rules", "none", "--where", shorter)
+    document = rps_json(
+        *SELECT, "pool", "--case", str(case), "--rules", "none", "--where", shorter
+    )
     assert document["left_out"] == {shorter: {"outside": 1, "not_known": 0}}
     structure = rpscli.load_case(str(case)).structure
     curve = rpscli.pushover(structure, points=2001).curve

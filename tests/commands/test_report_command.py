@@ -44,7 +44,9 @@ def text_of(file: str | Path) -> str:
 
 def compared(text: str) -> int:
     """How many stored results are the same as on a page, which is all."""
-    (found,) = re.findall(r"(\d+) of (\d+) stored results are the same to the last digit", text)
+    (found,) = re.findall(
+        r"(\d+) of (\d+) stored results are the same to the last digit", text
+    )
     assert found[0] == found[1]
     return int(found[0])
 
@@ -71,8 +73,12 @@ def study(workplace: Path) -> str:
     return "study.yaml"
 
 
-def test_a_case_and_its_history_are_on_one_page(rps: Invoke, rps_json: InvokeJson) -> None:
-    document = rps_json("report", "small.yaml", "-o", "out.html", "--set", "limits.drift_ratio=0.9")
+def test_a_case_and_its_history_are_on_one_page(
+    rps: Invoke, rps_json: InvokeJson
+) -> None:
+    document = rps_json(
+        "report", "small.yaml", "-o", "out.html", "--set", "limits.drift_ratio=0.9"
+    )
     assert document["command"] == "report"
     assert document["files"] == ["out.html"]
     text = text_of("out.html")
@@ -93,7 +99,9 @@ def test_a_case_and_its_history_are_on_one_page(rps: Invoke, rps_json: InvokeJso
 
 def test_a_case_without_a_record_ends_with_statics(page: Page) -> None:
     write_case("bare.yaml", ("record:", "# record:"))
-    text = page("bare.yaml", shows=("The case names no ground motion", "Derived quantities"))
+    text = page(
+        "bare.yaml", shows=("The case names no ground motion", "Derived quantities")
+    )
     assert "rps timehistory" not in text
 
 
@@ -108,7 +116,9 @@ def test_a_folder_is_computed_anew_and_compared(rps: Invoke, page: Page) -> None
     assert compared(page("old", shows=(f"--set {slenderness}", "--scale 1.2"))) > 40
 
 
-def test_a_folder_whose_numbers_or_case_have_changed_says_so(rps: Invoke, page: Page) -> None:
+def test_a_folder_whose_numbers_or_case_have_changed_says_so(
+    rps: Invoke, page: Page
+) -> None:
     rps("timehistory", "small.yaml", "-o", "old")
     summary = Path("old/summary.json")
     document = json.loads(summary.read_text(encoding="utf-8"))
@@ -143,16 +153,22 @@ def changed(document: dict[str, Any], path: str, value: object) -> str:
         ("name", "../../x", "name must be that of a file"),
     ],
 )
-def test_what_a_folder_says_is_checked(rps: Invoke, path: str, value: object, said: str) -> None:
+def test_what_a_folder_says_is_checked(
+    rps: Invoke, path: str, value: object, said: str
+) -> None:
     rps("timehistory", "small.yaml", "-o", "old", "--figures", "none")
     run = Path("old/run.json")
-    run.write_text(changed(json.loads(run.read_text("utf-8")), path, value), encoding="utf-8")
+    run.write_text(
+        changed(json.loads(run.read_text("utf-8")), path, value), encoding="utf-8"
+    )
     result = rps("report", "old", "-o", "out.html", exit_code=2)
     assert f"old: holds a run.json of which {said}" in result.stderr
     assert not Path("out.html").exists()
 
 
-@pytest.mark.parametrize("text", ["[1]", "{", "[" * 100_000, '{"max_rotation": ' + "9" * 400 + "}"])
+@pytest.mark.parametrize(
+    "text", ["[1]", "{", "[" * 100_000, '{"max_rotation": ' + "9" * 400 + "}"]
+)
 def test_results_that_cannot_be_compared_are_said(rps: Invoke, text: str) -> None:
     rps("timehistory", "small.yaml", "-o", "old", "--figures", "none")
     Path("old/summary.json").write_text(text, encoding="utf-8")
@@ -171,13 +187,26 @@ def test_the_record_of_the_command_line_is_found_again(rps: Invoke, page: Page) 
 
 
 def test_a_study_is_computed_once(rps: Invoke, study: str, rps_json: InvokeJson) -> None:
-    first = rps("report", study, "-o", "out.html", exit_code=None, says="computed 4 points")
+    first = rps(
+        "report", study, "-o", "out.html", exit_code=None, says="computed 4 points"
+    )
     assert first.exit_code in {0, 10}, first.stderr
     document = rps_json("report", study, "-o", "out.html", exit_code=first.exit_code)
-    assert document["points"] == {"total": 4, "computed": 0, "kept": 4, "failed": 0, "unused": 0}
+    assert document["points"] == {
+        "total": 4,
+        "computed": 0,
+        "kept": 4,
+        "failed": 0,
+        "unused": 0,
+    }
     text = text_of("out.html")
     assert "The first of 2 systems: ρ = 0.5." in text
-    for part in ("Statistics", "synthetic:?pga=0.5g", "at most 0.5 in every record", "rps sweep"):
+    for part in (
+        "Statistics",
+        "synthetic:?pga=0.5g",
+        "at most 0.5 in every record",
+        "rps sweep",
+    ):
         assert part in text
     # The folder of the study holds points that `rps sweep` goes on with, and no files of it.
     rps("sweep", study, "--report-only", "--figures", "none", exit_code=first.exit_code)
@@ -208,10 +237,15 @@ def test_only_an_earlier_page_of_the_same_is_replaced(rps: Invoke) -> None:
         (("design.yaml", "--record", "x.at2"), "a design has records of its own"),
         (("design.yaml", "--fail-on", "uplift"), "limits of its own"),
         (("study.yaml", "--budget"), "--budget is about one history"),
-        (("small.yaml", "--set", "record=null", "--budget"), "--budget needs a ground motion"),
+        (
+            ("small.yaml", "--set", "record=null", "--budget"),
+            "--budget needs a ground motion",
+        ),
     ],
 )
-def test_what_makes_no_page(rps: Invoke, study: str, words: tuple[str, ...], said: str) -> None:
+def test_what_makes_no_page(
+    rps: Invoke, study: str, words: tuple[str, ...], said: str
+) -> None:
     rps("timehistory", "small.yaml", "-o", "old", "--figures", "none")
     rps("timehistory", "small.yaml", "-o", "above/one", "--figures", "none")
     rps("modal", "small.yaml", "-o", "modes", "--figures", "none")
@@ -229,7 +263,9 @@ def test_titles_with_tags_are_harmless(rps: Invoke) -> None:
     assert "<script" not in Path("out.html").read_text(encoding="utf-8")
 
 
-def test_a_stopped_study_goes_on(rps: Invoke, study: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_stopped_study_goes_on(
+    rps: Invoke, study: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     with monkeypatch.context() as patch:
         patch.setattr("rpscli.studies.run", lambda *_: Progress(9, 0, 1, 0, 1.0))
         result = rps("report", study, "-o", "out.html", exit_code=130)
@@ -243,7 +279,9 @@ PULSES = [f"--record=pulse:sine?amplitude={size}g&period=1" for size in (0.2, 0.
 
 def test_several_records_are_on_one_page(rps: Invoke, rps_json: InvokeJson) -> None:
     """Every record, mean and largest: the numbers of the time histories."""
-    document = rps_json("report", "small.yaml", *PULSES, "--scale", "1.1", "-o", "out.html")
+    document = rps_json(
+        "report", "small.yaml", *PULSES, "--scale", "1.1", "-o", "out.html"
+    )
     text = text_of("out.html")
     found = rps_json("timehistory", "small.yaml", *PULSES, "--scale", "1.1", "-o", "set")
     assert document["sets"] == found["sets"]
@@ -260,7 +298,9 @@ def test_several_records_are_on_one_page(rps: Invoke, rps_json: InvokeJson) -> N
     again = text_of("again.html")
     assert compared(again) > 4
     typed = " ".join(f"--record '{pulse.removeprefix('--record=')}'" for pulse in PULSES)
-    assert f"rps timehistory small.yaml {typed} --scale 1.1 rps report set" in unescape(again)
+    assert f"rps timehistory small.yaml {typed} --scale 1.1 rps report set" in unescape(
+        again
+    )
 
 
 def test_what_moves_the_worst_history_stands_on_its_page(
@@ -282,28 +322,62 @@ def test_what_moves_the_worst_history_stands_on_its_page(
 
     # A folder is asked like the case that it came from.
     monkeypatch.setattr("rpscli.commands.budget._records", lambda *_: ())
-    rps("timehistory", "small.yaml", *given[2:], "-o", "old", "--figures", "none", exit_code=10)
+    rps(
+        "timehistory",
+        "small.yaml",
+        *given[2:],
+        "-o",
+        "old",
+        "--figures",
+        "none",
+        exit_code=10,
+    )
     rps("report", "old", "--budget", "-o", "old.html", exit_code=10)
     of_case = rps_json("budget", "small.yaml", *given[2:], "--figures", "none")
     assert of_case["results"][1]["sentences"] in text_of("old.html")
 
 
 def test_values_stand_as_they_were_written(rps: Invoke) -> None:
-    rps("report", "small.yaml", "-o", "out.html", "--set", "superstructure.storey_mass=210 t")
+    rps(
+        "report",
+        "small.yaml",
+        "-o",
+        "out.html",
+        "--set",
+        "superstructure.storey_mass=210 t",
+    )
     assert "superstructure.storey_mass 210 t 210000" in text_of("out.html")
-    rps("timehistory", "small.yaml", "-o", "old", "--set", "superstructure.storey_mass=210 t")
+    rps(
+        "timehistory",
+        "small.yaml",
+        "-o",
+        "old",
+        "--set",
+        "superstructure.storey_mass=210 t",
+    )
     rps("report", "old", "-o", "again.html")
     assert "superstructure.storey_mass 210000" in text_of("again.html")
 
 
 def test_whoever_signs_is_named_or_signs_on_paper(rps: Invoke) -> None:
-    rps("report", "small.yaml", "-o", "out.html", "--project", "17 <b>", "--checker", "C. Hecker")
+    rps(
+        "report",
+        "small.yaml",
+        "-o",
+        "out.html",
+        "--project",
+        "17 <b>",
+        "--checker",
+        "C. Hecker",
+    )
     text = text_of("out.html")
     assert "project 17 &lt;b&gt; made by date, signature: checked by C. Hecker" in text
     assert 'class="signed"' in Path("out.html").read_text(encoding="utf-8")
     own = "document={project: '18', author: A. Uthor, checker: C}"
     rps("report", "small.yaml", "-o", "own.html", "--set", own, "--checker", "D")
-    assert "project 18 made by A. Uthor date, signature: checked by D" in text_of("own.html")
+    assert "project 18 made by A. Uthor date, signature: checked by D" in text_of(
+        "own.html"
+    )
     rps("report", "small.yaml", "-o", "bare.html")
     assert 'class="signed paper"' in Path("bare.html").read_text(encoding="utf-8")
 
@@ -327,7 +401,9 @@ SOFT = ("--set", "podium.impact.factor=0.5")
 
 def test_a_design_has_a_page(rps: Invoke) -> None:
     Path("design.yaml").write_text(DESIGN, encoding="utf-8")
-    result = rps("report", "design.yaml", "-o", "out.html", "--json", *SOFT, exit_code=None)
+    result = rps(
+        "report", "design.yaml", "-o", "out.html", "--json", *SOFT, exit_code=None
+    )
     document = json.loads(result.stdout)
     text = text_of("out.html")
     assert f"Design: {document['designs']['looked_at']} examined" in text

@@ -45,14 +45,18 @@ def test_a_history_and_a_case_say_what_they_are_about() -> None:
     assert len(repr(case)) < LONGEST
     result = KINDS["rolls"]()
     line = repr(result)
-    assert line.startswith(f"TimeHistoryResult(record={result.record.name}, outcome=survived, ")
+    assert line.startswith(
+        f"TimeHistoryResult(record={result.record.name}, outcome=survived, "
+    )
     assert f"rotation_ratio={result.rotation_ratio:.4g}" in line
     table = result._repr_html_()
     assert f"<th>max_base_shear</th><td>{result.max_base_shear:.4g} N</td>" in table
 
 
 def test_names_are_no_tags() -> None:
-    motion = rpscli.GroundMotion(np.array([0.0, 1.0]), 0.1, name="<script>alert(1)</script>")
+    motion = rpscli.GroundMotion(
+        np.array([0.0, 1.0]), 0.1, name="<script>alert(1)</script>"
+    )
     tags = {tag.removeprefix("/") for tag in re.findall("<(.*?)>", motion._repr_html_())}
     assert tags == {"table", "caption", "tr", "th", "td"}
 

@@ -22,11 +22,17 @@ program(sys.argv[1:])
 
 def imported(folder: Path, *arguments: str) -> set[str]:
     """Modules that a command has imported when it ends."""
-    return set(json.loads(python("-c", SCRIPT, *arguments, folder=folder).stderr.splitlines()[-1]))
+    return set(
+        json.loads(
+            python("-c", SCRIPT, *arguments, folder=folder).stderr.splitlines()[-1]
+        )
+    )
 
 
 PICTURES_AND_KERNELS = {"llvmlite", "scipy", "matplotlib"}
-UNITS = "'--set=superstructure.storey_mass=200 t' '--set=podium.bearing.semi_diagonal=150 cm'"
+UNITS = (
+    "'--set=superstructure.storey_mass=200 t' '--set=podium.bearing.semi_diagonal=150 cm'"
+)
 
 
 @pytest.mark.parametrize(
@@ -39,12 +45,17 @@ UNITS = "'--set=superstructure.storey_mass=200 t' '--set=podium.bearing.semi_dia
         ("modal small.yaml", {"llvmlite", "scipy"}),
     ],
 )
-def test_commands_import_what_they_need(workplace: Path, line: str, without: set[str]) -> None:
+def test_commands_import_what_they_need(
+    workplace: Path, line: str, without: set[str]
+) -> None:
     assert not imported(workplace, *shlex.split(line)) & without
 
 
 def test_a_document_of_an_error_needs_no_numpy() -> None:
-    python("-c", "import sys, rpscli.commands.shell.terminal; sys.exit('numpy' in sys.modules)")
+    python(
+        "-c",
+        "import sys, rpscli.commands.shell.terminal; sys.exit('numpy' in sys.modules)",
+    )
 
 
 def test_the_package_itself_imports_nothing() -> None:

@@ -29,7 +29,9 @@ EXAMPLES: list[tuple[str, ...]] = [
 
 
 @pytest.mark.parametrize("command", EXAMPLES, ids=" ".join)
-def test_a_document_is_all_that_json_prints(rps_json: InvokeJson, command: tuple[str, ...]) -> None:
+def test_a_document_is_all_that_json_prints(
+    rps_json: InvokeJson, command: tuple[str, ...]
+) -> None:
     document = rps_json(*command)
     assert document["status"] == "ok"
     assert document["command"] == " ".join(command[:-1])
@@ -38,7 +40,9 @@ def test_a_document_is_all_that_json_prints(rps_json: InvokeJson, command: tuple
 
 
 @pytest.mark.parametrize("command", EXAMPLES[:5], ids=" ".join)
-def test_quiet_leaves_the_data(rps: Invoke, rps_json: InvokeJson, command: tuple[str, ...]) -> None:
+def test_quiet_leaves_the_data(
+    rps: Invoke, rps_json: InvokeJson, command: tuple[str, ...]
+) -> None:
     result = rps(*command, "--quiet")
     assert (result.stdout, result.stderr) == ("", "")
     assert rps_json(*command, "--quiet")["status"] == "ok"
@@ -108,8 +112,12 @@ FAILURES = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize(("line", "kind", "says"), FAILURES, ids=[row[0] for row in FAILURES])
-def test_failures(rps: Invoke, rps_json: InvokeJson, line: str, kind: str, says: str) -> None:
+@pytest.mark.parametrize(
+    ("line", "kind", "says"), FAILURES, ids=[row[0] for row in FAILURES]
+)
+def test_failures(
+    rps: Invoke, rps_json: InvokeJson, line: str, kind: str, says: str
+) -> None:
     command, code = shlex.split(line), 2 if kind == "UsageError" else 3
     result = rps(*command, exit_code=code, says=("error: ", says))
     assert result.stdout == ""
@@ -123,7 +131,9 @@ def test_failures(rps: Invoke, rps_json: InvokeJson, line: str, kind: str, says:
 
 
 def test_every_fault_of_a_case_is_a_line(rps: Invoke) -> None:
-    result = rps("check", "small.yaml", "--set", "podium.columns=0", "--set", "rps=2", exit_code=3)
+    result = rps(
+        "check", "small.yaml", "--set", "podium.columns=0", "--set", "rps=2", exit_code=3
+    )
     lines = result.stderr.splitlines()
     assert len(lines) >= 2
     assert all(line.startswith("error: ") for line in lines)
@@ -149,7 +159,11 @@ def test_an_unreadable_record_leaves_the_derived_quantities(rps_json: InvokeJson
     ],
 )  # fmt: skip
 def test_what_stops_a_command_is_told(
-    rps: Invoke, monkeypatch: pytest.MonkeyPatch, error: BaseException, code: int, says: str
+    rps: Invoke,
+    monkeypatch: pytest.MonkeyPatch,
+    error: BaseException,
+    code: int,
+    says: str,
 ) -> None:
     """A fault of ours as such; what the machine refuses is none."""
 
@@ -166,7 +180,9 @@ def test_what_stops_a_command_is_told(
     assert (found["type"] == "Interrupted") == (code == 130)
     assert not Path("results").exists()
     monkeypatch.setenv("RPS_TRACEBACK", "1")
-    assert ("Traceback" in rps("modal", "small.yaml", exit_code=code).stderr) == (code == 1)
+    assert ("Traceback" in rps("modal", "small.yaml", exit_code=code).stderr) == (
+        code == 1
+    )
 
 
 def test_a_working_folder_that_is_gone(shell: Shell) -> None:
@@ -186,7 +202,9 @@ def test_standard_input(rps: Invoke, rps_json: InvokeJson) -> None:
     document = rps_json("modal", "-", input=SMALL_CASE)
     assert document["case"]["name"] == "stdin"
     assert Path("results/stdin/modal/modes.csv").is_file()
-    result = rps("check", "-", input="rps: 1\nsuperstructure: {storeys: 0}\n", exit_code=3)
+    result = rps(
+        "check", "-", input="rps: 1\nsuperstructure: {storeys: 0}\n", exit_code=3
+    )
     assert "error: <stdin>" in result.stderr
 
 
@@ -196,7 +214,9 @@ def test_no_colours_in_a_pipe(shell: Shell) -> None:
     assert "\x1b" not in result.stdout + result.stderr
 
 
-def test_no_color_is_respected_on_a_terminal(rps: Invoke, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_no_color_is_respected_on_a_terminal(
+    rps: Invoke, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setenv("FORCE_COLOR", "1")
     monkeypatch.setenv("TERM", "xterm-256color")
     assert "\x1b[1m" in rps("check", "small.yaml").stdout
@@ -204,7 +224,9 @@ def test_no_color_is_respected_on_a_terminal(rps: Invoke, monkeypatch: pytest.Mo
     assert "\x1b[3" not in rps("check", "small.yaml").stdout
 
 
-def test_narrow_terminals_break_no_number(rps: Invoke, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_narrow_terminals_break_no_number(
+    rps: Invoke, monkeypatch: pytest.MonkeyPatch
+) -> None:
     numbers = re.findall(r"\d+\.\d+", rps("pushover", "small.yaml").stdout)
     monkeypatch.setenv("COLUMNS", "44")
     narrow = rps("pushover", "small.yaml").stdout
@@ -218,7 +240,14 @@ def test_narrow_terminals_break_no_number(rps: Invoke, monkeypatch: pytest.Monke
 def test_a_reader_that_leaves_is_no_error(shell: Shell) -> None:
     line = "rps {} | true; echo ${{PIPESTATUS[0]}}"
     check = "check small.yaml"
-    for command in (check, f"{check} --json", "schema", "--help", "sweep -h", "--version"):
+    for command in (
+        check,
+        f"{check} --json",
+        "schema",
+        "--help",
+        "sweep -h",
+        "--version",
+    ):
         result = shell(line.format(command))
         assert result.stderr == ""
         assert result.stdout.splitlines()[-1].endswith("0")
@@ -232,7 +261,9 @@ def test_ascii_output_is_no_obstacle(shell: Shell) -> None:
 
 
 def test_every_command_has_a_help(rps: Invoke) -> None:
-    for path in [(name,) for name in COMMANDS] + [("record", name) for name in record.commands]:
+    for path in [(name,) for name in COMMANDS] + [
+        ("record", name) for name in record.commands
+    ]:
         result = rps(*path, "--help")
         assert result.stdout.startswith(f"Usage: program {' '.join(path)}")
 
@@ -242,7 +273,10 @@ def test_every_command_has_a_help(rps: Invoke) -> None:
 def test_a_full_disk_behind_the_output_is_named(shell: Shell, options: str) -> None:
     result = shell(f"rps check small.yaml {options} > /dev/full")
     assert result.returncode == 1
-    assert result.stderr == "error: standard output: cannot be written: No space left on device\n"
+    assert (
+        result.stderr
+        == "error: standard output: cannot be written: No space left on device\n"
+    )
 
 
 def test_no_standard_output_at_all(shell: Shell) -> None:
@@ -293,7 +327,9 @@ class Screen(io.StringIO):
         return True
 
 
-def shown(stream: io.StringIO, terminal: Terminal, monkeypatch: pytest.MonkeyPatch) -> str:
+def shown(
+    stream: io.StringIO, terminal: Terminal, monkeypatch: pytest.MonkeyPatch
+) -> str:
     monkeypatch.setattr("sys.stderr", stream)
     with counted("drawing", terminal) as tell:
         tell(3, 40)
@@ -308,9 +344,13 @@ def test_a_bar_on_a_terminal_one_line_elsewhere(monkeypatch: pytest.MonkeyPatch)
     assert shown(Screen(), Terminal(quiet=True), monkeypatch) == ""
 
 
-def test_many_systems_are_announced_few_are_not(capsys: pytest.CaptureFixture[str]) -> None:
+def test_many_systems_are_announced_few_are_not(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
     for count in (MANY - 1, MANY):
-        assert list(watched("systems examined", Terminal(), range(count))) == list(range(count))
+        assert list(watched("systems examined", Terminal(), range(count))) == list(
+            range(count)
+        )
     assert capsys.readouterr().err == f"{MANY} systems examined\n"
 
 
@@ -319,4 +359,6 @@ def test_a_warning_is_said_once(capsys: pytest.CaptureFixture[str]) -> None:
     terminal.warn(["R is unusual", "e is unusual"])
     terminal.warn(["e is unusual", "contact is lost"])
     said = capsys.readouterr().err.splitlines()
-    assert said == [f"warning: {of}" for of in ("R is unusual", "e is unusual", "contact is lost")]
+    assert said == [
+        f"warning: {of}" for of in ("R is unusual", "e is unusual", "contact is lost")
+    ]

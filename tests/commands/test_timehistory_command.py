@@ -34,10 +34,14 @@ def small_result() -> TimeHistoryResult:
     return time_history(case.structure, load_record(case.record.source), case.analysis)
 
 
-def test_results_say_one_direction_is_not_conservative(rps: Invoke, rps_json: InvokeJson) -> None:
+def test_results_say_one_direction_is_not_conservative(
+    rps: Invoke, rps_json: InvokeJson
+) -> None:
     told = rps_json("timehistory", "small.yaml", "--figures", "none")["note"]
     assert "not conservative" in told
-    assert json.loads((FOLDER / "summary.json").read_text(encoding="utf-8"))["note"] == told
+    assert (
+        json.loads((FOLDER / "summary.json").read_text(encoding="utf-8"))["note"] == told
+    )
     printed = rps("timehistory", "small.yaml", "--figures", "none").stdout
     assert told in " ".join(printed.split())  # the terminal folds it
 
@@ -79,7 +83,9 @@ def test_a_picture_that_fails_is_a_warning(
     assert result.exit_code == 0
     assert f"warning: {reason}" in result.stderr
     assert any(text.startswith(reason) for text in warned)
-    assert {file.name for file in FOLDER.iterdir()} == {*FIGURES, *TABLES} - {"rotation.png"}
+    assert {file.name for file in FOLDER.iterdir()} == {*FIGURES, *TABLES} - {
+        "rotation.png"
+    }
     rps("timehistory", "small.yaml", "-q")
     assert (FOLDER / "rotation.png").exists()
 
@@ -141,7 +147,14 @@ def check_storeys(table: dict[str, list[str]], result: TimeHistoryResult) -> Non
 def test_the_tables_say_what_happened(rps: Invoke) -> None:
     result = rps("timehistory", "small.yaml")
     assert "uplifts and comes back" in result.stdout
-    for text in ("theta_cr", "V_st", "fixed base", "friction demand", "energy input", "shear kN"):
+    for text in (
+        "theta_cr",
+        "V_st",
+        "fixed base",
+        "friction demand",
+        "energy input",
+        "shear kN",
+    ):
         assert text in result.stdout
     assert "limit" not in result.stdout
 
@@ -165,7 +178,9 @@ def test_overturning_is_a_result(rps_json: InvokeJson) -> None:
 )
 def test_fail_on(rps_json: InvokeJson, conditions: list[str]) -> None:
     options = [word for text in conditions for word in ("--fail-on", text)]
-    document = rps_json("timehistory", "small.yaml", "--record", STRONG, *options, exit_code=10)
+    document = rps_json(
+        "timehistory", "small.yaml", "--record", STRONG, *options, exit_code=10
+    )
     assert document["status"] == "ok"
     names = [text.partition("=")[0] for text in conditions]
     assert [row["name"] for row in document["verdicts"]] == names
@@ -185,28 +200,49 @@ def test_limits_of_the_case(rps: Invoke) -> None:
 
 
 def test_a_least_force_is_judged_from_below(rps: Invoke) -> None:
-    refused = rps("timehistory", "small.yaml", "--fail-on", "min_column_force=1", exit_code=2)
-    assert "overturning moment and the shock of impacts" in " ".join(refused.stderr.split())
-    known = ("--set", "podium.plan={length: 8}", "--set", "superstructure.vertical_period=0.1")
+    refused = rps(
+        "timehistory", "small.yaml", "--fail-on", "min_column_force=1", exit_code=2
+    )
+    assert "overturning moment and the shock of impacts" in " ".join(
+        refused.stderr.split()
+    )
+    known = (
+        "--set",
+        "podium.plan={length: 8}",
+        "--set",
+        "superstructure.vertical_period=0.1",
+    )
     words = ("timehistory", "small.yaml", *known, "--fail-on")
     rps(*words, "min_column_force=-1e9")
     result = rps(*words, "min_column_force=1e9", exit_code=10)
     assert "kN is below 1e+06 kN (--fail-on)" in result.stderr
     assert "at least 1e+06 kN" in result.stdout
-    result = rps(*words, "min_column_force=2 MN", exit_code=10, says="MN is below 2 MN (--fail-on)")
+    result = rps(
+        *words, "min_column_force=2 MN", exit_code=10, says="MN is below 2 MN (--fail-on)"
+    )
     assert "at least 2 MN" in result.stdout
 
 
 def test_what_falls_meets_no_limit(rps: Invoke, rps_json: InvokeJson) -> None:
     # Its drifts were small as long as it stood.
-    words = ("timehistory", "small.yaml", "--record", STRONG, "--set", "limits.drift_ratio=0.9")
+    words = (
+        "timehistory",
+        "small.yaml",
+        "--record",
+        STRONG,
+        "--set",
+        "limits.drift_ratio=0.9",
+    )
     result = rps(*words, exit_code=10)
     assert "limit exceeded: overturning" in result.stderr
     assert "limit exceeded: drift_ratio: overturned (limits of the case)" in result.stderr
     alone = rps_json(*words, exit_code=10)["verdicts"]
     twice = ("--record", STRONG.replace("0.9g", "0.91g"))
     (together,) = rps_json(*words, *twice, exit_code=10)["sets"]
-    for verdicts, counted in ((alone, 1), (together["verdicts"], 2)):  # one form of verdicts
+    for verdicts, counted in (
+        (alone, 1),
+        (together["verdicts"], 2),
+    ):  # one form of verdicts
         names = ("name", "value", "exceeded", "counted")
         assert [tuple(each[name] for name in names) for each in verdicts] == [
             ("overturning", 1.0, True, counted),
@@ -227,7 +263,9 @@ def test_an_analysis_that_fails(rps: Invoke) -> None:
 def test_scale_multiplies_the_record(rps_json: InvokeJson) -> None:
     whole = rps_json("timehistory", "small.yaml")
     document = rps_json("timehistory", "small.yaml", "--scale", "-0.25")
-    assert document["record"]["pga"] == pytest.approx(0.25 * whole["record"]["pga"], rel=1e-14)
+    assert document["record"]["pga"] == pytest.approx(
+        0.25 * whole["record"]["pga"], rel=1e-14
+    )
     assert document["record"]["scale"] == -0.25
     # Far below the uplift the building is linear, whatever its sign: g tan(alpha) is 0.15 g.
     assert document["outcome"] == "at_rest"
@@ -258,7 +296,14 @@ def test_an_animation(rps: Invoke, rps_json: InvokeJson) -> None:
     assert {*Path().iterdir()} == before
     document = rps_json(
         *asked,
-        *("--set", "analysis.free_vibration=0.1", "--animate-size", "240", "--animate-to", "0.3"),
+        *(
+            "--set",
+            "analysis.free_vibration=0.1",
+            "--animate-size",
+            "240",
+            "--animate-to",
+            "0.3",
+        ),
     )
     assert "film.gif" in document["files"]
     with Image.open("film.gif") as film:
@@ -267,7 +312,9 @@ def test_an_animation(rps: Invoke, rps_json: InvokeJson) -> None:
         assert film.size[0] == 240
 
 
-def test_the_first_compilation_is_announced(rps: Invoke, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_first_compilation_is_announced(
+    rps: Invoke, monkeypatch: pytest.MonkeyPatch
+) -> None:
     assert "compiling" not in rps("timehistory", "small.yaml").stderr
     monkeypatch.setattr("rpscli.physics.kernels.is_ready", lambda *_: False)
     monkeypatch.setattr("rpscli.analyses.kernels.history._begun", set())
@@ -279,7 +326,12 @@ def test_the_first_compilation_is_announced(rps: Invoke, monkeypatch: pytest.Mon
 
 def test_the_cost_of_a_long_history_is_told_before_it_begins(rps: Invoke) -> None:
     """As many steps as this if it never came to rest, which it does at once."""
-    stiff = ("--set", "superstructure.period=0.0001", "--set", "analysis.free_vibration=auto")
+    stiff = (
+        "--set",
+        "superstructure.period=0.0001",
+        "--set",
+        "analysis.free_vibration=auto",
+    )
     pulse = ("--record", "pulse:half_sine?amplitude=0.01g&period=0.6")
     long = rps("timehistory", "small.yaml", *stiff, *pulse)
     assert "a long history: about" in long.stderr
@@ -293,7 +345,14 @@ def test_a_coefficient_of_friction_is_judged(rps: Invoke, rps_json: InvokeJson) 
     assert document["friction_ratio"] == pytest.approx(document["friction_demand"] / 0.9)
     (own,) = (v for v in document["verdicts"] if v["source"] == "podium.friction")
     assert (own["name"], own["limit"], own["exceeded"]) == ("friction_ratio", 1.0, False)
-    low = rps("timehistory", "small.yaml", "--force", "--set", "podium.friction=0.01", exit_code=10)
+    low = rps(
+        "timehistory",
+        "small.yaml",
+        "--force",
+        "--set",
+        "podium.friction=0.01",
+        exit_code=10,
+    )
     assert "friction_ratio" in low.stderr
     assert "; slides at t = " in low.stdout
 
@@ -310,7 +369,9 @@ def test_an_unusual_scale_is_named(rps_json: InvokeJson) -> None:
 @pytest.mark.parametrize(
     "more", [(), ("--scale", "0.5", "--record", "pulse:sine?amplitude=1&period=1")]
 )
-def test_both_components_are_advised_where_they_can_act(rps: Invoke, more: tuple[str, ...]) -> None:
+def test_both_components_are_advised_where_they_can_act(
+    rps: Invoke, more: tuple[str, ...]
+) -> None:
     words = ("timehistory", "small.yaml", *more, "--record", STRONG)
     assert "write ?both" in rps(*words).stdout
     refused = rps(*words, "--set", "podium.impact.law=rigid").stdout
@@ -329,13 +390,20 @@ def test_both_components_are_advised_where_they_can_act(rps: Invoke, more: tuple
     ],
     ids=["spherical", "plane"],
 )
-def test_pictures_of_both_where_nothing_happens_upright(rps_json: InvokeJson, ends: str) -> None:
+def test_pictures_of_both_where_nothing_happens_upright(
+    rps_json: InvokeJson, ends: str
+) -> None:
     """All are drawn, of losses at impacts, and friction resists with its force at most."""
-    x, y = (f"pulse:sine?amplitude={a}g&period={T}&dt=0.005" for a, T in ((0.3, 0.9), (0.2, 0.7)))
+    x, y = (
+        f"pulse:sine?amplitude={a}g&period={T}&dt=0.005"
+        for a, T in ((0.3, 0.9), (0.2, 0.7))
+    )
     motion = ["--set", f"record={{x: '{x}', y: '{y}'}}"]
     friction = "podium.devices=[{kind: friction, force: 10 kN}]"
     words = ("timehistory", "small.yaml", *motion, "--set", ends, "--set", friction)
-    made = rps_json(*words, "--set", "podium.impact.law=flexible", "--figures", "svg", "-o", "o")
+    made = rps_json(
+        *words, "--set", "podium.impact.law=flexible", "--figures", "svg", "-o", "o"
+    )
     assert not [text for text in made["warnings"] if "not drawn" in text]
     assert Path("o/orbit.svg").exists()
     assert "lost at passes" not in Path("o/energy.svg").read_text("utf-8")

@@ -31,22 +31,42 @@ def test_each_record_leaves_its_own_results(rps: Invoke) -> None:
     rps("timehistory", "small.yaml", "--record", PULSES[0], "--scale", "1.5")
     folders = list(Path("results/small/timehistory").iterdir())
     assert len(folders) == 4
-    ratios = [json.loads((f / "summary.json").read_bytes())["max_rotation"] for f in folders]
+    ratios = [
+        json.loads((f / "summary.json").read_bytes())["max_rotation"] for f in folders
+    ]
     assert len(set(ratios)) >= 3  # the weakest does not uplift
 
 
 def test_a_folder_belongs_to_one_record(rps: Invoke) -> None:
     rps("timehistory", "small.yaml", "--record", PULSES[0], "-o", "out")
     before = Path("out/summary.json").read_bytes()
-    other = rps("timehistory", "small.yaml", "--record", PULSES[1], "-o", "out", exit_code=7)
+    other = rps(
+        "timehistory", "small.yaml", "--record", PULSES[1], "-o", "out", exit_code=7
+    )
     assert f"on small (../small.yaml) under {PULSES[0]}" in other.stderr
     assert Path("out/summary.json").read_bytes() == before
-    scaled = ("timehistory", "small.yaml", "--record", PULSES[0], "--scale", "2", "-o", "out")
+    scaled = (
+        "timehistory",
+        "small.yaml",
+        "--record",
+        PULSES[0],
+        "--scale",
+        "2",
+        "-o",
+        "out",
+    )
     assert "replaces" in rps(*scaled).stderr
 
 
 def test_forces_of_columns_and_dampers_stand_where_the_case_has_them(rps: Invoke) -> None:
-    words = ("timehistory", "small.yaml", *asked(PULSES[1:]), "--figures", "none", "--force")
+    words = (
+        "timehistory",
+        "small.yaml",
+        *asked(PULSES[1:]),
+        "--figures",
+        "none",
+        "--force",
+    )
     heads = ("damper", "axial")
     plain = rps(*words).stdout
     assert not any(head in plain for head in heads)
@@ -67,7 +87,12 @@ def test_several_records_end_with_mean_and_largest(rps_json: InvokeJson) -> None
     histories = document["histories"]
     assert len(histories) == 3
     (together,) = document["sets"]
-    for name in ("rotation_ratio", "max_base_shear", "drift_ratio", "max_floor_acceleration"):
+    for name in (
+        "rotation_ratio",
+        "max_base_shear",
+        "drift_ratio",
+        "max_floor_acceleration",
+    ):
         values = [history[name] for history in histories]
         found = together["demands"][name]
         assert found["mean_of_maxima"] == pytest.approx(np.mean(values), rel=1e-14)
@@ -75,7 +100,9 @@ def test_several_records_end_with_mean_and_largest(rps_json: InvokeJson) -> None
         assert found["median"] == sorted(values)[1]
     # Exactly, by hand: without a success in 3 the limit solves (1 - p)^3 = 0.05.
     assert together["overturned"]["count"] == 0
-    assert together["overturned"]["high"] == pytest.approx(1.0 - 0.05 ** (1 / 3), rel=1e-12)
+    assert together["overturned"]["high"] == pytest.approx(
+        1.0 - 0.05 ** (1 / 3), rel=1e-12
+    )
     assert document["passed"] is True
     assert document["exit_code"] == 0
     alone = rps_json("timehistory", "small.yaml", "--record", PULSES[2])
@@ -85,7 +112,9 @@ def test_several_records_end_with_mean_and_largest(rps_json: InvokeJson) -> None
 def test_the_tables_of_a_set_are_files(rps_json: InvokeJson) -> None:
     document = rps_json("timehistory", "small.yaml", *asked(PULSES), "-o", "out")
     shears = [float(row["max_base_shear [N]"]) for row in csv_rows("records.csv", "out")]
-    assert shears == pytest.approx([h["max_base_shear"] for h in document["histories"]], rel=1e-9)
+    assert shears == pytest.approx(
+        [h["max_base_shear"] for h in document["histories"]], rel=1e-9
+    )
     statistics = {row["quantity [-]"]: row for row in csv_rows("statistics.csv", "out")}
     assert float(statistics["max_base_shear"]["mean_of_maxima [SI]"]) == pytest.approx(
         np.mean(shears), rel=1e-9
@@ -95,29 +124,40 @@ def test_the_tables_of_a_set_are_files(rps_json: InvokeJson) -> None:
 
 
 def test_figures_of_a_set_are_drawn_on_request(rps_json: InvokeJson) -> None:
-    document = rps_json("timehistory", "small.yaml", *asked(PULSES[:2]), "--figures", "svg")
+    document = rps_json(
+        "timehistory", "small.yaml", *asked(PULSES[:2]), "--figures", "svg"
+    )
     assert sum(file.endswith(".svg") for file in document["files"]) == 10
 
 
-def test_an_overturned_history_is_larger_than_any_demand(rps: Invoke, rps_json: InvokeJson) -> None:
+def test_an_overturned_history_is_larger_than_any_demand(
+    rps: Invoke, rps_json: InvokeJson
+) -> None:
     words = ("timehistory", "small.yaml", *asked([PULSES[0], OVERTURNING]))
     document = rps_json(*words)
     (together,) = document["sets"]
     assert together["demands"]["drift_ratio"]["mean_of_maxima"] is None
     assert together["demands"]["drift_ratio"]["largest"] is None
-    assert together["demands"]["drift_ratio"]["median"] == document["histories"][0]["drift_ratio"]
+    assert (
+        together["demands"]["drift_ratio"]["median"]
+        == document["histories"][0]["drift_ratio"]
+    )
     shown = rps(*words).stdout
     rows = {line[:19].strip(): line[19:].split() for line in shown.splitlines()}
     assert "inf" not in shown
     assert {*rows["mean of maxima"]} == {"-"}
-    assert rows["least that stands"] == rows["largest that stands"] != rows["mean of maxima"]
+    assert (
+        rows["least that stands"] == rows["largest that stands"] != rows["mean of maxima"]
+    )
     assert "overturned: 1 of 2" in shown
     assert "mean of maxima is not defined" in shown
 
 
 def test_one_kind_of_warning_is_one_line(rps: Invoke) -> None:
     slides = ("--set", "podium.friction=0.01")
-    warned = rps("timehistory", "small.yaml", *slides, *asked(PULSES), exit_code=10).stderr
+    warned = rps(
+        "timehistory", "small.yaml", *slides, *asked(PULSES), exit_code=10
+    ).stderr
     (line,) = (line for line in warned.splitlines() if "the columns slide" in line)
     assert line.startswith("warning: 3 of 3 histories, such as small, ")
 
@@ -138,12 +178,28 @@ def test_limits_judge_the_set(rps_json: InvokeJson) -> None:
     assert rps_json(*words, "--set", limit, exit_code=10)["passed"] is False
 
 
-def test_a_least_force_judges_the_set_from_below(rps: Invoke, rps_json: InvokeJson) -> None:
-    known = ("--set", "podium.plan={length: 8}", "--set", "superstructure.vertical_period=0.1")
-    words = ("timehistory", "small.yaml", *known, *asked([*PULSES, OVERTURNING]), "--fail-on")
+def test_a_least_force_judges_the_set_from_below(
+    rps: Invoke, rps_json: InvokeJson
+) -> None:
+    known = (
+        "--set",
+        "podium.plan={length: 8}",
+        "--set",
+        "superstructure.vertical_period=0.1",
+    )
+    words = (
+        "timehistory",
+        "small.yaml",
+        *known,
+        *asked([*PULSES, OVERTURNING]),
+        "--fail-on",
+    )
     document = rps_json(*words, "min_column_force=-1e9", exit_code=10)
     (verdict,) = document["sets"][0]["verdicts"]
-    assert (verdict["beyond"]["count"], verdict["value"]) == (1, None)  # the overturned one
+    assert (verdict["beyond"]["count"], verdict["value"]) == (
+        1,
+        None,
+    )  # the overturned one
     forces = [history["min_column_force"] for history in document["histories"][:3]]
     document = rps_json(*words, f"min_column_force={sorted(forces)[1]}", exit_code=10)
     (verdict,) = document["sets"][0]["verdicts"]
@@ -151,11 +207,19 @@ def test_a_least_force_judges_the_set_from_below(rps: Invoke, rps_json: InvokeJs
     assert "overturned" in rps(*words, "min_column_force=-1e9", exit_code=10).stdout
 
 
-def test_several_cases_are_judged_by_one_exit_code(rps: Invoke, rps_json: InvokeJson) -> None:
+def test_several_cases_are_judged_by_one_exit_code(
+    rps: Invoke, rps_json: InvokeJson
+) -> None:
     write_case("strict.yaml", more="limits: {rotation_ratio: 1.0e-6}\n")
     document = rps_json("timehistory", "small.yaml", "strict.yaml", exit_code=10)
-    assert [history["case"]["name"] for history in document["histories"]] == ["small", "strict"]
-    assert [[v["exceeded"] for v in s["verdicts"]] for s in document["sets"]] == [[], [False, True]]
+    assert [history["case"]["name"] for history in document["histories"]] == [
+        "small",
+        "strict",
+    ]
+    assert [[v["exceeded"] for v in s["verdicts"]] for s in document["sets"]] == [
+        [],
+        [False, True],
+    ]
     result = rps("timehistory", "small.yaml", "strict.yaml", exit_code=10)
     assert "limit exceeded: strict: rotation_ratio" in result.stderr
     assert "EXCEEDED" in result.stdout
@@ -167,20 +231,33 @@ def test_everything_is_read_before_anything_is_computed(rps: Invoke) -> None:
     result = rps("timehistory", "small.yaml", "bad.yaml", "worse.yaml", exit_code=3)
     assert "bad.yaml:2" in result.stderr
     assert "worse.yaml:1" in result.stderr
-    rps("timehistory", "small.yaml", *asked([PULSES[0], "pulse:sine?period=1"]), exit_code=3)
+    rps(
+        "timehistory",
+        "small.yaml",
+        *asked([PULSES[0], "pulse:sine?period=1"]),
+        exit_code=3,
+    )
     assert not Path("results").exists()
 
 
 @pytest.mark.parametrize(
     ("target", "measure", "value"),
-    [("PGA=0.4g", "pga", 0.4 * 9.80665), ("pgv=20 cm/s", "pgv", 0.2), ("Arias=0.5", "arias", 0.5)],
+    [
+        ("PGA=0.4g", "pga", 0.4 * 9.80665),
+        ("pgv=20 cm/s", "pgv", 0.2),
+        ("Arias=0.5", "arias", 0.5),
+    ],
 )
 def test_records_are_scaled_to_a_measure(
     rps_json: InvokeJson, target: str, measure: str, value: float
 ) -> None:
     record = "synthetic:?pga=0.1g&seed=1&duration=3&dt=0.01"
-    document = rps_json("timehistory", "small.yaml", "--record", record, "--scale-to", target)
-    info = rps_json("record", "info", record, "--scale", repr(document["record"]["scale"]))
+    document = rps_json(
+        "timehistory", "small.yaml", "--record", record, "--scale-to", target
+    )
+    info = rps_json(
+        "record", "info", record, "--scale", repr(document["record"]["scale"])
+    )
     assert info[measure] == pytest.approx(value, rel=1e-12)
 
 
@@ -188,7 +265,9 @@ def test_a_case_scales_its_record_too(rps_json: InvokeJson) -> None:
     goal = "record.scale_to={measure: PGA, value: 0.2 g}"
     document = rps_json("timehistory", "small.yaml", "--set", goal)
     assert document["record"]["pga"] == pytest.approx(0.2 * 9.80665, rel=1e-12)
-    assert rps_json("check", "small.yaml", "--set", goal)["record"]["scale"] == pytest.approx(2 / 3)
+    assert rps_json("check", "small.yaml", "--set", goal)["record"][
+        "scale"
+    ] == pytest.approx(2 / 3)
     again = rps_json("timehistory", "small.yaml", "--set", goal, "--scale", "1")
     assert again["record"]["scale"] == 1.0
 
@@ -205,7 +284,9 @@ def test_resampled_between_the_samples() -> None:
     rounding = 1e-14  # of times, with slopes of 10 m/s3
     assert coarser.acceleration == pytest.approx(wave.acceleration[::3], abs=rounding)
     assert "is lost" in coarser.warnings[0]
-    assert wave.resampled(0.01).acceleration == pytest.approx(wave.acceleration, abs=rounding)
+    assert wave.resampled(0.01).acceleration == pytest.approx(
+        wave.acceleration, abs=rounding
+    )
 
 
 def test_convert_resamples(rps: Invoke, rps_json: InvokeJson) -> None:

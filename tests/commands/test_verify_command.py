@@ -28,7 +28,9 @@ def test_this_installation_can_be_trusted(rps_json: InvokeJson) -> None:
     assert document["mismatches"] == 0
     assert document["not_answered"] == [*LEFT_OUT]
     asked = [key for key in certified() if key[0] not in LEFT_OUT]
-    assert [(line["group"], line["quantity"]) for line in document["comparisons"]] == asked
+    assert [
+        (line["group"], line["quantity"]) for line in document["comparisons"]
+    ] == asked
     assert document["compared"] == len(asked)
     for line in document["comparisons"]:
         assert line["holds"]
@@ -43,7 +45,9 @@ def test_the_table_has_a_verdict_for_each_number(short: None, rps: Invoke) -> No
     assert "critical rotation [rad]" in result.stdout
 
 
-def test_a_number_that_is_off_ends_with_6(short: None, rps: Invoke, rps_json: InvokeJson) -> None:
+def test_a_number_that_is_off_ends_with_6(
+    short: None, rps: Invoke, rps_json: InvokeJson
+) -> None:
     known = verification.certified()
     known["capacity", "critical rotation"] = ("rad", 12, [0.24738])
     result = rps("verify", exit_code=6)

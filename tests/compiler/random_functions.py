@@ -99,12 +99,18 @@ def statement(r: Random, deep: int, *, looped: bool) -> list[str]:  # noqa: C901
     if kind == "changed":
         return [f"{r.choice(FLOATS)} {r.choice('+-*')}= {number(r, 2)}"]
     if kind == "two":
-        return [f"{r.choice(FLOATS)}, {r.choice(INTS)} = both({number(r, 1)}, {whole(r, 1)})"]
+        return [
+            f"{r.choice(FLOATS)}, {r.choice(INTS)} = both({number(r, 1)}, {whole(r, 1)})"
+        ]
     if kind == "swap":
         return ["a, b = b, a"]
     if kind == "if":
         other = [f"    {line}" for line in block(r, deep - 1, looped=looped)]
-        return [f"if {test(r, 2)}:", *body, *(["else:", *other] if r.random() < 0.5 else [])]
+        return [
+            f"if {test(r, 2)}:",
+            *body,
+            *(["else:", *other] if r.random() < 0.5 else []),
+        ]
     if kind == "for":
         step = r.choice(["", ", 1", ", 2", ", -1"])
         ends = f"{whole(r, 1)}, {whole(r, 1)}" if step else r.choice(["4", "abs(i) % 5"])
@@ -121,7 +127,11 @@ def statement(r: Random, deep: int, *, looped: bool) -> list[str]:  # noqa: C901
 
 def block(r: Random, deep: int, *, looped: bool) -> list[str]:
     """Some statements."""
-    return [line for _ in range(r.randrange(1, 4)) for line in statement(r, deep, looped=looped)]
+    return [
+        line
+        for _ in range(r.randrange(1, 4))
+        for line in statement(r, deep, looped=looped)
+    ]
 
 
 def random_function(r: Random) -> str:

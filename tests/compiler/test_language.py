@@ -21,7 +21,19 @@ from rpscli.compiler.values import NotInLanguage
 from .random_functions import random_function
 from .written import bits, compiled, module_of
 
-CORNERS = (0.0, -0.0, 1.0, -1.5, 2.5, 1e-308, -5e-324, 1e300, math.inf, -math.inf, math.nan)
+CORNERS = (
+    0.0,
+    -0.0,
+    1.0,
+    -1.5,
+    2.5,
+    1e-308,
+    -5e-324,
+    1e300,
+    math.inf,
+    -math.inf,
+    math.nan,
+)
 WHOLE = (0, 1, -1, 7, -7, 3, -3, 1000003)
 
 
@@ -57,7 +69,9 @@ def chained(x: float, y: float) -> float:
 
 
 def chosen(x: float, y: float) -> float:
-    return (x if x > 2.0 * y else y) + (math.sqrt(abs(x)) if x > 0.0 else 1.0 / (1.0 + abs(y)))
+    return (x if x > 2.0 * y else y) + (
+        math.sqrt(abs(x)) if x > 0.0 else 1.0 / (1.0 + abs(y))
+    )
 
 
 def decided(x: float, y: float) -> float:
@@ -68,7 +82,9 @@ def decided(x: float, y: float) -> float:
         found += 2.0
     if not (x > 0.0 and y > 0.0):
         found += 4.0
-    return found + (8.0 if x in (1.0, 2.5) else 0.0) + (16.0 if x not in (1.0, 0.0) else 0.0)
+    return (
+        found + (8.0 if x in (1.0, 2.5) else 0.0) + (16.0 if x not in (1.0, 0.0) else 0.0)
+    )
 
 
 def rounded(x: float, y: float) -> float:
@@ -206,7 +222,14 @@ def mixed(i: int, j: int) -> float:
     k = i if i > j else -j
     bits_of = (i & 6) | (j & 1)
     return (
-        k + abs(i) * 2 + min(i, j, 3) - max(i, j) + bits_of + (i > 0) + int(j / 2 + 0.5) + float(i)
+        k
+        + abs(i) * 2
+        + min(i, j, 3)
+        - max(i, j)
+        + bits_of
+        + (i > 0)
+        + int(j / 2 + 0.5)
+        + float(i)
     )
 
 
@@ -226,7 +249,11 @@ LIBRARY = [
 
 def test_functions_of_the_library(tmp_path: Path) -> None:
     """Python calls the same ones."""
-    values = [*CORNERS, *np.random.default_rng(3).normal(size=200), *np.geomspace(1e-9, 500, 99)]
+    values = [
+        *CORNERS,
+        *np.random.default_rng(3).normal(size=200),
+        *np.geomspace(1e-9, 500, 99),
+    ]
     text = "".join(f"def {name}(x):\n    return math.{name}(x)\n" for name in LIBRARY)
     module = module_of(text, tmp_path)
     for name in LIBRARY:
@@ -239,7 +266,9 @@ def test_functions_of_the_library(tmp_path: Path) -> None:
             assert bits(made(x)) == bits(expected), (name, x)
 
 
-RECORD = np.dtype([("x", float), ("n", np.int64), ("rows", float, (2, 3)), ("k", np.int64, (3,))])
+RECORD = np.dtype(
+    [("x", float), ("n", np.int64), ("rows", float, (2, 3)), ("k", np.int64, (3,))]
+)
 
 
 def through_records(rows: Any, out: Any, first: int) -> None:
@@ -302,7 +331,9 @@ FUNCTIONS = {False: 60, True: 3000}
 def test_random_functions(long: bool, tmp_path: Path) -> None:
     tried = []
 
-    @settings(max_examples=FUNCTIONS[long], deadline=None, database=None, derandomize=not long)
+    @settings(
+        max_examples=FUNCTIONS[long], deadline=None, database=None, derandomize=not long
+    )
     @given(st.integers(0, 2**32))
     def one(seed: int) -> None:
         random = Random(seed)  # noqa: S311 -- no secret

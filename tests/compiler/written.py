@@ -33,7 +33,9 @@ def module_of(text: str, folder: Path) -> ModuleType:
     return module
 
 
-def compiled(function: Callable[..., Any], *given: Any, result: str | None = DOUBLE) -> Entry:
+def compiled(
+    function: Callable[..., Any], *given: Any, result: str | None = DOUBLE
+) -> Entry:
     """A function for arguments like these; `result` is what it returns."""
     kinds = [kind_of_argument(each) for each in given]
     program = Program()

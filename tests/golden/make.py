@@ -52,14 +52,17 @@ reports:
   - lines: {x: podium.bearing.slenderness, y: rotation_ratio, statistic: median}
 """
 SPECTRA = (
-    SMALL.replace("Every report", "Floors") + "whole_histories: true\nreports: [floor_spectra]\n"
+    SMALL.replace("Every report", "Floors")
+    + "whole_histories: true\nreports: [floor_spectra]\n"
 )
 FILES = {
     "every_report.yaml": SMALL + REPORTS,
     "floors.yaml": SPECTRA,
 }
 CASES = [path.stem for path in sorted((ROOT / "cases").glob("*.yaml"))]
-PAPER = [path.stem for path in sorted((ROOT / "cases" / "compdyn2021").glob("[ft]*.yaml"))]
+PAPER = [
+    path.stem for path in sorted((ROOT / "cases" / "compdyn2021").glob("[ft]*.yaml"))
+]
 STUDIES = [
     "both_components", "ensemble", "ida_fragility", "modal_parameters", "overturning_spectrum",
     "product", "pushover_curves", "sampled",
@@ -86,21 +89,39 @@ def runs() -> Iterator[Run]:
         yield Run(f"modal-{case}", ["modal", file])
         yield Run(f"modal-{case}-80", ["modal", file, "--json"], 80)
         yield Run(f"pushover-{case}", ["pushover", file, "--figures", "png,svg"])
-        yield Run(f"pushover-{case}-json", ["pushover", file, "--json", "--figures", "none"])
+        yield Run(
+            f"pushover-{case}-json", ["pushover", file, "--json", "--figures", "none"]
+        )
         yield Run(f"timehistory-{case}", ["timehistory", file])
-        yield Run(f"timehistory-{case}-80", ["timehistory", file, "--figures", "none"], 80)
-        yield Run(f"timehistory-{case}-json", ["timehistory", file, "--figures", "svg", "--json"])
+        yield Run(
+            f"timehistory-{case}-80", ["timehistory", file, "--figures", "none"], 80
+        )
+        yield Run(
+            f"timehistory-{case}-json",
+            ["timehistory", file, "--figures", "svg", "--json"],
+        )
     building = "my_building.yaml"
-    several = ["timehistory", building, "--record", f"{FEMA}/[1-7]/a", "--scale-to", "PGA=0.4g"]
+    several = [
+        "timehistory",
+        building,
+        "--record",
+        f"{FEMA}/[1-7]/a",
+        "--scale-to",
+        "PGA=0.4g",
+    ]
     yield Run("several", several)
     yield Run("several-80", [*several, "--figures", "none"], 80)
     yield Run("several-json", [*several, "--json", "--figures", "none"])
     yield Run(
-        "several-exceeded", [*several, "--fail-on", "rotation_ratio=0.2", "--figures", "none"]
+        "several-exceeded",
+        [*several, "--fail-on", "rotation_ratio=0.2", "--figures", "none"],
     )
     yield Run("two-cases", ["timehistory", "cases/acceptance.yaml", building, "--json"])
     yield Run("vertical", ["timehistory", building, "--record", f"{FEMA}/1/a", "--vertical", f"{FEMA}/1/b"])  # fmt: skip # noqa: E501
-    yield Run("animation", ["timehistory", building, "--figures", "none", "--animate", "film.gif"])
+    yield Run(
+        "animation",
+        ["timehistory", building, "--figures", "none", "--animate", "film.gif"],
+    )
     yield Run("design", ["design", "my_columns.yaml"])
     yield Run("design-80", ["design", "my_columns.yaml", "--figures", "none"], 80)
     yield Run("design-json", ["design", "my_columns.yaml", "--json", "--figures", "none"])
@@ -111,18 +132,35 @@ def runs() -> Iterator[Run]:
         yield Run(f"study-{study}", ["sweep", f"cases/studies/{study}.yaml"])
     yield Run("every-report", ["sweep", "every_report.yaml", "--figures", "png,svg"])
     yield Run("every-report-80", ["sweep", "every_report.yaml", "--figures", "none"], 80)
-    yield Run("every-report-json", ["sweep", "every_report.yaml", "--json", "--figures", "none"])
+    yield Run(
+        "every-report-json", ["sweep", "every_report.yaml", "--json", "--figures", "none"]
+    )
     yield Run("every-report-dry", ["sweep", "every_report.yaml", "--dry-run"])
     yield Run("floors", ["sweep", "floors.yaml"])
-    yield Run("page-case", ["report", building, "--record", f"{FEMA}/2/a", "-o", "page.html"])
-    yield Run("page-devices", ["report", "cases/friction_dampers.yaml", "-o", "page.html"])
+    yield Run(
+        "page-case", ["report", building, "--record", f"{FEMA}/2/a", "-o", "page.html"]
+    )
+    yield Run(
+        "page-devices", ["report", "cases/friction_dampers.yaml", "-o", "page.html"]
+    )
     yield Run("page-study", ["report", "every_report.yaml", "-o", "page.html"])
     yield Run("record-info", ["record", "info", f"{FEMA}/1/b"])
     yield Run("record-info-json", ["record", "info", RECORDS, "--json"])
     yield Run("record-plot", ["record", "plot", "cases/records/synthetic_far_field.at2"])
     yield Run("record-synth", ["record", "synth", RECORDS, "-o", "motion.at2"])
-    yield Run("record-convert", ["record", "convert", RECORDS, "-o", "m.csv", "--resample", "0.01"])
-    select = ["record", "select", f"{FEMA}/*", "--target", "en1998:?ag=0.2g&soil=C", "-n", "7"]
+    yield Run(
+        "record-convert",
+        ["record", "convert", RECORDS, "-o", "m.csv", "--resample", "0.01"],
+    )
+    select = [
+        "record",
+        "select",
+        f"{FEMA}/*",
+        "--target",
+        "en1998:?ag=0.2g&soil=C",
+        "-n",
+        "7",
+    ]
     yield Run("record-select", select)
     yield Run("record-select-json", [*select, "--json"], 80)
     for words in (["--help"], ["init", "--help"], ["schema"], ["schema", "study"]):
@@ -130,7 +168,14 @@ def runs() -> Iterator[Run]:
     yield Run("text-schema-design", ["schema", "design"])
     for command in ("check", "modal", "pushover", "timehistory", "sweep", "design", "report", "verify"):  # fmt: skip # noqa: E501
         yield Run(f"help-{command}", [command, "--help"])
-    for word in ("slenderness", "rotation_ratio", "impact", "period", "overturning", "friction"):
+    for word in (
+        "slenderness",
+        "rotation_ratio",
+        "impact",
+        "period",
+        "overturning",
+        "friction",
+    ):
         yield Run(f"explain-{word}", ["explain", word])
     for name, setting in {
         "unit": "podium.bearing.semi_diagonal=3 kg", "unknown": "podium.bearing.slendernes=1",

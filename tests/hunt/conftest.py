@@ -30,7 +30,9 @@ def _compiled() -> None:
         for worth_lanes in (1, 2):
             request = Request(structure, MotionComponents(record), settings)
             demands([request], worth_lanes=worth_lanes)
-    soft = replace(podium(1), impact_law=ImpactLaw(), contact=Contact("plane", period_ratio=1.2))
+    soft = replace(
+        podium(1), impact_law=ImpactLaw(), contact=Contact("plane", period_ratio=1.2)
+    )
     demands([Request(soft, MotionComponents(record), settings)])
     both = MotionComponents(record, y=record)
     demands([Request(replace(podium(1), impact_law=ImpactLaw()), both, settings)])

@@ -47,14 +47,19 @@ def test_the_design_is_sound() -> None:
 
 @hunted("designs", 6, 1200)
 def test_designs(random: Random) -> str:
-    Path("design.yaml").write_text(mutated(DESIGN, random), encoding="utf-8", errors="replace")
+    Path("design.yaml").write_text(
+        mutated(DESIGN, random), encoding="utf-8", errors="replace"
+    )
     return judged("design", "design.yaml", "--dry-run", places=("design.yaml", ".yaml:"))
 
 
 @shares
 def test_values_of_designs(long: bool) -> None:
     values = [*VALUES, str(HUGE), "[1, 2]", "[2, 1]", "[.nan, 1]", f"[1, {HUGE}]"]
-    sums = ["{podium.bearing.slenderness: 1e308, plus: 1e308}", "{max_rotation: {fractile: 2}}"]
+    sums = [
+        "{podium.bearing.slenderness: 1e308, plus: 1e308}",
+        "{max_rotation: {fractile: 2}}",
+    ]
 
     def trial(random: Random) -> str:
         Path("design.yaml").write_text(DESIGN, encoding="utf-8")
@@ -67,11 +72,20 @@ def test_values_of_designs(long: bool) -> None:
 @pytest.mark.parametrize(
     ("line", "said"),
     [
-        (f"variables: {{podium.bearing.semi_diagonal: [0.8, {HUGE}]}}", "must be two numbers"),
+        (
+            f"variables: {{podium.bearing.semi_diagonal: [0.8, {HUGE}]}}",
+            "must be two numbers",
+        ),
         (f"linked: {{superstructure.storeys: {{plus: {HUGE}}}}}", "must be a linear sum"),
-        ("linked: {superstructure.storeys: {podium.bearing.slenderness: 1e308}}", "up to 1e+15"),
+        (
+            "linked: {superstructure.storeys: {podium.bearing.slenderness: 1e308}}",
+            "up to 1e+15",
+        ),
         (f"scale: [{HUGE}]", "must be a finite number"),
-        ("variables: {podium.bearing.semi_diagonal: [1, 1]}", "or leave the key to the case"),
+        (
+            "variables: {podium.bearing.semi_diagonal: [1, 1]}",
+            "or leave the key to the case",
+        ),
         ("scale: {factor: [1, 2]}", "scale.factor is not a key"),
         ("validate: {records: 3}", "must be a list"),
         (
@@ -82,12 +96,18 @@ def test_values_of_designs(long: bool) -> None:
 )
 def test_slips_in_designs_are_told(line: str, said: str) -> None:
     key = line.split(":", maxsplit=1)[0] + ":"
-    text = "\n".join([*(old for old in DESIGN.splitlines() if not old.startswith(key)), line])
+    text = "\n".join(
+        [*(old for old in DESIGN.splitlines() if not old.startswith(key)), line]
+    )
     with pytest.raises(CaseError, match=re.escape(said)):
         parse_design(text, "design.yaml")
 
 
-STUDY: dict[str, Any] = {"rps": 1, "analysis": "pushover", "base": f"{CASES}/rigid_frame.yaml"}
+STUDY: dict[str, Any] = {
+    "rps": 1,
+    "analysis": "pushover",
+    "base": f"{CASES}/rigid_frame.yaml",
+}
 CIRCLE: list[Any] = []
 CIRCLE.append(CIRCLE)
 
@@ -113,7 +133,9 @@ def test_studies_say_paths_and_refuse_numbers_that_are_none() -> None:
 PLACES = ["x" * 5000, f"new/{'x' * 5000}", "a/" * 3000, "a\0b", "file/x"]
 
 
-@pytest.mark.parametrize("place", PLACES, ids=["name", "path", "depth", "zero byte", "file"])
+@pytest.mark.parametrize(
+    "place", PLACES, ids=["name", "path", "depth", "zero byte", "file"]
+)
 def test_folders_that_cannot_be_are_told_to_python_as_well(place: str) -> None:
     Path("file").touch()
     study = load_study(STUDY)
@@ -149,7 +171,15 @@ def test_films(long: bool) -> None:
         before = {*Path().rglob("*")}
         chosen = random.sample(FILM_OPTIONS, random.choice([1, 1, 2]))
         wishes = [word for option in chosen for word in (option, random.choice(REALS))]
-        arguments = ["--record", record, "--animate", random.choice(FILMS), *wishes, "-o", "out"]
+        arguments = [
+            "--record",
+            record,
+            "--animate",
+            random.choice(FILMS),
+            *wishes,
+            "-o",
+            "out",
+        ]
         result = CliRunner().invoke(
             program, ["timehistory", case, *arguments, "--figures", "none", "--force"]
         )
@@ -160,7 +190,9 @@ def test_films(long: bool) -> None:
             assert result.exit_code in {1, 2}, shown
             assert "error: " in result.stderr, shown
             assert max(map(len, result.stderr.splitlines())) <= LONGEST_LINE, shown
-            assert not [each for each in {*Path().rglob("*")} - before if each.is_file()], shown
+            assert not [
+                each for each in {*Path().rglob("*")} - before if each.is_file()
+            ], shown
         return f"exit {result.exit_code}"
 
     hunt("films", trial, 8, 200 if long else None)
@@ -189,7 +221,9 @@ def test_drawings_of_bearings(random: Random) -> str:
     case, formats = f"{CASES}/rigid_frame.yaml", random.choice(["png", "svg,pdf"])
     end = judged("check", case, "--draw", "--figures", formats, "-o", "drawn", *options)
     if end == "done":
-        assert all(Path("drawn", f"bearing.{each}").is_file() for each in formats.split(","))
+        assert all(
+            Path("drawn", f"bearing.{each}").is_file() for each in formats.split(",")
+        )
     return end
 
 
@@ -225,7 +259,8 @@ def stored(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (folder / "study.yaml").write_text(COMPUTED, encoding="utf-8")
     none = ("--figures", "none", "-q")
     assert (
-        judged("sweep", str(folder / "study.yaml"), "-o", str(folder / "sweep"), *none) == "exit 10"
+        judged("sweep", str(folder / "study.yaml"), "-o", str(folder / "sweep"), *none)
+        == "exit 10"
     )
     source = "pulse:sine?amplitude=0.2g&period=0.8"
     command = ("timehistory", f"{CASES}/six_storey.yaml", "--record", source)
@@ -242,7 +277,14 @@ def test_options_of_reports(stored: Path, long: bool) -> None:
             for key in random.sample(keys, min(random.randrange(4), len(keys)))
             if "." not in key
         )
-        place = ("-o", str(stored / "sweep"), "--figures", "none", "--report-only", "--json")
+        place = (
+            "-o",
+            str(stored / "sweep"),
+            "--figures",
+            "none",
+            "--report-only",
+            "--json",
+        )
         change = f"reports=[{{{kind}: {{{options}}}}}]"
         return judged("sweep", str(stored / "study.yaml"), "--set", change, *place)
 
@@ -262,6 +304,8 @@ def test_pages_of_damaged_results(
         file = folder / random.choice(["run.json", "run.json", "summary.json"])
         before = file.read_text(encoding="utf-8") if file.is_file() else "{}"
         file.write_text(mutated(before, random), encoding="utf-8", errors="replace")
-        return judged("report", str(folder), "-o", "page.html", "--force", codes=PROMISED | {2})
+        return judged(
+            "report", str(folder), "-o", "page.html", "--force", codes=PROMISED | {2}
+        )
 
     hunt("pages of damaged results", trial, 3, 400 if long else None)

@@ -46,9 +46,14 @@ from rpscli.plugins import (
 )
 from rpscli.sweep.store import FILE
 
-pytestmark = [pytest.mark.posix, needs_compiled_kernels]  # trials are timed by its signals
+pytestmark = [
+    pytest.mark.posix,
+    needs_compiled_kernels,
+]  # trials are timed by its signals
 
-DECAY = [0.05 * math.exp(-0.1 * t) * math.cos(4.0 * t) for t in np.arange(0.0, 12.0, 0.02)]
+DECAY = [
+    0.05 * math.exp(-0.1 * t) * math.cos(4.0 * t) for t in np.arange(0.0, 12.0, 0.02)
+]
 TRACES = {
     "rocking": "rotation [rad]",
     "ambient": "floor_acceleration [m/s2]",
@@ -89,8 +94,12 @@ def test_scores(long: bool) -> None:
     text = "\n".join([lines[0], *(f"{line}0.5" for line in lines[1:])])
 
     def trial(random: Random) -> str:
-        Path("answers.csv").write_text(mutated(text, random), encoding="utf-8", errors="replace")
-        return judged("verify", "--score", "answers.csv", "--json", codes=PROMISED | {2, 6})
+        Path("answers.csv").write_text(
+            mutated(text, random), encoding="utf-8", errors="replace"
+        )
+        return judged(
+            "verify", "--score", "answers.csv", "--json", codes=PROMISED | {2, 6}
+        )
 
     hunt("scores", trial, 12, 200 if long else None)
 
@@ -194,7 +203,9 @@ def lying(kind: str, random: Random) -> Any:
     spectrum = {"pgv": given} if random.random() < 0.3 else {"pgv": None}
     items: dict[str, Callable[[], Any]] = {
         "measures": lambda: IntensityMeasure(random.choice(["m/s", given]), gives),
-        "formats": lambda: RecordFormat("liar", (".txt",), random.choice([bool, gives]), gives),
+        "formats": lambda: RecordFormat(
+            "liar", (".txt",), random.choice([bool, gives]), gives
+        ),
         "targets": lambda: random.choice(
             [gives, lambda *told: TargetSpectrum("t", told[1], gives, **spectrum)]
         ),
@@ -208,9 +219,26 @@ def lying(kind: str, random: Random) -> Any:
 
 LIAR = "pulse:sine?amplitude=0.2g&period=0.6&dt=0.01"
 COMMANDS = {
-    "measures": ("timehistory", "base.yaml", "--record", LIAR, "--scale-to", "liar=0.1 m/s"),
+    "measures": (
+        "timehistory",
+        "base.yaml",
+        "--record",
+        LIAR,
+        "--scale-to",
+        "liar=0.1 m/s",
+    ),
     "formats": ("record", "info", "made.txt?units=g&dt=0.01"),
-    "targets": ("record", "select", LIAR, "--target", "liar:?", "-n", "1", "--rules", "none"),
+    "targets": (
+        "record",
+        "select",
+        LIAR,
+        "--target",
+        "liar:?",
+        "-n",
+        "1",
+        "--rules",
+        "none",
+    ),
     "figures": ("modal", "base.yaml", "--figures", "png,liar"),
     "reports": ("sweep", "study.yaml"),
 }
@@ -228,8 +256,12 @@ def test_plugins(long: bool, monkeypatch: pytest.MonkeyPatch) -> None:
         kind = random.choice([*COMMANDS])
 
         output = ("-o", "out", "--force")
-        point = SimpleNamespace(group=f"rpscli.{kind}", name="liar", value="x:y", dist=None)
-        monkeypatch.setattr(registry, "_points", lambda of: {"liar": point} if of == kind else {})
+        point = SimpleNamespace(
+            group=f"rpscli.{kind}", name="liar", value="x:y", dist=None
+        )
+        monkeypatch.setattr(
+            registry, "_points", lambda of: {"liar": point} if of == kind else {}
+        )
         item = cache(lambda: lying(kind, random))
         monkeypatch.setattr(registry, "_loaded", lambda _: item())
         written = {"formats": 0, "reports": 2}.get(kind, 3)
@@ -270,7 +302,9 @@ def damage(data: bytearray, random: Random, kinds: list[str]) -> None:
         digits = [i for i, byte in enumerate(data) if 48 <= byte < 58]
         data[random.choice(digits)] = random.randrange(48, 58)
     elif kind == "noise":
-        data[place : place + random.randrange(1, 600)] = random.randbytes(random.randrange(1, 600))
+        data[place : place + random.randrange(1, 600)] = random.randbytes(
+            random.randrange(1, 600)
+        )
     elif kind == "nothing":
         place = place // 4096 * 4096
         data[place : place + 4096] = bytes(4096)
@@ -300,11 +334,17 @@ def test_damaged_stores(long: bool) -> None:
         Path("copy", FILE).write_bytes(data)
         result = sweep("modal.yaml", "-o", "copy")
         if result.exit_code == 0:
-            assert Path("copy/points.csv").read_bytes() == table, "other numbers without a word"
+            assert Path("copy/points.csv").read_bytes() == table, (
+                "other numbers without a word"
+            )
             return "same bytes"
-        assert result.exit_code == 7, f"exit code {result.exit_code}: {result.stderr[-400:]}"
+        assert result.exit_code == 7, (
+            f"exit code {result.exit_code}: {result.stderr[-400:]}"
+        )
         assert len(result.stderr.splitlines()) == 1, result.stderr[-400:]
-        assert any(way in result.stderr for way in ("--fresh", "-o")), result.stderr[-400:]
+        assert any(way in result.stderr for way in ("--fresh", "-o")), result.stderr[
+            -400:
+        ]
         anew = sweep("modal.yaml", "-o", "copy", "--fresh")
         if anew.exit_code == 7:  # no longer a file that is known to be ours
             assert "name another folder" in anew.stderr, anew.stderr[-400:]
@@ -335,7 +375,9 @@ def test_killed_studies(long: bool) -> None:
                 sweep("study.yaml", "-o", "hasty")
                 os._exit(0)
             time.sleep(random.random() * takes)
-            os.kill(child, random.choice([signal.SIGKILL, signal.SIGKILL, signal.SIGTERM]))
+            os.kill(
+                child, random.choice([signal.SIGKILL, signal.SIGKILL, signal.SIGTERM])
+            )
             os.waitpid(child, 0)
         stored = Path("hasty", FILE).exists()
         last = sweep("study.yaml", "-o", "hasty")

@@ -31,7 +31,16 @@ STUDY_TEXTS = [
 ]
 CASE_KEYS = [".".join(map(str, path)) for path in known_paths(CaseFile)]
 STUDY_KEYS = [".".join(map(str, path)) for path in known_paths(StudyFile)]
-KINDS = ("viscous", "friction", "stop", "tendon", "rolling_resistance", "{a: 1}", "[viscous]", "5")
+KINDS = (
+    "viscous",
+    "friction",
+    "stop",
+    "tendon",
+    "rolling_resistance",
+    "{a: 1}",
+    "[viscous]",
+    "5",
+)
 DEVICE_KEYS = (
     "kind", "coefficient", "exponent", "force", "stiffness", "gap", "restitution", "prestress",
     "area", "yield_force", "lever", "damping", "\\e[31m",
@@ -45,7 +54,9 @@ VALUES = [
 ]  # fmt: skip
 """For any key."""
 
-COLUMN = "# units: g, dt: 0.01\n" + "\n".join(f"{0.01 * (i % 7 - 3):.4f}" for i in range(60))
+COLUMN = "# units: g, dt: 0.01\n" + "\n".join(
+    f"{0.01 * (i % 7 - 3):.4f}" for i in range(60)
+)
 COLUMNS = "Time (s)  Acceleration (m/s2)\n" + "\n".join(
     f"{0.02 * i:.2f}  {0.3 * (i % 5 - 2):.4f}" for i in range(60)
 )
@@ -66,7 +77,9 @@ def test_cases(random: Random) -> str:
     text = mutated(random.choice(CASE_TEXTS), random)
     text += written("case.yaml", text, random)
     command = random.choice(["check", "check", "check", "modal"])
-    options = random.choice([(), ("--json",), ("-q",)]) if command == "check" else ("--json",)
+    options = (
+        random.choice([(), ("--json",), ("-q",)]) if command == "check" else ("--json",)
+    )
     return judged(command, "case.yaml", *options, places=("case.yaml",), text=text)
 
 
@@ -104,7 +117,9 @@ def test_contact(long: bool) -> None:
     """Compliant ends: each kind with sizes, right and wrong, below other laws and devices."""
     sizes = {"period_ratio": ("1.2", "1.01"), "stiffness": ("60 MN/m", "9 kN/mm"),
              "settlement": ("0.05 mm", "5 mm"), "damping": ("0", "0.1")}  # fmt: skip
-    soft = (CASES / "measured_period.yaml").read_text(encoding="utf-8").split("record:")[0]
+    soft = (
+        (CASES / "measured_period.yaml").read_text(encoding="utf-8").split("record:")[0]
+    )
 
     def trial(random: Random) -> str:
         text = random.choice([soft, soft, soft, *CASE_TEXTS])
@@ -112,7 +127,8 @@ def test_contact(long: bool) -> None:
         kind = random.choice([*["plane", "edges"] * len(VALUES), "rigid", *VALUES])
         keys = random.sample([*sizes], random.choice([0, 1, 1, 1, 2, 3]))
         inside = "".join(
-            f", {key}: {random.choice([*VALUES, *sizes[key] * len(VALUES)])}" for key in keys
+            f", {key}: {random.choice([*VALUES, *sizes[key] * len(VALUES)])}"
+            for key in keys
         )
         changes = [f"podium.contact={{kind: {kind}{inside}}}"]
         if random.random() < 0.3:
@@ -170,8 +186,23 @@ LAYOUTS: dict[str, Callable[[], str]] = {
     "rec.txt": lambda: COLUMN,
     "rec.csv": lambda: COLUMNS,
 }
-OPTIONS = ["", "", "", "?dt=0.01", "?units=g", "?dt=0.01&units=g", "?channel=1", "?channel=2"]
-OPTIONS += ["?dt=1E999", "?dt=", "?units=" + "g" * 999, "?channel=" + "7" * 5000, "?step=1"]
+OPTIONS = [
+    "",
+    "",
+    "",
+    "?dt=0.01",
+    "?units=g",
+    "?dt=0.01&units=g",
+    "?channel=1",
+    "?channel=2",
+]
+OPTIONS += [
+    "?dt=1E999",
+    "?dt=",
+    "?units=" + "g" * 999,
+    "?channel=" + "7" * 5000,
+    "?step=1",
+]
 
 
 def judged_record(name: str, text: str, random: Random) -> str:
@@ -194,7 +225,9 @@ def test_records(name: str, long: bool) -> None:
 @shares
 def test_records_of_the_agencies(long: bool, records_folder: Path) -> None:
     files = [
-        path for path in sorted((records_folder / "formats").iterdir()) if path.suffix != ".md"
+        path
+        for path in sorted((records_folder / "formats").iterdir())
+        if path.suffix != ".md"
     ]
     texts = {path.name: path.read_text(encoding="latin-1") for path in files}
 

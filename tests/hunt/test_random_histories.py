@@ -14,7 +14,14 @@ from random import Random
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from paper_structures import FLAT, building, ground, needs_compiled_kernels, podium, yielding
+from paper_structures import (
+    FLAT,
+    building,
+    ground,
+    needs_compiled_kernels,
+    podium,
+    yielding,
+)
 
 from hunt.trials import hunt, hunted, shares
 from rpscli.analyses.kernels.systems import (
@@ -29,7 +36,13 @@ from rpscli.analyses.timehistory import denser_trace, time_history
 from rpscli.analyses.trace import ENERGIES, Trace
 from rpscli.model.bearing import Bearing
 from rpscli.model.contact import Contact
-from rpscli.model.devices import FrictionDamper, RollingResistance, Stop, Tendon, ViscousDamper
+from rpscli.model.devices import (
+    FrictionDamper,
+    RollingResistance,
+    Stop,
+    Tendon,
+    ViscousDamper,
+)
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import Device, PodiumStructure
 from rpscli.model.superstructure import (
@@ -76,7 +89,9 @@ def random_building(random: Random) -> Superstructure | None:
         return None
     masses = np.array([logarithmic(random, 1e5, 4e5) for _ in range(n)])
     stiffnesses = profile_stiffnesses(
-        masses, logarithmic(random, 0.02, 4.0), random.choice(["sine", "uniform", "linear"])
+        masses,
+        logarithmic(random, 0.02, 4.0),
+        random.choice(["sine", "uniform", "linear"]),
     )
     if random.random() < 0.2:
         stiffnesses = stiffnesses * [logarithmic(random, 0.5, 2.0) for _ in range(n)]
@@ -84,20 +99,32 @@ def random_building(random: Random) -> Superstructure | None:
     modes = random.choice([(1, 2), (1, 1), (1, 3)])
     modal = random.random() < 0.2
     return Superstructure(
-        masses, stiffnesses, ModalDamping(ratio) if modal else RayleighDamping(ratio, modes)
+        masses,
+        stiffnesses,
+        ModalDamping(ratio) if modal else RayleighDamping(ratio, modes),
     )
 
 
 def structure(random: Random) -> PodiumStructure:
     slope = logarithmic(random, 0.03, 0.8)
     rho = random.choice([0.0, 0.0, 0.25, 0.5, 0.5, 1.0, random.uniform(0.0, 2.0)])
-    bearing = Bearing(logarithmic(random, 0.2, 10.0), slope, slope * random.uniform(1.0, 4.0), rho)
+    bearing = Bearing(
+        logarithmic(random, 0.2, 10.0), slope, slope * random.uniform(1.0, 4.0), rho
+    )
     law = random.choice(
-        [ImpactLaw("flexible"), ImpactLaw("rigid"), ImpactLaw("value", random.uniform(0.1, 1.0))]
+        [
+            ImpactLaw("flexible"),
+            ImpactLaw("rigid"),
+            ImpactLaw("value", random.uniform(0.1, 1.0)),
+        ]
     )
     columns = logarithmic(random, 1e3, 1e5)
     return PodiumStructure(
-        bearing, columns, columns * logarithmic(random, 0.3, 30), random_building(random), law
+        bearing,
+        columns,
+        columns * logarithmic(random, 0.3, 30),
+        random_building(random),
+        law,
     )
 
 
@@ -113,7 +140,9 @@ def structure_on_a_bed(random: Random) -> PodiumStructure:
     elif way == "settlement":
         sizes[way] = system.bearing.half_width * logarithmic(random, 1e-6, 0.05)
     else:
-        sizes[way] = system.weight / system.bearing.semi_diagonal * logarithmic(random, 3.0, 1e5)
+        sizes[way] = (
+            system.weight / system.bearing.semi_diagonal * logarithmic(random, 3.0, 1e5)
+        )
     damping = random.choice([0.0, 0.03, 0.03, logarithmic(random, 1e-3, 1.0)])
     devices: tuple[Device, ...] = random.choice(
         [(), (), (FrictionDamper(0.3 * random.random() * system.uplift_force),)]
@@ -137,7 +166,9 @@ def device(random: Random, system: PodiumStructure) -> Device:
         ViscousDamper(part * force / 0.3**exponent, exponent),
         FrictionDamper(2.0 * part * force),
         Stop(choice([0.0, 0.02, 0.1]), 20.0 * part * force, choice([0.0, part * force])),
-        Tendon(prestress, 4.0 * part * weight / width, choice([math.inf, 2.0 * prestress])),
+        Tendon(
+            prestress, 4.0 * part * weight / width, choice([math.inf, 2.0 * prestress])
+        ),
         RollingResistance(0.1 * part * width),
     ]
     return choice(kinds)
@@ -182,7 +213,9 @@ def samples(random: Random, peak: float) -> NDArray[np.float64]:
     elif kind == 4:
         shape = np.cumsum(noise.normal(size=count))
     else:
-        shape = noise.normal(size=count) * np.exp(-(((time - count / 2) / (count / 6)) ** 2))
+        shape = noise.normal(size=count) * np.exp(
+            -(((time - count / 2) / (count / 6)) ** 2)
+        )
     return peak * shape / max(float(np.max(np.abs(shape))), 1e-12)
 
 
@@ -196,7 +229,9 @@ def motions(random: Random) -> tuple[GroundMotion, GroundMotion | None]:
     return record, ground(up, dt)
 
 
-def settings(random: Random, system: PodiumStructure, record: GroundMotion) -> TimeHistorySettings:
+def settings(
+    random: Random, system: PodiumStructure, record: GroundMotion
+) -> TimeHistorySettings:
     largest = 0.999 * system.bearing.largest_rotation / system.critical_rotation
     start = 0.0
     if random.random() < 0.15:
@@ -210,7 +245,9 @@ def settings(random: Random, system: PodiumStructure, record: GroundMotion) -> T
         overturning_limit=min(random.uniform(1.0, 2.0), largest),
     )
     return (
-        chosen if left > LONGEST_FREE_VIBRATION else replace(chosen, free_vibration=max(left, 0.0))
+        chosen
+        if left > LONGEST_FREE_VIBRATION
+        else replace(chosen, free_vibration=max(left, 0.0))
     )
 
 
@@ -227,7 +264,11 @@ def residual(result: TimeHistoryResult) -> float:
 
     found = error(result.trace)
     # an excursion may lie between two samples, and be lifted and down again
-    return found if found <= RESIDUAL else error(denser_trace(result, result.record.dt / 100.0))
+    return (
+        found
+        if found <= RESIDUAL
+        else error(denser_trace(result, result.record.dt / 100.0))
+    )
 
 
 def nothing_pushed(motion: MotionComponents, result: TimeHistoryResult) -> bool:
@@ -312,7 +353,9 @@ def judged_history(
     assert here.outcome == there.outcome
     # of pairs the tilt is the size of a vector
     sign = 1.0 if pairs else -1.0
-    if system.bearing.is_spherical and not pairs:  # at rest upright neither side is the first
+    if (
+        system.bearing.is_spherical and not pairs
+    ):  # at rest upright neither side is the first
         apart = here.trace.rotation + there.trace.rotation
         assert np.max(np.abs(apart)) <= 1e-6 * here.max_rotation
         return here.outcome
@@ -334,7 +377,9 @@ def structure_of_a_pair(random: Random) -> PodiumStructure:
     )
     axial = logarithmic(random, 1e-3, 1.0)
     if random.random() < 0.3:
-        system = replace(system, bearing=replace(system.bearing, inertia_ratio_axial=axial))
+        system = replace(
+            system, bearing=replace(system.bearing, inertia_ratio_axial=axial)
+        )
     return replace(perhaps_other_across(random, system), impact_law=law)
 
 
@@ -353,7 +398,9 @@ def smooth_structure_of_a_pair(random: Random) -> PodiumStructure:
     system = structure_on_a_bed(random) if kind == "bed" else structure_of_a_pair(random)
     held = 0.3 * random.random() * system.weight * max(system.bearing.slenderness, 0.05)
     rolling = RollingResistance(0.1 * random.random() * system.bearing.semi_diagonal)
-    friction = random.choice([(FrictionDamper(held),), (rolling,), (FrictionDamper(held), rolling)])
+    friction = random.choice(
+        [(FrictionDamper(held),), (rolling,), (FrictionDamper(held), rolling)]
+    )
     if kind == "rigid":
         return replace(system, devices=friction)
     if kind == "spherical":
@@ -380,7 +427,9 @@ def with_floors_of_its_own(
         above = replace(above, vertical_period=period, vertical_damping=damping)
     if kind != "springs":
         first = system.static_base_shear * logarithmic(random, 0.2, 5.0)
-        above = yielding(above, first, random.choice([0.0, 0.05, random.uniform(0.0, 0.9)]))
+        above = yielding(
+            above, first, random.choice([0.0, 0.05, random.uniform(0.0, 0.9)])
+        )
     across = system.superstructure_y
     if across is not None:
         across = replace(above, stiffnesses=across.stiffnesses)
@@ -448,7 +497,9 @@ def test_friction_that_hardly_slides_takes_few_steps() -> None:
 def test_large_plastic_drifts_take_few_steps() -> None:
     """Rounding of what they take from the base shear had 394,000 of 21,000 steps taken."""
     draw = Random("271702-floors of their own-13")  # noqa: S311 -- no secret
-    system = with_floors_of_its_own(draw, draw.choice([structure, structure, structure_on_a_bed]))
+    system = with_floors_of_its_own(
+        draw, draw.choice([structure, structure, structure_on_a_bed])
+    )
     motion, chosen = shaking(draw, system, pairs=False)
     cut = ground(motion.horizontal.acceleration[:14], motion.horizontal.dt)
     short = replace(chosen, free_vibration=0.0)
@@ -470,7 +521,9 @@ def test_a_pass_that_ends_a_yield_happens_once() -> None:
         if each is not None
     )
     short = replace(chosen, free_vibration=0.0)
-    ended = time_history(system, MotionComponents(x, up, y=y), short, with_fixed_base=False)
+    ended = time_history(
+        system, MotionComponents(x, up, y=y), short, with_fixed_base=False
+    )
     assert (ended.passes or 0) > 0
     assert residual(ended) <= RESIDUAL
 

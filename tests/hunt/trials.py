@@ -68,11 +68,22 @@ def hunt(name: str, trial: Trial, quick: int, long: int | None = None) -> None:
                 draw = Random(f"{seed}-{name}-{number}")  # noqa: S311 -- no secret
                 ends[trial(draw)] += 1
         except (Exception, TooSlow) as error:  # noqa: BLE001 -- it is what is looked for
-            failures.append(f"{name} {number} of seed {seed}: {type(error).__name__}: {error}")
+            failures.append(
+                f"{name} {number} of seed {seed}: {type(error).__name__}: {error}"
+            )
         slowest = max(slowest, time.process_time() - begin)
         if TABLE and (number % EACH == EACH - 1 or number == count - 1):
-            row = {"name": name, "seed": seed, "tried": number + 1, "failed": len(failures)}
-            row |= {"slowest": round(slowest, 1), "ends": dict(ends), "failures": failures}
+            row = {
+                "name": name,
+                "seed": seed,
+                "tried": number + 1,
+                "failed": len(failures),
+            }
+            row |= {
+                "slowest": round(slowest, 1),
+                "ends": dict(ends),
+                "failures": failures,
+            }
             with Path(TABLE).open("a", encoding="utf-8") as file:
                 file.write(json.dumps(row) + "\n")
     assert not failures, f"{len(failures)} of {count}:\n" + "\n".join(failures[:20])
@@ -111,7 +122,10 @@ def time_limit(seconds: float) -> Iterator[None]:
 
 
 def judged(
-    *arguments: str, places: tuple[str, ...] = (), text: str = "", codes: frozenset[int] = PROMISED
+    *arguments: str,
+    places: tuple[str, ...] = (),
+    text: str = "",
+    codes: frozenset[int] = PROMISED,
 ) -> str:
     """Run `rps`; its exit code and messages must be as promised.
 
@@ -130,7 +144,9 @@ def judged(
     return f"exit {result.exit_code}"
 
 
-def _judge_message(result: Result, places: tuple[str, ...], text: str, shown: str) -> None:
+def _judge_message(
+    result: Result, places: tuple[str, ...], text: str, shown: str
+) -> None:
     lines = [line for line in result.stderr.splitlines() if line.startswith("error: ")]
     assert lines, f"no message: {shown}"
     assert len(lines) <= 101, f"{len(lines)} lines: {shown}"
@@ -140,7 +156,9 @@ def _judge_message(result: Result, places: tuple[str, ...], text: str, shown: st
     named = any(place in lines[0] for place in places) or begin in " ".join(text.split())
     assert named or not places, f"no place: {shown}"
     longest = max(lines, key=len)
-    assert len(longest) <= LONGEST_LINE, f"a line of {len(longest)} letters: {longest[:300]}"
+    assert len(longest) <= LONGEST_LINE, (
+        f"a line of {len(longest)} letters: {longest[:300]}"
+    )
     assert all(len(line.split()) >= 5 for line in lines), f"no rule: {shown}"
 
 
@@ -190,10 +208,14 @@ def _scaled_number(text: str, random: Random) -> str:
     return f"{text[: match.start()]}{value:g}{text[match.end() :]}"
 
 
-def _lines(change: Callable[[list[str], int, Random], list[str]]) -> Callable[[str, Random], str]:
+def _lines(
+    change: Callable[[list[str], int, Random], list[str]],
+) -> Callable[[str, Random], str]:
     def damage(text: str, random: Random) -> str:
         lines = text.split("\n")
-        place = random.randrange(min(len(lines), 60) if random.random() < 0.7 else len(lines))
+        place = random.randrange(
+            min(len(lines), 60) if random.random() < 0.7 else len(lines)
+        )
         return "\n".join(change(lines, place, random))
 
     return damage

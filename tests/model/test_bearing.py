@@ -37,22 +37,30 @@ GEOMETRIES = [
 def test_the_printed_digits_are_those_of_the_verification() -> None:
     shown = table(VERIFICATION, "Geometry for `R = 1.5 m`")[1:]
     digits = {str(number) for row in GEOMETRIES for number in row[2 if row[1] else 4 :]}
-    numbers = {number for row in shown for cell in row[2:] for number in cell.split(" / ")}
+    numbers = {
+        number for row in shown for cell in row[2:] for number in cell.split(" / ")
+    }
     assert numbers == {number.removeprefix("0") for number in digits} | {"0", "alpha"}
 
 
 def printed(digits: str, units: float = 0.5) -> object:
     """A printed number, within half of its last digit, or so many of them."""
-    return pytest.approx(float(digits), abs=units * 10.0 ** -len(digits.partition(".")[2]))
+    return pytest.approx(
+        float(digits), abs=units * 10.0 ** -len(digits.partition(".")[2])
+    )
 
 
 @pytest.mark.evidence("geometry of columns", "published")
-@pytest.mark.parametrize(("tan", "rho", "beta", "critical", "displacement", "lift"), GEOMETRIES)
+@pytest.mark.parametrize(
+    ("tan", "rho", "beta", "critical", "displacement", "lift"), GEOMETRIES
+)
 def test_table_of_geometry(
     tan: float, rho: float, beta: str, critical: str, displacement: str, lift: str
 ) -> None:
     bearing = Bearing(1.5, tan, 2.0 * tan, rho)
-    _, u, v = PodiumStructure(bearing, 2e4, 2e5).path(np.array([bearing.critical_rotation]))
+    _, u, v = PodiumStructure(bearing, 2e4, 2e5).path(
+        np.array([bearing.critical_rotation])
+    )
     assert bearing.beta == printed(beta)
     assert bearing.critical_rotation == printed(critical)
     assert u[0] == printed(displacement)
@@ -66,7 +74,9 @@ widenings = st.floats(1.02, 2.9)
 
 @pytest.mark.evidence("geometry of columns", "exact")
 @given(slopes, widenings)
-def test_the_exact_limit_of_overturning_while_rolling(tan_alpha: float, widening: float) -> None:
+def test_the_exact_limit_of_overturning_while_rolling(
+    tan_alpha: float, widening: float
+) -> None:
     rise = tan_alpha * (widening - 1.0)
 
     def excess(rho: float) -> float:
@@ -89,10 +99,14 @@ def test_the_exact_limit_of_overturning_while_rolling(tan_alpha: float, widening
     assert not above.overturns_rolling
     # the first-order value is near, and goes over into it for slender columns
     paper = at.critical_curvature_ratio_of_paper
-    assert paper == pytest.approx(rho_cr, rel=2.0 * (widening * tan_alpha) ** 2 * widening)
+    assert paper == pytest.approx(
+        rho_cr, rel=2.0 * (widening * tan_alpha) ** 2 * widening
+    )
 
 
-@pytest.mark.parametrize(("tan_alpha", "exact"), [(0.10, 0.2525), (0.15, 0.2556), (0.20, 0.2600)])
+@pytest.mark.parametrize(
+    ("tan_alpha", "exact"), [(0.10, 0.2525), (0.15, 0.2556), (0.20, 0.2600)]
+)
 def test_exact_limits_that_the_theory_prints(tan_alpha: float, exact: float) -> None:
     bearing = Bearing(1.5, tan_alpha, 2.0 * tan_alpha, 0.5)
     assert bearing.critical_curvature_ratio == pytest.approx(exact, abs=5e-5)
@@ -122,7 +136,9 @@ def test_an_arc_of_no_width_is_a_flat_end() -> None:
     assert without.critical_rotation == pytest.approx(flat.critical_rotation, rel=1e-15)
     assert without.critical_curvature_ratio == 0.0
     stiffness = PodiumStructure(without, 2e4, 2e5).initial_stiffness
-    assert stiffness == pytest.approx(PodiumStructure(flat, 2e4, 2e5).initial_stiffness, rel=1e-14)
+    assert stiffness == pytest.approx(
+        PodiumStructure(flat, 2e4, 2e5).initial_stiffness, rel=1e-14
+    )
 
 
 @pytest.mark.parametrize(
@@ -135,20 +151,27 @@ def test_an_arc_of_no_width_is_a_flat_end() -> None:
         ({"inertia_ratio": 0.0}, "inertia_ratio = 0.0 must be > 0"),
         ({"curvature_ratio": -0.2}, "curvature_ratio = -0.2 must be >= 0"),
         ({"curvature_ratio": math.nan}, "curvature_ratio = nan must be a finite"),
-        ({"wedge_slenderness": 0.1}, "wedge_slenderness = 0.1 must be >= slenderness = 0.15"),
+        (
+            {"wedge_slenderness": 0.1},
+            "wedge_slenderness = 0.1 must be >= slenderness = 0.15",
+        ),
         ({"wedge_slenderness": math.nan}, "wedge_slenderness = nan must be"),
         ({"curvature_ratio": 0.07}, "curvature_ratio = 0.07 must be >= 0.075"),
         ({"inertia_ratio_axial": 0.0}, "inertia_ratio_axial = 0.0 must be > 0"),
     ],
 )
-def test_shapes_that_cannot_be_built_are_refused(changes: dict[str, float], said: str) -> None:
+def test_shapes_that_cannot_be_built_are_refused(
+    changes: dict[str, float], said: str
+) -> None:
     with pytest.raises(ValueError, match=said):
         replace(Bearing(1.5, 0.15, 0.30, 0.5, 4.0 / 3.0), **changes)
 
 
 @pytest.mark.parametrize("rho", [0.0, 0.08, 0.25, 0.5, 2.0])
 @pytest.mark.parametrize("slenderness", [0.05, 0.15, 0.7])
-def test_the_cap_beam_moves_on_until_the_model_ends(rho: float, slenderness: float) -> None:
+def test_the_cap_beam_moves_on_until_the_model_ends(
+    rho: float, slenderness: float
+) -> None:
     bearing = Bearing(1.5, slenderness, 1.15 * slenderness, rho)
     end = bearing.largest_rotation
     assert bearing.critical_rotation < end
@@ -163,6 +186,12 @@ def test_the_axial_inertia_is_that_of_a_solid_round_column() -> None:
     """I_3 = m b^2/2 of a cylinder of half-width b, over m R^2."""
     arc, flat = Bearing(1.5, 0.15, 0.30, 0.5), Bearing(1.5, 0.15, 0.30, 0.0)
     half_width = arc.half_height * 0.30
-    assert arc.inertia_ratio_axial == pytest.approx(0.5 * (half_width / 1.5) ** 2, rel=1e-14)
-    assert flat.inertia_ratio_axial == pytest.approx(0.5 * math.sin(flat.alpha) ** 2, rel=1e-14)
-    assert Bearing(1.5, 0.15, 0.3, 0.5, inertia_ratio_axial=0.02).inertia_ratio_axial == 0.02
+    assert arc.inertia_ratio_axial == pytest.approx(
+        0.5 * (half_width / 1.5) ** 2, rel=1e-14
+    )
+    assert flat.inertia_ratio_axial == pytest.approx(
+        0.5 * math.sin(flat.alpha) ** 2, rel=1e-14
+    )
+    assert (
+        Bearing(1.5, 0.15, 0.3, 0.5, inertia_ratio_axial=0.02).inertia_ratio_axial == 0.02
+    )

@@ -84,7 +84,9 @@ def test_pressure_on_points_and_lines(
     x = 0.02
     bearing = arcs(radii[0], (radii[1] - radii[0]) * math.sin(x))
     found = design.pressed(bearing, np.array(x), np.array(force))
-    assert [float(value) for value in found] == pytest.approx([largest, *widths], rel=1e-6)
+    assert [float(value) for value in found] == pytest.approx(
+        [largest, *widths], rel=1e-6
+    )
 
 
 @pytest.mark.evidence("forces in columns, friction", "exact")
@@ -94,7 +96,9 @@ def test_an_ellipse_between_a_circle_and_a_line() -> None:
     largest, *_ = ROUND.pressed(arcs(r, 1e-12), np.array(0.1), N)
     sphere = (6.0 * N * E**2 / (math.pi**3 * r**2)) ** (1.0 / 3.0)
     assert largest == pytest.approx(sphere, rel=1e-9)
-    assert ROUND.pressed(arcs(r, 0.0), np.array(0.0), N)[0] == pytest.approx(sphere, rel=1e-14)
+    assert ROUND.pressed(arcs(r, 0.0), np.array(0.0), N)[0] == pytest.approx(
+        sphere, rel=1e-14
+    )
     largest, along, across = ROUND.pressed(arcs(r, 0.2), np.array(1e-9), N)
     of_its_middle = replace(SQUARE, edge_length=4.0 / 3.0 * float(across))
     line, half, _ = of_its_middle.pressed(arcs(r, 0.2), np.array(1e-9), N)
@@ -107,7 +111,9 @@ def test_edges_that_crush() -> None:
     flat = Bearing(math.hypot(1.5, 0.2225), 0.2225 / 1.5, 0.2225 / 1.5, 0.0)
     strip = replace(SQUARE, edge_length=0.445).crushed(flat, 525e3)
     assert strip == pytest.approx((0.047191011, 0.023595506), rel=1e-6)
-    assert ROUND.crushed(flat, 525e3) == pytest.approx((0.085764436, 0.050820164), rel=1e-6)
+    assert ROUND.crushed(flat, 525e3) == pytest.approx(
+        (0.085764436, 0.050820164), rel=1e-6
+    )
     assert ROUND.crushed(flat, -1.0) == (0.0, 0.0)
     whole = math.pi * 0.2225**2 * 25e6
     assert ROUND.crushed(flat, (1.0 - 1e-9) * whole)[0] == pytest.approx(0.445, rel=1e-3)
@@ -122,7 +128,9 @@ def test_where_the_laws_of_pressure_end() -> None:
     assert "half of the distance" in ROUND.doubt(curved, 0.1, 4e7)
     assert "r/5" in ROUND.doubt(ball, 0.1, 5e9)
     on_steel = replace(SQUARE, plate_modulus=210e9)
-    pair = [d.pressed(curved, np.array(0.1), np.array(5e5))[0] for d in (on_steel, SQUARE)]
+    pair = [
+        d.pressed(curved, np.array(0.1), np.array(5e5))[0] for d in (on_steel, SQUARE)
+    ]
     assert pair[0] > pair[1]
     with pytest.raises(ValueError, match="edge_length"):
         replace(SQUARE, section="round")

@@ -14,11 +14,20 @@ from paper_structures import FLAT, known, oracle_devices, oracle_system, podium
 from rpscli.analyses.modal import linearised_matrices, modal
 from rpscli.analyses.pushover import pushover
 from rpscli.model.bearing import uplifted_state
-from rpscli.model.devices import FrictionDamper, RollingResistance, Stop, Tendon, ViscousDamper
+from rpscli.model.devices import (
+    FrictionDamper,
+    RollingResistance,
+    Stop,
+    Tendon,
+    ViscousDamper,
+)
 from rpscli.model.podium import Device, PodiumStructure
 from rpscli.model.statics import device_consequences, returns, secant_period, uplift_force
 
-pytestmark = [pytest.mark.evidence("devices", "exact"), pytest.mark.evidence("devices", "program")]
+pytestmark = [
+    pytest.mark.evidence("devices", "exact"),
+    pytest.mark.evidence("devices", "program"),
+]
 EQUIPMENT: tuple[Device, ...] = (
     FrictionDamper(1.2e5),
     RollingResistance(0.02),
@@ -51,7 +60,9 @@ def test_both_branches_of_the_storey_curve(rho: float) -> None:
         gear.unload(float(x), rolling=contact.rolling)
         active, held = gear.at_rest(contact, float(x))
         assert curve.displacement[index] == pytest.approx(shift.real, abs=1e-14)
-        assert curve.force[index] == pytest.approx((weight - active + held) / slope.real, rel=1e-12)
+        assert curve.force[index] == pytest.approx(
+            (weight - active + held) / slope.real, rel=1e-12
+        )
         # on the way back tendons are longer by what they yielded; slack if nothing is left
         active, held = returning.at_rest(contact, float(x))
         back = (weight - active - held) / slope.real
@@ -94,20 +105,28 @@ def test_a_slender_storey_recentres_below_its_constant_force() -> None:
         assert found.largest_friction == pytest.approx(least, rel=1e-3)
     lever = base.bearing.half_width
     assert returns(replace(base, devices=(RollingResistance(0.98 * lever),)))[0].recentres
-    assert not returns(replace(base, devices=(RollingResistance(1.01 * lever),)))[0].recentres
+    assert not returns(replace(base, devices=(RollingResistance(1.01 * lever),)))[
+        0
+    ].recentres
 
 
 def test_consequences_by_hand() -> None:
-    structure = equipped(FLAT, Stop(0.1, 1e6), Tendon(3e4, 5e5, 4e4), ViscousDamper(4e4, 2.0))
+    structure = equipped(
+        FLAT, Stop(0.1, 1e6), Tendon(3e4, 5e5, 4e4), ViscousDamper(4e4, 2.0)
+    )
     stop, tendon, viscous = device_consequences(structure)["devices"]
     x, bearing = stop["met_rotation"], structure.bearing
     alpha, R = bearing.alpha, bearing.semi_diagonal
-    assert 2.0 * R * (math.sin(alpha) - math.sin(alpha - x)) == pytest.approx(0.1, rel=1e-12)
+    assert 2.0 * R * (math.sin(alpha) - math.sin(alpha - x)) == pytest.approx(
+        0.1, rel=1e-12
+    )
     assert stop["met_rotation_ratio"] == pytest.approx(x / structure.critical_rotation)
     stretch = 4.0 * bearing.half_width * math.sin(tendon["yield_rotation"] / 2.0)
     assert stretch == pytest.approx(1e4 / 5e5, rel=1e-12)
     assert tendon["uplift_share"] == pytest.approx(6 * 3e4 / structure.weight)
-    plastic = 4.0 * bearing.half_width * math.sin(structure.critical_rotation / 2.0) - 0.02
+    plastic = (
+        4.0 * bearing.half_width * math.sin(structure.critical_rotation / 2.0) - 0.02
+    )
     left = max(0.0, 3e4 - 5e5 * plastic)
     assert tendon["prestress_after_critical"] == pytest.approx(left)
     speed = viscous["velocity_at_uplift_force"]
@@ -119,7 +138,9 @@ def test_consequences_by_hand() -> None:
 @pytest.mark.parametrize("rolling", [True, False])
 def test_linearised_tendons_are_the_slope_of_their_moment(rolling: bool) -> None:
     structure = equipped(0.7, Tendon(3e4, 5e5), tan_alpha=1e-3)
-    structure = replace(structure, bearing=replace(structure.bearing, wedge_slenderness=2e-3))
+    structure = replace(
+        structure, bearing=replace(structure.bearing, wedge_slenderness=2e-3)
+    )
     state = uplifted_state(structure.bearing, rolling=rolling, exact=False)
     bare = replace(structure, devices=())
     added = linearised_matrices(structure, state)[2][0, 0]
@@ -129,7 +150,11 @@ def test_linearised_tendons_are_the_slope_of_their_moment(rolling: bool) -> None
     x = np.array([1e-5, 3e-5]) + (0.0 if rolling else motion.beta)
     contact = Contact(1, rolling=rolling)
     moments = [-gear.at_rest(contact, float(tilt))[0] for tilt in x]
-    slope = (moments[1] - moments[0]) / (x[1] - x[0]) / (2.0 * structure.bearing.semi_diagonal) ** 2
+    slope = (
+        (moments[1] - moments[0])
+        / (x[1] - x[0])
+        / (2.0 * structure.bearing.semi_diagonal) ** 2
+    )
     # first order in alpha, of which e is one itself: 1e-3 of what prestress and stiffness add
     size = 6 * (3e4 / structure.bearing.semi_diagonal + 5e5 * 1e-6)
     assert added == pytest.approx(slope, abs=3e-3 * size)
@@ -137,7 +162,9 @@ def test_linearised_tendons_are_the_slope_of_their_moment(rolling: bool) -> None
 
 @pytest.mark.parametrize("c", [0.0, 2e5, 3e6])
 @pytest.mark.parametrize("stiffness", [0.0, 3e7])
-def test_the_own_mode_of_a_rigid_frame_with_damper_and_tendons(c: float, stiffness: float) -> None:
+def test_the_own_mode_of_a_rigid_frame_with_damper_and_tendons(
+    c: float, stiffness: float
+) -> None:
     devices: tuple[Device, ...] = (FrictionDamper(1e4),)
     devices += (ViscousDamper(c),) if c else ()
     devices += (Tendon(0.0, stiffness),) if stiffness else ()
@@ -181,4 +208,6 @@ def test_the_secant_period_of_flat_ends(ratio: float) -> None:
     # A spring of the secant stiffness beside it halves the square.
     stiffness = structure.restoring_mass * (2.0 * math.pi / wanted) ** 2
     held = replace(structure, devices=(Stop(0.0, stiffness),))
-    assert secant_period(held, rotation) == pytest.approx(wanted / math.sqrt(2.0), rel=1e-3)
+    assert secant_period(held, rotation) == pytest.approx(
+        wanted / math.sqrt(2.0), rel=1e-3
+    )

@@ -63,7 +63,9 @@ def angular_momentum_ratio(
 
 @pytest.mark.evidence("impact laws", "exact")
 @given(bearings, ratios, ratios)
-def test_restitution_is_the_momentum_balance(bearing: Bearing, gamma: float, eta: float) -> None:
+def test_restitution_is_the_momentum_balance(
+    bearing: Bearing, gamma: float, eta: float
+) -> None:
     for law, floors_jump in ((rigid_restitution, True), (flexible_restitution, False)):
         expected = angular_momentum_ratio(bearing, gamma, eta, floors_jump=floors_jump)
         assert law(bearing, gamma, eta) == pytest.approx(expected, abs=1e-11)
@@ -99,12 +101,16 @@ def test_loss_is_where_the_impulse_acts(
     Q = (1.0 + 4.0 * gamma * (1.0 + eta)) * b2
     kappa = reach * (P + Q) / (P + reach * Q)
     law = ImpactLaw("rigid" if floors_jump else "flexible", loss=kappa)
-    own = angular_momentum_ratio(bearing, gamma, eta, floors_jump=floors_jump, reach=reach)
+    own = angular_momentum_ratio(
+        bearing, gamma, eta, floors_jump=floors_jump, reach=reach
+    )
     assert law.ratio(bearing, gamma, eta) == pytest.approx(own, abs=1e-11)
 
 
 BEARING = Bearing(1.5, 0.15, 0.3, 0.5)
-FLEXIBLE, RIGID = (law(BEARING, 10.0, 3.0) for law in (flexible_restitution, rigid_restitution))
+FLEXIBLE, RIGID = (
+    law(BEARING, 10.0, 3.0) for law in (flexible_restitution, rigid_restitution)
+)
 
 
 @pytest.mark.parametrize(
@@ -146,7 +152,9 @@ def test_columns_too_stout_to_go_over_are_refused_with_a_remedy() -> None:
     for tan_alpha, admissible in ((0.99, True), (1.01, False)):
         bearing = Bearing(1.5, tan_alpha, tan_alpha, FLAT)
         if admissible:
-            assert PodiumStructure(bearing, 2e4, 2e5, building(3), rigid).restitution > 0.0
+            assert (
+                PodiumStructure(bearing, 2e4, 2e5, building(3), rigid).restitution > 0.0
+            )
             continue
         with pytest.raises(ValueError, match="more slender columns") as refusal:
             PodiumStructure(bearing, 2e4, 2e5, building(3), rigid)

@@ -43,7 +43,9 @@ def test_ratios_of_the_paper() -> None:
 
 
 @given(structures, st.floats(0.05, 1.5))
-def test_the_force_does_the_work_of_lifting(structure: PodiumStructure, share: float) -> None:
+def test_the_force_does_the_work_of_lifting(
+    structure: PodiumStructure, share: float
+) -> None:
     """Integral of F du_b = W v_b, across beta and beyond theta_cr."""
     bearing, end = structure.bearing, share * structure.critical_rotation
     diameter = 2.0 * bearing.semi_diagonal
@@ -57,7 +59,9 @@ def test_the_force_does_the_work_of_lifting(structure: PodiumStructure, share: f
     points = [bearing.beta] if 0.0 < bearing.beta < end else None
     work, _ = quad(power, 0.0, end, points=points, epsabs=0.0, epsrel=1e-11)
     _, _, lift = structure.path(np.array([end]))
-    assert work == pytest.approx(structure.weight * lift[0], rel=1e-9, abs=1e-9 * structure.weight)
+    assert work == pytest.approx(
+        structure.weight * lift[0], rel=1e-9, abs=1e-9 * structure.weight
+    )
 
 
 @given(structures)
@@ -87,7 +91,10 @@ def test_the_rigid_frequency_parameter_of_a_block_is_housners() -> None:
         ({"gravity": 0.0}, "must be > 0, cap_beam_mass >= 0"),
         ({"cap_beam_mass": 0.0}, "the superstructure stands on it"),
         ({"superstructure_y": building(3)}, "superstructure_y must have the floors"),
-        ({"superstructure": None, "superstructure_y": building(2)}, "must have the floors"),
+        (
+            {"superstructure": None, "superstructure_y": building(2)},
+            "must have the floors",
+        ),
     ],
 )
 def test_what_is_outside_the_model_is_refused(given: dict[str, Any], said: str) -> None:
@@ -99,11 +106,21 @@ def test_what_is_followed_in_one_plane_only() -> None:
     """Floors that jump, where there are impacts that they may jump at."""
     bearing, ball = Bearing(1.5, 0.15, 0.3, 0.5), Bearing(1.5, 0.0, 0.3, 0.8)
     jumps, above = ImpactLaw("value", 0.9), building(2)
-    assert not PodiumStructure(bearing, 2e4, 2e5, impact_law=ImpactLaw("rigid")).planar_only
-    assert "use the law flexible" in PodiumStructure(bearing, 2e4, 2e5, above, jumps).planar_only
+    assert not PodiumStructure(
+        bearing, 2e4, 2e5, impact_law=ImpactLaw("rigid")
+    ).planar_only
+    assert (
+        "use the law flexible"
+        in PodiumStructure(bearing, 2e4, 2e5, above, jumps).planar_only
+    )
     whole = ImpactLaw("value", 1.0)
     assert not PodiumStructure(ball, 2e4, 2e5, above, whole).planar_only
-    devices = FrictionDamper(1e3), RollingResistance(1e-3), ViscousDamper(1e3), Stop(0.1, 1e6)
+    devices = (
+        FrictionDamper(1e3),
+        RollingResistance(1e-3),
+        ViscousDamper(1e3),
+        Stop(0.1, 1e6),
+    )
     assert not PodiumStructure(bearing, 2e4, 2e5, devices=devices).planar_only
     soft = Contact("plane", stiffness=1e9)
     assert not PodiumStructure(bearing, 2e4, 2e5, above, contact=soft).planar_only
@@ -114,7 +131,9 @@ def test_forces_of_columns_leave_out_shocks_where_there_are_any() -> None:
     rigid = PodiumStructure(bearing, 2e4, 2e5, above)
     soft = replace(rigid, contact=Contact("plane", stiffness=1e9))
     ball = PodiumStructure(Bearing(1.5, 0.0, 0.3, 0.8), 2e4, 2e5, above)
-    shear = {s: s.left_out_of_columns(both=True, axial=False) for s in (rigid, soft, ball)}
+    shear = {
+        s: s.left_out_of_columns(both=True, axial=False) for s in (rigid, soft, ball)
+    }
     assert ["shorter than 25 ms" in "".join(left) for left in shear.values()] == [1, 0, 0]
     assert shear[soft] == shear[ball] == ()  # as under one component
     assert "the shock of impacts" in soft.left_out_of_columns(both=True)[1]
@@ -136,12 +155,17 @@ def test_joints_are_the_same_in_both_directions() -> None:
 
 
 @pytest.mark.parametrize(("storeys", "tan_alpha"), [(0, 0.15), (3, 0.15), (3, 0.25)])
-def test_the_turn_of_a_pass_by_the_kinetic_energy_of_a_cone(storeys: int, tan_alpha: float) -> None:
+def test_the_turn_of_a_pass_by_the_kinetic_energy_of_a_cone(
+    storeys: int, tan_alpha: float
+) -> None:
     """A straight way over the cone A dr^2 + K r^2 dphi^2, from energies of masses that move."""
     s = podium(storeys, tan_alpha, 0.5)
     b, small = s.bearing, 1e-5
     _, u, v = s.path(np.array([small, 2.0 * small]))
-    across, up = u[0] / small, float(np.diff(v)[0]) / small  # what du_b and dv_b are to dtheta
+    across, up = (
+        u[0] / small,
+        float(np.diff(v)[0]) / small,
+    )  # what du_b and dv_b are to dtheta
     unit = s.columns_mass * b.semi_diagonal**2
     carried = s.cap_beam_mass * np.array([across**2 + up**2, across**2])
     carried[0] += s.superstructure_mass * up**2
@@ -153,5 +177,7 @@ def test_the_turn_of_a_pass_by_the_kinetic_energy_of_a_cone(storeys: int, tan_al
     # The speed is kept and so is K r^2 phi': from afar to the nearest point 1 and away again.
     way = quad(lambda r: 1.0 / (r * math.sqrt(r**2 - 1.0)), 1.0, 2.0)[0]
     way += quad(lambda r: 1.0 / (r * math.sqrt(r**2 - 1.0)), 2.0, math.inf)[0]
-    assert s.pass_turn == pytest.approx(2.0 * math.sqrt(falling / turning) * way, rel=1e-4)
+    assert s.pass_turn == pytest.approx(
+        2.0 * math.sqrt(falling / turning) * way, rel=1e-4
+    )
     assert s.pass_turn > math.pi

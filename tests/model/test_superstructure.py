@@ -41,7 +41,9 @@ buildings = st.integers(1, 12).flatmap(
     st.floats(0.05, 5.0),
     st.sampled_from([p for p in PROFILES if p != "uniform"]),
 )
-def test_a_profile_has_its_period_and_mode(masses: Array, period: float, profile: Profile) -> None:
+def test_a_profile_has_its_period_and_mode(
+    masses: Array, period: float, profile: Profile
+) -> None:
     n = len(masses)
     k = profile_stiffnesses(masses, period, profile)
     above = Superstructure(masses, k, RayleighDamping(0.0))
@@ -56,7 +58,9 @@ def test_a_profile_has_its_period_and_mode(masses: Array, period: float, profile
 
 
 @given(st.integers(1, 12), st.floats(0.05, 5.0))
-def test_uniform_stiffness_of_equal_floors_is_the_textbook_chain(n: int, period: float) -> None:
+def test_uniform_stiffness_of_equal_floors_is_the_textbook_chain(
+    n: int, period: float
+) -> None:
     """w_r = 2 sqrt(k/m) sin((2 r - 1) pi/(2 (2 n + 1)))."""
     masses = np.full(n, 3.0)
     k = profile_stiffnesses(masses, period, "uniform")
@@ -74,7 +78,9 @@ def test_the_stiffness_matrix_is_that_of_springs_in_series() -> None:
     K = stiffness_matrix(k)
     u = np.array([0.1, -0.4, 0.7])
     assert u @ K @ u == pytest.approx(np.sum(k * np.diff(u, prepend=0.0) ** 2), rel=1e-14)
-    assert np.linalg.solve(K, [0.0, 0.0, 1.0]) == pytest.approx(np.cumsum(1.0 / k), rel=1e-14)
+    assert np.linalg.solve(K, [0.0, 0.0, 1.0]) == pytest.approx(
+        np.cumsum(1.0 / k), rel=1e-14
+    )
     assert K.sum() == pytest.approx(k[0], rel=1e-14)
 
 
@@ -91,7 +97,9 @@ def test_modes_are_normalised_and_complete(above: Superstructure) -> None:
     assert above.mass == pytest.approx(M.sum(), rel=1e-14)
 
 
-@given(buildings, st.floats(0.001, 0.3), st.tuples(st.integers(1, 12), st.integers(1, 12)))
+@given(
+    buildings, st.floats(0.001, 0.3), st.tuples(st.integers(1, 12), st.integers(1, 12))
+)
 def test_rayleigh_damping_has_its_ratio_in_both_modes(
     above: Superstructure, ratio: float, modes: tuple[int, int]
 ) -> None:
@@ -110,11 +118,16 @@ def test_rayleigh_damping_has_its_ratio_in_both_modes(
 
 def test_one_storey_takes_stiffness_proportional_damping() -> None:
     assert RayleighDamping(0.05, (1, 2)).coefficients(np.array([20.0])) == (0.0, 0.005)
-    assert RayleighDamping(0.05, (2, 2)).coefficients(np.array([10.0, 20.0])) == (0.0, 0.005)
+    assert RayleighDamping(0.05, (2, 2)).coefficients(np.array([10.0, 20.0])) == (
+        0.0,
+        0.005,
+    )
 
 
 @given(buildings, st.floats(0.0, 0.3))
-def test_modal_damping_is_the_same_in_every_mode(above: Superstructure, ratio: float) -> None:
+def test_modal_damping_is_the_same_in_every_mode(
+    above: Superstructure, ratio: float
+) -> None:
     above = Superstructure(above.masses, above.stiffnesses, ModalDamping(ratio))
     assert above.damping_ratios.tolist() == [ratio] * above.storeys
     generalised = above.shapes.T @ above.damping_matrix @ above.shapes

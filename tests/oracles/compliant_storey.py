@@ -164,7 +164,9 @@ class CompliantStorey:
         return y, side, not bedded
 
 
-def pressed(depth: float, turn: float, rate: float, turn_rate: float, tau: float, B: float) -> Any:
+def pressed(
+    depth: float, turn: float, rate: float, turn_rate: float, tau: float, B: float
+) -> Any:
     """Integrals of p and p xi over -B..B, over b: depth + turn xi with its rate, both cut at 0."""
     low, high = -B, B
     for one, slope in ((depth, turn), (depth + tau * rate, turn + tau * turn_rate)):
@@ -184,7 +186,9 @@ def pressed(depth: float, turn: float, rate: float, turn_rate: float, tau: float
     return a * (high - low) + c * square, a * square + c * cube
 
 
-def rates(y: Any, out: Array, a_g: float, n: int, c: Array, M: Array, K: Array, D: Array) -> None:
+def rates(
+    y: Any, out: Array, a_g: float, n: int, c: Array, M: Array, K: Array, D: Array
+) -> None:
     """y = [theta, v, u.., theta', v', u'..]; c as `follow` packs it."""
     H, B, R, alpha, columns = c[0], c[1], c[2], c[3], c[4]
     beam, total, g, icm, bed, tau = c[5], c[6], c[7], c[8], c[9], c[10]
@@ -204,7 +208,9 @@ def rates(y: Any, out: Array, a_g: float, n: int, c: Array, M: Array, K: Array, 
     for i in range(n):
         f = 0.0
         for j in range(n):
-            f += K[i, j] * (y[2 + j] - base) + D[i, j] * (y[4 + n + j] - 2.0 * R * C * omega)
+            f += K[i, j] * (y[2 + j] - base) + D[i, j] * (
+                y[4 + n + j] - 2.0 * R * C * omega
+            )
         shear += f
         out[2 + i], out[4 + n + i] = y[4 + n + i], -f / M[i] - a_g
     inertia = icm + own * 4.0 * R * R * C * C
@@ -247,7 +253,13 @@ def follow(
 
 
 def resolved(
-    structure: Any, acceleration: Array, dt: float, *, zeta: float, seconds: float, limit: float
+    structure: Any,
+    acceleration: Array,
+    dt: float,
+    *,
+    zeta: float,
+    seconds: float,
+    limit: float,
 ) -> tuple[float, float]:
     """max |theta| [rad] and largest base shear [N] of a `PodiumStructure` with flat ends.
 

@@ -36,7 +36,9 @@ class Curve:
         The value at 0 is kept exactly: a step that starts on an event starts on it exactly.
         """
         start = values[0]
-        return cls(np.concatenate(([start], _FIT @ (values[1:-1] - start))), float(values[-1]))
+        return cls(
+            np.concatenate(([start], _FIT @ (values[1:-1] - start))), float(values[-1])
+        )
 
     @cached_property
     def noise(self) -> float:
@@ -51,7 +53,9 @@ class Curve:
             return [0.0, 1.0]  # the slope cannot change its sign
         roots = np.roots(slope[::-1])
         # a double root is returned as a pair just off the real axis; a break too many does no harm
-        inside = roots.real[(np.abs(roots.imag) < 1e-6) & (roots.real > 0.0) & (roots.real < 1.0)]
+        inside = roots.real[
+            (np.abs(roots.imag) < 1e-6) & (roots.real > 0.0) & (roots.real < 1.0)
+        ]
         return [0.0, *sorted(float(root) for root in inside), 1.0]
 
     def highest(self, until: float) -> float:
@@ -76,7 +80,9 @@ class Curve:
             if values[i] < -noise and b >= 0.0:
                 if excess(right) <= 0.0:
                     return right
-                return float(brentq(excess, self.pieces[i], right, xtol=1e-15, rtol=1e-14))
+                return float(
+                    brentq(excess, self.pieces[i], right, xtol=1e-15, rtol=1e-14)
+                )
         return None
 
 
@@ -99,7 +105,9 @@ class Stepper:
     def solver(self, rates: Rates, start: float, end: float) -> DOP853:
         first = min(self.step, end - start)
         atol: Any = self.tolerance
-        return DOP853(rates, start, self.y, end, rtol=self.rtol, atol=atol, first_step=first)
+        return DOP853(
+            rates, start, self.y, end, rtol=self.rtol, atol=atol, first_step=first
+        )
 
     def advanced(self, solver: DOP853) -> None:
         message = solver.step()
@@ -120,7 +128,9 @@ class Stepper:
             cut = solver.t >= duration
             self.step = max(h, min(self.step, 10.0 * h)) if cut else h
 
-    def meet(self, rates: Rates, miss: Callable[[Array], float], step: Step, at: float) -> float:
+    def meet(
+        self, rates: Rates, miss: Callable[[Array], float], step: Step, at: float
+    ) -> float:
         """Integrate to an event itself: the dense output is less accurate than the step.
 
         Returns its time; y is the state there.
@@ -129,7 +139,9 @@ class Stepper:
         correction = np.inf
         for _ in range(12):
             self.y = begin
-            arrival = self.solver(rates, step.start, step.start + tau) if tau > 0.0 else None
+            arrival = (
+                self.solver(rates, step.start, step.start + tau) if tau > 0.0 else None
+            )
             while arrival and arrival.status == "running":
                 self.advanced(arrival)
             y = np.asarray(arrival.y if arrival else begin, dtype=np.float64).copy()

@@ -72,7 +72,9 @@ OracleDevice = Viscous | Friction | Stop | Tendon | RollingResistance
 class Equipment:
     """The devices of a storey, with the elongation that each tendon keeps [m]."""
 
-    def __init__(self, lagrangian: StoreyLagrangian, devices: tuple[OracleDevice, ...]) -> None:
+    def __init__(
+        self, lagrangian: StoreyLagrangian, devices: tuple[OracleDevice, ...]
+    ) -> None:
         self.lagrangian, self.devices = lagrangian, devices
         self.plastic = [0.0] * len(devices)
 
@@ -100,7 +102,12 @@ class Equipment:
 
     def rolling(self, device: RollingResistance) -> float:
         """Moment of the resistance."""
-        return 2.0 * self.lagrangian.lifted_mass * self.lagrangian.system.gravity * device.lever
+        return (
+            2.0
+            * self.lagrangian.lifted_mass
+            * self.lagrangian.system.gravity
+            * device.lever
+        )
 
     def moments(
         self, contact: Contact, theta: float, rate: float, direction: int

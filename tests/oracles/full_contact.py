@@ -12,7 +12,9 @@ from scipy.linalg import expm
 from .crossings import Array, Curve
 from .storey_lagrangian import StoreyLagrangian
 
-_TAYLOR_ORDER = 20  # 1/21! of the leading term with sub-intervals of one radian of the fastest mode
+_TAYLOR_ORDER = (
+    20  # 1/21! of the leading term with sub-intervals of one radian of the fastest mode
+)
 
 
 class Exit(NamedTuple):
@@ -49,7 +51,9 @@ class FullContact:
         flow = np.zeros((2 * n + 2, 2 * n + 2))
         flow[:n, n : 2 * n] = np.eye(n)
         if n > 0:
-            forces = np.column_stack((np.diag(system.stiffnesses), lagrangian.drift_damping))
+            forces = np.column_stack(
+                (np.diag(system.stiffnesses), lagrangian.drift_damping)
+            )
             flow[n : 2 * n, : 2 * n] = -np.linalg.solve(lagrangian.drift_mass, forces)
             flow[n, 2 * n] = -1.0  # the first storey alone sees the ground
         flow[2 * n, 2 * n + 1] = 1.0
@@ -83,7 +87,9 @@ class FullContact:
         push = self.taylor @ z * h ** np.arange(_TAYLOR_ORDER + 1)
         found: list[tuple[float, int]] = []
         for way in exits:
-            hold = way.lift * np.array([self.gravity + ground.vertical, h * ground.vertical_rate])
+            hold = way.lift * np.array(
+                [self.gravity + ground.vertical, h * ground.vertical_rate]
+            )
             hold[0] += way.held
             if np.sum(np.abs(push)) < hold[0] - abs(hold[1]):
                 continue

@@ -100,7 +100,9 @@ class Departures:
             for geom in column.geoms:
                 geom.pos[2] += 0.5 * more * (1.0 if geom.contype == UPPER else -1.0)
             place = column.pos[0], 0.0, -more - FOOTING
-            world.add_geom(type=BOX, pos=place, size=[FOOTING] * 3, contype=0, conaffinity=LOWER)
+            world.add_geom(
+                type=BOX, pos=place, size=[FOOTING] * 3, contype=0, conaffinity=LOWER
+            )
 
 
 NO_DEPARTURES = Departures()
@@ -178,8 +180,13 @@ def simulate(
             joint = data.joint("lift 0")
             carried[j] = upright.carried(float(joint.qpos[0]), float(joint.qvel[0]))
     needed = columns * (2 if system.cap_beam_mass else 1)
-    joints = {model.joint(k).name: rows[:, model.jnt_qposadr[k]] for k in range(model.njnt)}
-    floors = [np.zeros(count + 1), *(joints[f"floor {i}"] for i in range(len(system.masses)))]
+    joints = {
+        model.joint(k).name: rows[:, model.jnt_qposadr[k]] for k in range(model.njnt)
+    }
+    floors = [
+        np.zeros(count + 1),
+        *(joints[f"floor {i}"] for i in range(len(system.masses))),
+    ]
     return MultibodyResult(
         time=np.arange(count + 1, dtype=np.float64) * interval,
         rotation=np.mean([joints[f"tilt {c}"] for c in range(columns)], axis=0),
@@ -264,10 +271,16 @@ def _longest(flags: NDArray[np.bool_]) -> int:
 
 
 def add_devices(
-    described: Element, devices: Sequence[OracleDevice], columns: int, H: float, time_step: float
+    described: Element,
+    devices: Sequence[OracleDevice],
+    columns: int,
+    H: float,
+    time_step: float,
 ) -> None:
     """Dampers and friction along the beam's way, resistance of contacts, stops and cables."""
-    damping = sum(d.coefficient for d in devices if isinstance(d, Viscous) and d.exponent == 1.0)
+    damping = sum(
+        d.coefficient for d in devices if isinstance(d, Viscous) and d.exponent == 1.0
+    )
     friction = sum(d.force for d in devices if isinstance(d, Friction))
     lever = sum(d.lever for d in devices if isinstance(d, RollingResistance))
     for joint in described.findall(".//joint[@name='beam across']"):
@@ -276,7 +289,10 @@ def add_devices(
             "solreffriction": f"{2.0 * time_step} 1", "solimpfriction": "0.9999 0.9999 0.001",
         }  # fmt: skip
     if lever:  # in six dimensions
-        described.findall("default/geom")[0].attrib |= {"friction": f"3 0 {lever}", "condim": "6"}
+        described.findall("default/geom")[0].attrib |= {
+            "friction": f"3 0 {lever}",
+            "condim": "6",
+        }
         # As stiff as the normal direction, or columns that come down later stay behind for good.
         described.findall("option")[0].set("impratio", "1")
     tendons = described.findall("tendon")[0]
@@ -291,10 +307,14 @@ def add_devices(
             slack = 2.0 * (H + ANCHORED) - device.prestress / device.stiffness
             law = {"stiffness": f"{device.columns / columns * device.stiffness}"}
             for c in range(columns):
-                cable = SubElement(tendons, "spatial", law | {"springlength": f"0 {slack}"})
+                cable = SubElement(
+                    tendons, "spatial", law | {"springlength": f"0 {slack}"}
+                )
                 for name in ("ground", "foot", "head", "beam"):
                     SubElement(cable, "site", site=f"{name} {c}")
-    for c in range(columns if any(isinstance(device, Tendon) for device in devices) else 0):
+    for c in range(
+        columns if any(isinstance(device, Tendon) for device in devices) else 0
+    ):
         column = owner(described, f"tilt {c}")
         place = column.attrib["pos"].split()[0]
         # Where a cable begins in the ground, the middle of both ends, where it ends in the beam.
@@ -302,7 +322,11 @@ def add_devices(
             ("ground", described.findall("worldbody")[0], f"{place} 0 {-ANCHORED}"),
             ("foot", column, f"0 0 {-H}"),
             ("head", column, f"0 0 {H}"),
-            ("beam", owner(described, "beam across"), f"{place} 0 {ANCHORED - 0.5 * THICKNESS}"),
+            (
+                "beam",
+                owner(described, "beam across"),
+                f"{place} 0 {ANCHORED - 0.5 * THICKNESS}",
+            ),
         ):
             SubElement(body, "site", name=f"{name} {c}", pos=pos)
 
@@ -382,7 +406,11 @@ def floor(i: int, along_x: OracleSystem, along_y: OracleSystem) -> str:
 
 
 def simulate_pair(
-    along_x: OracleSystem, along_y: OracleSystem, ground: Array, dt: float, duration: float
+    along_x: OracleSystem,
+    along_y: OracleSystem,
+    ground: Array,
+    dt: float,
+    duration: float,
 ) -> tuple[Array, Array]:
     """Times and (X, Y) under `ground` (3, m: a_x, a_y, a_v), from rest."""
     import mujoco

@@ -78,7 +78,9 @@ class Row(NamedTuple):
     apart: float
 
 
-def structure_of(building: str, rho: float, tan_alpha: float = TAN_ALPHA) -> PodiumStructure:
+def structure_of(
+    building: str, rho: float, tan_alpha: float = TAN_ALPHA
+) -> PodiumStructure:
     """R = 1.5 m, arcs that no motion leaves; buildings of the paper."""
     if building == "block":
         made = replace(block(0.15, 1.0), bearing=podium(0).bearing)
@@ -126,7 +128,13 @@ def compare(building: str, rho: float, motion: Motion) -> list[Row]:
     )
     laws = LAWS if structure.superstructure else LAWS[:1]
     return [
-        _row(building, motion, replace(structure, impact_law=ImpactLaw(law)), settings, resolved)
+        _row(
+            building,
+            motion,
+            replace(structure, impact_law=ImpactLaw(law)),
+            settings,
+            resolved,
+        )
         for law in laws
     ]
 
@@ -187,7 +195,9 @@ def summary(rows: Sequence[Row], buildings: Sequence[str] = BUILDINGS) -> Iterat
         cells = []
         for law in LAWS:
             mine = {
-                r.motion: r for r in rows if (r.structure, r.rho, r.law) == (building, rho, law)
+                r.motion: r
+                for r in rows
+                if (r.structure, r.rho, r.law) == (building, rho, law)
             }
             if not mine:
                 continue
@@ -210,7 +220,10 @@ def main(target: Path, *buildings: str) -> None:
     """All comparisons, written as they end."""
     buildings = buildings or BUILDINGS
     cases = list(itertools.product(buildings, RADII, motions()))
-    with target.open("w", newline="", encoding="utf-8") as file, ProcessPoolExecutor(2) as workers:
+    with (
+        target.open("w", newline="", encoding="utf-8") as file,
+        ProcessPoolExecutor(2) as workers,
+    ):
         table = csv.writer(file)
         table.writerow(Row._fields)
         found: list[Row] = []

@@ -160,7 +160,10 @@ class _Simulation(Stepper):
         """Rolling or rocking until an event or the end; returns the time that passed."""
         contact, n1 = self.contact, self.lagrangian.storeys + 1
         assert contact is not None
-        rates, least = self.rates(ground, contact), 0.0 if contact.rolling else self.lagrangian.beta
+        rates, least = (
+            self.rates(ground, contact),
+            0.0 if contact.rolling else self.lagrangian.beta,
+        )
         for step in self.steps(rates, duration):
             tilt = Curve.through(contact.side * step.states[0])
             events = [
@@ -176,7 +179,9 @@ class _Simulation(Stepper):
             self.max_rotation = max(self.max_rotation, tilt.highest(at))
             if events:
                 tau = self.meet(rates, partial(self.miss, contact, event), step, at)
-                self.y[n1 if event == TURN else 0] = 0.0 if event == TURN else contact.side * event
+                self.y[n1 if event == TURN else 0] = (
+                    0.0 if event == TURN else contact.side * event
+                )
                 self.max_rotation = max(self.max_rotation, abs(float(self.y[0])))
                 self.switch(contact, event, ground.later(tau))
                 return tau
@@ -283,7 +288,9 @@ def simulate(
         run.y[0] = initial_rotation
         tilt = abs(initial_rotation)
         run.max_rotation = tilt
-        run.contact = Contact(1 if initial_rotation > 0.0 else -1, tilt < run.lagrangian.beta)
+        run.contact = Contact(
+            1 if initial_rotation > 0.0 else -1, tilt < run.lagrangian.beta
+        )
         run.equipment.unload(tilt, rolling=run.contact.rolling)
     vertical = np.zeros_like(ag) if av is None else av
     states = [run.y.copy()]

@@ -85,7 +85,9 @@ class SpatialDevices(Equipment):
 
     def against_rolling(self, grows: float, swings: float) -> Array:
         """Moments against theta' and theta phi'."""
-        moment = sum(self.rolling(d) for d in self.devices if isinstance(d, RollingResistance))
+        moment = sum(
+            self.rolling(d) for d in self.devices if isinstance(d, RollingResistance)
+        )
         rolls = math.hypot(grows, swings)
         return moment / rolls * np.array([grows, swings]) if moment else np.zeros(2)
 
@@ -106,11 +108,16 @@ class SpatialLagrangian:
         self.devices: SpatialDevices | None = None
         self.system, self.directions = along_x, (along_x, along_y)
         self.plane = StoreyLagrangian(along_x)
-        self.storeys, self.critical_rotation = self.plane.storeys, self.plane.critical_rotation
+        self.storeys, self.critical_rotation = (
+            self.plane.storeys,
+            self.plane.critical_rotation,
+        )
         self.axial = axial * along_x.columns_mass * along_x.R**2
         n = self.storeys
         between = np.eye(n) - np.eye(n, k=-1)
-        self.springs = [between.T @ np.diag(way.stiffnesses) @ between for way in self.directions]
+        self.springs = [
+            between.T @ np.diag(way.stiffnesses) @ between for way in self.directions
+        ]
 
     def section(self, x: float, *, rolling: bool) -> Section:
         plane = self.plane
@@ -120,7 +127,9 @@ class SpatialLagrangian:
         if rolling:
             shift = 2.0 * plane.radius * x + 2.0 * plane.arc_frame * versed
         else:
-            foot = complex(plane.half_width + plane.radius * plane.beta, -plane.half_height)
+            foot = complex(
+                plane.half_width + plane.radius * plane.beta, -plane.half_height
+            )
             shift = 2.0 * (foot - plane.arc_end) + 2.0 * plane.arc_end * versed
         arc = x if rolling else plane.beta
         path = plane.half_width + plane.radius * arc
@@ -137,7 +146,8 @@ class SpatialLagrangian:
             slope,
             bend,
             plane.spin_inertia * sine**2 + spin * (kappa - cosine) + mass * u**2,
-            2.0 * (plane.spin_inertia * sine * cosine + spin * sine + mass * u * slope.real)
+            2.0
+            * (plane.spin_inertia * sine * cosine + spin * sine + mass * u * slope.real)
             + acting,
             twisting - acting,
             kappa,
@@ -148,14 +158,21 @@ class SpatialLagrangian:
         plane = self.plane
         sideways = self.system.columns_mass / 4.0 + self.system.cap_beam_mass
         return float(
-            plane.spin_inertia + sideways * slope.real**2 + plane.moving_mass * slope.imag**2
+            plane.spin_inertia
+            + sideways * slope.real**2
+            + plane.moving_mass * slope.imag**2
         )
 
-    def storey_forces(self, floors: Array, rates: Array, beam: Array, beam_rate: Array) -> Array:
+    def storey_forces(
+        self, floors: Array, rates: Array, beam: Array, beam_rate: Array
+    ) -> Array:
         """K v + C v' of both directions, (2, n)."""
         forces = [
-            spring @ (floors[i] - beam[i]) + way.damping_matrix @ (rates[i] - beam_rate[i])
-            for i, (spring, way) in enumerate(zip(self.springs, self.directions, strict=True))
+            spring @ (floors[i] - beam[i])
+            + way.damping_matrix @ (rates[i] - beam_rate[i])
+            for i, (spring, way) in enumerate(
+                zip(self.springs, self.directions, strict=True)
+            )
         ]
         return np.array(forces).reshape(2, self.storeys)
 
@@ -197,7 +214,9 @@ class SpatialLagrangian:
         sweep -= (here.spinning + 0.5 * here.twisting) * grows * turns
         phi2 = sweep / here.inertia
         out = np.empty(half)
-        out[:2] = (theta2 - swings * turns) * outwards + (x * phi2 + 2.0 * grows * turns) * around
+        out[:2] = (theta2 - swings * turns) * outwards + (
+            x * phi2 + 2.0 * grows * turns
+        ) * around
         out[2:] = (-forces / self.system.masses - ground[:2, None]).ravel()
         return out
 
@@ -213,7 +232,9 @@ class SpatialLagrangian:
             here = self.section(x, rolling=rolling)
             grows = float(outwards @ y[half : half + 2])
             turns = float(outwards[0] * y[half + 1] - outwards[1] * y[half]) / x
-            energy += 0.5 * (self.tilt_inertia(here.slope) * grows**2 + here.inertia * turns**2)
+            energy += 0.5 * (
+                self.tilt_inertia(here.slope) * grows**2 + here.inertia * turns**2
+            )
             energy += self.plane.lifted_mass * self.system.gravity * here.shift.imag
             beam = here.shift.real * outwards
         for i, spring in enumerate(self.springs):
@@ -253,7 +274,9 @@ class SpatialSimulation(Stepper):
         along_y, self.begins_at = along_y or along_x, begins_at
         if axial is None:  # a solid round column as wide as its arcs
             axial = 0.5 * along_x.tan_alpha_wedge**2 / (1.0 + along_x.tan_alpha**2)
-        self.motion = SpatialLagrangian(along_x, along_y, axial, integrated_spin=integrated_spin)
+        self.motion = SpatialLagrangian(
+            along_x, along_y, axial, integrated_spin=integrated_spin
+        )
         plane = self.plane = self.motion.plane
         self.devices = self.motion.devices = SpatialDevices(plane, devices)
         self.fixed = [FullContact(type(plane)(way)) for way in (along_x, along_y)]
@@ -304,7 +327,10 @@ class SpatialSimulation(Stepper):
 
     def fixed_state(self, ground: Array, slope: Array, way: int) -> Array:
         n, half = self.motion.storeys, self.half
-        floors, rates = self.y[2:half].reshape(2, n)[way], self.y[half + 2 :].reshape(2, n)[way]
+        floors, rates = (
+            self.y[2:half].reshape(2, n)[way],
+            self.y[half + 2 :].reshape(2, n)[way],
+        )
         drifts = np.diff(floors, prepend=0.0), np.diff(rates, prepend=0.0)
         return np.concatenate((*drifts, [ground[way], slope[way]]))
 
@@ -313,10 +339,15 @@ class SpatialSimulation(Stepper):
         rows = []
         powers = h ** np.arange(_ORDER + 1)
         for way, fixed in enumerate(self.fixed):
-            rows.append(fixed.taylor[: _ORDER + 1] @ self.fixed_state(ground, slope, way) * powers)
+            rows.append(
+                fixed.taylor[: _ORDER + 1] @ self.fixed_state(ground, slope, way) * powers
+            )
         hold = np.zeros(_ORDER + 1)
         weight = self.plane.lifted_mass * math.tan(self.alpha)
-        hold[:2] = weight * (self.motion.system.gravity + ground[2]), weight * slope[2] * h
+        hold[:2] = (
+            weight * (self.motion.system.gravity + ground[2]),
+            weight * slope[2] * h,
+        )
         upright = Contact(1, rolling=self.plane.beta > 0.0)
         active, held = self.devices.at_rest(upright, 0.0)
         hold[0] += (held - active) / self.lever
@@ -369,7 +400,11 @@ class SpatialSimulation(Stepper):
         tilt = self.begins_at or excess * tau**2 / 2.0 + growth * tau**3 / 6.0
         rate = 0.0 if self.begins_at else excess * tau + growth * tau**2 / 2.0
         self.y[:2], self.y[self.half : self.half + 2] = tilt * outwards, rate * outwards
-        self.standing, self.rolling, self.step = False, self.plane.beta > 0.0, 0.1 * tau or 1e-6
+        self.standing, self.rolling, self.step = (
+            False,
+            self.plane.beta > 0.0,
+            0.1 * tau or 1e-6,
+        )
         return tau
 
     # tilted
@@ -392,14 +427,22 @@ class SpatialSimulation(Stepper):
 
     def tilted(self, ground: Array, slope: Array, duration: float) -> float:
         """Tilted until an event or the end; returns the time that passed."""
-        rates, levels = self.rates(ground, slope), [("limit", self.limit, 1), ("tip", TIP, -1)]
+        rates, levels = (
+            self.rates(ground, slope),
+            [("limit", self.limit, 1), ("tip", TIP, -1)],
+        )
         if self.plane.beta > 0.0:
             levels.append(("phase", self.plane.beta, 1 if self.rolling else -1))
         for step in self.steps(rates, duration):
             curve, radial = (Curve.through(values) for values in self.curves(step.states))
-            roots = [(curve.crossing(level, way, curve.noise), kind) for kind, level, way in levels]
+            roots = [
+                (curve.crossing(level, way, curve.noise), kind)
+                for kind, level, way in levels
+            ]
             # a steady wobble has nothing but rounding here
-            noise = 1e-12 * curve.end * float(np.abs(step.states[self.half :, -1][:2]).sum())
+            noise = (
+                1e-12 * curve.end * float(np.abs(step.states[self.half :, -1][:2]).sum())
+            )
             roots.append((radial.crossing(0.0, 1, noise), "pass"))
             if self.devices.yields(
                 float(np.max(self.curves(step.states)[0])), rolling=self.rolling
@@ -469,12 +512,17 @@ class SpatialSimulation(Stepper):
         share, out = (1.0 if self.contact_time else 0.0), -z / tilt
         if around != 0.0:
             share = self.share_lost(near, speed / opening)
-            swept = 2.0 * math.acos(min(near / tilt, 1.0)) / opening - share * self.spare_turn()
+            swept = (
+                2.0 * math.acos(min(near / tilt, 1.0)) / opening
+                - share * self.spare_turn()
+            )
             out = z / tilt * cmath.exp(1j * math.copysign(swept, around))
         beyond = Passed(time, near, share, self.falling * speed**2)
         self.go_on(ground, slope, beyond, tilt * out, (-radial + 1j * around) * out)
 
-    def go_on(self, ground: Array, slope: Array, passed: Passed, z: complex, rate: complex) -> None:
+    def go_on(
+        self, ground: Array, slope: Array, passed: Passed, z: complex, rate: complex
+    ) -> None:
         """From a pass; so far its `lost` is twice the kinetic energy of the tilt without loss."""
         before, kept = self.motion.energy(self.y, rolling=self.rolling), 1.0
         kept -= passed.share * (1.0 - self.restitution**2)
@@ -484,7 +532,9 @@ class SpatialSimulation(Stepper):
         passed.lost = before - self.motion.energy(self.y, rolling=self.rolling)
         self.passes.append(passed)
 
-    def come_down(self, ground: Array, slope: Array, tilt: float, twice_energy: float) -> None:
+    def come_down(
+        self, ground: Array, slope: Array, tilt: float, twice_energy: float
+    ) -> None:
         """Full contact if neither this pass nor the next swing would be seen."""
         push_x, push_y, hold = self.margin(ground, slope, 1.0)
         spare = hold[0] - math.hypot(push_x[0], push_y[0])

@@ -100,7 +100,9 @@ class StoreyLagrangian:
                 arm * turn,
             )
         arm = 2.0 * self.arc_end
-        start = 2.0 * complex(self.half_width + self.radius * self.beta, -self.half_height)
+        start = 2.0 * complex(
+            self.half_width + self.radius * self.beta, -self.half_height
+        )
         return start - arm * turn, 1j * arm * turn, arm * turn
 
     def mass_matrix(self, slope: complex) -> Array:
@@ -123,19 +125,26 @@ class StoreyLagrangian:
         _, slope, bend = self.cap_beam(side * float(y[0]), rolling=contact.rolling)
         force = np.empty(n + 1)
         # of Lagrange's velocity terms only those in theta'^2 survive: M depends on theta alone
-        force[0] = moment - self.lifted_mass * (a_g * slope.real + gravity * side * slope.imag)
+        force[0] = moment - self.lifted_mass * (
+            a_g * slope.real + gravity * side * slope.imag
+        )
         force[0] -= self.moving_mass * side * (slope.conjugate() * bend).real * omega**2
         force[1:] = -self.carried * (a_g + side * bend.real * omega**2)
         force[1:] -= (
-            self.system.stiffnesses * y[1 : n + 1] + self.drift_damping @ y[n + 2 : 2 * n + 2]
+            self.system.stiffnesses * y[1 : n + 1]
+            + self.drift_damping @ y[n + 2 : 2 * n + 2]
         )
-        return np.asarray(np.linalg.solve(self.mass_matrix(slope), force), dtype=np.float64)
+        return np.asarray(
+            np.linalg.solve(self.mass_matrix(slope), force), dtype=np.float64
+        )
 
     def energies(self, contact: Contact, y: Array) -> tuple[float, float]:
         """Kinetic and potential energy [J] relative to the ground; both zero at rest."""
         n = self.storeys
         rate = y[n + 1 : 2 * n + 2]
-        shift, slope, _ = self.cap_beam(contact.side * float(y[0]), rolling=contact.rolling)
+        shift, slope, _ = self.cap_beam(
+            contact.side * float(y[0]), rolling=contact.rolling
+        )
         springs = 0.5 * float(self.system.stiffnesses @ y[1 : n + 1] ** 2)
         kinetic = 0.5 * float(rate @ self.mass_matrix(slope) @ rate)
         return kinetic, springs + self.lifted_mass * self.system.gravity * shift.imag
@@ -155,12 +164,19 @@ class StoreyLagrangian:
         width, height, columns = self.half_width, self.half_height, system.columns_mass
         vertical = system.cap_beam_mass + float(np.sum(system.masses))
         horizontal = system.cap_beam_mass if system.law == "flexible" else vertical
-        before = np.array([columns * height, columns * width, self.spin_inertia, 0.0, 0.0])
+        before = np.array(
+            [columns * height, columns * width, self.spin_inertia, 0.0, 0.0]
+        )
         before[3:] = 2.0 * horizontal * height, 2.0 * vertical * width
         rows = np.zeros((5, 5))
         rows[:, 0] = before * np.array([1.0, -1.0, 1.0, 1.0, -1.0])
         rows[0, [1, 3]] = rows[1, [2, 4]] = -1.0
-        rows[2, 1:] = height, -width, -height, width  # moment y X - x Y at (-B, -H) and (B, H)
+        rows[2, 1:] = (
+            height,
+            -width,
+            -height,
+            width,
+        )  # moment y X - x Y at (-B, -H) and (B, H)
         rows[3, 3] = rows[4, 4] = 1.0
         return float(np.linalg.solve(rows, before)[0])
 

@@ -12,7 +12,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
-from paper_structures import RecordLoader, needs_compiled_kernels, oracle_system, part, podium
+from paper_structures import (
+    RecordLoader,
+    needs_compiled_kernels,
+    oracle_system,
+    part,
+    podium,
+)
 
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
@@ -76,9 +82,13 @@ SIZES = (
     Size("level, closed", LATE, 0.0, 0.0, 0.1, TILTING | PLASTIC, FLOORS_ABOVE),
     Size("level, closed", FAR, 0.0, 0.0, 0.1, TILTING | PLASTIC, FLOORS_ABOVE, 0.30),
     Size("level, lifts off", NEAR, -0.5, 0.0, 0.2, TILTING | PLASTIC, FLOORS_ABOVE, 0.30),
-    Size("level, lifts off", FAR, 34.6, -36.0, 0.5, TILTING | PLASTIC, FLOORS_ABOVE, 0.40),
+    Size(
+        "level, lifts off", FAR, 34.6, -36.0, 0.5, TILTING | PLASTIC, FLOORS_ABOVE, 0.40
+    ),
     Size("level, rebound", FAR, 3.0, -1.5, 2.0, TILTING, FLOORS_ABOVE, rho=0.0),
-    Size("level, rebound", FAR, -13.0, -3.4, 3.0, TILTING, FLOORS_ABOVE, rho=0.0, start=2.0),
+    Size(
+        "level, rebound", FAR, -13.0, -3.4, 3.0, TILTING, FLOORS_ABOVE, rho=0.0, start=2.0
+    ),
     Size("level, rebound", LATE, 9.0, 1.0, 2.0, TILTING, FLOORS_ABOVE),
     Size("vertical", FAR, -1.4, 15.5, 1.0, {"vertical_period": 0.1}),
     Size("vertical", FAR, -21.0, -3.6, 1.0, {"vertical_period": 0.25}),
@@ -112,7 +122,9 @@ def structure_of(tan_alpha: float, rho: float, storeys: int) -> PodiumStructure:
     return replace(made, impact_law=ImpactLaw())
 
 
-def followed(record: GroundMotion, factor: float, start: float | None = None) -> GroundMotion:
+def followed(
+    record: GroundMotion, factor: float, start: float | None = None
+) -> GroundMotion:
     """Of a record what is followed, from an instant [s] or where its energy is."""
     if start is None:
         return strongest(record, WINDOW).scaled(factor)
@@ -137,9 +149,13 @@ def both(
 def change(bodies: MultibodyResult, ours: TimeHistoryResult) -> tuple[float, float]:
     """Of the largest rotation and the base shear, in per cent of the program's."""
     assert ours.structure.superstructure is not None
-    shear = ours.structure.superstructure.stiffnesses[0] * np.abs(bodies.drifts[:, 0]).max()
+    shear = (
+        ours.structure.superstructure.stiffnesses[0] * np.abs(bodies.drifts[:, 0]).max()
+    )
     rotation = np.abs(bodies.rotation).max()
-    return 100.0 * (rotation / ours.max_rotation - 1.0), 100.0 * (shear / ours.max_base_shear - 1.0)
+    return 100.0 * (rotation / ours.max_rotation - 1.0), 100.0 * (
+        shear / ours.max_base_shear - 1.0
+    )
 
 
 def slips(structure: PodiumStructure, bodies: MultibodyResult) -> tuple[float, float]:
@@ -160,13 +176,17 @@ def test_sizes(size: Size, fema_record: RecordLoader) -> None:
     structure = structure_of(size.tan_alpha, size.rho, size.storeys)
     motion = followed(fema_record(size.record), SCALES[size.tan_alpha], size.start)
     bodies, ours = both(structure, motion, size.departures, size.options)
-    assert change(bodies, ours) == pytest.approx((size.rotation, size.base_shear), abs=size.within)
+    assert change(bodies, ours) == pytest.approx(
+        (size.rotation, size.base_shear), abs=size.within
+    )
     if size.departures.friction or size.options == PLASTIC:
         assert max(slips(structure, bodies)) < 1e-4
 
 
 @pytest.mark.parametrize("walk", WALKS, ids=lambda w: f"{w.tan_alpha}, {w.record}")
-def test_contacts_that_rebound_let_the_beam_walk(walk: Walk, fema_record: RecordLoader) -> None:
+def test_contacts_that_rebound_let_the_beam_walk(
+    walk: Walk, fema_record: RecordLoader
+) -> None:
     structure = structure_of(walk.tan_alpha, 0.5, 3)
     motion = followed(fema_record(walk.record), SCALES[walk.tan_alpha])
     bodies, ours = both(structure, motion, Departures(), {})
@@ -187,7 +207,11 @@ def test_contacts_that_rebound_let_the_beam_walk(walk: Walk, fema_record: Record
     ],
 )
 def test_less_friction_than_tan_alpha_makes_a_sliding_isolator(
-    tan_alpha: float, record: str, base_shear: float, slip: float, fema_record: RecordLoader
+    tan_alpha: float,
+    record: str,
+    base_shear: float,
+    slip: float,
+    fema_record: RecordLoader,
 ) -> None:
     """At exactly tan(alpha) columns slide and turn at once, and half the step is another motion."""
     structure = structure_of(tan_alpha, 0.5, 3)
@@ -201,7 +225,11 @@ def test_less_friction_than_tan_alpha_makes_a_sliding_isolator(
 
 @pytest.mark.parametrize(
     ("record", "columns", "base_shear", "tilt"),
-    [(FAR, (-2.9, 2.0), 0.3, 0.35), (NEAR, (-2.1, 2.8), -2.4, 0.56), (LATE, (-2.7, 2.2), 0.1, 0.2)],
+    [
+        (FAR, (-2.9, 2.0), 0.3, 0.35),
+        (NEAR, (-2.1, 2.8), -2.4, 0.56),
+        (LATE, (-2.7, 2.2), 0.1, 0.2),
+    ],
 )
 def test_columns_of_different_height(
     record: str, columns: tuple[float, float], base_shear: float, tilt: float,
@@ -211,9 +239,13 @@ def test_columns_of_different_height(
     structure = structure_of(0.15, 0.5, 3)
     more = 0.05 * structure.bearing.half_height
     departures = Departures(spacing=12.0, longer=(more, -more))
-    bodies, ours = both(structure, followed(fema_record(record), 1.0), departures, TILTING)
+    bodies, ours = both(
+        structure, followed(fema_record(record), 1.0), departures, TILTING
+    )
     largest = [np.abs(bodies.joints[f"tilt {c}"]).max() for c in range(2)]
-    assert 100.0 * (np.array(largest) / ours.max_rotation - 1.0) == pytest.approx(columns, abs=0.3)
+    assert 100.0 * (np.array(largest) / ours.max_rotation - 1.0) == pytest.approx(
+        columns, abs=0.3
+    )
     assert change(bodies, ours)[1] == pytest.approx(base_shear, abs=0.5)
     assert 1e3 * np.abs(bodies.joints["beam tilt"]).max() == pytest.approx(tilt, abs=0.02)
 
@@ -226,7 +258,12 @@ def test_vertical_vibration_hardly_changes_the_next_swings(storeys: int) -> None
 
     def tops(period: float | None) -> Any:
         found = simulate(
-            system, np.zeros(2), 1.0, 2.4, initial_rotation=released, vertical_period=period
+            system,
+            np.zeros(2),
+            1.0,
+            2.4,
+            initial_rotation=released,
+            vertical_period=period,
         )
         return turning_points(found.rotation)[1:3]
 
@@ -237,10 +274,19 @@ def test_vertical_vibration_hardly_changes_the_next_swings(storeys: int) -> None
 
 @pytest.mark.parametrize(
     ("storeys", "tan_alpha", "median", "largest"),
-    [(3, 0.15, 2.29, 2.65), (6, 0.15, 1.70, 1.95), (9, 0.15, 1.40, 1.64), (3, 0.30, 2.00, 2.93)],
+    [
+        (3, 0.15, 2.29, 2.65),
+        (6, 0.15, 1.70, 1.95),
+        (9, 0.15, 1.40, 1.64),
+        (3, 0.30, 2.00, 2.93),
+    ],
 )
 def test_demands_of_far_field_records(
-    storeys: int, tan_alpha: float, median: float, largest: float, fema_record: RecordLoader
+    storeys: int,
+    tan_alpha: float,
+    median: float,
+    largest: float,
+    fema_record: RecordLoader,
 ) -> None:
     """Friction that columns need, over tan(alpha), and base shears over V_st, by the program."""
     structure = podium(storeys, tan_alpha, law=ImpactLaw())

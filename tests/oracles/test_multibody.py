@@ -62,7 +62,9 @@ def test_restitution_from_the_heights_of_swings(building: str, rho: float) -> No
     storey = StoreyLagrangian(system)
     lifts = np.array([storey.cap_beam(top, rolling=rho > 0.0)[0].imag for top in tops])
     # contacts that close within 0.1 ms of swings of half a second
-    assert np.sqrt(lifts[1:] / lifts[:-1]) == pytest.approx(structure.restitution, abs=5e-4)
+    assert np.sqrt(lifts[1:] / lifts[:-1]) == pytest.approx(
+        structure.restitution, abs=5e-4
+    )
 
 
 def differences(
@@ -100,7 +102,9 @@ def test_the_columns_part_under_a_beam_that_may_tilt_where_contacts_rebound() ->
     level, tilting = differences("6", 0.0), differences("6", 0.0, level=False)
     assert tilting["flexible"] > 3.0 * level["flexible"]
     assert tilting["flexible"] < 0.03
-    closed = [differences("6", 0.0, level=way, closing_damping=4.0) for way in (True, False)]
+    closed = [
+        differences("6", 0.0, level=way, closing_damping=4.0) for way in (True, False)
+    ]
     assert closed[1]["flexible"] == pytest.approx(closed[0]["flexible"], rel=1e-3)
     assert closed[1]["flexible"] < level["flexible"]
 
@@ -108,16 +112,26 @@ def test_the_columns_part_under_a_beam_that_may_tilt_where_contacts_rebound() ->
 @pytest.mark.evidence("impact laws", "program")
 def test_blocks_of_the_table_of_the_verification(tmp_path: Path) -> None:
     """The command of its section 11, which takes twenty minutes for all rows."""
-    (line,) = (line for line in of_blocks(VERIFICATION) if "oracles.resolved_contact" in line)
-    line = line.replace("../.venv/bin/", "").replace("table.csv)", f"{tmp_path / 't.csv'} block)")
-    printed = run_in_shell(f"cd {ROOT}; {line}").replace("| block | 0 |", "| block | flat |")
+    (line,) = (
+        line for line in of_blocks(VERIFICATION) if "oracles.resolved_contact" in line
+    )
+    line = line.replace("../.venv/bin/", "").replace(
+        "table.csv)", f"{tmp_path / 't.csv'} block)"
+    )
+    printed = run_in_shell(f"cd {ROOT}; {line}").replace(
+        "| block | 0 |", "| block | flat |"
+    )
     rows = re.findall(r"^\| block .*$", VERIFICATION.read_text("utf-8"), re.MULTILINE)
-    told, found = ([row.split("|")[2:7] for row in t] for t in (rows, printed.splitlines()))
+    told, found = (
+        [row.split("|")[2:7] for row in t] for t in (rows, printed.splitlines())
+    )
     assert [row[0] for row in found] == [row[0] for row in told]
     for ours, theirs in zip(found, told, strict=True):
         # the last digit that is shown, or a tenth between versions of the engine
         numbers = [float(cell) for cell in theirs[1:]]
-        assert [float(cell) for cell in ours[1:]] == pytest.approx(numbers, rel=0.1, abs=0.15)
+        assert [float(cell) for cell in ours[1:]] == pytest.approx(
+            numbers, rel=0.1, abs=0.15
+        )
 
 
 W = structure_of("3", 0.5).weight
@@ -188,15 +202,24 @@ def test_rolling_resistance_with_the_normal_forces_of_each_instant(rho: float) -
     resisting = (RollingResistance(0.03),)
     assert gap(system, np.zeros(2), 2e-3, 0.35, resisting, RELEASED) < 0.01
     free = integrated(
-        system, np.zeros(2), 2e-3, free_vibration=0.35, initial_rotation=RELEASED, rtol=1e-8
+        system,
+        np.zeros(2),
+        2e-3,
+        free_vibration=0.35,
+        initial_rotation=RELEASED,
+        rtol=1e-8,
     )
-    held = simulate(system, np.zeros(2), 2e-3, 0.35, initial_rotation=RELEASED, devices=resisting)
+    held = simulate(
+        system, np.zeros(2), 2e-3, 0.35, initial_rotation=RELEASED, devices=resisting
+    )
     assert free.impacts == 0
     assert held.rotation[-1] - free.theta[-1] > 0.05 * RELEASED
 
 
 @pytest.mark.evidence("devices", "program")
-@pytest.mark.parametrize("kind", [kind for kind in KINDS if kind != "friction that holds"])
+@pytest.mark.parametrize(
+    "kind", [kind for kind in KINDS if kind != "friction that holds"]
+)
 def test_devices_under_a_pulse(kind: str) -> None:
     system = replace(oracle_system(structure_of("3", 0.5)), law="flexible")
     record = pulse(3.5, 0.8, 0.004)
@@ -213,7 +236,11 @@ def test_floors_on_vertical_springs(
     record = part(fema_record("farfield/1/b"), 2.0, 8.0)
     structure = replace(structure_of(building, 0.5), impact_law=ImpactLaw())
     resolved = simulate(
-        oracle_system(structure), record.acceleration, record.dt, 8.0, vertical_period=period
+        oracle_system(structure),
+        record.acceleration,
+        record.dt,
+        8.0,
+        vertical_period=period,
     )
     above = replace(known(structure.superstructure), vertical_period=period)
     chain = known(above.upwards)
@@ -234,7 +261,9 @@ def test_floors_on_vertical_springs(
     rows = table(VERIFICATION, "it warns of `N <= 0`")[1:]
     (cells,) = (cells for first, *cells in rows if float(first.split()[0]) == period)
     of = 2 * (building == "6")
-    assert cells[of : of + 2] == [f"{x.min():.2f} to {x.max():.2f}" for x in (carried, force)]
+    assert cells[of : of + 2] == [
+        f"{x.min():.2f} to {x.max():.2f}" for x in (carried, force)
+    ]
 
 
 RATIO, AXIAL = inertia_ratios(0.15)
@@ -251,7 +280,11 @@ def round_structure(storeys: int, damping: float = 0.0) -> OracleSystem:
 
 
 def distances(
-    along_x: OracleSystem, along_y: OracleSystem, ground: Array, dt: float, duration: float
+    along_x: OracleSystem,
+    along_y: OracleSystem,
+    ground: Array,
+    dt: float,
+    duration: float,
 ) -> tuple[Array, SpatialSimulation]:
     """Between both programs at the samples, over the largest tilt."""
     time, bodies = simulate_bodies(along_x, along_y, ground, dt, duration)
@@ -268,7 +301,9 @@ def test_two_pulses_on_a_round_column(building: str) -> None:
     dt = 0.01
     ground = np.zeros((3, 120))
     for way, (peak, period, first) in enumerate([(0.25, 0.6, 2), (0.21, 0.7, 12)]):
-        ground[way, first:][: round(period / dt) + 1] = pulse(peak * STANDARD_GRAVITY, period, dt)
+        ground[way, first:][: round(period / dt) + 1] = pulse(
+            peak * STANDARD_GRAVITY, period, dt
+        )
     along_x = round_structure(3 if "three" in building else 0, damping=0.05)
     along_y = along_x
     if building == "column":

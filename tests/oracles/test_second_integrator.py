@@ -11,7 +11,13 @@ from typing import Any, Literal, NamedTuple
 
 import numpy as np
 import pytest
-from paper_structures import RecordLoader, known, needs_compiled_kernels, oracle_system, podium
+from paper_structures import (
+    RecordLoader,
+    known,
+    needs_compiled_kernels,
+    oracle_system,
+    podium,
+)
 from shown_commands import VERIFICATION, table
 from two_components import History, followed, frame, pair, part_of_pair
 
@@ -31,14 +37,18 @@ from .storey_lagrangian import OracleSystem
 def test_locking_needs_no_small_tolerance(
     law: Literal["rigid", "flexible"], restitution: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    system = replace(oracle_system(podium(2, 0.15, 0.0)), law=law, restitution=restitution)
+    system = replace(
+        oracle_system(podium(2, 0.15, 0.0)), law=law, restitution=restitution
+    )
     followed_far = drifts_at_the_end(system, 1e-11)
     size = float(np.max(np.abs(followed_far)))
     assert drifts_at_the_end(system, 1e-6) == pytest.approx(followed_far, abs=1e-4 * size)
     # without what bounces add, a part is missing that shrinks like the square root of the tolerance
     monkeypatch.setattr(_Simulation, "left_out", lambda *_: 0.0)
     assert np.max(np.abs(drifts_at_the_end(system, 1e-6) - followed_far)) > 1e-2 * size
-    assert drifts_at_the_end(system, 1e-11) == pytest.approx(followed_far, abs=1e-3 * size)
+    assert drifts_at_the_end(system, 1e-11) == pytest.approx(
+        followed_far, abs=1e-3 * size
+    )
 
 
 def drifts_at_the_end(system: OracleSystem, tolerance: float) -> Array:
@@ -75,7 +85,10 @@ ROWS = [
 @pytest.mark.evidence("buildings on bearings under earthquakes", "program")
 @pytest.mark.parametrize(
     "row",
-    [row if row is ROWS[4] else pytest.param(row, marks=pytest.mark.long) for row in ROWS],
+    [
+        row if row is ROWS[4] else pytest.param(row, marks=pytest.mark.long)
+        for row in ROWS
+    ],
     ids=lambda row: f"{row.record}-{row.storeys}-{row.rho}",
 )
 def test_earthquakes(row: Row, fema_record: RecordLoader) -> None:
@@ -231,7 +244,11 @@ def both(
     )
     states = simulate_pair(run, ground, dt, seconds)
     count = min(len(states), len(ours.tilt))
-    return np.abs(states[:count, 0] + 1j * states[:count, 1] - ours.tilt[:count]), run, ours
+    return (
+        np.abs(states[:count, 0] + 1j * states[:count, 1] - ours.tilt[:count]),
+        run,
+        ours,
+    )
 
 
 def as_the_program(case: Shaken, *of: Any, **options: Any) -> float:
@@ -254,7 +271,9 @@ def test_a_frame_over_two_seconds(fema_record: RecordLoader) -> None:
 @pytest.mark.long
 @pytest.mark.parametrize("contact_time", [0.0, 2e-3])
 @pytest.mark.parametrize("case", CASES.values(), ids=CASES)
-def test_three_seconds(case: Shaken, contact_time: float, fema_record: RecordLoader) -> None:
+def test_three_seconds(
+    case: Shaken, contact_time: float, fema_record: RecordLoader
+) -> None:
     assert as_the_program(case, contact_time, 4.0, fema_record) < 1e-9  # 1e-12 are found
     assert as_the_program(case, contact_time, 1.0, fema_record) < 1e-6
 

@@ -23,7 +23,13 @@ from paper_structures import (
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
-from rpscli.model.devices import FrictionDamper, RollingResistance, Stop, Tendon, ViscousDamper
+from rpscli.model.devices import (
+    FrictionDamper,
+    RollingResistance,
+    Stop,
+    Tendon,
+    ViscousDamper,
+)
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import Device, PodiumStructure
 from rpscli.model.superstructure import ModalDamping, RayleighDamping
@@ -55,12 +61,15 @@ CASES = {
     "three storeys, flat": Case(podium(3, 0.10, FLAT, law=FLEXIBLE), 3.0),
     "three storeys, negative": Case(podium(3, 0.15, 0.26), 3.0, shaken_upwards=True),
     "three storeys, zero": Case(podium(3, 0.15, 0.5, R=0.6), 3.0),
-    "three storeys, positive": Case(podium(3, 0.10, 1.5, law=FLEXIBLE), 4.0, shaken_upwards=True),
+    "three storeys, positive": Case(
+        podium(3, 0.10, 1.5, law=FLEXIBLE), 4.0, shaken_upwards=True
+    ),
     "modal damping": Case(
         podium(2, 0.15, 0.5, superstructure=building(2, damping=ModalDamping(0.03))), 3.0
     ),
     "undamped": Case(
-        podium(2, 0.15, 0.3, superstructure=building(2, damping=RayleighDamping(0.0))), 3.0
+        podium(2, 0.15, 0.3, superstructure=building(2, damping=RayleighDamping(0.0))),
+        3.0,
     ),
 }
 
@@ -74,7 +83,9 @@ def agree(
 ) -> TimeHistoryResult:
     """Compare two histories; returns the program's own."""
     settings = TimeHistorySettings(free_vibration=free_vibration, accuracy=4.0)
-    result = time_history(structure, record, settings, vertical=vertical, with_fixed_base=False)
+    result = time_history(
+        structure, record, settings, vertical=vertical, with_fixed_base=False
+    )
     other = simulate(
         oracle_system(structure),
         record.acceleration,
@@ -88,14 +99,18 @@ def agree(
     assert result.max_rotation == pytest.approx(other.max_rotation, rel=tolerance)
     size = float(np.max(np.abs(other.theta)))
     rotation = result.trace.rotation[: len(other.theta)]
-    assert rotation == pytest.approx(other.theta[: len(rotation)], abs=10.0 * tolerance * size)
+    assert rotation == pytest.approx(
+        other.theta[: len(rotation)], abs=10.0 * tolerance * size
+    )
     if structure.storeys:
         shears = other.max_storey_shears_at_samples
         sampled = np.max(np.abs(result.trace.storey_shears), axis=0)
         assert sampled == pytest.approx(shears, rel=10.0 * tolerance)
         assert np.all(result.storey_shears >= (1.0 - 1e-9) * sampled)
     supplied = max(abs(result.energy.input), 1.0)
-    assert result.energy.impact == pytest.approx(other.energy_lost, abs=10.0 * tolerance * supplied)
+    assert result.energy.impact == pytest.approx(
+        other.energy_lost, abs=10.0 * tolerance * supplied
+    )
     if structure.devices and not other.overturned:
         found = result.trace.devices
         taken = found.energy[-1] + found.stored[-1]
@@ -106,7 +121,9 @@ def agree(
             if isinstance(device, Tendon):
                 left = max(0.0, device.prestress - device.stiffness * plastic)
                 force = device.stiffness * float(result.structure.bearing.half_width)
-                assert demand.remaining_prestress == pytest.approx(left, abs=tolerance * force)
+                assert demand.remaining_prestress == pytest.approx(
+                    left, abs=tolerance * force
+                )
     return result
 
 
@@ -155,7 +172,10 @@ EQUIPPED = {
     "yielding tendon": (podium(3, 0.10, FLAT, law=FLEXIBLE), 3.0),
     "loose tendon": (podium(0, 0.10, 1.5), 4.0),
     "friction, damped stop": (podium(3, 0.15, 0.5, law=FLEXIBLE), 3.0),
-    "friction, linear damper, stop, yielding tendon": (podium(3, 0.10, 0.5, law=FLEXIBLE), 4.0),
+    "friction, linear damper, stop, yielding tendon": (
+        podium(3, 0.10, 0.5, law=FLEXIBLE),
+        4.0,
+    ),
 }
 
 
@@ -169,7 +189,10 @@ QUICK = {
 @pytest.mark.evidence("devices", "program")
 @pytest.mark.parametrize(
     "names",
-    [pytest.param(names, marks=[] if names in QUICK else pytest.mark.long) for names in EQUIPPED],
+    [
+        pytest.param(names, marks=[] if names in QUICK else pytest.mark.long)
+        for names in EQUIPPED
+    ],
 )
 def test_both_roads_with_devices(names: str) -> None:
     bare, peak = EQUIPPED[names]

@@ -29,7 +29,15 @@ from paper_structures import (
     part,
     waves,
 )
-from two_components import History, followed, frame, pair, part_of_pair, released, two_pulses
+from two_components import (
+    History,
+    followed,
+    frame,
+    pair,
+    part_of_pair,
+    released,
+    two_pulses,
+)
 
 import rpscli
 from rpscli.analyses.kernels.history import SampledHistory, sampled_history
@@ -38,7 +46,13 @@ from rpscli.analyses.timehistory import time_history
 from rpscli.case.case import load_case
 from rpscli.constants import STANDARD_GRAVITY
 from rpscli.model.contact import Contact
-from rpscli.model.devices import FrictionDamper, RollingResistance, Stop, Tendon, ViscousDamper
+from rpscli.model.devices import (
+    FrictionDamper,
+    RollingResistance,
+    Stop,
+    Tendon,
+    ViscousDamper,
+)
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import Device, PodiumStructure
 from rpscli.physics.state import IMPACT, SLIDING, STICKING, STUCK, UPLIFT
@@ -73,7 +87,9 @@ def test_angle_of_turn(building: str, across: float) -> None:
         structure = frame(**above, contact_time=contact_time)
         free = released(structure, 0.06, across, 0.75, dt=1e-3)
         passed = free.passes[0]
-        beyond = (np.arange(len(free.samples)) * 1e-3 > passed.time) & (free.samples.theta > 2e-3)
+        beyond = (np.arange(len(free.samples)) * 1e-3 > passed.time) & (
+            free.samples.theta > 2e-3
+        )
         azimuth = math.degrees(free.samples.azimuth[np.flatnonzero(beyond)[0]]) % 360.0
         assert azimuth == pytest.approx(expected, abs=0.003)
         if across == 1.2e-9:
@@ -84,7 +100,9 @@ def upwards() -> Array:
     """A vertical motion with its largest pulses about uplift [m/s2]."""
     t = np.arange(0.0, 6.0, STEP)
     z, y = (np.pi * (t - 1.45) / 0.4) ** 2, (np.pi * (t - 2.3) / 0.3) ** 2
-    return np.asarray(2.5 * (1.0 - 2.0 * z) * np.exp(-z) - 2.0 * (1.0 - 2.0 * y) * np.exp(-y))
+    return np.asarray(
+        2.5 * (1.0 - 2.0 * z) * np.exp(-z) - 2.0 * (1.0 - 2.0 * y) * np.exp(-y)
+    )
 
 
 @pytest.mark.evidence("both components", "program")
@@ -102,7 +120,9 @@ def test_two_pulses(vertical: bool, contact_time: float, largest: float) -> None
     motion = pair(X, Y, STEP, upwards() if vertical else None)
     structure = frame(**THREE, contact_time=contact_time)
     fine = TimeHistorySettings(free_vibration=0.0, accuracy=3.0)
-    assert followed(structure, motion, fine).left.max_theta == pytest.approx(largest, abs=1e-8)
+    assert followed(structure, motion, fine).left.max_theta == pytest.approx(
+        largest, abs=1e-8
+    )
     usual = followed(structure, motion)
     assert usual.left.max_theta == pytest.approx(largest, abs=1e-6)
     assert abs(usual.residual) < 2e-6
@@ -128,7 +148,9 @@ def test_recorded_pairs_of_another_program(row: int, fema_record: RecordLoader) 
         return
     assert history.left.max_theta == pytest.approx(given["max"], abs=5e-7)
     if given["uplift"]:
-        assert history.of_kind(UPLIFT)[0].time == pytest.approx(given["uplift"][0], abs=1e-9)
+        assert history.of_kind(UPLIFT)[0].time == pytest.approx(
+            given["uplift"][0], abs=1e-9
+        )
     if given["passes"]:
         assert len(history.passes) == given["passes"]
         lost = history.left.energy_passes / structure.columns_mass
@@ -142,18 +164,26 @@ def test_directions_are_exchanged_with_their_buildings() -> None:
     other = followed(frame(**options, period=0.5, period_y=0.3), pair(Y, X, STEP))
     mirrored = 1j * np.conj(one.tilt)
     assert np.max(np.abs(mirrored - other.tilt)) < 1e-6 * 0.08
-    assert np.allclose(one.left.storey_shear_x[:3], other.left.storey_shear_y[:3], rtol=1e-5)
-    assert one.left.storey_shear_x[0] != pytest.approx(one.left.storey_shear_y[0], rel=0.01)
+    assert np.allclose(
+        one.left.storey_shear_x[:3], other.left.storey_shear_y[:3], rtol=1e-5
+    )
+    assert one.left.storey_shear_x[0] != pytest.approx(
+        one.left.storey_shear_y[0], rel=0.01
+    )
     same = followed(frame(**options, period=0.3, period_y=0.3), PULSES)
     assert same.tilt.tolist() == followed(frame(**options), PULSES).tilt.tolist()
 
 
 @pytest.mark.evidence("both components", "exact")
-@pytest.mark.parametrize("options", [{"contact_time": 0.0}, {"factor": 1.0 / 0.8388687078360144}])
+@pytest.mark.parametrize(
+    "options", [{"contact_time": 0.0}, {"factor": 1.0 / 0.8388687078360144}]
+)
 def test_nothing_is_lost_without_contact_time_or_loss(options: dict[str, Any]) -> None:
     history = followed(frame(**{**THREE, **options}), PULSES)
     assert len(history.passes)
-    assert history.left.energy_passes == pytest.approx(0.0, abs=1e-12 * history.left.energy_input)
+    assert history.left.energy_passes == pytest.approx(
+        0.0, abs=1e-12 * history.left.energy_input
+    )
 
 
 W = frame(3, 3.0).weight
@@ -213,7 +243,9 @@ def test_energy_closes_where_tendons_yield_and_columns_go_round(seed: int) -> No
     """Where x' = 0 ends yielding, what goes on across the tilt is not stopped."""
     structure = equipped("yields", 2)
     peak = 3.0 * structure.uplift_acceleration
-    motion = MotionComponents(waves(6.0, 0.01, peak, seed), y=waves(6.0, 0.01, peak, seed + 50))
+    motion = MotionComponents(
+        waves(6.0, 0.01, peak, seed), y=waves(6.0, 0.01, peak, seed + 50)
+    )
     result = time_history(structure, motion, TimeHistorySettings(free_vibration=1.0))
     assert sum(event.kind == "tendon_yielding" for event in result.events) >= 1
     assert known(result.passes) >= 1
@@ -235,7 +267,12 @@ def motion_of(reference: dict[str, Any], fema_record: RecordLoader) -> MotionCom
         )
         return pair(x, y, of["dt"])
     along, across = (
-        part(fema_record(f"farfield/{of['fema']}/{way}"), of["t0"], reference["T"], of["scale"])
+        part(
+            fema_record(f"farfield/{of['fema']}/{way}"),
+            of["t0"],
+            reference["T"],
+            of["scale"],
+        )
         for way in "ab"
     )
     return MotionComponents(along, y=across)
@@ -255,7 +292,9 @@ def test_histories_of_another_program(name: str, fema_record: RecordLoader) -> N
     # 1e-10 rad are found, 5e-8 where friction lets go, of which a motion begins with some velocity
     held = left.events[SLIDING] > 0
     assert np.max(np.abs(history.tilt[rows] - tilt)) < (1e-7 if held else 3e-9)
-    assert left.max_theta == pytest.approx(reference["max_tilt"], rel=1e-6 if held else 1e-7)
+    assert left.max_theta == pytest.approx(
+        reference["max_tilt"], rel=1e-6 if held else 1e-7
+    )
     if structure.superstructure is not None:
         elastic = elastic_shear(structure, history)[: rows[-1] + 1].max()
         assert elastic == pytest.approx(reference["base_shear"], rel=1e-6)
@@ -272,11 +311,15 @@ def test_histories_of_another_program(name: str, fema_record: RecordLoader) -> N
             spent[theirs], abs=(3e-7 if held else 1e-7) * spent["input"]
         ), theirs
     uplifts, reentries, sticks = reference["events"]
-    begins_stuck = left.events[STICKING] > 0 and structure.bearing.alpha * (not structure.bed) == 0
+    begins_stuck = (
+        left.events[STICKING] > 0 and structure.bearing.alpha * (not structure.bed) == 0
+    )
     assert left.events[UPLIFT] == uplifts
     assert left.events[IMPACT] == reentries
     assert left.events[STICKING] - begins_stuck == sticks
-    assert (left.phase == STUCK or history.samples.phase[-1] == STUCK) == reference["stuck"]
+    assert (left.phase == STUCK or history.samples.phase[-1] == STUCK) == reference[
+        "stuck"
+    ]
 
 
 def elastic_shear(structure: PodiumStructure, history: History) -> Array:
@@ -291,7 +334,9 @@ def elastic_shear(structure: PodiumStructure, history: History) -> Array:
     return np.asarray(np.hypot(*both))
 
 
-PLANE, EDGES = (Contact(kind, stiffness=6.34e8, damping=0.0) for kind in ("plane", "edges"))
+PLANE, EDGES = (
+    Contact(kind, stiffness=6.34e8, damping=0.0) for kind in ("plane", "edges")
+)
 
 
 @pytest.mark.evidence("both components", "program")
@@ -342,7 +387,9 @@ def test_in_proportion_to_the_stiffness(end: str) -> None:
     rigid = followed(frame(3, 3.0, **options, contact_time=0.0), pair(x, y, STEP))
     gaps = []
     for stiffness in (1e10, 1e11, 1e12):
-        contact = replace(EDGES if end.startswith("edges") else PLANE, stiffness=stiffness)
+        contact = replace(
+            EDGES if end.startswith("edges") else PLANE, stiffness=stiffness
+        )
         soft = followed(frame(3, 3.0, **options, contact=contact), pair(x, y, STEP))
         gaps.append(np.max(np.abs(soft.tilt - rigid.tilt)))
     assert rigid.left.max_theta > 0.02
@@ -419,5 +466,7 @@ def test_every_cell_of_the_guide(end: str, both: bool, name: str, goes: bool) ->
 def test_the_guide_has_every_combination() -> None:
     said = {(end, both, name) for end, both, name, _ in cells()}
     assert said == set(
-        product(("rigid", "plane", "edges", "spherical"), (False, True), (*WORDS, "impact"))
+        product(
+            ("rigid", "plane", "edges", "spherical"), (False, True), (*WORDS, "impact")
+        )
     )

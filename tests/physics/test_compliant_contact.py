@@ -55,12 +55,18 @@ def podium(
 ) -> PodiumStructure:
     """R 1.5 m, tan(alpha) .15, gamma 10, eta n, T_1 n/10 s, 5 %."""
     above = building(storeys, **of_building) if storeys else None
-    usual = paper_podium(storeys, 0.15, rho, law=ImpactLaw(loss=loss), superstructure=above)
+    usual = paper_podium(
+        storeys, 0.15, rho, law=ImpactLaw(loss=loss), superstructure=above
+    )
     return replace(usual, contact=contact, devices=devices)
 
 
-def shaken(structure: PodiumStructure, motion: GroundMotion, **how: float) -> TimeHistoryResult:
-    return time_history(structure, motion, TimeHistorySettings(**how), with_fixed_base=False)  # type: ignore[arg-type]
+def shaken(
+    structure: PodiumStructure, motion: GroundMotion, **how: float
+) -> TimeHistoryResult:
+    return time_history(
+        structure, motion, TimeHistorySettings(**how), with_fixed_base=False
+    )  # type: ignore[arg-type]
 
 
 RELEASES = [
@@ -85,7 +91,9 @@ def test_a_release(
     rho: float, storeys: int, phi_u: float, loss: float, swing: float, shear: float
 ) -> None:
     def of(contact: Contact) -> PodiumStructure:
-        return podium(storeys, contact, loss=loss, damping=UNDAMPED, profile="uniform", rho=rho)
+        return podium(
+            storeys, contact, loss=loss, damping=UNDAMPED, profile="uniform", rho=rho
+        )
 
     def soft(stiffness: float) -> Contact:
         return Contact("plane", stiffness=stiffness, damping=0.0)
@@ -107,7 +115,11 @@ def test_a_release(
 
 def bedded(structure: PodiumStructure) -> tuple[Array, Array, Array]:
     """M, C and K of [u_b, floors over the ground] in full contact, written here."""
-    bed, above, n = known(structure.bed), known(structure.superstructure), structure.storeys
+    bed, above, n = (
+        known(structure.bed),
+        known(structure.superstructure),
+        structure.storeys,
+    )
     C, K = np.zeros((2, n + 1, n + 1))
     for whole, part in ((C, above.damping_matrix), (K, above.stiffness_matrix)):
         whole[1:, 1:] = part
@@ -120,11 +132,15 @@ def bedded(structure: PodiumStructure) -> tuple[Array, Array, Array]:
 
 @pytest.mark.evidence("compliant ends", "exact")
 def test_full_contact_swings_with_the_period_that_was_asked_for() -> None:
-    structure = podium(3, Contact("plane", period_ratio=1.2, damping=0.0), damping=UNDAMPED)
+    structure = podium(
+        3, Contact("plane", period_ratio=1.2, damping=0.0), damping=UNDAMPED
+    )
     M, _, K = bedded(structure)
     omega2, _ = np.linalg.eig(np.linalg.solve(M, K))
     period = 2.0 * math.pi / math.sqrt(float(omega2.real.min()))
-    assert period / known(structure.superstructure).periods[0] == pytest.approx(1.2, abs=1e-9)
+    assert period / known(structure.superstructure).periods[0] == pytest.approx(
+        1.2, abs=1e-9
+    )
 
 
 @pytest.mark.evidence("compliant ends", "program")
@@ -140,7 +156,9 @@ def test_a_second_integrator_agrees(kind: str, peak: float) -> None:
     other = CompliantStorey(
         oracle_system(structure), lifts, 0.1, kind == "plane", structure.restitution
     )
-    theta, floors, returns = other.history(motion.acceleration, motion.dt, vertical.acceleration)
+    theta, floors, returns = other.history(
+        motion.acceleration, motion.dt, vertical.acceleration
+    )
     assert returns >= 5
     shaking = MotionComponents(motion, vertical=vertical if peak else None)
     for accuracy, bar in ((1.0, 1e-6), (4.0, 1e-8)):
@@ -173,7 +191,9 @@ STRIPS = 4000
 """Of a plane end: where its contact ends is known to a strip, 5e-4 of the half width."""
 
 
-def strips(structure: PodiumStructure, settlement: float, theta: Array) -> tuple[Array, Array]:
+def strips(
+    structure: PodiumStructure, settlement: float, theta: Array
+) -> tuple[Array, Array]:
     """Restoring moment and lift v_b - v_b(0) of the storey, its weight at rest on springs.
 
     The middle of an end sinks by s, its springs by s + xi sin(theta); none pulls. Bisection finds
@@ -234,14 +254,18 @@ def test_under_sustained_upward_acceleration_edges_are_held_where_they_lift(
 ) -> None:
     """The bed's phi_u is that of the weight: in between the columns stand, and energy closes."""
     structure = podium(storeys, Contact("edges", settlement=1e-4))
-    push = 1.3 * structure.uplift_acceleration * np.sin(0.4 * np.pi * np.arange(801) * 0.01)
+    push = (
+        1.3 * structure.uplift_acceleration * np.sin(0.4 * np.pi * np.arange(801) * 0.01)
+    )
     record, above = ground(push, 0.01), ground(np.full(801, upwards), 0.01)
     settings = TimeHistorySettings(free_vibration=2.0)
     result = time_history(structure, record, settings, vertical=above)
     held = [event for event in result.events if event.kind == "sticking"]
     assert held
     u = known(structure.bed).uplift_rotation
-    assert [abs(event.rotation) for event in held] == pytest.approx([u] * len(held), rel=1e-12)
+    assert [abs(event.rotation) for event in held] == pytest.approx(
+        [u] * len(held), rel=1e-12
+    )
     energy = result.energy
     supplied = max(abs(energy.input), energy.impact, energy.damped, energy.bed)
     assert abs(energy.residual) < 1e-6 * supplied  # over up to three hundred re-entries
@@ -258,7 +282,9 @@ def test_landing_beside_the_end_of_a_steep_bed() -> None:
         None,
         ImpactLaw(loss=0.23307715435675697),
         devices=(Stop(0.1, 4707864.741390806, 94157.29482781613),),
-        contact=Contact("plane", stiffness=581030453.4829509, damping=0.26238587675047614),
+        contact=Contact(
+            "plane", stiffness=581030453.4829509, damping=0.26238587675047614
+        ),
     )
     result = shaken(structure, waves(6.0, 0.01, 1.5086094682829487, 1288))
     assert len(result.events) > 170
@@ -268,7 +294,9 @@ def test_landing_beside_the_end_of_a_steep_bed() -> None:
 @pytest.mark.evidence("compliant ends", "program")
 @pytest.mark.long
 @pytest.mark.parametrize("storeys", [3, 6])
-@pytest.mark.parametrize(("factor", "overturned"), [(1.0, (7, 6)), (0.5, (1, 0)), (0.15, (0, 0))])
+@pytest.mark.parametrize(
+    ("factor", "overturned"), [(1.0, (7, 6)), (0.5, (1, 0)), (0.15, (0, 0))]
+)
 def test_twenty_records_on_a_resolved_bed(
     storeys: int, factor: float, overturned: tuple[int, int], fema_record: RecordLoader
 ) -> None:
@@ -276,16 +304,24 @@ def test_twenty_records_on_a_resolved_bed(
     structure = podium(storeys, Contact("plane", period_ratio=1.2), loss=0.3)
     records = [fema_record(f"farfield/{i}/a") for i in range(1, 21)]
     settings, limit = TimeHistorySettings(), 2.0 * structure.critical_rotation
-    found = demands([Request(structure, MotionComponents(r), settings, factor) for r in records])
+    found = demands(
+        [Request(structure, MotionComponents(r), settings, factor) for r in records]
+    )
     bed = [
-        resolved(structure, factor * r.acceleration, r.dt, zeta=0.3, seconds=5.0, limit=limit)
+        resolved(
+            structure, factor * r.acceleration, r.dt, zeta=0.3, seconds=5.0, limit=limit
+        )
         for r in records
     ]
     # Near overturning a history is chaotic: one of twenty may end otherwise.
     fell = sum(largest >= limit for largest, _ in bed)
     assert abs(sum(d.overturned for d in found) - fell) <= 1
     assert abs(fell - overturned[storeys == 6]) <= 1
-    both = [(d, b) for d, b in zip(found, bed, strict=True) if not d.overturned and b[0] < limit]
+    both = [
+        (d, b)
+        for d, b in zip(found, bed, strict=True)
+        if not d.overturned and b[0] < limit
+    ]
     rotations = [d.max_rotation / b[0] for d, b in both]
     shears = [d.max_base_shear / b[1] for d, b in both]
     assert 0.95 < np.median(rotations) < 1.07

@@ -32,7 +32,9 @@ RECORD, VERTICAL = waves(1.5, DT, 4.0, seed=2), waves(1.5, DT, 3.0, seed=3)
 
 @pytest.mark.evidence("forces in columns, friction", "exact")
 @pytest.mark.parametrize(
-    "structure", [podium(0, 0.15, 0.5), podium(2, 0.15, FLAT), podium(3, 0.15, 0.5)], ids=str
+    "structure",
+    [podium(0, 0.15, 0.5), podium(2, 0.15, FLAT), podium(3, 0.15, 0.5)],
+    ids=str,
 )
 def test_demands_are_newtons_sums_over_all_masses(structure: PodiumStructure) -> None:
     settings = TimeHistorySettings(free_vibration=0.0)
@@ -46,7 +48,9 @@ def test_demands_are_newtons_sums_over_all_masses(structure: PodiumStructure) ->
     w, slope, bend = np.array([
         lagrangian.cap_beam(abs(x), rolling=abs(x) < structure.bearing.beta) for x in samples.theta
     ]).T  # fmt: skip
-    moved = (slope * acceleration + side * bend * rate**2) * (samples.phase != FULL_CONTACT)
+    moved = (slope * acceleration + side * bend * rate**2) * (
+        samples.phase != FULL_CONTACT
+    )
     u_b, v_b = moved.real, side * moved.imag
     a_h, a_v = RECORD.acceleration, VERTICAL.acceleration
     beam, columns, g = structure.cap_beam_mass, structure.columns_mass, structure.gravity
@@ -61,7 +65,10 @@ def test_demands_are_newtons_sums_over_all_masses(structure: PodiumStructure) ->
     carried = beam + structure.superstructure_mass
     normal_top = carried * (g + a_v + v_b)
     normal_bottom = normal_top + columns * (g + a_v + 0.5 * v_b)
-    ends = ((shear_top, normal_top, carried), (shear_bottom, normal_bottom, carried + columns))
+    ends = (
+        (shear_top, normal_top, carried),
+        (shear_bottom, normal_bottom, carried + columns),
+    )
     friction = np.array([np.max(np.abs(shear) / normal) for shear, normal, _ in ends])
     normal = np.array([np.min(normal) / (mass * g) for _, normal, mass in ends])
     found = np.array([history.friction_top, history.friction_bottom])
@@ -111,7 +118,9 @@ def test_maxima_are_those_of_a_dense_trace(
     storeys: int, rho: float, damping: RayleighDamping | ModalDamping
 ) -> None:
     """None of those that the search leaves unformed would have been larger."""
-    structure = podium(storeys, 0.15, rho, superstructure=building(storeys, damping=damping))
+    structure = podium(
+        storeys, 0.15, rho, superstructure=building(storeys, damping=damping)
+    )
     record = waves(10.0, 0.01, 2.5 * structure.uplift_acceleration, seed=3)
     result = time_history(structure, record, TimeHistorySettings(free_vibration=3.0))
     assert result.impacts > 10

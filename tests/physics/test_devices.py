@@ -11,7 +11,16 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from paper_structures import FLAT, SLENDER, ground, known, let_go, linear_response, podium, waves
+from paper_structures import (
+    FLAT,
+    SLENDER,
+    ground,
+    known,
+    let_go,
+    linear_response,
+    podium,
+    waves,
+)
 from scipy.integrate import quad
 
 from rpscli.analyses.demand import demand
@@ -64,11 +73,15 @@ def ramp(sign: float = 1.0, seconds: float = 8.0) -> GroundMotion:
 @pytest.mark.evidence("devices", "exact")
 @of_shapes
 @pytest.mark.parametrize("sign", [1.0, -1.0])
-def test_uplift_is_delayed_by_what_devices_hold(slope: float, rho: float, sign: float) -> None:
+def test_uplift_is_delayed_by_what_devices_hold(
+    slope: float, rho: float, sign: float
+) -> None:
     bare = frame(slope, rho)
     W, alpha, gamma = bare.weight, bare.bearing.alpha, bare.gamma
     F_d, P, f = 0.03 * W, 0.01 * W, 0.01 * bare.bearing.half_width
-    structure = replace(bare, devices=(FrictionDamper(F_d), Tendon(P, W), RollingResistance(f)))
+    structure = replace(
+        bare, devices=(FrictionDamper(F_d), Tendon(P, W), RollingResistance(f))
+    )
     held = F_d + 4.0 * P * math.tan(alpha)
     held += 2.0 * W * f / (2.0 * bare.bearing.semi_diagonal * math.cos(alpha))
     limit = G * math.tan(alpha) + 2.0 * held / (bare.columns_mass * (1.0 + 2.0 * gamma))
@@ -80,7 +93,9 @@ def test_uplift_is_delayed_by_what_devices_hold(slope: float, rho: float, sign: 
 @pytest.mark.evidence("devices", "exact")
 @of_shapes
 @pytest.mark.parametrize("sign", [1.0, -1.0])
-def test_friction_sticks_and_slides_at_its_limit(slope: float, rho: float, sign: float) -> None:
+def test_friction_sticks_and_slides_at_its_limit(
+    slope: float, rho: float, sign: float
+) -> None:
     bare = frame(slope, rho)
     start = 0.5 * bare.critical_rotation
     force, _, _ = path(bare, start)
@@ -98,8 +113,14 @@ def test_a_stuck_storey_carries_a_building_on_a_fixed_base_until_its_limit() -> 
     bare, start, dt = podium(2, 0.15, 0.5), 0.05, 0.01
     restoring, _, _ = path(bare, start)
     above, force = known(bare.superstructure), 1.5 * restoring
-    ag = 0.9 * np.sin(2.0 * math.pi * 3.0 * dt * np.arange(150)) * np.linspace(0.0, 1.0, 150)
-    motion = follow(replace(bare, devices=(FrictionDamper(force),)), ground(ag, dt), start)
+    ag = (
+        0.9
+        * np.sin(2.0 * math.pi * 3.0 * dt * np.arange(150))
+        * np.linspace(0.0, 1.0, 150)
+    )
+    motion = follow(
+        replace(bare, devices=(FrictionDamper(force),)), ground(ag, dt), start
+    )
     M, C, K = above.mass_matrix, above.damping_matrix, above.stiffness_matrix
     states = linear_response(M, C, K, above.masses, ag, dt)
     push = states @ np.r_[K.sum(axis=0), C.sum(axis=0)]
@@ -112,7 +133,9 @@ def test_a_stuck_storey_carries_a_building_on_a_fixed_base_until_its_limit() -> 
 
 @pytest.mark.evidence("devices", "exact")
 @pytest.mark.parametrize(("factor", "stays"), [(1.001, True), (0.999, False)])
-def test_more_friction_than_weight_brings_back_stays_tilted(factor: float, stays: bool) -> None:
+def test_more_friction_than_weight_brings_back_stays_tilted(
+    factor: float, stays: bool
+) -> None:
     bare = frame(0.15, 0.5)
     start = 0.5 * bare.critical_rotation
     friction = FrictionDamper(factor * largest_recentring_friction(bare, start))
@@ -149,11 +172,15 @@ def test_a_damper_falls_towards_its_final_velocity(exponent: float) -> None:
     _, far, _ = path(bare, start)
     assert way < 0.8 * far
     at = int(np.argmin(np.abs(motion.trace.time - time)))
-    assert far - path(bare, float(motion.trace.rotation[at]))[1] == pytest.approx(way, rel=SMALL)
+    assert far - path(bare, float(motion.trace.rotation[at]))[1] == pytest.approx(
+        way, rel=SMALL
+    )
 
 
 @pytest.mark.parametrize(("exponent", "share"), [(0.2, 1.0), (0.3, 2.0)])
-def test_a_damper_that_holds_does_not_try_every_step_anew(exponent: float, share: float) -> None:
+def test_a_damper_that_holds_does_not_try_every_step_anew(
+    exponent: float, share: float
+) -> None:
     """Explicit steps of order 7 are stable to 3.9 over the decay rate; each is tried once or so."""
     bare = podium(1)
     structure = replace(bare, devices=(ViscousDamper(share * bare.weight, exponent),))

@@ -10,7 +10,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from oracles.storey_lagrangian import Contact, StoreyLagrangian
-from paper_structures import FLAT, needs_compiled_kernels, oracle_system, podium, stillness, waves
+from paper_structures import (
+    FLAT,
+    needs_compiled_kernels,
+    oracle_system,
+    podium,
+    stillness,
+    waves,
+)
 from scipy.optimize import brentq
 
 from rpscli.analyses.kernels.history import sampled_history
@@ -53,12 +60,16 @@ def shape_of(tan_alpha: float, widening: float, sin_beta: float) -> Bearing:
     return Bearing(1.0, tan_alpha, tan_alpha + rise, rise / (2.0 * sin_beta))
 
 
-shapes = st.builds(shape_of, st.floats(0.02, 0.6), st.floats(1.05, 3.0), st.floats(0.02, 0.999))
+shapes = st.builds(
+    shape_of, st.floats(0.02, 0.6), st.floats(1.05, 3.0), st.floats(0.02, 0.999)
+)
 
 
 @pytest.mark.evidence("geometry of columns", "exact")
 @given(shapes)
-def test_critical_rotation_is_the_first_root_on_the_branch_travelled(bearing: Bearing) -> None:
+def test_critical_rotation_is_the_first_root_on_the_branch_travelled(
+    bearing: Bearing,
+) -> None:
     def B(x: float) -> float:
         return printed(bearing, x, rolling=x < bearing.beta).B
 
@@ -75,9 +86,13 @@ def test_critical_rotation_is_the_first_root_on_the_branch_travelled(bearing: Be
 
 @pytest.mark.evidence("geometry of columns", "exact")
 @given(shapes, st.lists(st.floats(0.0, 1.4), min_size=1, max_size=5))
-def test_the_path_takes_each_point_in_its_own_phase(bearing: Bearing, tilt: list[float]) -> None:
+def test_the_path_takes_each_point_in_its_own_phase(
+    bearing: Bearing, tilt: list[float]
+) -> None:
     x = np.array(tilt)
-    path = np.array(geometry.path_along(bearing.rolling, bearing.rocking, bearing.beta, x))
+    path = np.array(
+        geometry.path_along(bearing.rolling, bearing.rocking, bearing.beta, x)
+    )
     expected = [printed(bearing, t, rolling=t < bearing.beta) for t in tilt]
     size = 1.0 + 4.0 * bearing.curvature_ratio
     assert path == pytest.approx(np.array(expected).T, abs=ROUNDING * size)
@@ -89,7 +104,10 @@ def structures(draw: st.DrawFn) -> PodiumStructure:
     positive = st.floats(0.2, 5.0)
     above = None
     if n:
-        dampings: list[RayleighDamping | ModalDamping] = [RayleighDamping(0.05), ModalDamping(0.03)]
+        dampings: list[RayleighDamping | ModalDamping] = [
+            RayleighDamping(0.05),
+            ModalDamping(0.03),
+        ]
         damping = draw(st.sampled_from(dampings))
         masses, stiffnesses = (
             np.array(draw(st.lists(positive, min_size=n, max_size=n))) for _ in range(2)
@@ -99,7 +117,9 @@ def structures(draw: st.DrawFn) -> PodiumStructure:
     rho = draw(st.sampled_from([0.0, 0.3, 0.5, 1.5]))
     bearing = Bearing(draw(positive), tan_alpha, 2.0 * tan_alpha, rho)
     rigid = ImpactLaw("rigid")  # of which any of these shapes goes over
-    return PodiumStructure(bearing, 1e4 * draw(positive), 1e5 * draw(positive), above, rigid)
+    return PodiumStructure(
+        bearing, 1e4 * draw(positive), 1e5 * draw(positive), above, rigid
+    )
 
 
 @needs_compiled_kernels
@@ -155,12 +175,19 @@ def test_samples_obey_lagrange_and_the_theory(
         assert floors == pytest.approx(-forces / system.masses, rel=1e-9, abs=1e-9)
 
 
-def coefficients(structure: PodiumStructure, x: float, *, rolling: bool) -> tuple[float, float]:
+def coefficients(
+    structure: PodiumStructure, x: float, *, rolling: bool
+) -> tuple[float, float]:
     """A and D of the equation of motion (Theory, section 2)."""
     bearing, gamma, eta = structure.bearing, structure.gamma, structure.eta
     B, C, _, _ = printed(bearing, x, rolling=rolling)
     k = 2.0 * bearing.curvature_ratio * math.cos(bearing.alpha) if rolling else 0.0
-    A = bearing.inertia_ratio - 1.0 + (1.0 + 4.0 * gamma) * (B**2 + C**2) + 4.0 * gamma * eta * B**2
+    A = (
+        bearing.inertia_ratio
+        - 1.0
+        + (1.0 + 4.0 * gamma) * (B**2 + C**2)
+        + 4.0 * gamma * eta * B**2
+    )
     return A, (1.0 + 4.0 * gamma) * k * B + 4.0 * gamma * eta * B * (k - C)
 
 
@@ -194,7 +221,9 @@ def test_misprint_2_the_sign_of_gravity_in_k_l(rho: float) -> None:
     state = uplifted_state(structure.bearing, rolling=True, exact=False)
     M, _, K = linearised_matrices(structure, state)
     wrong_K = K.copy()
-    wrong_K[0, 0] -= structure.weight * (2.0 * rho - 1.0) / structure.bearing.semi_diagonal
+    wrong_K[0, 0] -= (
+        structure.weight * (2.0 * rho - 1.0) / structure.bearing.semi_diagonal
+    )
     # along u_t = u_b the spring stays slack: only gravity is left
     slope = (tilt_acceleration(structure, 2.0 * h) - tilt_acceleration(structure, h)) / h
     ours, wrong = (-(matrix[0, 0] + matrix[0, 1]) / M[0, 0] for matrix in (K, wrong_K))
@@ -210,7 +239,9 @@ def test_misprint_3_the_first_order_theta_cr_jumps_at_its_rho_cr() -> None:
     for tan_alpha, jump in ((0.10, 0.0099), (0.15, 0.0222), (0.20, 0.0392)):
         wedge = 2.0 * tan_alpha
         rho_cr = Bearing(1.5, tan_alpha, wedge, 0.5).critical_curvature_ratio_of_paper
-        below, above = (Bearing(1.5, tan_alpha, wedge, rho_cr + shift) for shift in (-1e-9, 1e-9))
+        below, above = (
+            Bearing(1.5, tan_alpha, wedge, rho_cr + shift) for shift in (-1e-9, 1e-9)
+        )
         paper = above.critical_rotation_of_paper / below.critical_rotation_of_paper - 1.0
         assert abs(above.critical_rotation / below.critical_rotation - 1.0) < 1e-8
         assert abs(paper) == pytest.approx(jump, rel=0.01)

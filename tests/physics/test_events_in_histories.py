@@ -57,7 +57,9 @@ def descent_by_roots(b: Quintic) -> float:
     """The start of the first interval between real roots on which the curve is negative."""
     powers = PPoly.from_bernstein_basis(BPoly(np.array(b)[:, None], [0.0, 1.0])).c[:, 0]
     roots = np.roots(powers)
-    real = np.sort(roots.real[(np.abs(roots.imag) < 1e-9) & (roots.real > 0) & (roots.real < 1)])
+    real = np.sort(
+        roots.real[(np.abs(roots.imag) < 1e-9) & (roots.real > 0) & (roots.real < 1)]
+    )
     for left, right in pairwise([0.0, *real, 1.0]):
         if right - left > 1e-9 and np.polyval(powers, 0.5 * (left + right)) < 0.0:
             return float(left)
@@ -103,7 +105,10 @@ def test_the_first_descent_is_found(kind: int) -> None:
         ((0.0, -1.0, 1.0, 1.0, 1.0, 1.0), 0.0),
         ((-0.0, 1.0, 1.0, 1.0, 1.0, 1.0), NO_PASSAGE),
         ((-1.0, 1.0, 1.0, 1.0, 1.0, 1.0), 0.0),  # begins below
-        ((1.0, 1.0, 1.0, 1.0, 1.0, 0.0), NO_PASSAGE),  # ends on zero: the next step's affair
+        (
+            (1.0, 1.0, 1.0, 1.0, 1.0, 0.0),
+            NO_PASSAGE,
+        ),  # ends on zero: the next step's affair
         ((1.0, 1.0, 1.0, 1.0, 1.0, 1.0), NO_PASSAGE),
     ],
 )
@@ -123,7 +128,9 @@ def test_two_crossings_right_after_a_start_on_zero() -> None:
 
 @pytest.mark.parametrize("touch", [0.1, 0.37, 0.5, 0.9])
 @pytest.mark.parametrize("above", [1e-12, 1e-8, 1e-3])
-def test_a_curve_that_stays_above_by_any_margin_is_left_alone(touch: float, above: float) -> None:
+def test_a_curve_that_stays_above_by_any_margin_is_left_alone(
+    touch: float, above: float
+) -> None:
     powers = np.convolve([1.0, -2.0 * touch, touch**2], [1.0, 0.0, 0.0, 1.0])
     powers[-1] += above
     assert descent(to_bernstein(powers)) == NO_PASSAGE
@@ -148,7 +155,8 @@ FAILURES = {
         TimeHistorySettings(max_events=3),
         ("rolling, theta = ", "raise", "analysis.max_events"),
         lambda result: (
-            len(result.events) == 4 and f"t = {result.duration:.6g} s" in known(result.failure)
+            len(result.events) == 4
+            and f"t = {result.duration:.6g} s" in known(result.failure)
         ),
     ),
     "an absurd record": Failure(
@@ -163,7 +171,9 @@ FAILURES = {
         ground(1.7e308 * np.array([0.0, 0.0, 1.0, -1.0, 0.0]), 0.01),
         TimeHistorySettings(),
         ("full contact", "no longer finite"),
-        lambda result: result.duration <= 0.02,  # where the record first overflows the push
+        lambda result: (
+            result.duration <= 0.02
+        ),  # where the record first overflows the push
     ),
     # infinitely many impacts in a finite time
     **{
@@ -214,15 +224,23 @@ def test_passing_the_critical_rotation_and_coming_back() -> None:
     tight = replace(QUIET, overturning_limit=0.999 * result.max_rotation / critical)
     fallen = time_history(FRAME, record, tight)
     assert fallen.outcome == "overturned_rocking"
-    assert fallen.max_rotation == pytest.approx(tight.overturning_limit * critical, rel=1e-14)
+    assert fallen.max_rotation == pytest.approx(
+        tight.overturning_limit * critical, rel=1e-14
+    )
     assert fallen.duration < result.duration
 
 
 @pytest.mark.parametrize(
     ("rho", "outcome"),
-    [(FLAT, "overturned_rocking"), (0.25, "overturned_rolling"), (0.5, "overturned_rocking")],
+    [
+        (FLAT, "overturned_rocking"),
+        (0.25, "overturned_rolling"),
+        (0.5, "overturned_rocking"),
+    ],
 )
-def test_overturning_is_named_after_the_phase_at_theta_cr(rho: float, outcome: str) -> None:
+def test_overturning_is_named_after_the_phase_at_theta_cr(
+    rho: float, outcome: str
+) -> None:
     structure = podium(0, 0.15, rho)
     assert structure.bearing.overturns_rolling is (outcome == "overturned_rolling")
     result = let_go(structure, 1.01 * structure.critical_rotation, 8.0, 0.02)
@@ -276,7 +294,9 @@ def test_a_release_from_beyond_theta_cr_has_passed_it_at_once(sign: float) -> No
 @pytest.mark.evidence("steps, events, energy", "exact")
 @pytest.mark.parametrize("limit", [2.0, 0.5])
 @pytest.mark.parametrize("share", [1.0, -1.0, 1.5, -7.0])
-def test_a_release_from_beyond_the_overturning_limit_is_refused(limit: float, share: float) -> None:
+def test_a_release_from_beyond_the_overturning_limit_is_refused(
+    limit: float, share: float
+) -> None:
     """It would have overturned before it began."""
     structure = podium(1, 0.15, 0.5)
     rotation = share * limit * structure.critical_rotation
@@ -291,7 +311,9 @@ def test_a_release_from_beyond_the_overturning_limit_is_refused(limit: float, sh
 @pytest.mark.evidence("steps, events, energy", "exact")
 def test_a_release_from_just_below_the_limit_is_followed() -> None:
     structure = podium(1, 0.15, 0.5)
-    result = let_go(structure, 2.0 * structure.critical_rotation * (1.0 - 1e-12), 5.0, 0.02)
+    result = let_go(
+        structure, 2.0 * structure.critical_rotation * (1.0 - 1e-12), 5.0, 0.02
+    )
     assert result.outcome == "overturned_rocking"
     assert result.duration < 1e-4
 
@@ -306,7 +328,9 @@ def test_a_push_of_g_tan_alpha_is_the_limit(rho: float, sign: float) -> None:
     structure = podium(0, 0.15, rho)
     below, beyond = (
         time_history(
-            structure, ground(np.full(51, push * structure.uplift_acceleration), DT), QUIET
+            structure,
+            ground(np.full(51, push * structure.uplift_acceleration), DT),
+            QUIET,
         )
         for push in (sign * (1.0 - 1e-9), sign * (1.0 + 1e-9))
     )
@@ -324,7 +348,10 @@ def test_a_push_that_only_grazes_the_limit() -> None:
     quiet = time_history(structure, record, QUIET)
     a = quiet.trace.ground_acceleration
     V = above.masses[0] * -quiet.trace.floor_accelerations[:, 0]
-    q = -a * (1.0 + 2.0 * structure.gamma) + 2.0 * structure.gamma * structure.eta * V / above.mass
+    q = (
+        -a * (1.0 + 2.0 * structure.gamma)
+        + 2.0 * structure.gamma * structure.eta * V / above.mass
+    )
     limit = structure.uplift_acceleration * (1.0 + 2.0 * structure.gamma_total)
     sampled = limit / float(np.max(np.abs(q)))
 
@@ -332,13 +359,17 @@ def test_a_push_that_only_grazes_the_limit() -> None:
         return time_history(structure, motion.scaled(factor), QUIET).uplifts
 
     # between samples q is larger: the factor at which the first uplift appears
-    low, high = bisected(lambda factor: uplifts(factor) > 0, 0.5 * sampled, 1.001 * sampled)
+    low, high = bisected(
+        lambda factor: uplifts(factor) > 0, 0.5 * sampled, 1.001 * sampled
+    )
     grazing = time_history(structure, record.scaled(high), QUIET)
     assert high < sampled
     assert grazing.failure is None
     assert grazing.uplifts == 1
     assert grazing.max_rotation < 1e-6
-    finer = ground(np.interp(np.arange(4001) * 5e-4, record.time, record.acceleration), 5e-4)
+    finer = ground(
+        np.interp(np.arange(4001) * 5e-4, record.time, record.acceleration), 5e-4
+    )
     assert uplifts(low * (1.0 - 1e-6), finer) == 0
     assert uplifts(high * (1.0 + 1e-6), finer) == 1
 
@@ -357,7 +388,9 @@ def test_two_impacts_within_one_step() -> None:
     assert kinds(result).count("recontact") == 1
 
 
-def caught(factor: float, at: list[float], shape: list[float], dt: float) -> TimeHistoryResult:
+def caught(
+    factor: float, at: list[float], shape: list[float], dt: float
+) -> TimeHistoryResult:
     """A falling frame under a polygon of pushes at some samples."""
     times = np.arange(round(at[-1] / dt) + 1) * dt
     push = -factor * FRAME.uplift_acceleration * np.interp(times, at, shape)
@@ -380,7 +413,9 @@ def test_uplift_again_at_the_instant_of_recontact() -> None:
     assert kinds(touched) == ["impact", "recontact", "uplift"]
     assert len({event.time for event in touched.events}) == 1
     # both continue alike: the touch takes nothing away
-    assert touched.trace.rotation[-1] == pytest.approx(history(high).trace.rotation[-1], rel=1e-6)
+    assert touched.trace.rotation[-1] == pytest.approx(
+        history(high).trace.rotation[-1], rel=1e-6
+    )
 
 
 def test_a_dip_below_zero_and_back_within_one_step() -> None:
@@ -390,7 +425,9 @@ def test_a_dip_below_zero_and_back_within_one_step() -> None:
         at = [0.0, 0.2, 0.4, 0.6, 0.8]
         return caught(factor, at, [0.0, 1.0, 1.0, 1.0, 0.0], 0.2 / parts)
 
-    low, high = bisected(lambda factor: history(factor, 100).impacts == 0, 1.0, 10.0, 1e-10)
+    low, high = bisected(
+        lambda factor: history(factor, 100).impacts == 0, 1.0, 10.0, 1e-10
+    )
     missed, touched = history(high + 1e-5, 1), history(low - 1e-5, 1)
     assert missed.impacts == 0
     first = touched.events[0]
@@ -417,4 +454,6 @@ def test_the_largest_tilt_may_lie_in_a_step_that_ends_on_an_impact(rho: float) -
     assert up.time < coarse.history.max_theta_time < down.time < 0.3
     # the ground's corner at 0.2 s is a sample; behind it the motion is almost a cubic
     assert coarse.max_rotation == pytest.approx(fine.max_rotation, rel=1e-8)
-    assert coarse.history.max_theta_time == pytest.approx(fine.history.max_theta_time, abs=1e-8)
+    assert coarse.history.max_theta_time == pytest.approx(
+        fine.history.max_theta_time, abs=1e-8
+    )

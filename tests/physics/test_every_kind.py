@@ -27,7 +27,13 @@ from rpscli.analyses.kernels.history import sampled_history
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.model.contact import Contact
-from rpscli.model.devices import FrictionDamper, RollingResistance, Stop, Tendon, ViscousDamper
+from rpscli.model.devices import (
+    FrictionDamper,
+    RollingResistance,
+    Stop,
+    Tendon,
+    ViscousDamper,
+)
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import Device, PodiumStructure
 from rpscli.model.superstructure import Superstructure
@@ -136,7 +142,13 @@ def test_nothing_new_comes_after_the_end(kind: str) -> None:
     assert auto["time"] < 60.0
     long = TimeHistorySettings(free_vibration=auto["time"] + 60.0 - 8.0)
     longer = time_history(structure, motion, long, with_fixed_base=False).history
-    for name in ("max_theta", "storey_shear", "floor_acceleration", "heavy_top", "normal_top"):
+    for name in (
+        "max_theta",
+        "storey_shear",
+        "floor_acceleration",
+        "heavy_top",
+        "normal_top",
+    ):
         assert np.array_equal(auto[name], longer[name]), name
     assert np.array_equal(auto["slip"], longer["slip"])
 
@@ -161,7 +173,9 @@ def test_one_component_is_the_planar_program(kind: str) -> None:
     gap = np.max(np.abs(history.tilt.real - planar.samples.theta)[:until])
     assert gap < (5e-9 if structure.bed or structure.passes_smoothly else 1e-7)
     for name in ("device_force", "device_energy", "permanent"):
-        np.testing.assert_allclose(left[name], other[name], rtol=1e-4, atol=1e-12, err_msg=name)
+        np.testing.assert_allclose(
+            left[name], other[name], rtol=1e-4, atol=1e-12, err_msg=name
+        )
     for name in ("energy_input", "energy_damped", "bed_energy", "max_theta"):
         assert left[name] == pytest.approx(other[name], rel=1e-5), name
     for mine in ("storey_shear", "storey_shear_x"):
@@ -173,7 +187,9 @@ def test_one_component_is_the_planar_program(kind: str) -> None:
 
 @needs_compiled_kernels
 @pytest.mark.evidence("both components", "exact")
-@pytest.mark.parametrize("kind", [kind for kind in KINDS if kind not in ("yields", "both")])
+@pytest.mark.parametrize(
+    "kind", [kind for kind in KINDS if kind not in ("yields", "both")]
+)
 def test_no_axis_is_special(kind: str) -> None:
     """Turned by any angle, the pair turns the result; storeys yield along both axes alone."""
     turn = np.exp(0.64j)
@@ -184,7 +200,9 @@ def test_no_axis_is_special(kind: str) -> None:
     )
     assert np.max(np.abs(turn * one.tilt - other.tilt)) < 1e-8 * one.left.max_theta
     for name in ("device_force", "device_velocity", "device_energy"):
-        np.testing.assert_allclose(other.left[name], one.left[name], rtol=1e-5, atol=1e-12)
+        np.testing.assert_allclose(
+            other.left[name], one.left[name], rtol=1e-5, atol=1e-12
+        )
     for name in ("max_theta", "friction_bottom", "heavy_bottom", "torsion_lever"):
         assert other.left[name] == pytest.approx(one.left[name], rel=2e-3), name
 
@@ -226,25 +244,36 @@ def test_without_gravity_the_push_chooses_the_side(
     assert np.array_equal(here.trace.rotation, -there.trace.rotation)
 
 
-def with_building(structure: PodiumStructure, mass: float, stiffness: float) -> PodiumStructure:
+def with_building(
+    structure: PodiumStructure, mass: float, stiffness: float
+) -> PodiumStructure:
     """All masses times `mass`, all storey stiffnesses times `stiffness`."""
     above = structure.superstructure
     if above is not None:
-        above = Superstructure(mass * above.masses, stiffness * above.stiffnesses, above.damping)
+        above = Superstructure(
+            mass * above.masses, stiffness * above.stiffnesses, above.damping
+        )
     columns, beam = mass * structure.columns_mass, mass * structure.cap_beam_mass
-    return replace(structure, columns_mass=columns, cap_beam_mass=beam, superstructure=above)
+    return replace(
+        structure, columns_mass=columns, cap_beam_mass=beam, superstructure=above
+    )
 
 
 @pytest.mark.evidence("equation of motion", "exact")
 @of_structures
 def test_lengths_times_l_and_times_times_root_l(structure: PodiumStructure) -> None:
     scale = 2.7
-    bearing = replace(structure.bearing, semi_diagonal=scale * structure.bearing.semi_diagonal)
+    bearing = replace(
+        structure.bearing, semi_diagonal=scale * structure.bearing.semi_diagonal
+    )
     large = replace(with_building(structure, 1.0, 1.0 / scale), bearing=bearing)
     root = np.sqrt(scale)
     slow = ground(RECORD.acceleration, root * RECORD.dt)
     settings = replace(SETTINGS, free_vibration=2.0 * root)
-    one, two = time_history(structure, RECORD, SETTINGS), time_history(large, slow, settings)
+    one, two = (
+        time_history(structure, RECORD, SETTINGS),
+        time_history(large, slow, settings),
+    )
     assert one.impacts == two.impacts > 0
     # equal but for rounding, which impacts amplify to about 1e4 eps
     assert two.trace.rotation == pytest.approx(one.trace.rotation, abs=1e-10)
@@ -260,7 +289,10 @@ def test_lengths_times_l_and_times_times_root_l(structure: PodiumStructure) -> N
 def test_masses_and_stiffnesses_times_anything(structure: PodiumStructure) -> None:
     factor = 3.1
     heavy = with_building(structure, factor, factor)
-    one, two = time_history(structure, RECORD, SETTINGS), time_history(heavy, RECORD, SETTINGS)
+    one, two = (
+        time_history(structure, RECORD, SETTINGS),
+        time_history(heavy, RECORD, SETTINGS),
+    )
     assert one.impacts == two.impacts > 0
     assert two.trace.rotation == pytest.approx(one.trace.rotation, abs=1e-10)
     assert two.storey_shears == pytest.approx(factor * one.storey_shears, rel=1e-9)

@@ -72,7 +72,9 @@ def structure_of(given: dict[str, Any]) -> PodiumStructure:
     bearing = Bearing(given["R"], given["ta"], wedge, given["rho"], given["Io"])
     if "i3" in given:
         bearing = replace(bearing, inertia_ratio_axial=given["i3"])
-    law = ImpactLaw(loss=given.get("loss", 1.0), contact_time=given.get("contact_time", 2e-3))
+    law = ImpactLaw(
+        loss=given.get("loss", 1.0), contact_time=given.get("contact_time", 2e-3)
+    )
     return PodiumStructure(bearing, beam / given["gamma"], beam, above, law)
 
 
@@ -87,7 +89,9 @@ def motion_of(given: dict[str, Any], fema_record: RecordLoader) -> MotionCompone
     """What shook a podium of the references."""
     if "pair" in given:
         name = given["pair"].split(":")[1].split("?")[0]
-        x, y = (window(fema_record(f"{name}/{way}"), given, given["scale"]) for way in "ab")
+        x, y = (
+            window(fema_record(f"{name}/{way}"), given, given["scale"]) for way in "ab"
+        )
         up = ground(0.5 * x.acceleration, x.dt) if given["vertical"] else None
         return MotionComponents(x, y=y, vertical=up)
     if given["record"] is None:
@@ -137,7 +141,9 @@ def test_histories_of_another_program(name: str, fema_record: RecordLoader) -> N
     upper = structure.cap_beam_mass + structure.superstructure_mass
     lower = upper + structure.columns_mass
     largest = left["heavy_bottom"] * lower * STANDARD_GRAVITY
-    least = min(left["normal_top"] * upper, left["normal_bottom"] * lower) * STANDARD_GRAVITY
+    least = (
+        min(left["normal_top"] * upper, left["normal_bottom"] * lower) * STANDARD_GRAVITY
+    )
     assert largest == pytest.approx(found["N_max"], rel=1e-5)
     assert least == pytest.approx(found["N_min"], abs=1e-5 * structure.weight)
     assert left["events"][IMPACT] == found["impacts"]
@@ -157,7 +163,9 @@ def test_histories_of_another_program(name: str, fema_record: RecordLoader) -> N
         assert left["ductility"][0, :n] == pytest.approx(found["ductility"], rel=1e-6)
         above = known(structure.superstructure)
         off = above.stiffnesses * (left["slip"][0, :n] - found["plastic_drift"])
-        assert np.max(np.abs(off / known(above.strengths))) < 3e-4  # of the drift at yield
+        assert (
+            np.max(np.abs(off / known(above.strengths))) < 3e-4
+        )  # of the drift at yield
         assert left["yielded"][0, :n] == pytest.approx(found["yielded"], rel=1e-5)
 
 
@@ -188,7 +196,9 @@ def test_pairs_of_another_program(name: str, fema_record: RecordLoader) -> None:
     energy, spent = result.energy, found["energy"]
     assert energy.input == pytest.approx(spent["input"], rel=1e-5)
     damped = energy.damped + energy.damped_vertical
-    assert damped == pytest.approx(spent["damped_with_vertical"], abs=1e-5 * spent["input"])
+    assert damped == pytest.approx(
+        spent["damped_with_vertical"], abs=1e-5 * spent["input"]
+    )
     assert energy.impact == pytest.approx(spent["lost"], abs=1e-5 * spent["input"])
 
 
@@ -227,7 +237,9 @@ def shaken(seed: int) -> MotionComponents:
 @pytest.mark.evidence("storeys that yield", "exact")
 def test_the_path_of_plastic_drifts() -> None:
     """Karush-Kuhn-Tucker at every sample: within the range, and moved by its ends only."""
-    result = time_history(usual(**BOTH_KINDS), shaken(5), TimeHistorySettings(free_vibration=1.0))
+    result = time_history(
+        usual(**BOTH_KINDS), shaken(5), TimeHistorySettings(free_vibration=1.0)
+    )
     trace, above = denser_trace(result, 5e-4), known(result.structure.superstructure)
     drifts, slips = trace.drifts, known(trace.plastic_drifts)
     k, F, h = above.stiffnesses, STRENGTHS, above.hardening
@@ -249,7 +261,9 @@ def test_a_building_that_never_yields_keeps_its_bits() -> None:
     one, other = (time_history(usual(**of), shaken(5)).history for of in (SPRINGS, never))
     for name in ("max_theta", "storey_shear", "heavy_top", "energy_lost"):
         assert np.array_equal(one[name], other[name]), name
-    assert other["ductility"][0, :3] == pytest.approx(other["storey_shear"][:3] / 1e9, rel=1e-12)
+    assert other["ductility"][0, :3] == pytest.approx(
+        other["storey_shear"][:3] / 1e9, rel=1e-12
+    )
     assert not other["slip"].any()
     assert np.all(other["first_yield"][0, :3] < 0.0)
 
@@ -260,16 +274,25 @@ def test_a_building_that_never_yields_keeps_its_bits() -> None:
 def test_forces_of_columns_under_recorded_pairs(fema_record: RecordLoader) -> None:
     """Of 22 pairs, 40 s: another program's medians of N/W and base shear; no number of t_c."""
     forty = [
-        [part(fema_record(f"farfield/{i}/{way}"), 0.0, 40.0) for way in "ab"] for i in range(1, 23)
+        [part(fema_record(f"farfield/{i}/{way}"), 0.0, 40.0) for way in "ab"]
+        for i in range(1, 23)
     ]
     motions = [MotionComponents(x, y=y) for x, y in forty]
     settings = TimeHistorySettings(free_vibration=0.0)
 
     def of_pairs(period: float | None, contact_time: float) -> tuple[Array, Array, Any]:
         made = usual(ImpactLaw(contact_time=contact_time), vertical_period=period)
-        structure = replace(made, bearing=replace(made.bearing, inertia_ratio_axial=0.011))
-        found = [d.history for d in demands([Request(structure, m, settings) for m in motions])]
-        mass = structure.cap_beam_mass + structure.superstructure_mass + structure.columns_mass
+        structure = replace(
+            made, bearing=replace(made.bearing, inertia_ratio_axial=0.011)
+        )
+        found = [
+            d.history for d in demands([Request(structure, m, settings) for m in motions])
+        ]
+        mass = (
+            structure.cap_beam_mass
+            + structure.superstructure_mass
+            + structure.columns_mass
+        )
         heavy = np.array([left["heavy_bottom"] for left in found])
         tilts = np.array([left["max_theta"] for left in found])
         stands = tilts < structure.critical_rotation

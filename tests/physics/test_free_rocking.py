@@ -50,7 +50,9 @@ def test_slender_columns_rock_with_the_linear_periods(rho: float) -> None:
     """x'' = -w^2 (alpha + kappa x) between impacts, w^2 = g (1+2 gamma)/(R (Io+4 gamma))."""
     alpha, start, e, gamma = SLENDER, 0.5 * SLENDER, 0.9, 10.0
     kappa = 2.0 * rho - 1.0
-    bearing = Bearing(1.5, SLENDER, SLENDER + 0.1, rho)  # beta > .03: it rolls all the time
+    bearing = Bearing(
+        1.5, SLENDER, SLENDER + 0.1, rho
+    )  # beta > .03: it rolls all the time
     structure = PodiumStructure(bearing, 2e4, gamma * 2e4, None, ImpactLaw("value", e))
     w2 = structure.gravity / 1.5 * (1.0 + 2.0 * gamma) / (4.0 / 3.0 + 4.0 * gamma)
 
@@ -81,7 +83,11 @@ def test_nothing_moves_without_a_push(storeys: int, rho: float) -> None:
     assert not np.any(result.trace.floor_displacements)
     # the weight, no more
     left = result.history
-    assert (result.friction_demand, left.normal_top, left.normal_bottom) == (0.0, 1.0, 1.0)
+    assert (result.friction_demand, left.normal_top, left.normal_bottom) == (
+        0.0,
+        1.0,
+        1.0,
+    )
 
 
 @pytest.mark.evidence("steps, events, energy", "exact")
@@ -134,13 +140,19 @@ def test_impacts_shrink_and_come_to_an_end(tolerance: float) -> None:
     assert ratios[1:] / ratios[:-1] == pytest.approx(e, rel=2e-3)  # height/alpha <= 1e-3
 
 
-LAWS: list[tuple[ImpactKind, float]] = [("rigid", FLAT), ("flexible", 0.5), ("value", FLAT)]
+LAWS: list[tuple[ImpactKind, float]] = [
+    ("rigid", FLAT),
+    ("flexible", 0.5),
+    ("value", FLAT),
+]
 TOLERANCES = np.array([1e-5, 1e-6, 1e-7, 1e-8])
 
 
 def vibration(structure: PodiumStructure, tolerance: float) -> Array:
     """Drifts of a released structure long after it came to rest, while the building rings on."""
-    result = let_go(structure, 0.02, 8.8, 0.02, recontact_tolerance=tolerance, accuracy=4.0)
+    result = let_go(
+        structure, 0.02, 8.8, 0.02, recontact_tolerance=tolerance, accuracy=4.0
+    )
     (locked,) = (event for event in result.events if event.kind == "recontact")
     assert locked.time < 8.0
     return result.trace.drifts[401:440]
@@ -191,12 +203,16 @@ def test_auto_finds_the_largest_demands(seed: int) -> None:
     # up to where it stopped it is the same history
     rows = len(short.trace.time)
     assert np.array_equal(short.trace.rotation, long.trace.rotation[:rows])
-    assert np.array_equal(short.trace.floor_displacements, long.trace.floor_displacements[:rows])
+    assert np.array_equal(
+        short.trace.floor_displacements, long.trace.floor_displacements[:rows]
+    )
 
 
 @needs_compiled_kernels
 def test_not_all_of_those_cases_are_trivial() -> None:
-    results = [time_history(*random_case(seed), with_fixed_base=False) for seed in range(40)]
+    results = [
+        time_history(*random_case(seed), with_fixed_base=False) for seed in range(40)
+    ]
     survived = [r for r in results if r.outcome == "survived"]
     assert len(survived) > 20
     assert sum(r.history.max_theta_time > r.record.duration for r in survived) > 5
@@ -230,11 +246,17 @@ CHORDS = (2.0 * math.pi * PULSE_DT) ** 2 / 8.0
 
 def overturns(structure: PodiumStructure, pulse: Array) -> bool:
     # near the limit the distance to it grows as exp(p t): after 18/p by 6e7
-    settings = TimeHistorySettings(free_vibration=18.0 / structure.rigid_frequency_parameter)
-    return demand(structure, ground(pulse, PULSE_DT), settings).outcome.startswith("overturned")
+    settings = TimeHistorySettings(
+        free_vibration=18.0 / structure.rigid_frequency_parameter
+    )
+    return demand(structure, ground(pulse, PULSE_DT), settings).outcome.startswith(
+        "overturned"
+    )
 
 
-def least_amplitude(structure: PodiumStructure, shape: Array, low: float, high: float) -> float:
+def least_amplitude(
+    structure: PodiumStructure, shape: Array, low: float, high: float
+) -> float:
     """Bisection between an amplitude that is withstood and one that overturns [m/s2]."""
     assert not overturns(structure, low * shape)
     assert overturns(structure, high * shape)
@@ -280,7 +302,11 @@ def test_makris_and_roussos_linear(
     unit = linear.gravity * SLENDER
     least = least_amplitude(linear, unit * shape, 1.0, 3.0) * real.bearing.alpha
     assert least == pytest.approx(falls, abs=0.5 * PUBLISHED_STEP)
-    told(VERIFICATION, f"| {2 * half_width:g} m x {2 * half_height:g} m, linear, ... g |", least)
+    told(
+        VERIFICATION,
+        f"| {2 * half_width:g} m x {2 * half_height:g} m, linear, ... g |",
+        least,
+    )
 
 
 @needs_compiled_kernels
@@ -290,8 +316,14 @@ def test_makris_and_roussos_linear(
     [(SINE, 0.46873, 1e-5), (COSINE, 0.625, PUBLISHED_STEP)],
     ids=["sine", "cosine"],
 )
-def test_makris_and_roussos_nonlinear(shape: Array, published: float, tolerance: float) -> None:
+def test_makris_and_roussos_nonlinear(
+    shape: Array, published: float, tolerance: float
+) -> None:
     structure = replace(block(0.5, 1.5), gravity=9.81)
     least = least_amplitude(structure, structure.gravity * shape, 0.4, 0.7)
     assert least == pytest.approx(published, abs=tolerance)
-    told(VERIFICATION, f"nonlinear, one {'sine' if shape is SINE else 'cosine'} | ... g |", least)
+    told(
+        VERIFICATION,
+        f"nonlinear, one {'sine' if shape is SINE else 'cosine'} | ... g |",
+        least,
+    )

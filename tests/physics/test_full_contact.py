@@ -21,7 +21,9 @@ BUILDINGS = [
 ]
 
 
-of_buildings = pytest.mark.parametrize("above", BUILDINGS, ids=lambda b: f"{b.storeys}-{b.damping}")
+of_buildings = pytest.mark.parametrize(
+    "above", BUILDINGS, ids=lambda b: f"{b.storeys}-{b.damping}"
+)
 
 
 @pytest.mark.evidence("buildings on bearings under earthquakes", "exact")
@@ -61,10 +63,14 @@ def test_the_fixed_base_yardstick_is_the_same_building(above: Superstructure) ->
     assert result.fixed_base is not None
     fixed, trace = result.fixed_base, result.trace
     size = float(np.max(np.abs(fixed.floor_displacements)))
-    assert trace.floor_displacements == pytest.approx(fixed.floor_displacements, abs=1e-8 * size)
+    assert trace.floor_displacements == pytest.approx(
+        fixed.floor_displacements, abs=1e-8 * size
+    )
     # peaks between the ends of steps, which are not the same
     assert result.storey_shears == pytest.approx(fixed.storey_shears, rel=1e-4)
-    assert result.floor_accelerations == pytest.approx(fixed.floor_accelerations, rel=1e-3)
+    assert result.floor_accelerations == pytest.approx(
+        fixed.floor_accelerations, rel=1e-3
+    )
     assert fixed.drifts == pytest.approx(result.max_drifts, rel=1e-4)
     assert fixed.base_shear == pytest.approx(result.max_base_shear, rel=1e-4)
 
@@ -78,9 +84,13 @@ MORE = [
 
 
 @pytest.mark.evidence("buildings on bearings under earthquakes", "exact")
-@pytest.mark.parametrize("above", BUILDINGS + MORE, ids=lambda b: f"{b.storeys}-{b.damping}")
+@pytest.mark.parametrize(
+    "above", BUILDINGS + MORE, ids=lambda b: f"{b.storeys}-{b.damping}"
+)
 @pytest.mark.parametrize("dt", [0.02, 0.05])
-def test_the_energy_of_full_contact_is_accounted_for(above: Superstructure, dt: float) -> None:
+def test_the_energy_of_full_contact_is_accounted_for(
+    above: Superstructure, dt: float
+) -> None:
     record = waves(4.0, dt, 0.2, seed=4)
     result = time_history(podium(above.storeys, superstructure=above), record)
     energy = result.energy
@@ -94,7 +104,9 @@ def test_the_energy_of_full_contact_is_accounted_for(above: Superstructure, dt: 
 
 @pytest.mark.parametrize("slenderness", [0.05, 0.07, 0.1, 0.13, 0.15, 0.2, 0.3])
 @pytest.mark.parametrize("excess", [-1e-15, 0.0, 1e-15])
-def test_a_peak_that_equals_the_limit_is_full_contact(slenderness: float, excess: float) -> None:
+def test_a_peak_that_equals_the_limit_is_full_contact(
+    slenderness: float, excess: float
+) -> None:
     frame = podium(0, slenderness, 0.5)
     limit = frame.uplift_acceleration * (1.0 + excess)
     for shape in ([0.0, 0.5, 1.0, 0.5], [0.0, 1.0, 1.0, 1.0], [0.0, -1.0, 1.0, -1.0]):

@@ -75,7 +75,9 @@ def test_the_place_is_that_of_the_user_then_of_the_system_then_none(
         assert folder is None or folder.is_dir()
 
 
-owners = pytest.mark.skipif(not hasattr(os, "getuid"), reason="folders have no owner here")
+owners = pytest.mark.skipif(
+    not hasattr(os, "getuid"), reason="folders have no owner here"
+)
 
 
 @owners
@@ -88,7 +90,9 @@ def test_a_place_that_others_may_write_to_is_not_used(
     fresh_folder.setenv("RPS_CACHE_DIR", str(tmp_path / "shared"))
     (tmp_path / "shared").mkdir()
     (tmp_path / "shared").chmod(mode)
-    with pytest.warns(UserWarning, match=f"others may write to {tmp_path / 'shared'}.*chmod go-w"):
+    with pytest.warns(
+        UserWarning, match=f"others may write to {tmp_path / 'shared'}.*chmod go-w"
+    ):
         assert user_cache() == tmp_path / "cache" / "rps"
     assert stat.S_IMODE((tmp_path / "cache" / "rps").stat().st_mode) == 0o700
     (tmp_path / "shared").chmod(0o755)
@@ -122,7 +126,12 @@ def test_a_temporary_folder_that_somebody_else_made_is_not_used(
 
 @pytest.mark.parametrize(
     "source",
-    ["physics/laws/motion.py", "physics/devices/stop.py", "constants.py", "compiler/values.py"],
+    [
+        "physics/laws/motion.py",
+        "physics/devices/stop.py",
+        "constants.py",
+        "compiler/values.py",
+    ],
 )
 def test_the_folder_is_named_after_the_sources(
     fresh_folder: pytest.MonkeyPatch, tmp_path: Path, source: str
@@ -135,7 +144,9 @@ def test_the_folder_is_named_after_the_sources(
     fresh_folder.setattr(kernels, "SOURCES", places[0])
     fresh_folder.setattr(kernels, "OTHERS", tuple(places[1:]))
     before = known(cache_folder())
-    assert before.name == f"kernels-{sources_digest(SOURCES, *OTHERS)}"  # wherever they are
+    assert (
+        before.name == f"kernels-{sources_digest(SOURCES, *OTHERS)}"
+    )  # wherever they are
     with tmp_path.joinpath(source).open("a") as file:
         file.write("\n")
     cache_folder.cache_clear()
@@ -151,7 +162,12 @@ def test_what_physics_imports_decides_about_no_number_but_for_the_constants() ->
         and (name := str(node.module)).startswith("rpscli.")
         and not name.startswith(("rpscli.physics", "rpscli.compiler"))
     }
-    assert imported <= {"rpscli.constants", "rpscli.errors", "rpscli.registry", "rpscli.user_cache"}
+    assert imported <= {
+        "rpscli.constants",
+        "rpscli.errors",
+        "rpscli.registry",
+        "rpscli.user_cache",
+    }
 
 
 def run_of_kernels(cache: Path, **more: str) -> str:
@@ -166,7 +182,9 @@ def test_processes_that_compile_at_once_leave_one_whole_kernel(tmp_path: Path) -
     with ThreadPoolExecutor(4) as pool:
         four = list(pool.map(lambda _: run_of_kernels(tmp_path), range(4)))
     (folder,) = (each for each in tmp_path.glob("kernels-*"))
-    assert [file.suffix for file in sorted(folder.iterdir()) if file.name != "saving"] == [".o"]
+    assert [
+        file.suffix for file in sorted(folder.iterdir()) if file.name != "saving"
+    ] == [".o"]
     before = {file: file.stat().st_mtime_ns for file in folder.glob("*.o")}
     assert {*four, run_of_kernels(tmp_path)} == {four[0]}
     assert {file: file.stat().st_mtime_ns for file in folder.glob("*.o")} == before
@@ -241,7 +259,9 @@ for seed in range(200):
 @needs_compiled_kernels
 def test_right_after_the_compilation_bits_are_those_of_later(tmp_path: Path) -> None:
     """Parts of the kernel in memory took the places of its own, with other last bits."""
-    first, later = (printed_by("-c", HISTORIES, RPS_CACHE_DIR=str(tmp_path)) for _ in range(2))
+    first, later = (
+        printed_by("-c", HISTORIES, RPS_CACHE_DIR=str(tmp_path)) for _ in range(2)
+    )
     assert first.count("\n") > 100
     assert first == later
 

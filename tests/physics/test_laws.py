@@ -67,7 +67,13 @@ def test_slopes_are_what_differences_tend_to(end: str, part: float) -> None:
     tilt = low + part * (min(state.x_high[0], 0.3) - low)
     step, at = 1e-3 * tilt, place_of(state, 0, tilt)
     around = [place_of(state, 0, tilt + k * step) for k in (-2, -1, 1, 2)]
-    slopes = {"Bv": at.Bv_slope, "A": 2.0 * at.D, "h": at.dh, "K": at.K_slope, "G": at.G_slope}
+    slopes = {
+        "Bv": at.Bv_slope,
+        "A": 2.0 * at.D,
+        "h": at.dh,
+        "K": at.K_slope,
+        "G": at.G_slope,
+    }
     for name, slope in slopes.items():
         values = np.array([getattr(each, name) for each in around])
         difference = np.array([1.0, -8.0, 8.0, -1.0]) @ values / (12.0 * step)
@@ -106,7 +112,10 @@ def test_what_is_held_is_held_against_every_direction(kind: str) -> None:
 @pytest.mark.parametrize("hardening", [0.0, 0.05, 0.4])
 def test_a_spring_beside_one_that_slips(hardening: float) -> None:
     """h k d and (1 - h) times an elastic-perfectly plastic spring; work is stored or yielded."""
-    h, above = hardening, replace(building(1), strengths=np.array([F]), hardening=hardening)
+    h, above = (
+        hardening,
+        replace(building(1), strengths=np.array([F]), hardening=hardening),
+    )
     structure = podium(1, superstructure=above, law=ImpactLaw())
     systems, s = stacked_systems([(structure, TimeHistorySettings())]), records(STATE)[0]
     s.n, s.axes, s.dt[0] = 1, 1, 0.01

@@ -66,8 +66,12 @@ def given(
     return e
 
 
-def softer(rate: float, tan_alpha: float, inertia: float, gamma: float, eta: float) -> float:
-    return 0.95 - 0.5 * min(rate, 1.0) * tan_alpha + 1e-3 * (inertia - 1.0) / (gamma + eta)
+def softer(
+    rate: float, tan_alpha: float, inertia: float, gamma: float, eta: float
+) -> float:
+    return (
+        0.95 - 0.5 * min(rate, 1.0) * tan_alpha + 1e-3 * (inertia - 1.0) / (gamma + eta)
+    )
 
 
 PLAIN = Quantity()
@@ -80,8 +84,12 @@ OPENS, GAP = 0.05, 0.0235
 GIVEN = RestitutionLaw({"e": PLAIN}, given)
 
 
-def with_own(structure: PodiumStructure, law: DamperLaw, *values: float) -> PodiumStructure:
-    others = tuple(each for each in structure.devices if not isinstance(each, ViscousDamper))
+def with_own(
+    structure: PodiumStructure, law: DamperLaw, *values: float
+) -> PodiumStructure:
+    others = tuple(
+        each for each in structure.devices if not isinstance(each, ViscousDamper)
+    )
     return replace(structure, devices=(OwnDamper("own", law, values), *others))
 
 
@@ -106,13 +114,25 @@ CASES = {
     ),
     "plane ends": (
         frame(
-            1, 3.0, tan_alpha=0.1, contact=Contact("plane", period_ratio=1.2), devices=(VISCOUS,)
+            1,
+            3.0,
+            tan_alpha=0.1,
+            contact=Contact("plane", period_ratio=1.2),
+            devices=(VISCOUS,),
         ),
         ONE,
     ),
     "both components": (frame(1, 3.0, tan_alpha=0.1, devices=(VISCOUS,)), BOTH),
     "both on curved ends": (
-        frame(1, 2.0, tan_alpha=0.1, tan_wedge=0.2, rho=0.4, contact_time=2e-3, devices=(VISCOUS,)),
+        frame(
+            1,
+            2.0,
+            tan_alpha=0.1,
+            tan_wedge=0.2,
+            rho=0.4,
+            contact_time=2e-3,
+            devices=(VISCOUS,),
+        ),
         BOTH,
     ),
 }
@@ -123,7 +143,10 @@ of_cases = pytest.mark.parametrize("name", CASES)
 @needs_compiled_kernels
 def test_a_linear_law_is_the_viscous_damper(name: str) -> None:
     structure, motion = CASES[name]
-    ours, own = history(structure, motion), history(with_own(structure, LINEAR, C), motion)
+    ours, own = (
+        history(structure, motion),
+        history(with_own(structure, LINEAR, C), motion),
+    )
     assert ours.max_rotation > 1e-3
     np.testing.assert_allclose(
         own.trace.rotation, ours.trace.rotation, rtol=0.0, atol=1e-12 * ours.max_rotation
@@ -139,21 +162,26 @@ def test_a_linear_law_is_the_viscous_damper(name: str) -> None:
 @needs_compiled_kernels
 def test_steps_end_where_a_law_has_a_kink(name: str, c: float) -> None:
     structure, motion = CASES[name]
-    watched, missed = (with_own(structure, law, c, OPENS) for law in (RELIEVED, UNWATCHED))
+    watched, missed = (
+        with_own(structure, law, c, OPENS) for law in (RELIEVED, UNWATCHED)
+    )
     fine, usual = history(watched, motion, 4.0), history(watched, motion)
     assert fine.devices[0].velocity > 2.0 * OPENS
     assert fine.impacts > 1 or name != "flat ends and friction"
     assert usual.devices[0].force == pytest.approx(OPENS * c, rel=1e-9)
     assert np.max(np.abs(usual.trace.devices.force[:, 0])) <= OPENS * c * (1.0 + 1e-9)
     errors = [
-        abs(each.max_rotation - fine.max_rotation) for each in (usual, history(missed, motion))
+        abs(each.max_rotation - fine.max_rotation)
+        for each in (usual, history(missed, motion))
     ]
     assert errors[0] < 1e-9 * fine.max_rotation
     assert errors[1] > 20.0 * errors[0]
     assert abs(usual.energy.residual) < 1e-7 * usual.energy.input
 
 
-def numbers(structure: PodiumStructure, motion: MotionComponents, count: int) -> list[Any]:
+def numbers(
+    structure: PodiumStructure, motion: MotionComponents, count: int
+) -> list[Any]:
     scales = np.linspace(0.8, 1.4, count)
     requests = [Request(structure, motion, SETTINGS, float(scale)) for scale in scales]
     return [each.history for each in demands(requests)]
@@ -212,11 +240,15 @@ def raises(path: float, speed: float, c: float) -> float:
     return c * speed
 
 
-def too_large(rate: float, tan_alpha: float, inertia: float, gamma: float, eta: float) -> float:
+def too_large(
+    rate: float, tan_alpha: float, inertia: float, gamma: float, eta: float
+) -> float:
     return 0.9 if rate < 2e-3 else 1.1
 
 
-def no_number(rate: float, tan_alpha: float, inertia: float, gamma: float, eta: float) -> float:
+def no_number(
+    rate: float, tan_alpha: float, inertia: float, gamma: float, eta: float
+) -> float:
     return 0.9 if rate < 2e-3 else math.nan
 
 
@@ -249,7 +281,9 @@ def unknown_to_numba(path: float, speed: float, c: float) -> float:
 @needs_compiled_kernels
 def test_what_cannot_be_compiled_is_named() -> None:
     own = with_own(SMALL, DamperLaw(ONE_CONSTANT, unknown_to_numba, most, most), C)
-    with pytest.raises(PluginError, match=r"test_own_laws\.unknown_to_numba cannot be compiled"):
+    with pytest.raises(
+        PluginError, match=r"test_own_laws\.unknown_to_numba cannot be compiled"
+    ):
         history(own)
 
 
@@ -258,7 +292,9 @@ def test_what_is_no_law_is_refused() -> None:
     with pytest.raises(PluginError, match="its force at rest, at a displacement of"):
         OwnDamper("spring", spring, (1e5,))
     gains = ImpactLaw("gains", own=RestitutionLaw({}, lambda *_: 1.5))
-    with pytest.raises(PluginError, match=r"gains: its restitution is 1\.5 at a rate of 0\.001"):
+    with pytest.raises(
+        PluginError, match=r"gains: its restitution is 1\.5 at a rate of 0\.001"
+    ):
         replace(SMALL, impact_law=gains)
     for kind, own in (("elsewhere", None), ("flexible", GIVEN)):
         with pytest.raises(ValueError, match="must be flexible, rigid or value"):
@@ -282,6 +318,8 @@ def test_machine_code_from_the_cache_calls_laws_of_this_process() -> None:
         "for law in (t.RELIEVED, t.HARDER):\n"
         "    print(t.history(t.with_own(t.USUAL, law, t.C, t.GAP)).max_rotation.hex())\n"
     )
-    ours = [history(with_own(USUAL, law, C, GAP)).max_rotation for law in (RELIEVED, HARDER)]
+    ours = [
+        history(with_own(USUAL, law, C, GAP)).max_rotation for law in (RELIEVED, HARDER)
+    ]
     assert [float.fromhex(line) for line in printed_by("-c", script).split()] == ours
     assert ours[0] != ours[1]

@@ -25,7 +25,13 @@ from rpscli.analyses.pushover import pushover
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.model.bearing import Bearing
-from rpscli.model.devices import FrictionDamper, RollingResistance, Stop, Tendon, ViscousDamper
+from rpscli.model.devices import (
+    FrictionDamper,
+    RollingResistance,
+    Stop,
+    Tendon,
+    ViscousDamper,
+)
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import Device, PodiumStructure
 from rpscli.report.timehistory import outcome_text
@@ -57,7 +63,15 @@ def on_spheres(
         (on_spheres(0, ViscousDamper(1e5, 1.5), Stop(0.1, 2e6)), 2.0, False),
         (on_spheres(0, Stop(0.0, 1e6)), 1.0, False),
     ],
-    ids=["frame", "frame, rocking", "storeys", "storeys, rocking", "damper", "stop", "no gap"],
+    ids=[
+        "frame",
+        "frame, rocking",
+        "storeys",
+        "storeys, rocking",
+        "damper",
+        "stop",
+        "no gap",
+    ],
 )
 def test_motion_is_that_of_the_second_integrator(
     structure: PodiumStructure, scale: float, up: bool
@@ -66,7 +80,9 @@ def test_motion_is_that_of_the_second_integrator(
     record, rising = waves(4.0, 0.02, 5.0 * scale, 3), waves(4.0, 0.02, 2.0, 4)
     settings = TimeHistorySettings(free_vibration=0.0, initial_rotation=1e-3)
     vertical = rising if up else None
-    result = time_history(structure, record, settings, vertical=vertical, with_fixed_base=False)
+    result = time_history(
+        structure, record, settings, vertical=vertical, with_fixed_base=False
+    )
     other = simulate(
         oracle_system(structure),
         record.acceleration,
@@ -80,9 +96,13 @@ def test_motion_is_that_of_the_second_integrator(
     size = np.max(np.abs(other.theta))
     assert result.outcome == "survived"
     assert (size > structure.bearing.beta) == (scale == 4.0)
-    np.testing.assert_allclose(result.trace.rotation, other.theta, rtol=0.0, atol=1e-7 * size)
+    np.testing.assert_allclose(
+        result.trace.rotation, other.theta, rtol=0.0, atol=1e-7 * size
+    )
     if structure.storeys:
-        np.testing.assert_allclose(result.trace.drifts, other.drifts, rtol=0.0, atol=1e-7 * size)
+        np.testing.assert_allclose(
+            result.trace.drifts, other.drifts, rtol=0.0, atol=1e-7 * size
+        )
     assert result.impacts == result.uplifts == 0
     assert np.count_nonzero(np.diff(np.sign(result.trace.rotation))) > 0
     assert abs(result.energy.residual) < 1e-7 * abs(result.energy.input)
@@ -99,26 +119,34 @@ def test_small_swings_have_the_period_of_height_and_radius() -> None:
     back = let_go(frame, 1e-5, 2.0 * known).trace
     assert np.interp(known, back.time, back.rotation) == pytest.approx(1e-5, rel=1e-5)
     pendulum = 2.0 * math.pi * math.sqrt(h**2 / (2.0 * RADIUS - h) / G)
-    assert replace(frame, columns_mass=1.0).rolling_period == pytest.approx(pendulum, rel=1e-5)
+    assert replace(frame, columns_mass=1.0).rolling_period == pytest.approx(
+        pendulum, rel=1e-5
+    )
 
 
 @pytest.mark.evidence("spherical ends", "exact")
 @needs_compiled_kernels
 @pytest.mark.parametrize("holds", [FrictionDamper, RollingResistance])
-def test_friction_takes_the_same_from_each_swing_and_then_holds(holds: type[Device]) -> None:
+def test_friction_takes_the_same_from_each_swing_and_then_holds(
+    holds: type[Device],
+) -> None:
     """Coulomb: each half swing is shorter by 2 F/K; below F/K the storey stays where it is."""
     frame = on_spheres()
     K = frame.weight * (2.0 * RADIUS - 2.0 * H) / (2.0 * H) ** 2
     start, step = 1e-3, 1.3e-4
     F = K * 2.0 * H * step
     device = (
-        FrictionDamper(F) if holds is FrictionDamper else RollingResistance(F * H / frame.weight)
+        FrictionDamper(F)
+        if holds is FrictionDamper
+        else RollingResistance(F * H / frame.weight)
     )
     structure = on_spheres(0, device)
     result = let_go(structure, start, 40.0)
     # 1, -0.74, 0.48, -0.22 and, before it is upright again, -0.04 of the start
     assert result.trace.rotation[-1] == pytest.approx(start - 8.0 * step, rel=1e-5)
-    assert result.events[-1].time == pytest.approx(2.0 * (frame.rolling_period or 0.0), rel=1e-6)
+    assert result.events[-1].time == pytest.approx(
+        2.0 * (frame.rolling_period or 0.0), rel=1e-6
+    )
     assert result.outcome == "stays_tilted"
     assert [event.kind for event in result.events] == ["sticking"]
     # and it holds the podium upright as long as the ground asks for less, to either side
@@ -147,13 +175,17 @@ def test_restoring_force_and_where_it_ends() -> None:
     structure = on_spheres()
     storey = StoreyLagrangian(oracle_system(structure))
     curve = pushover(structure, points=50).curve
-    for x, force, displacement in zip(curve.rotation, curve.force, curve.displacement, strict=True):
+    for x, force, displacement in zip(
+        curve.rotation, curve.force, curve.displacement, strict=True
+    ):
         at, slope, _ = storey.cap_beam(x, rolling=x < storey.beta)
         assert displacement == pytest.approx(at.real, abs=1e-14)
         known = structure.weight * slope.imag / slope.real
         assert force == pytest.approx(known, abs=1e-9 * structure.weight)
     assert curve.force[0] == structure.uplift_force == structure.static_base_shear == 0.0
-    assert structure.critical_rotation == pytest.approx(storey.critical_rotation, abs=1e-12)
+    assert structure.critical_rotation == pytest.approx(
+        storey.critical_rotation, abs=1e-12
+    )
     h = 2.0 * H
     stiffness = structure.weight * (2.0 * RADIUS - h) / h**2
     assert structure.initial_stiffness == pytest.approx(stiffness, rel=1e-14)

@@ -39,7 +39,10 @@ def exact(omega2: float, c: float, h: float) -> list[Decimal]:
     matrix = [[columns[j][i] for j in range(4)] for i in range(4)]
     for _ in range(halvings):
         matrix = [
-            [sum((a * matrix[k][j] for k, a in enumerate(row)), Decimal(0)) for j in range(4)]
+            [
+                sum((a * matrix[k][j] for k, a in enumerate(row)), Decimal(0))
+                for j in range(4)
+            ]
             for row in matrix
         ]
     return [matrix[0][1], matrix[1][1], matrix[2][1], matrix[3][1]]
@@ -58,7 +61,11 @@ def test_responses_of_an_oscillator(omega: float) -> None:
         sizes = abs(S), max(abs(dS), Decimal(omega) * abs(S)), abs(I), abs(J)
         sizes = max(sizes[0], Decimal(1e-3 * h) * abs(dS)), *sizes[1:]
         for value, right, size in zip(found, (S, dS, I, J), sizes, strict=True):
-            assert abs(Decimal(value) - right) <= Decimal("1e-13") * size, (omega, ratio, h)
+            assert abs(Decimal(value) - right) <= Decimal("1e-13") * size, (
+                omega,
+                ratio,
+                h,
+            )
 
 
 def test_the_rule_of_four_points_is_that_of_order_eight() -> None:

@@ -94,7 +94,9 @@ def observed(structure: PodiumStructure, record: GroundMotion) -> Orders:
     """Released from 0.1 rad under the record, which ends the history."""
 
     def run(accuracy: float) -> TimeHistoryResult:
-        settings = TimeHistorySettings(free_vibration=0.0, accuracy=accuracy, initial_rotation=0.1)
+        settings = TimeHistorySettings(
+            free_vibration=0.0, accuracy=accuracy, initial_rotation=0.1
+        )
         return time_history(structure, record, settings)
 
     def last(result: TimeHistoryResult) -> Array:
@@ -116,7 +118,9 @@ def observed(structure: PodiumStructure, record: GroundMotion) -> Orders:
         residuals.append(max(residual, 1e-17))  # below rounding it may be nothing
     assert min(errors) > 1e-14  # not yet rounding
     lengths = -np.log(steps)
-    state, energy = (float(np.polyfit(lengths, np.log(e), 1)[0]) for e in (errors, residuals))
+    state, energy = (
+        float(np.polyfit(lengths, np.log(e), 1)[0]) for e in (errors, residuals)
+    )
     return Orders(state, energy, reference)
 
 
@@ -129,7 +133,10 @@ CURVED = [(n, rho) for n in (1, 3) for rho in (FLAT, 0.25, 0.5, 1.5)]
 @pytest.mark.parametrize(
     ("storeys", "rho", "events"),
     [
-        *((n, rho, False) for n, rho in [(0, FLAT), (1, FLAT), (1, 0.5), (3, FLAT), (3, 0.5)]),
+        *(
+            (n, rho, False)
+            for n, rho in [(0, FLAT), (1, FLAT), (1, 0.5), (3, FLAT), (3, 0.5)]
+        ),
         (6, 0.5, False),
         # a frame without stiffness is almost a parabola, whose error has no leading term
         *((n, rho, True) for n, rho in [(0, FLAT), (0, 0.25), (0, 1.5), *CURVED]),
@@ -151,7 +158,9 @@ def test_steps_are_of_order_six_and_events_cost_none(
     assert orders.energy > (LEAST_ENERGY if storeys else LEAST_PARABOLA)
 
 
-SHORT = PodiumStructure(Bearing(0.12, 0.3, 0.6, 2.5), 5.9e3, 5.6e4, None, ImpactLaw("value", 1.0))
+SHORT = PodiumStructure(
+    Bearing(0.12, 0.3, 0.6, 2.5), 5.9e3, 5.6e4, None, ImpactLaw("value", 1.0)
+)
 """Columns of a quarter of a metre with large radii: a tilt of 0.3 rad moves the contact far."""
 
 HEAVY = PodiumStructure(
@@ -164,7 +173,9 @@ HEAVY = PodiumStructure(
 """Floors of hundreds of columns: near theta_cr, where they rise no more, A has a valley."""
 
 
-def drift(structure: PodiumStructure, rotation: float, accuracy: float) -> tuple[float, float]:
+def drift(
+    structure: PodiumStructure, rotation: float, accuracy: float
+) -> tuple[float, float]:
     """Largest change of the energy that should stay, over itself; steps over the plain number."""
     start = rotation * structure.bearing.critical_rotation
     result = let_go(structure, start, 2.0, 0.05, accuracy=accuracy)
@@ -180,7 +191,9 @@ def test_steps_are_halved_where_the_tilt_is_fast(
 ) -> None:
     # undamped buildings would have short steps anyway
     monkeypatch.setattr(systems, "MOST_LOST", math.inf)
-    monkeypatch.setattr(systems, "_system", systems._system.__wrapped__)  # as if never made
+    monkeypatch.setattr(
+        systems, "_system", systems._system.__wrapped__
+    )  # as if never made
     kept, steps = drift(structure, rotation, 1.0)
     with monkeypatch.context() as patch:
         patch.setattr(systems, "STEP_ERROR", math.inf)

@@ -16,7 +16,13 @@ from two_components import followed, frame, pair, two_pulses
 from rpscli.analyses.kernels.history import Request, run_of
 from rpscli.analyses.kernels.systems import stacked_systems
 from rpscli.analyses.settings import TimeHistorySettings
-from rpscli.model.devices import FrictionDamper, RollingResistance, Stop, Tendon, ViscousDamper
+from rpscli.model.devices import (
+    FrictionDamper,
+    RollingResistance,
+    Stop,
+    Tendon,
+    ViscousDamper,
+)
 from rpscli.model.impact import ImpactLaw
 from rpscli.physics.integrate import integrate
 from rpscli.physics.run import Run
@@ -77,7 +83,10 @@ def sampled_history() -> dict[str, Any]:
     """One with devices, with its samples and events."""
     run = integrated([Request(2, 0)], lanes=1, rows=ROWS)
     kept = int(run.results.intervals[0]) + 1
-    samples, log = run.output.samples[:kept], run.output.log[: int(run.results.events[0].sum())]
+    samples, log = (
+        run.output.samples[:kept],
+        run.output.log[: int(run.results.events[0].sum())],
+    )
     found = {f"sampled {name}": samples[name].tolist() for name in samples.dtype.names}
     found |= {f"event {name}": log[name].tolist() for name in log.dtype.names}
     found |= demands_of_all(run)[0]
@@ -143,5 +152,7 @@ def test_the_histories_compared_are_not_trivial(interpreted: Histories) -> None:
 
 @needs_compiled_kernels
 def test_python_and_machine_code_agree_under_both_components(tmp_path: Path) -> None:
-    assert as_python("digest_of_a_pair", RPS_CACHE_DIR=str(tmp_path)) == digest_of_a_pair()
+    assert (
+        as_python("digest_of_a_pair", RPS_CACHE_DIR=str(tmp_path)) == digest_of_a_pair()
+    )
     assert not [*tmp_path.rglob("*.o")]

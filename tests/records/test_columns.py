@@ -21,7 +21,9 @@ from rpscli.report.motions import two_column_text
 FOUR = [0.1, -0.2, 0.3, 0.05]
 
 
-def load(folder: Path, text: str, options: str = "", name: str = "rec.txt") -> GroundMotion:
+def load(
+    folder: Path, text: str, options: str = "", name: str = "rec.txt"
+) -> GroundMotion:
     (folder / name).write_text(text, encoding="utf-8")
     return load_record(name + options, folder=folder)
 
@@ -41,21 +43,31 @@ HEADERS = [
     "unit is g\n",
     "units in g\n",
 ]
-WITH_DT = ["dt: 0.02\nunits: g\n", "# dt = 0.02\n# units = g\n", "# time step: 2.E-2 s; units: g\n"]
+WITH_DT = [
+    "dt: 0.02\nunits: g\n",
+    "# dt = 0.02\n# units = g\n",
+    "# time step: 2.E-2 s; units: g\n",
+]
 FORMS = ["{:.2f} {}", "{:.4e}\t{}", "{:.3f}, {}", "  {:.2f} {}"]
 
 
-@pytest.mark.parametrize(("header", "form"), [*product(HEADERS, FORMS), *product(WITH_DT, ["{1}"])])
+@pytest.mark.parametrize(
+    ("header", "form"), [*product(HEADERS, FORMS), *product(WITH_DT, ["{1}"])]
+)
 def test_one_or_two_columns_with_a_header(tmp_path: Path, header: str, form: str) -> None:
     made = load(tmp_path, f"{header}{table(form)}\n# the end\n")
-    np.testing.assert_allclose(made.acceleration, np.array(FOUR) * STANDARD_GRAVITY, rtol=1e-15)
+    np.testing.assert_allclose(
+        made.acceleration, np.array(FOUR) * STANDARD_GRAVITY, rtol=1e-15
+    )
     assert made.dt == 0.02
     assert made.format == ("one-column text" if form == "{1}" else "two-column text")
     assert "values in g" in made.description
 
 
 def test_units_that_are_given(tmp_path: Path) -> None:
-    assert load(tmp_path, table(), "?units=g").pga == pytest.approx(0.3 * STANDARD_GRAVITY)
+    assert load(tmp_path, table(), "?units=g").pga == pytest.approx(
+        0.3 * STANDARD_GRAVITY
+    )
     assert load(tmp_path, table(), "?units=m/s2").pga == 0.3
     assert load(tmp_path, table(), "?units=cm/s^2").pga == pytest.approx(0.003)
 
@@ -69,9 +81,17 @@ def test_one_column_with_options(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     "lines",
-    ["1\n0.02\n.1\n.2\n.3", "3\n.1\n.2\n.3", "0.02\n3\n.1\n.2\n.3", "3.\n.1\n.2\n.3", "9\n.1\n.2"],
+    [
+        "1\n0.02\n.1\n.2\n.3",
+        "3\n.1\n.2\n.3",
+        "0.02\n3\n.1\n.2\n.3",
+        "3.\n.1\n.2\n.3",
+        "9\n.1\n.2",
+    ],
 )
-def test_a_leading_count_or_step_is_not_an_acceleration(tmp_path: Path, lines: str) -> None:
+def test_a_leading_count_or_step_is_not_an_acceleration(
+    tmp_path: Path, lines: str
+) -> None:
     with pytest.raises(RecordError, match="look like a header"):
         load(tmp_path, lines, "?dt=0.02&units=g")
 
@@ -80,19 +100,29 @@ def test_a_leading_count_or_step_is_not_an_acceleration(tmp_path: Path, lines: s
     ("text", "values", "warning"),
     [
         ("0.02-0.1\n0.04-0.2\n0.06 0.3\n", [-0.1, -0.2, 0.3], "begin at 0.02 s"),  # glued
-        (".1 .2 .3 .4 .5\n-.2 .1\n", [0.1, 0.2, 0.3, 0.4, 0.5, -0.2, 0.1], "rows of 5 numbers"),
+        (
+            ".1 .2 .3 .4 .5\n-.2 .1\n",
+            [0.1, 0.2, 0.3, 0.4, 0.5, -0.2, 0.1],
+            "rows of 5 numbers",
+        ),
         ("0.02\n.1\n.2\n.3", [0.02, 0.1, 0.2, 0.3], "equals dt"),
     ],
 )
-def test_doubted_values(tmp_path: Path, text: str, values: list[float], warning: str) -> None:
+def test_doubted_values(
+    tmp_path: Path, text: str, values: list[float], warning: str
+) -> None:
     made = load(tmp_path, text, "?dt=0.02&units=m/s2")
     assert (made.acceleration.tolist(), made.dt) == (values, 0.02)
     assert warning in made.warnings[0]
 
 
-@pytest.mark.parametrize("step", [0.02, 0.005, 0.0039, 0.0024, 1.0 / 256.0, 0.0125, 1.0 / 3.0])
+@pytest.mark.parametrize(
+    "step", [0.02, 0.005, 0.0039, 0.0024, 1.0 / 256.0, 0.0125, 1.0 / 3.0]
+)
 @pytest.mark.parametrize("form", ["{:.4f}", "{:.6g}", "{!r}", "{:.7e}", "{:g}"])
-def test_steps_survive_the_printing_of_times(tmp_path: Path, step: float, form: str) -> None:
+def test_steps_survive_the_printing_of_times(
+    tmp_path: Path, step: float, form: str
+) -> None:
     count = 3000
     rows = [f"{form.format(step * i)} {0.1 * (i % 7)}" for i in range(count)]
     made = load(tmp_path, "\n".join(rows), "?units=m/s2")
@@ -115,7 +145,9 @@ PEAK = float(np.max(np.abs(VALUES)))
 
 
 def rows(*columns: np.ndarray, form: str = "{:.6f}", between: str = ",") -> str:
-    lines = (between.join(form.format(v) for v in row) for row in zip(*columns, strict=True))
+    lines = (
+        between.join(form.format(v) for v in row) for row in zip(*columns, strict=True)
+    )
     return "\n".join(lines) + "\n"
 
 
@@ -165,41 +197,109 @@ def test_units_steps_counts_and_columns(tmp_path: Path, text: str, options: str)
 @pytest.mark.parametrize(
     ("text", "options", "message"),
     [
-        (f"# units: g\n{TABLE}", "?units=m/s2", "units = m/s2 contradicts the file, which says g"),
+        (
+            f"# units: g\n{TABLE}",
+            "?units=m/s2",
+            "units = m/s2 contradicts the file, which says g",
+        ),
         (f"# units: parsec\n{TABLE}", "", "not a unit of acceleration"),
-        (f"# dt: 0.01\n{TABLE}", "?units=g", r"says dt = 0.01 s and the times advance by 0.02 s"),
+        (
+            f"# dt: 0.01\n{TABLE}",
+            "?units=g",
+            r"says dt = 0.01 s and the times advance by 0.02 s",
+        ),
         (f"# npts: 5\n{TABLE}", "?units=g", r"announces 5 values and the file holds 4"),
         (TABLE, "", r"does not state the units.*\?units=g"),
         (".1\n-.2\n.3\n", "?units=g", r"does not state its sampling interval.*\?dt="),
         (".1\n-.2\n.3\n", "?dt=-0.01&units=g", r"dt = -0\.01 s must be positive"),
-        (f"{FIVE}\n{FIVE} .6\n", "?dt=0.01&units=g", "a row of 6 numbers among rows of 5"),
+        (
+            f"{FIVE}\n{FIVE} .6\n",
+            "?dt=0.01&units=g",
+            "a row of 6 numbers among rows of 5",
+        ),
         (TABLE, "?units=furlong", "units = 'furlong' is not known"),
-        (TABLE, "?units=g&dt=0.01", "dt = 0.01 s contradicts the file, which says 0.02 s"),
-        ("0 .1\n.02 .1\n.04 .2\n.07 .1\n.08 .2\n", "?units=g&dt=0.02", "after sample 3 is 0.03 s"),
-        ("0 .1\n.02 .1\n.02 .2\n.04 .3\n", "?units=g&dt=0.02", "after sample 2; sort them"),
+        (
+            TABLE,
+            "?units=g&dt=0.01",
+            "dt = 0.01 s contradicts the file, which says 0.02 s",
+        ),
+        (
+            "0 .1\n.02 .1\n.04 .2\n.07 .1\n.08 .2\n",
+            "?units=g&dt=0.02",
+            "after sample 3 is 0.03 s",
+        ),
+        (
+            "0 .1\n.02 .1\n.02 .2\n.04 .3\n",
+            "?units=g&dt=0.02",
+            "after sample 2; sort them",
+        ),
         (".3 0.0\n.1 .02\n.2 .04\n.1 .06\n", "?units=g&dt=0.02", "do not increase"),
-        ("0 .1 1\n.02 .1 2\n.04 .2 3\n", "?units=g&dt=0.02", "time and several quantities"),
+        (
+            "0 .1 1\n.02 .1 2\n.04 .2 3\n",
+            "?units=g&dt=0.02",
+            "time and several quantities",
+        ),
         ("0 .1\n.02\n.04 .2\n", "?units=g&dt=0.02", "a row of 1 numbers among rows of 2"),
-        ("0 .1\n.02 .1\nend\n.04 .2\n", "?units=g&dt=0.02", "rec.txt:3: 'end' stands among"),
+        (
+            "0 .1\n.02 .1\nend\n.04 .2\n",
+            "?units=g&dt=0.02",
+            "rec.txt:3: 'end' stands among",
+        ),
         ("0 .1\n.02 nan\n", "?units=g&dt=0.02", "nan"),
         ("a\nb\n", "?units=g&dt=0.02", "no known format"),
         (f"Time (s),Acceleration (g x 10)\n{TIMED}", "", "'g x 10', which is not a unit"),
         (f"Time (min),Acceleration (g)\n{TIMED}", "", "a time in 'min' is not known"),
-        (f"Time [samples],Acceleration [g]\n{TIMED}", "", "a time in 'samples' is not known"),
+        (
+            f"Time [samples],Acceleration [g]\n{TIMED}",
+            "",
+            "a time in 'samples' is not known",
+        ),
         (f"units: g\ndt: 0.005.3\n{ALONE}", "", "'0.005.3' is not a finite number"),
         (f"units: g\ndt: 5 min\n{ALONE}", "", "a time in 'min' is not known"),
-        (f"Period [s],Spectral Acceleration [g]\n{rows(TIMES + 0.02, VALUES)}", "", "a spectrum"),
-        (f"time [s],displacement [mm]\n{TIMED}", "?units=g", ":1: .*is a displacement record"),
+        (
+            f"Period [s],Spectral Acceleration [g]\n{rows(TIMES + 0.02, VALUES)}",
+            "",
+            "a spectrum",
+        ),
+        (
+            f"time [s],displacement [mm]\n{TIMED}",
+            "?units=g",
+            ":1: .*is a displacement record",
+        ),
         (f"time,displacement\n{TIMED}", "?units=g", "this is a displacement record"),
-        (f"time;velocity\n{rows(TIMES, VALUES, between=' ')}", "?units=g", "a velocity record"),
-        (f"{HEAD}   N-S   E-W   U-D\n{THREE}", "", r"3 channels; .*\?channel=1.*1: N-S; 2: E-W"),
-        (f"units: g\n  N00E  N90E  V\n---+---+---\n{THREE}", "?dt=0.005", "1: N00E; 2: N90E; 3: V"),
+        (
+            f"time;velocity\n{rows(TIMES, VALUES, between=' ')}",
+            "?units=g",
+            "a velocity record",
+        ),
+        (
+            f"{HEAD}   N-S   E-W   U-D\n{THREE}",
+            "",
+            r"3 channels; .*\?channel=1.*1: N-S; 2: E-W",
+        ),
+        (
+            f"units: g\n  N00E  N90E  V\n---+---+---\n{THREE}",
+            "?dt=0.005",
+            "1: N00E; 2: N90E; 3: V",
+        ),
         (f"{HEAD}{THREE}", "", "as many as there are rows of 3 numbers"),
-        (f"{HEAD}   N-S   E-W   U-D\n{THREE}", "?channel=north", "there is no channel north"),
-        (f"199 0.0050\n{ALONE}", "?units=g", "look like the number of values and their step"),
+        (
+            f"{HEAD}   N-S   E-W   U-D\n{THREE}",
+            "?channel=north",
+            "there is no channel north",
+        ),
+        (
+            f"199 0.0050\n{ALONE}",
+            "?units=g",
+            "look like the number of values and their step",
+        ),
         (f"units: g\ndt: 5 ms\ndt: 0.01\n{ALONE}", "", "contradicts dt = 5 ms of line 2"),
         (f"Acceleration [g]\ndt: 0.005\n{ALONE}", "?units=gal", "contradicts the file"),
-        (f"Time [s],Acceleration [counts]\n{TIMED}", "?units=g", "'counts', which is not a unit"),
+        (
+            f"Time [s],Acceleration [counts]\n{TIMED}",
+            "?units=g",
+            "'counts', which is not a unit",
+        ),
         (f"Time [s],Acceleration [cm]\n{TIMED}", "?units=g", "'cm', which is not a unit"),
         (f"units: g\n{rows(TIMES, VALUES, VALUES)}", "", "by its place, .channel=2"),
     ],
@@ -218,7 +318,10 @@ def test_an_offset_is_a_warning(tmp_path: Path) -> None:
 def test_a_peak_that_the_header_contradicts_is_a_warning(tmp_path: Path) -> None:
     for line in ("Peak acc (gal): {}", "Peak acceleration = {} gal at 2 s"):
         text = f"units: g\ndt: 0.005\n{line}\n{ALONE}"
-        assert load(tmp_path, text.format(f"{100.0 * STANDARD_GRAVITY * PEAK:.2f}")).warnings == ()
+        assert (
+            load(tmp_path, text.format(f"{100.0 * STANDARD_GRAVITY * PEAK:.2f}")).warnings
+            == ()
+        )
         (warning,) = load(tmp_path, text.format("98.07")).warnings
         assert "the values peak at 0.192696 and the header says 0.100004" in warning
 
@@ -251,7 +354,9 @@ def test_what_is_written_reads_back(tmp_path: Path, kind: str, form: str) -> Non
     again = written(tmp_path, made, form)
     assert (again.npts, again.dt) == (made.npts, made.dt)
     digits = 1e-7 if form == "at2" else 1e-8
-    np.testing.assert_allclose(again.acceleration, made.acceleration, atol=digits * made.pga)
+    np.testing.assert_allclose(
+        again.acceleration, made.acceleration, atol=digits * made.pga
+    )
     assert written(tmp_path, again, "text").npts == made.npts
 
 

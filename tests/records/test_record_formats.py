@@ -36,7 +36,9 @@ def peer(npts: str = NPTS, values: str = ROWS, units: str = UNITS) -> str:
     return f"{TITLE}\n{EVENT}\n{units}\n{npts}\n{values}"
 
 
-def load(folder: Path, text: str, name: str = "rec.AT2", options: str = "") -> GroundMotion:
+def load(
+    folder: Path, text: str, name: str = "rec.AT2", options: str = ""
+) -> GroundMotion:
     (folder / name).write_bytes(text.encode("latin-1"))
     return load_record(name + options, folder=folder)
 
@@ -53,7 +55,9 @@ def load(folder: Path, text: str, name: str = "rec.AT2", options: str = "") -> G
     ],
 )
 @pytest.mark.parametrize("named", [True, False])
-def test_reads(tmp_path: Path, text: str, name: str, form: str, tol: float, *, named: bool) -> None:
+def test_reads(
+    tmp_path: Path, text: str, name: str, form: str, tol: float, *, named: bool
+) -> None:
     path = write(tmp_path, text, name if named else "record")
     made = load_record(path)
     assert made.format == form
@@ -77,13 +81,18 @@ def test_knet_is_centred_and_says_so(tmp_path: Path) -> None:
 
 def test_a_channel_is_chosen_by_its_number(tmp_path: Path) -> None:
     path = write(tmp_path, csmip((4, 6)), "a.V2")
-    with pytest.raises(RecordError, match=r"2 channels.*\?channel=4.*4: 90 DEG; 6: 90 DEG"):
+    with pytest.raises(
+        RecordError, match=r"2 channels.*\?channel=4.*4: 90 DEG; 6: 90 DEG"
+    ):
         load_record(path)
     with pytest.raises(RecordError, match="no channel 5; the file has 4: 90 DEG; 6"):
         load_record(f"{path}?channel=5")
     made = load_record(f"{path}?channel=6")
     assert (made.npts, made.name) == (12, "a_ch6")
-    assert load_record(f"{write(tmp_path, geonet(('N', 'Up')), 'a.V2A')}?channel=2").npts == 12
+    assert (
+        load_record(f"{write(tmp_path, geonet(('N', 'Up')), 'a.V2A')}?channel=2").npts
+        == 12
+    )
     with pytest.raises(RecordError, match="channel 1 comes 2 times"):
         load_record(f"{write(tmp_path, csmip((1, 1)), 'b.V2')}?channel=1")
 
@@ -133,10 +142,14 @@ FIRST_ROW = {
 
 @pytest.mark.parametrize("name", FIRST_ROW)
 @pytest.mark.parametrize("times", [0, 2])
-def test_a_row_too_few_or_too_many_is_refused(tmp_path: Path, name: str, times: int) -> None:
+def test_a_row_too_few_or_too_many_is_refused(
+    tmp_path: Path, name: str, times: int
+) -> None:
     text = MADE[name]
     starts = [line.startswith(FIRST_ROW[name]) for line in text.split("\n")]
-    with pytest.raises(RecordError, match=r"(announces|NPTS =|of the) .*\d+ values|a row where"):
+    with pytest.raises(
+        RecordError, match=r"(announces|NPTS =|of the) .*\d+ values|a row where"
+    ):
         load_record(write(tmp_path, repeated(text, starts.index(True), times), "rec"))
 
 
@@ -149,20 +162,38 @@ def test_a_row_too_few_or_too_many_is_refused(tmp_path: Path, name: str, times: 
             csmip().replace(" 12 POINTS OF ACC", "  8 POINTS OF ACC"),
             "announces 8 values, and 12 stand before '12 POINTS",
         ),
-        (cosmos().replace("   12  acc", "    8  acc"), "announces 8 values, and 12 stand"),
-        (cosmos().replace("(8F10.5)", "(6F10.5)"), "8 value.s. in a row where the format has 6"),
+        (
+            cosmos().replace("   12  acc", "    8  acc"),
+            "announces 8 values, and 12 stand",
+        ),
+        (
+            cosmos().replace("(8F10.5)", "(6F10.5)"),
+            "8 value.s. in a row where the format has 6",
+        ),
         (geonet().replace("points  12", "points  10"), "announces 10 values, and"),
         (repeated(geonet(), 1, 0), "in a row where the format has 10"),
         (esm() + "\n0.1\n0.2", "announces 12 values, and 14 stand before the end"),
-        (esm().replace("1.500000", "1.500000 0.1").replace("NDATA: 12", "NDATA: 13"), "a row"),
+        (
+            esm().replace("1.500000", "1.500000 0.1").replace("NDATA: 12", "NDATA: 13"),
+            "a row",
+        ),
         (smc().replace("        12", "         8"), "announces 8 values, and 12 stand"),
-        (knet().replace("    8500     4750", "    8500 4750     1"), "9 value.s. in a row where"),
-        (knet().replace(FIXED, "", 1) + FIXED, r"7 value.s. in a row where the format has 8"),
+        (
+            knet().replace("    8500     4750", "    8500 4750     1"),
+            "9 value.s. in a row where",
+        ),
+        (
+            knet().replace(FIXED, "", 1) + FIXED,
+            r"7 value.s. in a row where the format has 8",
+        ),
         (
             peer("NPTS=  9, DT= .005 SEC"),
             r"rec.AT2:6: .* 9 values, and 7 stand before the end.*correct the count",
         ),
-        (peer("NPTS=  6, DT= .005 SEC"), "announces 6 values, and 7 stand before the end"),
+        (
+            peer("NPTS=  6, DT= .005 SEC"),
+            "announces 6 values, and 7 stand before the end",
+        ),
         (peer("NPTS=  7, DT= .000 SEC"), "DT = .000 must be positive"),
         (peer("NPTS=  7, DT= -.01 SEC"), "must be positive"),
         (peer(values=""), "announces 7 values, and 0 stand before the end"),
@@ -172,49 +203,115 @@ def test_a_row_too_few_or_too_many_is_refused(tmp_path: Path, name: str, times: 
         (peer(values=".1,,2"), "and 0 stand before '.1,,2"),
         (peer(values=".1 --1"), "and 0 stand before '.1 --1"),
         (peer(values="  .1 .2 NaN .4 .5 .6 .7"), "and 0 stand before '.1 .2 NaN"),
-        (peer(values=ROWS.replace(".6000000E-01", "*" * 12)), "rec.AT2:6: .*and 5 stand before"),
+        (
+            peer(values=ROWS.replace(".6000000E-01", "*" * 12)),
+            "rec.AT2:6: .*and 5 stand before",
+        ),
         (peer(values=ROWS.replace(".6000000E-01", "1E999")), "5 stand before '1E999"),
         (peer(values=ROWS.replace("-.7", "0.6.7")), "5 stand before '.6000000E-01 0.6.7"),
         (peer(values=ROWS.replace("\n", "\nNEXT RECORD\n", 1)), "5 stand before 'NEXT"),
-        (peer(values=ROWS + "NEXT RECORD\n .1 .2\n"), "more numbers follow after the 7 values"),
-        (peer(units="ACCELERATION TIME SERIES IN UNITS OF FURLONGS"), "not a unit of acceleration"),
-        (peer(units="VELOCITY TIME SERIES IN UNITS OF CM/S"), "this is a velocity record"),
-        (peer(units="DISPLACEMENT TIME HISTORY IN UNITS OF CM"), "this is a displacement record"),
-        (peer(units="ACCELERATION TIME SERIES IN UNITS OF CM/S"), "not a unit of acceleration"),
-        (peer(npts=f"NPTS= {'9' * 5000}, DT= .01 SEC"), "no header line gives NPTS and DT"),
+        (
+            peer(values=ROWS + "NEXT RECORD\n .1 .2\n"),
+            "more numbers follow after the 7 values",
+        ),
+        (
+            peer(units="ACCELERATION TIME SERIES IN UNITS OF FURLONGS"),
+            "not a unit of acceleration",
+        ),
+        (
+            peer(units="VELOCITY TIME SERIES IN UNITS OF CM/S"),
+            "this is a velocity record",
+        ),
+        (
+            peer(units="DISPLACEMENT TIME HISTORY IN UNITS OF CM"),
+            "this is a displacement record",
+        ),
+        (
+            peer(units="ACCELERATION TIME SERIES IN UNITS OF CM/S"),
+            "not a unit of acceleration",
+        ),
+        (
+            peer(npts=f"NPTS= {'9' * 5000}, DT= .01 SEC"),
+            "no header line gives NPTS and DT",
+        ),
         # Headers that contradict themselves.
-        (AT2.replace("NPTS= 4,", "NPTS= 4, NPTS= 9,"), "rec:3: NPTS = 9 contradicts NPTS = 4"),
+        (
+            AT2.replace("NPTS= 4,", "NPTS= 4, NPTS= 9,"),
+            "rec:3: NPTS = 9 contradicts NPTS = 4",
+        ),
         (AT2.replace("SEC", "DT= .01"), "DT = .01 contradicts DT = .02 of line 3"),
         (AT2.replace("OF G\n", "OF G\nUNITS OF CM/S2\n"), "UNITS = CM/S2 contradicts"),
-        (COLUMN.replace("units: g", "units: g, units: gal"), "units = gal contradicts units = g"),
-        (COLUMN.replace("dt: 0.02", "dt: 0.02, dt: 0.01"), "dt = 0.01 contradicts dt = 0.02"),
-        (COLUMN.replace("units", "npts: 4\nnpts: 5\nunits"), "npts = 5 contradicts npts = 4"),
-        (esm().replace("STREAM", "NDATA: 11\nSTREAM"), "= 11 contradicts NDATA = 12 of line 6"),
-        (esm().replace("STREAM", "DURATION_S: 0.48\nSTREAM"), "12 values 0.02 s apart last"),
-        (geonet().replace("Duration 0.22", "Duration 0.44"), "Duration = 0.44 s, but 12 values"),
+        (
+            COLUMN.replace("units: g", "units: g, units: gal"),
+            "units = gal contradicts units = g",
+        ),
+        (
+            COLUMN.replace("dt: 0.02", "dt: 0.02, dt: 0.01"),
+            "dt = 0.01 contradicts dt = 0.02",
+        ),
+        (
+            COLUMN.replace("units", "npts: 4\nnpts: 5\nunits"),
+            "npts = 5 contradicts npts = 4",
+        ),
+        (
+            esm().replace("STREAM", "NDATA: 11\nSTREAM"),
+            "= 11 contradicts NDATA = 12 of line 6",
+        ),
+        (
+            esm().replace("STREAM", "DURATION_S: 0.48\nSTREAM"),
+            "12 values 0.02 s apart last",
+        ),
+        (
+            geonet().replace("Duration 0.22", "Duration 0.44"),
+            "Duration = 0.44 s, but 12 values",
+        ),
         (cosmos().replace("approx    0", "approx   60"), "approx = 60 s, but 12 values"),
         (
             knet().replace("Dir.              N-S", "Scale Factor      1(gal)/2"),
             "Scale Factor = 2000.gal./2000000 contradicts",
         ),
         # Numbers that cannot be read.
-        (knet().replace("50Hz", "0Hz"), r"rec:11: Sampling Freq\(Hz\) = 0 must be positive"),
+        (
+            knet().replace("50Hz", "0Hz"),
+            r"rec:11: Sampling Freq\(Hz\) = 0 must be positive",
+        ),
         (knet().replace("50Hz", "..Hz"), r"rec:11: .* = '..' is not a finite number"),
         (knet().replace("50Hz", "1.2.3Hz"), "'1.2.3' is not a finite number"),
-        (knet().replace("  0.24", "  0"), r"rec:12: Duration Time\(s\) = 0 must be positive"),
+        (
+            knet().replace("  0.24", "  0"),
+            r"rec:12: Duration Time\(s\) = 0 must be positive",
+        ),
         (knet().replace("  0.24", "  ."), "'.' is not a finite number"),
         (knet().replace("/2000000", "/0"), "rec:14: Scale Factor = 0 must be positive"),
-        (knet().replace("Max. Acc. (gal)   ", "Max. Acc. (gal)   1.2."), "is not a finite number"),
-        (knet().replace("  0.24", "  1E9"), "which is more or less than a record can have"),
-        (esm().replace("0.020000", "0,02"), r"rec:5: SAMPLING_INTERVAL_S = 0,02 .* write 0\.02"),
-        (esm().replace("NDATA: 12", "NDATA: 12.0"), "'12.0' should be a number of values"),
-        (esm().replace("NDATA: 12", "NDATA: abc"), "rec:6: NDATA = 'abc' should be a number"),
+        (
+            knet().replace("Max. Acc. (gal)   ", "Max. Acc. (gal)   1.2."),
+            "is not a finite number",
+        ),
+        (
+            knet().replace("  0.24", "  1E9"),
+            "which is more or less than a record can have",
+        ),
+        (
+            esm().replace("0.020000", "0,02"),
+            r"rec:5: SAMPLING_INTERVAL_S = 0,02 .* write 0\.02",
+        ),
+        (
+            esm().replace("NDATA: 12", "NDATA: 12.0"),
+            "'12.0' should be a number of values",
+        ),
+        (
+            esm().replace("NDATA: 12", "NDATA: abc"),
+            "rec:6: NDATA = 'abc' should be a number",
+        ),
         (esm().replace("2: 30.125000", "2: n/a"), "'n/a' is not a finite number"),
         (AT2.replace(".02 SEC", "1E999"), "rec:3: DT = '1E999' is not a finite number"),
         (AT2.replace(".02 SEC", "1E-320"), "cannot be the time step"),
         (AT2.replace(".02 SEC", "1E-99999999999999999999"), "must be positive"),
         (AT2.replace(".02 SEC", "1E99999999999999999999"), "is not a finite number"),
-        (AT2.replace(".02 SEC", "0,01"), r"rec:3: DT = 0,01 has a decimal comma; write 0\.01"),
+        (
+            AT2.replace(".02 SEC", "0,01"),
+            r"rec:3: DT = 0,01 has a decimal comma; write 0\.01",
+        ),
         (AT2.replace(".02 SEC", "1E300"), "cannot be the time step"),
         (AT2.replace("NPTS= 4", "NPTS= " + "4" * 500), "should be a number of values"),
         ("dt: 0,02\nunits: g\n.1\n.2\n", r"dt = 0,02 has a decimal comma; write 0\.02"),
@@ -234,9 +331,15 @@ def test_a_row_too_few_or_too_many_is_refused(tmp_path: Path, name: str, times: 
         (cosmos("Velocity"), "'Velocity.*only corrected acceleration"),
         (cosmos(interval=-999.0), "value 62, the sampling interval"),
         (cosmos().replace("cm/sec2", "counts"), "no line announces acceleration values"),
-        (cosmos().replace("   12  acc", "   19  acc"), "19 values, and 12 stand before '/&  -"),
+        (
+            cosmos().replace("   12  acc", "   19  acc"),
+            "19 values, and 12 stand before '/&  -",
+        ),
         (csmip().replace(" 12 POINTS OF ACCEL", " 11 POINTS OF ACCEL"), "11 values, and"),
-        (csmip().replace("ACCEL DATA", "SOME DATA"), "no line announces the acceleration data"),
+        (
+            csmip().replace("ACCEL DATA", "SOME DATA"),
+            "no line announces the acceleration data",
+        ),
         (
             "Uncorrected Accelerogram Data\n   200 Accelerogram points at 200 pts/sec, in g/10\n",
             r"uncorrected accelerogram \(volume 1\)",
@@ -248,7 +351,10 @@ def test_a_row_too_few_or_too_many_is_refused(tmp_path: Path, name: str, times: 
         (smc("3 VELOCITY"), "only '2 CORRECTED ACCELEROGRAM'"),
         (smc("1 UNCORRECTED ACCELEROGRAM"), "only '2 CORRECTED ACCELEROGRAM'"),
         (smc().replace("        12", "     -9999"), "the headers give -9999 values"),
-        (knet().replace("50Hz", "fast"), "rec:11: .*Sampling Freq.* = 'fast'|lacks Sampling Freq"),
+        (
+            knet().replace("50Hz", "fast"),
+            "rec:11: .*Sampling Freq.* = 'fast'|lacks Sampling Freq",
+        ),
         (geonet().replace("at 0.020 sec", "as sampled"), "lacks the number of points"),
     ],
 )
@@ -272,10 +378,15 @@ def test_what_is_said_twice_alike_is_said_once(tmp_path: Path) -> None:
     [
         ("units=m/s2", "units = m/s2 contradicts the file"),
         ("dt=0.01", r"dt = 0\.01 s contradicts the file"),
-        (f"channel={'7' * 5000}", r"channel (= )?7{60}(7|;| |:).*(holds one channel|file has)"),
+        (
+            f"channel={'7' * 5000}",
+            r"channel (= )?7{60}(7|;| |:).*(holds one channel|file has)",
+        ),
     ],
 )
-def test_options_against_the_file(tmp_path: Path, name: str, option: str, message: str) -> None:
+def test_options_against_the_file(
+    tmp_path: Path, name: str, option: str, message: str
+) -> None:
     path = write(tmp_path, MADE[name], "rec")
     with pytest.raises(RecordError, match=message):
         load_record(f"{path}?{option}")
@@ -353,14 +464,20 @@ SPELLINGS = [
 def test_spellings_titles_line_ends_and_ragged_values(tmp_path: Path, text: str) -> None:
     made = load(tmp_path, text)
     # One multiplication separates the samples from the printed numbers.
-    np.testing.assert_allclose(made.acceleration, np.array(IN_G) * STANDARD_GRAVITY, rtol=1e-15)
+    np.testing.assert_allclose(
+        made.acceleration, np.array(IN_G) * STANDARD_GRAVITY, rtol=1e-15
+    )
     assert (made.dt, made.warnings) == (0.005, ())
 
 
 @pytest.mark.parametrize(
     ("line", "unit", "factor"),
     [
-        ("ACCELERATION HISTORY IN UNITS OF G. FILTER POINTS: HP=0.07 Hz LP=23.0 Hz", "g", 9.80665),
+        (
+            "ACCELERATION HISTORY IN UNITS OF G. FILTER POINTS: HP=0.07 Hz LP=23.0 Hz",
+            "g",
+            9.80665,
+        ),
         ("acceleration time series in units of g", "g", 9.80665),
         ("ACCELERATION TIME SERIES IN UNITS OF CM/S2", "cm/s2", 0.01),
         ("ACCELERATION TIME SERIES IN UNITS OF CM/SEC/SEC", "cm/s2", 0.01),
@@ -376,7 +493,9 @@ def test_spellings_titles_line_ends_and_ragged_values(tmp_path: Path, text: str)
         ("Units are g", "g", 9.80665),
     ],
 )
-def test_units_are_those_of_their_line(tmp_path: Path, line: str, unit: str, factor: float) -> None:
+def test_units_are_those_of_their_line(
+    tmp_path: Path, line: str, unit: str, factor: float
+) -> None:
     made = load(tmp_path, peer(units=line))
     assert f"values in {unit}" in made.description
     assert made.acceleration[2] == pytest.approx(0.3 * factor, rel=1e-15)
@@ -392,13 +511,21 @@ def test_a_step_that_printing_may_have_rounded(tmp_path: Path) -> None:
     assert (exact.dt, exact.warnings) == (0.00390625, ())
 
 
-@pytest.mark.parametrize("step", [".0050", ".0150", ".0200", ".0025", "0.00390625", ".0300"])
-def test_steps_that_cannot_be_a_rounded_rate_are_not_doubted(tmp_path: Path, step: str) -> None:
+@pytest.mark.parametrize(
+    "step", [".0050", ".0150", ".0200", ".0025", "0.00390625", ".0300"]
+)
+def test_steps_that_cannot_be_a_rounded_rate_are_not_doubted(
+    tmp_path: Path, step: str
+) -> None:
     assert load(tmp_path, peer(f"NPTS=  7, DT=   {step} SEC")).warnings == ()
 
 
-@pytest.mark.parametrize(("name", "what"), [("rec.VT2", "velocity"), ("rec.dt2", "displacement")])
-def test_refuses_other_quantities_by_extension(tmp_path: Path, name: str, what: str) -> None:
+@pytest.mark.parametrize(
+    ("name", "what"), [("rec.VT2", "velocity"), ("rec.dt2", "displacement")]
+)
+def test_refuses_other_quantities_by_extension(
+    tmp_path: Path, name: str, what: str
+) -> None:
     with pytest.raises(RecordError, match=f"hold {what}; give the acceleration.*rec.AT2"):
         load(tmp_path, peer(), name)
 
@@ -407,9 +534,13 @@ VALUE = st.floats(-3.0, 3.0, allow_nan=False, allow_subnormal=False)
 
 
 @settings(deadline=None)
-@given(st.lists(VALUE, min_size=2, max_size=23), st.floats(1e-6, 1.0), st.text(max_size=300))
+@given(
+    st.lists(VALUE, min_size=2, max_size=23), st.floats(1e-6, 1.0), st.text(max_size=300)
+)
 def test_what_is_written_is_read_back(values: list[float], dt: float, title: str) -> None:
-    motion = GroundMotion(np.array(values) * STANDARD_GRAVITY, dt, title, "s", "SMC", title)
+    motion = GroundMotion(
+        np.array(values) * STANDARD_GRAVITY, dt, title, "s", "SMC", title
+    )
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "out.at2"
         path.write_text(at2_text(motion), encoding="utf-8", newline="\n")
@@ -420,7 +551,9 @@ def test_what_is_written_is_read_back(values: list[float], dt: float, title: str
 
 
 def test_layout() -> None:
-    motion = GroundMotion(np.arange(7.0), 0.005, "name", "rec.smc", "SMC", "an event\nsomewhere")
+    motion = GroundMotion(
+        np.arange(7.0), 0.005, "name", "rec.smc", "SMC", "an event\nsomewhere"
+    )
     lines = at2_text(motion).splitlines()
     assert lines[0].startswith("PEER AT2 LAYOUT, CONVERTED FROM SMC BY RPS")
     assert lines[1] == "name; an event somewhere"

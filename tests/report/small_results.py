@@ -41,7 +41,9 @@ def building(storeys: int, *, heights: bool = True) -> Superstructure:
 
 def yielding(storeys: int = 2, hardening: float = 0.05) -> PodiumStructure:
     """Storeys that yield below the shear at uplift."""
-    above = replace(building(storeys), strengths=np.full(storeys, 2e5), hardening=hardening)
+    above = replace(
+        building(storeys), strengths=np.full(storeys, 2e5), hardening=hardening
+    )
     return replace(structure(storeys=storeys), superstructure=above)
 
 
@@ -52,23 +54,33 @@ def structure(
     return PodiumStructure(bearing, 2e4, 2e5, above)
 
 
-def history(made: PodiumStructure, pulse: str, free: float | None = 0.5) -> TimeHistoryResult:
-    return time_history(made, load_record(pulse), TimeHistorySettings(free_vibration=free))
+def history(
+    made: PodiumStructure, pulse: str, free: float | None = 0.5
+) -> TimeHistoryResult:
+    return time_history(
+        made, load_record(pulse), TimeHistorySettings(free_vibration=free)
+    )
 
 
 KINDS: dict[str, Callable[[], TimeHistoryResult]] = {
     "rolls": lambda: history(structure(), "pulse:half_sine?amplitude=0.3g&period=0.6"),
     "at rest": lambda: history(structure(), "pulse:half_sine?amplitude=0.01g&period=0.6"),
-    "overturns": lambda: history(structure(), "pulse:half_sine?amplitude=1.5g&period=1.5", None),
+    "overturns": lambda: history(
+        structure(), "pulse:half_sine?amplitude=1.5g&period=1.5", None
+    ),
     "flat, one storey, no heights": lambda: history(
         structure(FLAT, 1, heights=False), "pulse:half_sine?amplitude=0.4g&period=0.6"
     ),
     "yields": lambda: history(yielding(), "pulse:half_sine?amplitude=0.3g&period=0.6"),
-    "frame": lambda: history(structure(FLAT, 0), "pulse:half_sine?amplitude=0.4g&period=0.6"),
+    "frame": lambda: history(
+        structure(FLAT, 0), "pulse:half_sine?amplitude=0.4g&period=0.6"
+    ),
 }
 
 
-def drawn(function: Callable[..., None], *arguments: object, look: Look = USUAL) -> Figure:
+def drawn(
+    function: Callable[..., None], *arguments: object, look: Look = USUAL
+) -> Figure:
     """The figure that a function draws, with a look."""
     return style.drawn(partial(function, *arguments), look)
 
@@ -135,7 +147,14 @@ def turned(kind: str = "rolls", angle: float | Array = ANGLE) -> TimeHistoryResu
         for name, part in (("x", np.cos(ANGLE)), ("y", np.sin(ANGLE)))
     )
     events = tuple(
-        replace(each, kind="pass", azimuth=ANGLE, least_tilt=3e-5, nearness=0.25, loss_share=0.5)
+        replace(
+            each,
+            kind="pass",
+            azimuth=ANGLE,
+            least_tilt=3e-5,
+            nearness=0.25,
+            loss_share=0.5,
+        )
         if each.kind == "impact"
         else each
         for each in plane.events

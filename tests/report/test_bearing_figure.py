@@ -31,13 +31,22 @@ def texts(axes: Axes) -> list[str]:
 @pytest.mark.parametrize(
     ("bearing", "titles"),
     [
-        (CURVED, ["at rest", "end of rolling $\\beta$ = 0.151", "critical $\\theta_{cr}$ = 0.295"]),
+        (
+            CURVED,
+            [
+                "at rest",
+                "end of rolling $\\beta$ = 0.151",
+                "critical $\\theta_{cr}$ = 0.295",
+            ],
+        ),
         (FLAT, ["at rest", "critical $\\theta_{cr}$ = 0.149 rad"]),
         (ROLLER, ["at rest", "critical $\\theta_{cr}$ = 0.291 rad"]),
     ],
 )
 @pytest.mark.parametrize("columns", [1, 2])
-def test_states_an_end_and_the_force(bearing: Bearing, titles: list[str], columns: int) -> None:
+def test_states_an_end_and_the_force(
+    bearing: Bearing, titles: list[str], columns: int
+) -> None:
     result = pushover(structure(bearing, 2))
     figure = drawn(bearing_figure, result, "a title", look=Look(columns=columns))
     assert figure.get_suptitle() == "a title"
@@ -59,12 +68,16 @@ def test_states_an_end_and_the_force(bearing: Bearing, titles: list[str], column
 def test_stops_far_away_leave_room_for_all_panels(gap: float, columns: int) -> None:
     made = replace(structure(CURVED, 2), devices=(Stop(gap, 4e6),))
     draw = partial(bearing_figure, pushover(made), "a title")
-    assert style.picture(draw, Look(columns=columns), "png")  # no warning that the layout collapses
+    assert style.picture(
+        draw, Look(columns=columns), "png"
+    )  # no warning that the layout collapses
 
 
 @pytest.mark.parametrize("bearing", [CURVED, FLAT, ROLLER, WIDE])
 @pytest.mark.parametrize("part", [-1.0, 0.4, 1.0])
-def test_a_column_leans_between_ground_and_cap_beam(bearing: Bearing, part: float) -> None:
+def test_a_column_leans_between_ground_and_cap_beam(
+    bearing: Bearing, part: float
+) -> None:
     made = structure(bearing, 0)
     rotation = part * made.critical_rotation
     axes = Figure().subplots()
@@ -84,7 +97,9 @@ def test_a_column_leans_between_ground_and_cap_beam(bearing: Bearing, part: floa
     assert corners[:, 1].min() == pytest.approx(0.0, abs=sagitta)
     assert corners[:, 1].max() == pytest.approx(view.height + v, abs=sagitta)
     centre = [0.5 * u, 0.5 * (view.height + v)]
-    assert corners[:-1].mean(axis=0) == pytest.approx(centre, abs=1e-12)  # closed at its end
+    assert corners[:-1].mean(axis=0) == pytest.approx(
+        centre, abs=1e-12
+    )  # closed at its end
     near = corners[np.argmin(corners[:, 1]), 0]
     reach = bearing.half_width + bearing.radius * min(abs(rotation), bearing.beta)
     assert x0 == pytest.approx(math.copysign(reach, rotation))
@@ -99,7 +114,9 @@ def _arm(made: PodiumStructure, rotation: float) -> float:
     """B from F = W B/C (Theory, section 5)."""
     x = np.array([rotation])
     force, _, _ = made.path(x)
-    return float((force * made.lever_arm(x))[0] / (2.0 * made.bearing.semi_diagonal * made.weight))
+    return float(
+        (force * made.lever_arm(x))[0] / (2.0 * made.bearing.semi_diagonal * made.weight)
+    )
 
 
 def test_dimensions_are_written_and_drawn_to_scale() -> None:
@@ -115,10 +132,19 @@ def test_dimensions_are_written_and_drawn_to_scale() -> None:
     axes = Figure().subplots()
     draw_end(axes, CURVED)
     edge = 1e3 * CURVED.radius * (1.0 - math.cos(CURVED.beta))
-    wanted = ["2B = 0.445 m", "2B' = 0.89 m", "r = 1.483 m\nβ = 0.151 rad", f"{edge:.3g} mm"]
+    wanted = [
+        "2B = 0.445 m",
+        "2B' = 0.89 m",
+        "r = 1.483 m\nβ = 0.151 rad",
+        f"{edge:.3g} mm",
+    ]
     assert texts(axes) == wanted
-    spans = [abs(each.xy[0] - each.xyann[0]) for each in axes.texts if not each.get_text()]  # type: ignore[attr-defined]
-    assert spans == pytest.approx([2.0 * CURVED.half_width, 0.3 * 2.0 * CURVED.half_height])
+    spans = [
+        abs(each.xy[0] - each.xyann[0]) for each in axes.texts if not each.get_text()
+    ]  # type: ignore[attr-defined]
+    assert spans == pytest.approx(
+        [2.0 * CURVED.half_width, 0.3 * 2.0 * CURVED.half_height]
+    )
 
     axes = Figure().subplots()
     draw_end(axes, FLAT)
@@ -162,7 +188,10 @@ def test_devices_are_in_the_drawing() -> None:
     )
     assert view.devices.brace is not None
     (brace,) = [view.devices.brace]
-    assert brace.get_color() not in {tendon.get_color(), "#D55E00"}  # nor that of contacts
+    assert brace.get_color() not in {
+        tendon.get_color(),
+        "#D55E00",
+    }  # nor that of contacts
     assert {*axes.get_legend_handles_labels()[1]} == {"stop", "tendon", "friction damper"}
     axes = Figure().subplots()
     draw_bearing(axes, made, 0.1)

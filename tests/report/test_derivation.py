@@ -33,7 +33,9 @@ VARIANTS = {
     "critical": ["podium.bearing.curvature_ratio=critical"],
     "flat": ["podium.bearing.curvature_ratio=0"],
     "stiffens": ["podium.bearing.curvature_ratio=1.5"],
-    "spherical": ["podium.bearing={dimensions: {height: 3, width: 0, wedge_width: 1, radius: 2}}"],
+    "spherical": [
+        "podium.bearing={dimensions: {height: 3, width: 0, wedge_width: 1, radius: 2}}"
+    ],
     "rigid law": ["podium.impact={law: rigid, factor: 0.9}"],
     "loss": ["podium.impact={law: flexible, loss: 0.7, factor: 0.98}"],
     "measured": ["podium.impact={law: value, restitution: 0.9, factor: 0.95}"],
@@ -71,7 +73,9 @@ def test_the_formula_with_its_numbers_gives_the_value_or_it_stands_in_the_case(
     given = set(leaves(case.document["podium"]))
     for row in found(case):
         if not row.formula:
-            assert any(row.value == pytest.approx(number, rel=1e-12) for number in given), row
+            assert any(
+                row.value == pytest.approx(number, rel=1e-12) for number in given
+            ), row
         if not row.numbers:
             continue
         sides = [evaluated(side) for side in row.numbers.split(" = ")]
@@ -98,7 +102,11 @@ def test_the_branch_of_the_critical_rotation_is_the_one_that_is_travelled() -> N
     assert formula(between, "critical_rotation_paper") == rocking
     assert formula(case_of("overturns rolling"), "critical_rotation") == rolling
     # Where both are the same in all digits shown, one row is enough.
-    for name, rows in (("between the two critical ratios", 2), ("stiffens", 1), ("flat", 1)):
+    for name, rows in (
+        ("between the two critical ratios", 2),
+        ("stiffens", 1),
+        ("flat", 1),
+    ):
         shown = [row.name for row in found(case_of(name))]
         assert sum(each.startswith("critical_rotation") for each in shown) == rows
     assert formula(case_of("stiffens"), "critical_rotation") == rocking
@@ -106,7 +114,11 @@ def test_the_branch_of_the_critical_rotation_is_the_one_that_is_travelled() -> N
 
 def test_numbers_have_six_digits() -> None:
     row = next(row for row in found(case_of("six_storey")) if row.name == "column_height")
-    assert (row.symbol, row.formula, row.numbers) == ("2H", "2 R cos(α)", "2 · 1.5 · cos(0.14889)")
+    assert (row.symbol, row.formula, row.numbers) == (
+        "2H",
+        "2 R cos(α)",
+        "2 · 1.5 · cos(0.14889)",
+    )
 
 
 def test_a_case_in_memory_will_do() -> None:
@@ -130,9 +142,13 @@ COLUMNS = {
 
 def result_of(name: str, *, both: bool = False, factor: float = 1.0) -> TimeHistoryResult:
     case = load_case(DESIGNED, COLUMNS[name])
-    push = load_record(str(DESIGNED.parent / "records" / "synthetic_far_field.at2")).scaled(factor)
+    push = load_record(
+        str(DESIGNED.parent / "records" / "synthetic_far_field.at2")
+    ).scaled(factor)
     motion = MotionComponents(push, y=push) if both else push
-    return time_history(case.structure, motion, replace(case.analysis, free_vibration=0.0))
+    return time_history(
+        case.structure, motion, replace(case.analysis, free_vibration=0.0)
+    )
 
 
 @needs_compiled_kernels
@@ -161,16 +177,23 @@ def test_instants_and_their_formulas(name: str, monkeypatch: pytest.MonkeyPatch)
 @needs_compiled_kernels
 def test_ends_of_concrete_would_not_do() -> None:
     """What the comment of the case says, at the scale of its record."""
-    ratios = [result_of(n, factor=0.7).contact_pressure_ratio or 0 for n in ("square", "concrete")]
+    ratios = [
+        result_of(n, factor=0.7).contact_pressure_ratio or 0
+        for n in ("square", "concrete")
+    ]
     assert ratios[0] < 1.0 < ratios[1]
 
 
 @needs_compiled_kernels
 def test_what_the_model_and_codes_do_not_cover_is_said() -> None:
     strong = result_of("square", factor=2.0)
-    assert any("EN 1337-4" in text for text in strong.warnings) == (strong.max_rotation > 0.05)
+    assert any("EN 1337-4" in text for text in strong.warnings) == (
+        strong.max_rotation > 0.05
+    )
     assert strong.max_rotation > 0.05
-    assert not any("EN 1337-4" in text for text in result_of("round", factor=2.0).warnings)
+    assert not any(
+        "EN 1337-4" in text for text in result_of("round", factor=2.0).warnings
+    )
     of = load_case(DESIGNED, COLUMNS["flat"]).structure
     assert of.column is not None
     weak = replace(of, column=replace(of.column, contact_strength=2e6))

@@ -76,7 +76,9 @@ def test_speed_and_part_of_an_animation_are_those_that_were_asked_for() -> None:
         ("film.gif", {"last": 0.0}, "later than --animate-from 0"),
     ],
 )
-def test_a_film_that_cannot_be_is_refused(file: str, wishes: dict[str, float], says: str) -> None:
+def test_a_film_that_cannot_be_is_refused(
+    file: str, wishes: dict[str, float], says: str
+) -> None:
     with pytest.raises(UsageError, match=says):
         frame_plan(KINDS["rolls"](), FilmRequest(Path(file), **wishes))  # type: ignore[arg-type]
 
@@ -87,9 +89,13 @@ def test_mp4_needs_its_encoder(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) 
         FilmRequest(Path("film.mp4"))
 
 
-def test_mp4_is_what_its_ending_says(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_mp4_is_what_its_ending_says(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
     ffmpeg = pytest.importorskip("imageio_ffmpeg")
-    shutil.copy(ffmpeg.get_ffmpeg_exe(), tmp_path / f"ffmpeg{'.exe' * (sys.platform == 'win32')}")
+    shutil.copy(
+        ffmpeg.get_ffmpeg_exe(), tmp_path / f"ffmpeg{'.exe' * (sys.platform == 'win32')}"
+    )
     monkeypatch.setenv("PATH", str(tmp_path), prepend=os.pathsep)
     file = tmp_path / "film.mp4"
     drawn: list[int] = []
@@ -107,7 +113,9 @@ def test_mp4_is_what_its_ending_says(monkeypatch: pytest.MonkeyPatch, tmp_path: 
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="a script is no program there")
-def test_an_encoder_that_fails_is_told(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_an_encoder_that_fails_is_told(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
     broken = tmp_path / "ffmpeg"
     broken.write_text("#!/bin/sh\nexit 3\n")
     broken.chmod(0o755)
@@ -139,15 +147,21 @@ def test_a_figure_fills_columns_of_a_journal(columns: int, inches: float) -> Non
 
 def test_a_style_file_goes_over_ours(tmp_path: Path) -> None:
     file = tmp_path / "paper.mplstyle"
-    file.write_text("font.family: serif\nfont.size: 12\nfigure.figsize: 5, 9\nlines.linewidth: 3\n")
-    figure = drawn(rotation_figure, KINDS["rolls"](), "title", look=Look(style=read_style(file)))
+    file.write_text(
+        "font.family: serif\nfont.size: 12\nfigure.figsize: 5, 9\nlines.linewidth: 3\n"
+    )
+    figure = drawn(
+        rotation_figure, KINDS["rolls"](), "title", look=Look(style=read_style(file))
+    )
     assert figure.get_figwidth() == 5.0
     assert figure.get_figheight() != 9.0  # each figure knows how high it must be
     axes = figure.axes[1]
     label = axes.yaxis.label
     assert label.get_fontsize() == 12.0
     assert label.get_fontfamily() == ["serif"]
-    assert axes.yaxis.get_ticklabels()[0].get_fontsize() == pytest.approx(12.0 * 8.0 / 9.0)
+    assert axes.yaxis.get_ticklabels()[0].get_fontsize() == pytest.approx(
+        12.0 * 8.0 / 9.0
+    )
     assert 3.0 in {line.get_linewidth() for line in axes.lines}
 
 
@@ -161,7 +175,9 @@ def test_text_of_svg_is_text_with_fonts_to_fall_back_on() -> None:
     assert all(family.endswith(", sans-serif") for family in families)
 
 
-def test_a_style_says_nothing_of_windows_and_little_of_other_files(tmp_path: Path) -> None:
+def test_a_style_says_nothing_of_windows_and_little_of_other_files(
+    tmp_path: Path,
+) -> None:
     file = tmp_path / "paper.mplstyle"
     file.write_text("backend: TkAgg\nlines.markersize: 3\n")
     assert style.drawable_style(file) == {"lines.markersize": 3.0}
@@ -190,7 +206,10 @@ CANNOT = r"paper.mplstyle: cannot be drawn with: .*correct"
     ],
 )  # fmt: skip
 def test_a_style_that_is_nonsense_is_blamed_before_anything_is_computed(
-    tmp_path: Path, text: str | bytes | None, reason: str, capfd: pytest.CaptureFixture[str]
+    tmp_path: Path,
+    text: str | bytes | None,
+    reason: str,
+    capfd: pytest.CaptureFixture[str],
 ) -> None:
     file = tmp_path / "paper.mplstyle"
     if text is not None:

@@ -108,7 +108,10 @@ def test_rotation(result: TimeHistoryResult) -> None:
     names = legend(rotation)
     for code, name in ((1, "rolling"), (2, "rocking")):
         assert (name in names) == bool((trace.phase == code).any())
-    for symbol, value in (("\\theta_{cr}", made.critical_rotation), ("\\beta", made.bearing.beta)):
+    for symbol, value in (
+        ("\\theta_{cr}", made.critical_rotation),
+        ("\\beta", made.bearing.beta),
+    ):
         if value > 0.0:
             label = f"${symbol}$ = {value:.3f} rad"
             assert (label if value <= high else f"{label} (outside)") in names
@@ -157,7 +160,9 @@ def test_displacements(result: TimeHistoryResult) -> None:
             displacement = trace.floor_displacements[:, floor - 1]
             if floor == storeys:  # those below would only cover it
                 is_drawn(curve(whole, name), trace.time, displacement)
-            is_drawn(curve(axes, name), trace.time, displacement - trace.cap_beam_displacement)
+            is_drawn(
+                curve(axes, name), trace.time, displacement - trace.cap_beam_displacement
+            )
             assert name in legend(axes)
 
 
@@ -177,7 +182,9 @@ def energies(result: TimeHistoryResult, axes: Axes, *names: str) -> None:
     for name, part in parts:
         above = below + factor * part
         both = np.concatenate([below, above])
-        assert reach(axes, name) == pytest.approx((np.nanmin(both), np.nanmax(both)), rel=1e-12)
+        assert reach(axes, name) == pytest.approx(
+            (np.nanmin(both), np.nanmax(both)), rel=1e-12
+        )
         below = above
     assert {*legend(axes)} == {*(name for name, _ in parts), "input"}
 
@@ -207,12 +214,19 @@ def equipped() -> TimeHistoryResult:
 def test_loops_of_devices(equipped: TimeHistoryResult) -> None:
     trace = equipped.trace.devices
     panels = drawn(devices_figure, equipped, "").axes
-    names = ["device 0: friction", "device 1: stop", "device 2: tendon", "device 3: viscous"]
+    names = [
+        "device 0: friction",
+        "device 1: stop",
+        "device 2: tendon",
+        "device 3: viscous",
+    ]
     assert [axes.get_title() for axes in panels[:4]] == names
     for index, axes in enumerate(panels[:4]):
         tendon = index == 2
         factor = prefix(axes.get_ylabel(), "N")
-        assert axes.get_ylabel().startswith("tension of one [" if tendon else "resistance [")
+        assert axes.get_ylabel().startswith(
+            "tension of one [" if tendon else "resistance ["
+        )
         assert axes.get_xlabel() == ("elongation of one [m]" if tendon else "$u_b$ [m]")
         force = trace.force[:, index] * (1.0 if tendon else -1.0)
         x, y = (np.asarray(line, dtype=float) for line in axes.lines[0].get_data())
@@ -234,13 +248,17 @@ def test_loops_of_storeys_that_yield() -> None:
     panels, F = drawn(loops_figure, result, "").axes, known(above.strengths)
     assert len(panels) == 2
     for i, axes in enumerate(panels):
-        assert axes.get_title() == f"storey {i + 1}, ductility {result.ductilities[i]:.3g}"
+        assert (
+            axes.get_title() == f"storey {i + 1}, ductility {result.ductilities[i]:.3g}"
+        )
         loop = curve(axes, "shear $f$ of springs")
         is_drawn(loop, 1e3 * trace.drifts[:, i], 1e-3 * trace.storey_shears[:, i])
         low, high = (np.asarray(line.get_ydata(), float) for line in axes.lines[:2])
         elastic = 1e3 * F[i] / above.stiffnesses[i]
         at = np.asarray(axes.lines[1].get_xdata(), float)
-        assert float(np.interp(elastic, at, high)) == pytest.approx(1e-3 * F[i], rel=1e-12)
+        assert float(np.interp(elastic, at, high)) == pytest.approx(
+            1e-3 * F[i], rel=1e-12
+        )
         assert low[::-1] == pytest.approx(-high, rel=1e-12)
         assert axes.get_ylabel() == ("storey shear $f$ [kN]" if i == 0 else "")
     with pytest.raises(UsageError, match="needs storeys that yield"):
@@ -256,7 +274,10 @@ def test_moment(result: TimeHistoryResult) -> None:
     figures.moment_rotation(axes, result)
     factor = prefix(axes.get_ylabel(), "N m")
     names = legend(axes)
-    driving, restoring = "driving moment (ground and building)", "restoring moment of the weight"
+    driving, restoring = (
+        "driving moment (ground and building)",
+        "restoring moment of the weight",
+    )
     swing = [name for name in names if name not in {driving, restoring}]
     assert {*names} - {*swing} == {driving, restoring}
     is_drawn(curve(axes, driving), trace.rotation, factor * trace.driving_moment)
@@ -269,7 +290,10 @@ def test_moment(result: TimeHistoryResult) -> None:
         first = trace.rotation.tolist().index(x[0])
         is_drawn(
             (x, y),
-            *(v[first : first + len(x)] for v in (trace.rotation, factor * trace.driving_moment)),
+            *(
+                v[first : first + len(x)]
+                for v in (trace.rotation, factor * trace.driving_moment)
+            ),
         )
         assert name.startswith(f"the largest swing, {trace.time[first]:.2f} to ")
         assert axes.texts  # arrows
@@ -292,7 +316,12 @@ def test_profiles(kind: str) -> None:
     assert drift.get_xlabel() == ratio
     unit = 1e-3 if heights is None else heights * 1e-2
     for name, shears, drifts, accelerations in (
-        ("on bearings", result.storey_shears, result.max_drifts, result.floor_accelerations),
+        (
+            "on bearings",
+            result.storey_shears,
+            result.max_drifts,
+            result.floor_accelerations,
+        ),
         ("fixed base", fixed.storey_shears, fixed.drifts, fixed.floor_accelerations),
     ):
         values, edges, _ = steps(shear, name).get_data()
@@ -332,7 +361,9 @@ def test_modes(bearing: Bearing, storeys: int) -> None:
                 words = f"{rate:#.3g} rad/s" if rate else "0 (neutral)"
                 title = f"podium: $p_{{ext}}$ = {words}"
             else:
-                title = f"mode {mode}: $\\omega$ = {modes.frequencies[mode - 1]:#.3g} rad/s"
+                title = (
+                    f"mode {mode}: $\\omega$ = {modes.frequencies[mode - 1]:#.3g} rad/s"
+                )
                 assert result.fixed_base is not None
                 fixed = [0.0, 0.0, *result.fixed_base.shapes[:, mode - 1]]
                 is_drawn(curve(axes, "full contact"), fixed, levels)
@@ -352,9 +383,14 @@ def test_storey_curve(pushed: PushoverResult) -> None:
     force, lift = drawn(storey_curve_figure, pushed, "").axes
     factor = prefix(force.get_ylabel(), "N")
     assert legend(force) == ["full contact", "rolling", "rocking"]
-    for name, inside in (("rolling", found.rotation <= beta), ("rocking", found.rotation >= beta)):
+    for name, inside in (
+        ("rolling", found.rotation <= beta),
+        ("rocking", found.rotation >= beta),
+    ):
         assert 1 < np.count_nonzero(inside) < len(inside)
-        is_drawn(curve(force, name), found.displacement[inside], factor * found.force[inside])
+        is_drawn(
+            curve(force, name), found.displacement[inside], factor * found.force[inside]
+        )
     is_drawn(curve(force, "full contact"), [0.0, 0.0], [0.0, factor * found.force[0]])
     x, y = (
         np.concatenate([np.asarray(line.get_data()[place], float) for line in lift.lines])
@@ -362,9 +398,13 @@ def test_storey_curve(pushed: PushoverResult) -> None:
     )
     at = np.unique(x)
     np.testing.assert_array_equal(at, found.displacement)
-    np.testing.assert_allclose(y[np.unique(x, return_index=True)[1]], 1e3 * found.lift, rtol=1e-13)
+    np.testing.assert_allclose(
+        y[np.unique(x, return_index=True)[1]], 1e3 * found.lift, rtol=1e-13
+    )
     where = {text.get_text(): text.xy for text in force.texts}  # type: ignore[attr-defined]
-    assert where["uplift"] == pytest.approx((0.0, factor * pushed.uplift_force), rel=1e-13)
+    assert where["uplift"] == pytest.approx(
+        (0.0, factor * pushed.uplift_force), rel=1e-13
+    )
     end = where[f"$\\theta_{{cr}}$ = {pushed.critical_rotation:.3f} rad"]
     assert end == (pushed.critical_displacement, factor * found.force[-1])
     assert f"$\\beta$ = {beta:.3f} rad" in where
@@ -444,7 +484,9 @@ def test_a_scene_is_true_to_scale_but_for_the_drifts(kind: str) -> None:
     assert axes.get_xlabel() == f"bearings to scale{drifts}; 2 times slower than real"
     # a metre is as high as it is wide
     (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
-    assert (high - low) / (right - left) == pytest.approx(axes.get_box_aspect(), rel=1e-12)
+    assert (high - low) / (right - left) == pytest.approx(
+        axes.get_box_aspect(), rel=1e-12
+    )
 
 
 GIF = FilmRequest(Path("film.gif"))
@@ -481,7 +523,9 @@ def test_an_animation_runs_along_the_record(filmed: list[Figure]) -> None:
     assert cursors == trace.time[samples].tolist()
     # the contact of the enlarged end wanders with the rotation
     bearing, rotation = result.structure.bearing, trace.rotation[samples]
-    reach = bearing.half_width + bearing.radius * np.minimum(np.abs(rotation), bearing.beta)
+    reach = bearing.half_width + bearing.radius * np.minimum(
+        np.abs(rotation), bearing.beta
+    )
     leaning = rotation != 0.0
     wanted = np.copysign(reach, rotation)[leaning]
     np.testing.assert_allclose(np.array(contacts)[leaning], wanted, rtol=1e-12)
@@ -493,7 +537,9 @@ def test_an_animation_runs_along_the_record(filmed: list[Figure]) -> None:
     assert record.get_xlim() == (cursors[0], cursors[-1])
 
 
-def test_mode_shapes_swing_there_and_back_and_the_rest_stays(filmed: list[Figure]) -> None:
+def test_mode_shapes_swing_there_and_back_and_the_rest_stays(
+    filmed: list[Figure],
+) -> None:
     """Curves and the frames themselves: between two of them only what moves has changed."""
     result = modal(structure(CURVED, 2))
     assert result.rolling is not None

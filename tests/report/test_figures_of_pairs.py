@@ -12,7 +12,16 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
-from report.small_results import ANGLE, KINDS, curve, drawn, is_drawn, legend, prefix, turned
+from report.small_results import (
+    ANGLE,
+    KINDS,
+    curve,
+    drawn,
+    is_drawn,
+    legend,
+    prefix,
+    turned,
+)
 from rpscli import figures
 from rpscli.analyses.trace import Direction
 from rpscli.errors import UsageError
@@ -54,7 +63,9 @@ def test_the_plane_turns_without_jumps_and_on_while_all_stands() -> None:
     leans = steady.trace.rotation > 0.0
     found = history.lean_azimuth(steady.trace)
     from_first = found[leans] - found[leans][0]
-    np.testing.assert_allclose(from_first, 2.0 * (time[leans] - time[leans][0]), atol=1e-9)
+    np.testing.assert_allclose(
+        from_first, 2.0 * (time[leans] - time[leans][0]), atol=1e-9
+    )
     assert np.abs(np.diff(found)).max() < 2.0 * pair.record.dt + 1e-9
 
 
@@ -71,15 +82,27 @@ def test_displacements_in_x_and_in_y() -> None:
 
 def test_rotation_and_azimuth() -> None:
     pair = turned()
-    ground, rotation, azimuth, events = drawn(history.rotation_figure, pair, "a title").axes
-    assert legend(ground) == ["± resultant", "in y", "in x", "$g\\,\\tan\\alpha$ (uplift)"]
+    ground, rotation, azimuth, events = drawn(
+        history.rotation_figure, pair, "a title"
+    ).axes
+    assert legend(ground) == [
+        "± resultant",
+        "in y",
+        "in x",
+        "$g\\,\\tan\\alpha$ (uplift)",
+    ]
     (band,) = ground.collections
     resultant = np.asarray(band.get_paths()[0].vertices)[:, 1].max()
-    assert resultant == pytest.approx(np.abs(KINDS["rolls"]().trace.ground_acceleration).max())
+    assert resultant == pytest.approx(
+        np.abs(KINDS["rolls"]().trace.ground_acceleration).max()
+    )
     assert rotation.get_ylim()[0] == 0.0
     shown = np.asarray(azimuth.lines[0].get_ydata(), float)
     towards = np.degrees(ANGLE)
-    assert set(np.round(shown[~np.isnan(shown)], 9)) <= {round(towards, 9), round(towards - 180, 9)}
+    assert set(np.round(shown[~np.isnan(shown)], 9)) <= {
+        round(towards, 9),
+        round(towards - 180, 9),
+    }
     passes = sum(event.kind == "pass" for event in pair.events)
     assert passes
     assert f"pass: {passes}" in [label.get_text() for label in events.get_yticklabels()]
@@ -118,8 +141,12 @@ def test_the_moment_along_the_tilt_is_that_of_the_plane() -> None:
     rotation, moment = curve(axes, "driving moment (ground and building)")
     leans = trace.rotation != 0.0
     assert np.isnan(moment[~leans]).all()
-    away = prefix(axes.get_ylabel(), "N m") * np.sign(trace.rotation) * trace.driving_moment
-    np.testing.assert_allclose(moment[leans], away[leans], atol=1e-12 * np.abs(away).max())
+    away = (
+        prefix(axes.get_ylabel(), "N m") * np.sign(trace.rotation) * trace.driving_moment
+    )
+    np.testing.assert_allclose(
+        moment[leans], away[leans], atol=1e-12 * np.abs(away).max()
+    )
     np.testing.assert_allclose(rotation, np.abs(trace.rotation))
     assert axes.get_xlim()[0] == 0.0
 
@@ -132,7 +159,9 @@ def test_the_ground_beside_floors_is_the_resultant() -> None:
 
 def test_panels_of_pairs_refuse_one_component() -> None:
     for panel in (figures.orbit, figures.azimuth):
-        with pytest.raises(UsageError, match="needs a history under both horizontal components"):
+        with pytest.raises(
+            UsageError, match="needs a history under both horizontal components"
+        ):
             panel(Figure().subplots(), KINDS["frame"]())
 
 
@@ -154,4 +183,6 @@ def test_film_from_the_side_and_from_above(tmp_path: Path) -> None:
     x, y = (np.asarray(of, float) for of in view.plane.get_data())
     assert np.abs(x * np.sin(ANGLE) - y * np.cos(ANGLE)).max() < 1e-9
     wanted = FilmRequest(tmp_path / "film.gif", size=300, first=0.2, last=0.4)
-    assert history_film(pair, "a title", wanted, frame_plan(pair, wanted)).startswith(b"GIF")
+    assert history_film(pair, "a title", wanted, frame_plan(pair, wanted)).startswith(
+        b"GIF"
+    )

@@ -103,7 +103,13 @@ def opened(text: str, folder: Path) -> Open:
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(Figure, "savefig", keep)
-        command = ["sweep", str(folder / "study.yaml"), "-o", str(folder / "made"), "--quiet"]
+        command = [
+            "sweep",
+            str(folder / "study.yaml"),
+            "-o",
+            str(folder / "made"),
+            "--quiet",
+        ]
         made = CliRunner().invoke(program, command)
     assert made.exit_code == 0, made.stderr
 
@@ -125,12 +131,16 @@ def numbers(of: Sequence[Row], name: str) -> Array:
 
 def chosen(of: Sequence[Row], rho: str, alpha: str | None = None) -> list[Row]:
     """Rows of one curvature ratio, and of one slenderness."""
-    return [row for row in of if row[RHO] == rho and (alpha is None or row[ALPHA] == alpha)]
+    return [
+        row for row in of if row[RHO] == rho and (alpha is None or row[ALPHA] == alpha)
+    ]
 
 
 def panels(figure: Figure) -> dict[str, Axes]:
     """By their titles in one line."""
-    return {axes.get_title().replace("\n", " "): axes for axes in figure.axes if axes.axison}
+    return {
+        axes.get_title().replace("\n", " "): axes for axes in figure.axes if axes.axison
+    }
 
 
 def same(found: object, wanted: object) -> None:
@@ -144,7 +154,9 @@ def labelled(figure: Figure, x_label: str, y_label: str) -> None:
     shown = [axes.get_xlabel().replace("\n", " ") for axes in panels(figure).values()]
     assert {*shown} - {""} == {x_label}
     assert shown[-1] == x_label
-    assert (figure.get_supylabel() or figure.axes[0].get_ylabel().replace("\n", " ")) == y_label
+    assert (
+        figure.get_supylabel() or figure.axes[0].get_ylabel().replace("\n", " ")
+    ) == y_label
 
 
 def markers(axes: Axes, *, hollow: bool) -> Iterator[Line2D]:
@@ -170,7 +182,10 @@ def test_the_table_of_overturning(histories: Open) -> None:
     same(cells.get_array(), shares)
     written, wanted = [text.get_text().replace("\n", " ") for text in axes.texts], []
     for (y, x), part in np.ndenumerate(shares):
-        of = [table[y][f"{heads[x]};{name}"] for name in ("number", "counted", "low", "high")]
+        of = [
+            table[y][f"{heads[x]};{name}"]
+            for name in ("number", "counted", "low", "high")
+        ]
         low, high = float(of[2]), float(of[3])
         ends = f"{low:.2g} to {high:.2g}"
         if part in {0.0, 1.0}:
@@ -199,7 +214,9 @@ def test_rotations_against_the_reference(histories: Open) -> None:
         axes = panels(figure)[f"tan α = {slenderness}"]
         same(axes.get_xlim(), (0.0, x_top))
         same(axes.get_ylim(), (0.0, y_top))
-        for rho, hollow in zip(("critical", "0.5"), markers(axes, hollow=True), strict=True):
+        for rho, hollow in zip(
+            ("critical", "0.5"), markers(axes, hollow=True), strict=True
+        ):
             pairs = chosen(table, rho, slenderness)
             x, y = numbers(pairs, reference), numbers(pairs, mine)
             stood = np.isfinite(x) & np.isfinite(y)
@@ -221,14 +238,22 @@ def test_base_shear_against_rotation(histories: Open) -> None:
         axes = panels(figure)[f"tan α = {fit[ALPHA]}"]
         for rho, name in NAMES.items():
             series = chosen(stood, rho, fit[ALPHA])
-            wanted = [numbers(series, name) for name in ("rotation_ratio", "base_shear_ratio")]
+            wanted = [
+                numbers(series, name) for name in ("rotation_ratio", "base_shear_ratio")
+            ]
             same(curve(axes, name), wanted)
-        x, y = (float(fit[f"saturation_{name}_ratio"]) for name in ("rotation", "base_shear"))
+        x, y = (
+            float(fit[f"saturation_{name}_ratio"]) for name in ("rotation", "base_shear")
+        )
         # Nothing is drawn beyond the points that the curve goes through.
-        panel = [row for row in stood if row[ALPHA] == fit[ALPHA] and row["uplifts"] != "0"]
+        panel = [
+            row for row in stood if row[ALPHA] == fit[ALPHA] and row["uplifts"] != "0"
+        ]
         turned = numbers(panel, "rotation_ratio")
         first, end = turned.min(), turned.max()
-        start, slope = (float(fit[name]) for name in ("base_shear_ratio_at_uplift", "slope_before"))
+        start, slope = (
+            float(fit[name]) for name in ("base_shear_ratio_at_uplift", "slope_before")
+        )
         heights = (start + slope * first, y, y + float(fit["k_s"]) * (end - x))
         same(curve(axes, "bilinear fit"), ((first, x, end), heights))
         (text,) = axes.texts
@@ -277,9 +302,16 @@ def test_incremental_dynamic_analysis(histories: Open) -> None:
         levels = chosen(table, rho, slenderness)
         system = chosen(points, rho, slenderness)
         records = list(dict.fromkeys(row["record"] for row in system))
-        single = [[row for row in system if row["record"] == record] for record in records]
-        wanted = [[row["rotation_ratio"] if row in stood else "" for row in one] for one in single]
-        wanted += [[row[f"rotation_ratio_{share}"] for row in levels] for share in (16, 50, 84)]
+        single = [
+            [row for row in system if row["record"] == record] for record in records
+        ]
+        wanted = [
+            [row["rotation_ratio"] if row in stood else "" for row in one]
+            for one in single
+        ]
+        wanted += [
+            [row[f"rotation_ratio_{share}"] for row in levels] for share in (16, 50, 84)
+        ]
         for line, cells in zip(axes.lines, wanted, strict=True):
             up = cells.index("") if "" in cells else len(cells)
             x, y = [0.0, *map(float, cells[:up])], [0.0, *SCALES[:up]]
@@ -310,7 +342,9 @@ def test_fragilities(histories: Open) -> None:
         assert len(bands) == len(drawn) == len(list(markers(axes, hollow=False)))
         for place, (rho, name) in enumerate(drawn):
             fragility = [row for row in chosen(table, rho) if row["limit"] == title]
-            same(curve(axes, name), [numbers(fragility, c) for c in ("PGA", "probability")])
+            same(
+                curve(axes, name), [numbers(fragility, c) for c in ("PGA", "probability")]
+            )
             (line,) = [line for line in axes.lines if line.get_label() == name]
             (fit,) = [row for row in chosen(fits, rho) if row["limit"] == title]
             assert line.get_linestyle() == ("--" if fit["method"] == "penalised" else "-")
@@ -328,12 +362,19 @@ def test_fragilities(histories: Open) -> None:
             pga = numbers(system, "pga")
             levels = np.unique(pga)
             observed = list(markers(axes, hollow=False))[place]
-            same(observed.get_data(), (levels, [beyond[pga == each].mean() for each in levels]))
+            same(
+                observed.get_data(),
+                (levels, [beyond[pga == each].mean() for each in levels]),
+            )
             data = chosen(histories("fragility_observed")[1], rho)
             data = [row for row in data if row["limit"] == title]
-            same(numbers(data, "exceeded"), [beyond[pga == each].sum() for each in levels])
+            same(
+                numbers(data, "exceeded"), [beyond[pga == each].sum() for each in levels]
+            )
             same(numbers(data, "exceeded_share"), observed.get_ydata())
-            assert all(float(row["exceeded_low"]) <= float(row["exceeded_high"]) for row in data)
+            assert all(
+                float(row["exceeded_low"]) <= float(row["exceeded_high"]) for row in data
+            )
     assert "overturning exceeds every limit" in figure.get_suptitle().replace("\n", " ")
 
 
@@ -350,7 +391,10 @@ def test_the_spectrum_of_pulses(tmp_path: Path) -> None:
         for label, word in words.items():
             some = [row for row in panel if row["outcome"].startswith(word)]
             assert some
-            same(curve(axes, label), [numbers(some, column) for column in (frequency, amplitude)])
+            same(
+                curve(axes, label),
+                [numbers(some, column) for column in (frequency, amplitude)],
+            )
         ratios = np.unique(numbers(panel, frequency))
         fell = [row for row in panel if row["outcome"].startswith("overturned")]
         least = [
@@ -370,7 +414,11 @@ def test_modes_against_a_varied_key(tmp_path: Path) -> None:
     for rho in ("critical", "0.5"):
         axes = panels(figure)[NAMES[rho]]
         for name, dashes in (("rolling", "-"), ("rocking", "--")):
-            line = [r for r in chosen(table, rho) if r["result"] == f"{name}.frequency_ratio.0"]
+            line = [
+                r
+                for r in chosen(table, rho)
+                if r["result"] == f"{name}.frequency_ratio.0"
+            ]
             assert len(line) == 3
             wanted = [numbers(line, c) for c in ("superstructure.storeys", "value")]
             same(curve(axes, name), wanted)
@@ -413,9 +461,13 @@ def a_selection() -> Selection:
     first, second = (GroundMotion(np.ones(2), 0.1, name) for name in ("first", "second"))
     chosen = (
         Candidate((first,), "one", 1.0, 0.2, 0.03, np.array([1.0, 2.0, 0.5]), 2.0),
-        Candidate((second,), "two", 1.0, 1.2, 0.5, np.array([8.0, 16.0, 4.0]), 0.5, clamped=True),
+        Candidate(
+            (second,), "two", 1.0, 1.2, 0.5, np.array([8.0, 16.0, 4.0]), 0.5, clamped=True
+        ),
     )
-    return Selection(target, "component", periods, chosen, 9, 1, requirements=RULES["en1998"])
+    return Selection(
+        target, "component", periods, chosen, 9, 1, requirements=RULES["en1998"]
+    )
 
 
 def test_a_selection_beside_its_target() -> None:
@@ -510,7 +562,10 @@ def test_requirements_along_one_unknown() -> None:
         (span,) = axes.patches
         shaded = axes.transData.inverted().transform_bbox(span.get_window_extent())
         same(shaded.intervalx, (0.2, 0.3))
-    assert (above.get_title(), below.get_title()) == ("uplift", "base shear at PGA = 3 m/s²")
+    assert (above.get_title(), below.get_title()) == (
+        "uplift",
+        "base shear at PGA = 3 m/s²",
+    )
     assert (above.get_ylabel(), below.get_ylabel()) == ("share of records", "$V_b$ [N]")
     assert (above.get_xlabel(), below.get_xlabel()) == ("", "tan α")
     same(curve(below, "off the scale, or overturned"), ([0.1], [1.05 * 4e6]))
@@ -522,7 +577,10 @@ def test_requirements_along_one_unknown() -> None:
 
 def of_two_unknowns() -> Answer:
     """Five designs, of which one is no valid case, and a third key that is linked."""
-    corners = [(x, y, 2.0 * x) for x, y in ((0.1, 0.8), (0.1, 2), (0.3, 0.8), (0.3, 2), (0.2, 1.2))]
+    corners = [
+        (x, y, 2.0 * x)
+        for x, y in ((0.1, 0.8), (0.1, 2), (0.3, 0.8), (0.3, 2), (0.2, 1.2))
+    ]
     passes = [[0, 0, 1, 1, 0], [0, 0, 1, 1, 0], [0, 0, 1, 0, 0]]
     return answer_of(
         [ALPHA, SIZE, "podium.bearing.wedge_slenderness"], corners, passes, [1, 1, 3, 2, 1],
@@ -565,5 +623,7 @@ def test_spectra_of_the_lowest_floor_and_the_roof() -> None:
     for axes, floor in zip(shown, (0, 2, 0, 2), strict=True):
         lines = {line.get_label(): line.get_ydata() for line in axes.lines}
         np.testing.assert_array_equal(lines["on bearings, median"], values[1, floor])
-        np.testing.assert_array_equal(lines["fixed base, 84 % fractile"], values[2, floor])
+        np.testing.assert_array_equal(
+            lines["fixed base, 84 % fractile"], values[2, floor]
+        )
         assert np.isnan(np.asarray(lines["on bearings, 84 % fractile"])).all()

@@ -29,7 +29,9 @@ from rpscli.report.table import Column, Table, csv_text, records
 def folder_of(
     place: Path, digest: str = "a", *, force: bool = False, **inputs: object
 ) -> OutputFolder:
-    return OutputFolder(place, Run("modal", "x", place / "../x.yaml", digest, inputs), force=force)
+    return OutputFolder(
+        place, Run("modal", "x", place / "../x.yaml", digest, inputs), force=force
+    )
 
 
 def test_run_json_says_what_was_run(tmp_path: Path) -> None:
@@ -52,7 +54,11 @@ def test_files_of_an_earlier_run_that_are_no_longer_made_go_away(tmp_path: Path)
     second = folder_of(tmp_path)
     second.add("a.csv", "new")
     second.write()
-    assert sorted(file.name for file in tmp_path.iterdir()) == ["a.csv", "notes.txt", "run.json"]
+    assert sorted(file.name for file in tmp_path.iterdir()) == [
+        "a.csv",
+        "notes.txt",
+        "run.json",
+    ]
     assert second.removed == ["b.csv"]
 
 
@@ -67,7 +73,9 @@ def test_results_are_written_before_anything_is_drawn(tmp_path: Path) -> None:
     def fails() -> bytes:
         raise RuntimeError("no figure")
 
-    def written(first: Callable[[], bytes], then: Callable[[], bytes] = draws) -> OutputFolder:
+    def written(
+        first: Callable[[], bytes], then: Callable[[], bytes] = draws
+    ) -> OutputFolder:
         folder = folder_of(tmp_path)
         for name, draw in {"first.png": first, "second.png": then}.items():
             folder.add(name, Drawing(name, draw))
@@ -77,13 +85,19 @@ def test_results_are_written_before_anything_is_drawn(tmp_path: Path) -> None:
 
     assert written(draws).undrawn == []
     assert seen[:2] == ["a.csv", "run.json"]
-    reason = "first.png is not drawn: RuntimeError: no figure; the results are not concerned"
+    reason = (
+        "first.png is not drawn: RuntimeError: no figure; the results are not concerned"
+    )
     assert written(fails).undrawn == [reason]
     both = reason.replace("first.png is", "first.png and second.png are")
     assert written(fails, fails).undrawn == [both]
     assert not (tmp_path / "first.png").exists()  # nor that of the run before
     assert written(draws).undrawn == []
-    assert (tmp_path / "first.png").read_bytes() == (tmp_path / "second.png").read_bytes() == b"PNG"
+    assert (
+        (tmp_path / "first.png").read_bytes()
+        == (tmp_path / "second.png").read_bytes()
+        == b"PNG"
+    )
 
 
 def test_nothing_outside_the_folder_is_taken_away(tmp_path: Path) -> None:
@@ -131,7 +145,9 @@ def test_a_full_disk_or_an_interruption_leaves_everything_as_it_was(
         return write(path, data)
 
     monkeypatch.setattr(Path, "write_bytes", stopped)
-    with pytest.raises(OutputError, match=r"b: cannot be written: No space left on device"):
+    with pytest.raises(
+        OutputError, match=r"b: cannot be written: No space left on device"
+    ):
         write_whole({tmp_path / "a": b"new", tmp_path / "b": b"too much"})
     with pytest.raises(KeyboardInterrupt):
         write_whole({tmp_path / "a": b"interrupted"})
@@ -145,7 +161,9 @@ def test_a_folder_in_the_way(tmp_path: Path) -> None:
         write_whole({tmp_path / "a": b"new"})
 
 
-def test_a_folder_without_permission(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_folder_without_permission(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr("rpscli.report.files.os.access", lambda *_: False)
     with pytest.raises(OutputError, match="no permission"):
         folder_of(tmp_path / "out")
@@ -172,7 +190,13 @@ def test_json_knows_no_nan_and_no_numpy() -> None:
         "d": (np.int64(3), True),
         "e": -0.0,
     }
-    expected = {"a": [1.0, None, None], "b": 2.5, "c": [[1.0, 2.0]], "d": [3, True], "e": 0.0}
+    expected = {
+        "a": [1.0, None, None],
+        "b": 2.5,
+        "c": [[1.0, 2.0]],
+        "d": [3, True],
+        "e": 0.0,
+    }
     assert plain(document) == expected
     assert "-0.0" not in json_text(document)
 
@@ -185,11 +209,16 @@ def test_lists_of_numbers_stay_on_one_line() -> None:
 def test_a_csv_holds_ten_digits(numbers: list[float]) -> None:
     lines = csv_text([Column("x", "m", np.array(numbers))]).splitlines()
     assert lines[0] == "x [m]"
-    assert [float(line) for line in lines[1:]] == pytest.approx(numbers, rel=1e-9, abs=0.0)
+    assert [float(line) for line in lines[1:]] == pytest.approx(
+        numbers, rel=1e-9, abs=0.0
+    )
 
 
 def test_what_does_not_exist_is_an_empty_cell() -> None:
-    columns = [Column("x", "m", [1.0, math.nan, None]), Column("kind", "-", ["a", "b", "c"])]
+    columns = [
+        Column("x", "m", [1.0, math.nan, None]),
+        Column("kind", "-", ["a", "b", "c"]),
+    ]
     assert csv_text(columns) == "x [m],kind [-]\n1,a\n,b\n,c\n"
 
 
@@ -225,16 +254,28 @@ def test_a_table_has_one_row_for_readers_files_and_documents() -> None:
 EXAMPLES: dict[str, list[tuple[Any, Any]]] = {
     "figures": [
         (floors.shown_floors(6), [1, 4, 6]),
-        (style.folded(r"$|\theta_{max}|$ [-], flat", 0.6, 8.0), "$|\\theta_{max}|$ [-],\nflat"),
+        (
+            style.folded(r"$|\theta_{max}|$ [-], flat", 0.6, 8.0),
+            "$|\\theta_{max}|$ [-],\nflat",
+        ),
         (style.folded("a_name_of_many_letters", 0.6, 8.0), "a_name_of\n_many_let\nters"),
-        ([style.engineering(size)[1] for size in (999.0, 1e3, 5e5, 1e6)], ["", "k", "k", "M"]),
+        (
+            [style.engineering(size)[1] for size in (999.0, 1e3, 5e5, 1e6)],
+            ["", "k", "k", "M"],
+        ),
         (LimitState("min_column_force", 1e5).label, "min_column_force < 100000"),
         (label("superstructure.period", "300 ms"), "T₁ = 300 ms"),
     ],
     "numbers": [
-        ([table.shown(value) for value in (0.10501282, 17321.4, 3)], ["0.1050", "17321", "3"]),
+        (
+            [table.shown(value) for value in (0.10501282, 17321.4, 3)],
+            ["0.1050", "17321", "3"],
+        ),
         ([table.shown(value) for value in (None, 2.4e-9)], ["-", "2.400e-09"]),
-        ([table.large(*of) for of in ((0.1, "rad"), (0.2, "-"))], [(0.1, "rad"), (0.2, "")]),
+        (
+            [table.large(*of) for of in ((0.1, "rad"), (0.2, "-"))],
+            [(0.1, "rad"), (0.2, "")],
+        ),
         ([table.measured(*of) for of in ((1.5e6, "N"), (None, "s"))], ["1500 kN", "-"]),
         ([table.percent(1.0, of) for of in (3.0, 0.0)], ["33.3 %", "-"]),
         (with_band(*[math.nan] * 3), "-"),
@@ -251,4 +292,7 @@ def test_examples(of: str) -> None:
 def test_notes_of_several_reports_are_said_once() -> None:
     notes = ["fragility: the data are separated"]
     add_notes(notes, "risk", ["the data are separated", "the hazard curve is continued"])
-    assert notes == ["fragility: the data are separated", "risk: the hazard curve is continued"]
+    assert notes == [
+        "fragility: the data are separated",
+        "risk: the hazard curve is continued",
+    ]

@@ -14,7 +14,12 @@ from PIL import Image
 
 from report.small_results import KINDS, history, structure
 from rpscli.report.bundles import timehistory_files
-from rpscli.report.case_page import derived_blocks, hidden_table, motion_pictures, structure_blocks
+from rpscli.report.case_page import (
+    derived_blocks,
+    hidden_table,
+    motion_pictures,
+    structure_blocks,
+)
 from rpscli.report.figures.look import USUAL
 from rpscli.report.files import Drawing, undrawn
 from rpscli.report.page import (
@@ -57,13 +62,17 @@ class Parsed(HTMLParser):
 @pytest.fixture(scope="module")
 def figures_of_history() -> list[Block]:
     files = timehistory_files(KINDS["rolls"](), HOSTILE, page_look(USUAL))
-    return [Picture(found, f"{stem} {HOSTILE}") for stem, found in pictures(files).items()]
+    return [
+        Picture(found, f"{stem} {HOSTILE}") for stem, found in pictures(files).items()
+    ]
 
 
 def picture(svg: bytes, caption: str, png: bytes = b"") -> Picture:
     """A figure of a page whose files are known."""
     files = {"svg": lambda: svg, "png": lambda: png}
-    return Picture({end: Drawing(f"x.{end}", draw) for end, draw in files.items()}, caption)
+    return Picture(
+        {end: Drawing(f"x.{end}", draw) for end, draw in files.items()}, caption
+    )
 
 
 def test_a_figure_that_fails_is_told_in_its_place() -> None:
@@ -96,9 +105,13 @@ def test_text_is_never_taken_for_tags() -> None:
         assert HOSTILE.replace("\x00", "\ufffd") in text
 
 
-def test_names_are_used_once_and_nothing_is_fetched(figures_of_history: list[Block]) -> None:
+def test_names_are_used_once_and_nothing_is_fetched(
+    figures_of_history: list[Block],
+) -> None:
     # The same drawings twice: matplotlib gives them the same names.
-    content = page("a", "b", [Section("c", [*figures_of_history, *figures_of_history])], "d")
+    content = page(
+        "a", "b", [Section("c", [*figures_of_history, *figures_of_history])], "d"
+    )
     parsed = Parsed(content)
     names = Counter(parsed.all("id"))
     assert len(names) > 50
@@ -111,7 +124,9 @@ def test_names_are_used_once_and_nothing_is_fetched(figures_of_history: list[Blo
     assert not re.search(rb"https?:|@import|url\((?!#)", content)
     assert not {"script", "link", "iframe", "object"} & {tag for tag, _ in parsed.tags}
     assert all(link.startswith("#") for link in parsed.all("href"))
-    assert all(source.startswith("data:image/png;base64,") for source in parsed.all("src"))
+    assert all(
+        source.startswith("data:image/png;base64,") for source in parsed.all("src")
+    )
     shown = [of for tag, of in parsed.tags if tag in {"svg", "img"}]
     assert len(shown) == 2 * len(figures_of_history) == 10
     assert all(of.get("aria-label") or of["alt"] for of in shown)
@@ -185,9 +200,13 @@ def test_a_long_record_leaves_the_page_small_enough_to_be_sent() -> None:
     record = "synthetic:?pga=0.5g&duration=300&dt=0.005&seed=3"
     result = history(structure(storeys=6), record)
     files = timehistory_files(result, "a long record", page_look(USUAL))
-    blocks: list[Block] = [Picture(found, stem) for stem, found in pictures(files).items()]
+    blocks: list[Block] = [
+        Picture(found, stem) for stem, found in pictures(files).items()
+    ]
     blocks.append(motion_pictures(result.record, USUAL))
-    assert len(page("a", "b", [Section("c", blocks)], "d")) < 0.9 * MOST_BYTES  # tables: a tenth
+    assert (
+        len(page("a", "b", [Section("c", blocks)], "d")) < 0.9 * MOST_BYTES
+    )  # tables: a tenth
 
 
 def test_spaces_of_drawings_are_no_control_characters() -> None:

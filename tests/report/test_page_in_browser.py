@@ -25,7 +25,9 @@ MM = 96.0 / 25.4
 PAGE_HEIGHT = (297 - 16 - 18) * MM
 TELEPHONE, SCREEN = 390, 1280
 
-pytestmark = pytest.mark.skipif(BROWSER is None, reason="no Chromium or Chrome is installed")
+pytestmark = pytest.mark.skipif(
+    BROWSER is None, reason="no Chromium or Chrome is installed"
+)
 
 STUDY = """\
 rps: 1
@@ -64,13 +66,19 @@ def browse(profile: Path, *options: str) -> str:
         f"--user-data-dir={profile}",
     ]  # fmt: skip
     done = subprocess.run(
-        [BROWSER, *quiet, *options], capture_output=True, text=True, check=True, timeout=120
+        [BROWSER, *quiet, *options],
+        capture_output=True,
+        text=True,
+        check=True,
+        timeout=120,
     )
     return done.stdout
 
 
 @pytest.fixture(scope="module", params=["case", "study"])
-def made(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def made(
+    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
+) -> Path:
     """The page of a case, and that of a study."""
     place = tmp_path_factory.mktemp("pages")
     case = ROOT / "cases" / "measured_column.yaml"
@@ -110,7 +118,9 @@ def test_only_tables_and_figures_scroll_sideways(
     found = measured(width)
     assert found["page"] <= width
     assert found["figures"]
-    assert min(found["letters"]) >= 12.0  # pixels of a telephone, which are points on paper
+    assert (
+        min(found["letters"]) >= 12.0
+    )  # pixels of a telephone, which are points on paper
     # Drawings keep letters of 9 points on 7 inches readable: no smaller than 6 points.
     assert min(size[0] for size in found["drawings"]) >= 7.0 * 96.0 * 6.0 / 9.0
     assert len(found["names"]) == len(set(found["names"])) > 50
@@ -121,11 +131,15 @@ def test_paper_is_a4_and_takes_every_figure_whole(
     made: Path, measured: Callable[[int], dict[str, Any]], tmp_path: Path
 ) -> None:
     # A figure that is lower than the page is never cut: the style sheet forbids it.
-    assert "figure, pre, .notice { break-inside: avoid; }" in made.read_text(encoding="utf-8")
+    assert "figure, pre, .notice { break-inside: avoid; }" in made.read_text(
+        encoding="utf-8"
+    )
     assert max(size[1] for size in measured(int(PAPER * MM))["figures"]) < PAGE_HEIGHT
     paper = tmp_path / "page.pdf"
     browse(tmp_path / "profile", f"--print-to-pdf={paper}", made.as_uri())
     sizes = re.findall(rb"/MediaBox\s*\[([^\]]*)\]", paper.read_bytes())
     assert len(sizes) >= 4
     for size in sizes:
-        assert [float(edge) for edge in size.split()] == pytest.approx([0, 0, 595.3, 841.9], abs=1)
+        assert [float(edge) for edge in size.split()] == pytest.approx(
+            [0, 0, 595.3, 841.9], abs=1
+        )

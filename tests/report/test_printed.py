@@ -41,9 +41,14 @@ from rpscli.report.files import Drawing
 from rpscli.report.motions import record_files
 from rpscli.report.study.heights import Floors, floor_spectra_figure
 
-TITLE = "Eighteen hospitals at the river, of which each is compared with all of the others"
+TITLE = (
+    "Eighteen hospitals at the river, of which each is compared with all of the others"
+)
 NAME = "The hospital at the river, block {} of the second phase"
-ALPHA, SIX = "podium.bearing.slenderness", Path(__file__).parents[2] / "cases/six_storey.yaml"
+ALPHA, SIX = (
+    "podium.bearing.slenderness",
+    Path(__file__).parents[2] / "cases/six_storey.yaml",
+)
 PULSE = "pulse:half_sine?amplitude=0.3g&period=0.6"
 RECORDS = [f"pulse:sine?amplitude=0.4g&period={period}" for period in (0.5, 2.0)]
 HAZARD = "PGV [cm/s],rate [1/year]\n2,0.2\n10,0.03\n50,0.001\n200,0.00001\n"
@@ -106,7 +111,9 @@ def of_panels(figure: Figure, renderer: Any) -> Iterator[str]:
     point = figure.dpi / 72.0
     found: list[Any] = [*figure.findobj(Axes), *figure.findobj(Legend)]
     boxes = [(each, each.get_window_extent(renderer)) for each in found]
-    panels = [(each, box) for each, box in boxes if isinstance(each, Axes) and each.axison]
+    panels = [
+        (each, box) for each, box in boxes if isinstance(each, Axes) and each.axison
+    ]
     for legend, box in boxes[len(figure.findobj(Axes)) :]:
         for axes, of_axes in panels:
             if shared(box, of_axes, 2.0 * point):
@@ -134,11 +141,15 @@ def printed(draw: style.Draw, columns: int) -> list[str]:
 
 @pytest.mark.long
 @pytest.mark.parametrize("columns", [1, 2])
-def test_figures_of_analyses_can_be_read(columns: int, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_figures_of_analyses_can_be_read(
+    columns: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
     devices = ViscousDamper(2e5), Stop(0.02, 4e6), Tendon(2e4, 1e6), FrictionDamper(1e5)
     made, look = replace(structure(CURVED, 6), devices=devices), Look(columns=columns)
     result = history(made, PULSE)
-    storeys = [Floors((NAME.format(n),), np.ones((3, 2, 2, 6, len(PERIODS)))) for n in range(9)]
+    storeys = [
+        Floors((NAME.format(n),), np.ones((3, 2, 2, 6, len(PERIODS)))) for n in range(9)
+    ]
     draw: dict[str, style.Draw] = {
         "structure": style.single(draw_structure, made, (TITLE,), 4.4, 5.0),
         "selection": partial(selection_figure, a_selection(), TITLE),
@@ -162,7 +173,9 @@ def test_figures_of_analyses_can_be_read(columns: int, monkeypatch: pytest.Monke
     drawings = [each for _, each in files if isinstance(each, Drawing)]
     assert len(drawings) > 15
     figures = list[Figure]()
-    monkeypatch.setattr(Figure, "savefig", lambda figure, *_, **__: figures.append(figure))
+    monkeypatch.setattr(
+        Figure, "savefig", lambda figure, *_, **__: figures.append(figure)
+    )
     for each in drawings:
         each.draw()
     with style.in_style(look):
@@ -185,7 +198,9 @@ def test_panels_fit_into_a_grid(*, of_rps: bool) -> None:
     assert not found
 
 
-@pytest.mark.parametrize("name", ["rotation", "displacements", "moment_rotation", "storey_curve"])
+@pytest.mark.parametrize(
+    "name", ["rotation", "displacements", "moment_rotation", "storey_curve"]
+)
 def test_legends_stay_in_axes_that_nothing_makes_room_around(name: str) -> None:
     figure = Figure()
     above, below = figure.subplots(2, 1)
@@ -209,7 +224,9 @@ def eighteen(folder: Path) -> rpscli.StudyResult:
     (folder / "hazard.csv").write_text(HAZARD, encoding="utf-8")
     places = enumerate((source, scale) for source in RECORDS for scale in (0.3, 1.0))
     rows = [f"{source},{scale},1,{0.01 * 2.0**n}\n" for n, (source, scale) in places]
-    (folder / "seen.csv").write_text("".join(["record,scale,overturned,max_rotation\n", *rows]))
+    (folder / "seen.csv").write_text(
+        "".join(["record,scale,overturned,max_rotation\n", *rows])
+    )
     slopes = [round(0.08 + 0.005 * n, 4) for n in range(18)]
     study = {
         "rps": 1, "title": TITLE, "base": str(SIX), "limits": {}, "whole_histories": True,
@@ -221,7 +238,9 @@ def eighteen(folder: Path) -> rpscli.StudyResult:
 
 
 @pytest.fixture
-def result(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch) -> Any:
+def result(
+    tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch
+) -> Any:
     place = tmp_path_factory.getbasetemp() / "eighteen"
     place.mkdir(exist_ok=True)
     monkeypatch.chdir(place)
@@ -261,7 +280,15 @@ def test_a_budget_can_be_read(columns: int) -> None:
     case, values = rpscli.load_case(SIX), {quantity.name: 1.0 for quantity in LIMITED}
     change = "superstructure.damping.ratio 0.03 in place of 0.05, and of all that follows from it"
     rows = [
-        Row("damping", change, "", "survived", {n: k * v for n, v in values.items()}, "a", "")
+        Row(
+            "damping",
+            change,
+            "",
+            "survived",
+            {n: k * v for n, v in values.items()},
+            "a",
+            "",
+        )
         for k in (1.0, 1.4, 2.6)
     ]
     made = Budget(case, rows)

@@ -52,22 +52,54 @@ PANELS: dict[str, tuple[Callable[[], tuple[Any, ...]], str, str]] = {
     "azimuth": (lambda: (both(),), TIME, "azimuth\n$\\varphi$ [deg]"),
     "orbit": (lambda: (both(),), "cap beam $u_{b,x}$ [m]", "cap beam $u_{b,y}$ [m]"),
     "events": (lambda: (result(),), TIME, ""),
-    "displacements": (lambda: (result(),), TIME, "displacement relative\nto the ground [m]"),
+    "displacements": (
+        lambda: (result(),),
+        TIME,
+        "displacement relative\nto the ground [m]",
+    ),
     "elastic_displacements": (lambda: (result(),), TIME, "relative\nto the cap beam [m]"),
     "energy": (lambda: (result(),), TIME, "energy [kJ]"),
-    "moment_rotation": (lambda: (result(),), "rotation $\\theta$ [rad]", "contact points [MN m]"),
-    "storey_loop": (lambda: (KINDS["yields"](), 1), "storey drift $d$ [mm]", "shear $f$ [kN]"),
+    "moment_rotation": (
+        lambda: (result(),),
+        "rotation $\\theta$ [rad]",
+        "contact points [MN m]",
+    ),
+    "storey_loop": (
+        lambda: (KINDS["yields"](), 1),
+        "storey drift $d$ [mm]",
+        "shear $f$ [kN]",
+    ),
     "storey_shears": (lambda: (result(),), "storey shear [MN]", "level (0 = cap beam)"),
-    "storey_drifts": (lambda: (result(),), "storey drift ratio [%]", "level (0 = cap beam)"),
+    "storey_drifts": (
+        lambda: (result(),),
+        "storey drift ratio [%]",
+        "level (0 = cap beam)",
+    ),
     "floor_accelerations": (lambda: (result(),), "floor acceleration [m/s²]", "level"),
     "device": (lambda: (result(), 0), "$u_b$ [m]", "resistance [kN]"),
-    "storey_curve": (lambda: (pushover(MADE),), "$u_b$ [m]", "force at the cap beam [MN]"),
+    "storey_curve": (
+        lambda: (pushover(MADE),),
+        "$u_b$ [m]",
+        "force at the cap beam [MN]",
+    ),
     "lift": (lambda: (pushover(MADE),), "$u_b$ [m]", "lift [mm]"),
-    "capacity": (lambda: (pushover(MADE),), "roof displacement [m]", "sum of floor forces ["),
+    "capacity": (
+        lambda: (pushover(MADE),),
+        "roof displacement [m]",
+        "sum of floor forces [",
+    ),
     "mode": (lambda: (modal(MADE), "rolling", 1), "shape [-]", "height [m]"),
     "motion": (lambda: (result().record, "velocity"), TIME, "velocity\n[m/s]"),
-    "spectrum": (lambda: (spectrum_of_record(),), "period [s]", "pseudo-acceleration, 5 % damping"),
-    "spectra": (lambda: ([spectrum_of_record()] * 2,), "period [s]", "5 % damping [m/s²]"),
+    "spectrum": (
+        lambda: (spectrum_of_record(),),
+        "period [s]",
+        "pseudo-acceleration, 5 % damping",
+    ),
+    "spectra": (
+        lambda: ([spectrum_of_record()] * 2,),
+        "period [s]",
+        "5 % damping [m/s²]",
+    ),
     "floor_spectrum": (
         lambda: (isolated_floor_spectra(result()), fixed_base_floor_spectra(result()), 3),
         "period [s]",
@@ -119,8 +151,12 @@ def test_fonts_are_the_users_and_style_is_ours() -> None:
 
 
 def test_the_module_does_not_load_matplotlib() -> None:
-    code = "import sys, rpscli; rpscli.figures.rotation; print('matplotlib' in sys.modules)"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    code = (
+        "import sys, rpscli; rpscli.figures.rotation; print('matplotlib' in sys.modules)"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True
+    )
     assert done.stdout == "False\n"
 
 
@@ -141,7 +177,9 @@ def test_other_axes_and_other_results_are_refused() -> None:
         with pytest.raises(UsageError, match="needs Axes of matplotlib"):
             figures.rotation(axes, result())  # type: ignore[arg-type]
     for drawn in (None, result().structure):
-        with pytest.raises(UsageError, match="rotation: needs TimeHistoryResult of rpscli"):
+        with pytest.raises(
+            UsageError, match="rotation: needs TimeHistoryResult of rpscli"
+        ):
             figures.rotation(Figure().subplots(), drawn)  # type: ignore[arg-type]
 
 
@@ -159,7 +197,9 @@ def test_other_axes_and_other_results_are_refused() -> None:
         ("bearing", (10.0,), "must be less than a quarter turn"),
     ],
 )
-def test_panels_that_are_not_there(name: str, other: tuple[object, ...], said: str) -> None:
+def test_panels_that_are_not_there(
+    name: str, other: tuple[object, ...], said: str
+) -> None:
     drawn = PANELS[name][0]()[0]
     with pytest.raises(UsageError, match=said):
         getattr(figures, name)(Figure().subplots(), drawn, *other)

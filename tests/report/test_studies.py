@@ -33,7 +33,14 @@ SMALL: dict[str, Any] = {
     "limits": {"rotation_ratio": 0.01},
     "reports": [
         "overturning",
-        {"lines": {"x": "scale", "y": "rotation_ratio", "series": "record", "statistic": LARGEST}},
+        {
+            "lines": {
+                "x": "scale",
+                "y": "rotation_ratio",
+                "series": "record",
+                "statistic": LARGEST,
+            }
+        },
     ],
 }
 
@@ -83,7 +90,10 @@ def test_what_a_report_draws_is_its_result() -> None:
     for kind, (before, others) in words.items():
         for word in ("result", before):
             reports = [{kind: {**others, word: "max_base_shear"}}]
-            change = {"scale": {"measure": "PGV", "values": [0.1, 0.2]}, "reports": reports}
+            change = {
+                "scale": {"measure": "PGV", "values": [0.1, 0.2]},
+                "reports": reports,
+            }
             (request,) = rpscli.load_study(SMALL | change).reports.values()
             options: Any = request.options
             assert "max_base_shear" in options.result
@@ -95,8 +105,13 @@ def test_columns_are_those_of_the_points(result: rpscli.StudyResult) -> None:
     assert list(columns)[:5] == [
         "podium.bearing.curvature_ratio", "superstructure.storey_mass", "record", "scale", "outcome"
     ]  # fmt: skip
-    assert result["podium.bearing.curvature_ratio"].tolist() == ["critical"] * 12 + [0.5] * 12
-    assert result["superstructure.storey_mass"].tolist() == ([200e3] * 6 + [250e3] * 6) * 2
+    assert (
+        result["podium.bearing.curvature_ratio"].tolist()
+        == ["critical"] * 12 + [0.5] * 12
+    )
+    assert (
+        result["superstructure.storey_mass"].tolist() == ([200e3] * 6 + [250e3] * 6) * 2
+    )
     assert result["scale"].tolist() == [0.5, 1.0] * 12
     assert result.units["superstructure.storey_mass"] == "kg"
     assert set(result.units) == set(columns)
@@ -117,7 +132,9 @@ def test_pandas_takes_the_columns(result: rpscli.StudyResult) -> None:
     assert list(frame.columns) == list(result.columns)
     assert len(frame) == 24
     means = frame.groupby("scale")["rotation_ratio"].mean()
-    wanted = [result["rotation_ratio"][result["scale"] == scale].mean() for scale in (0.5, 1.0)]
+    wanted = [
+        result["rotation_ratio"][result["scale"] == scale].mean() for scale in (0.5, 1.0)
+    ]
     np.testing.assert_allclose(means.to_numpy(), wanted, rtol=1e-14)
 
 
@@ -133,7 +150,9 @@ def test_the_files_are_those_of_the_command(
     rpscli.load_study("study.yaml").run("swept", progress=again.append)
     assert again == []  # the command has computed them all
     names = {file.name for file in files}
-    assert names | {"study.sqlite", "base.yaml"} >= {file.name for file in Path("swept").iterdir()}
+    assert names | {"study.sqlite", "base.yaml"} >= {
+        file.name for file in Path("swept").iterdir()
+    }
     for name in names - {"run.json"}:
         written = Path("written", name).read_bytes()
         assert written == Path("swept", name).read_bytes(), name
@@ -143,7 +162,9 @@ def test_the_files_are_those_of_the_command(
     assert not any(file.endswith("png") for file in result.write("plain", figures=()))
 
 
-def test_references_take_no_more_threads_than_asked(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_references_take_no_more_threads_than_asked(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     asked: list[int] = []
 
     def references(*given: Any) -> dict[Any, Any]:
@@ -155,7 +176,9 @@ def test_references_take_no_more_threads_than_asked(monkeypatch: pytest.MonkeyPa
     assert asked == [1]
 
 
-def test_a_run_goes_on_where_another_ended(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_run_goes_on_where_another_ended(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.chdir(tmp_path)
     study = rpscli.load_study(SMALL)
     done: list[int] = []
@@ -168,7 +191,9 @@ def test_a_run_goes_on_where_another_ended(tmp_path: Path, monkeypatch: pytest.M
         study.run("here", jobs=1, progress=stop)
     assert 0 < done[0] <= 24
     kept: list[int] = []
-    whole = study.run("here", jobs=2, progress=lambda progress: kept.append(progress.kept))
+    whole = study.run(
+        "here", jobs=2, progress=lambda progress: kept.append(progress.kept)
+    )
     assert set(kept) <= {done[0]}
     again: list[Any] = []
     rpscli.load_study(SMALL).run("here", progress=again.append)
@@ -213,7 +238,9 @@ def test_a_temporary_store_ends_with_its_result() -> None:
 
 
 @pytest.mark.parametrize("name", ["overturning", "lines"])
-def test_reports_are_drawn_into_figures_and_axes(result: rpscli.StudyResult, name: str) -> None:
+def test_reports_are_drawn_into_figures_and_axes(
+    result: rpscli.StudyResult, name: str
+) -> None:
     own: Any = result.draw(name)
     assert isinstance(own, Figure)
     assert own.get_suptitle().startswith("A small study")
@@ -236,7 +263,9 @@ def test_reports_are_drawn_into_figures_and_axes(result: rpscli.StudyResult, nam
 
 
 def test_what_cannot_be_drawn_is_told(result: rpscli.StudyResult) -> None:
-    with pytest.raises(rpscli.RpsError, match="demand is not a report of the study; it has over"):
+    with pytest.raises(
+        rpscli.RpsError, match="demand is not a report of the study; it has over"
+    ):
         result.draw("demand")
     loose = Figure().add_axes((0.1, 0.1, 0.8, 0.8))
     with pytest.raises(rpscli.RpsError, match="no subplot"):
@@ -244,28 +273,47 @@ def test_what_cannot_be_drawn_is_told(result: rpscli.StudyResult) -> None:
 
 
 def test_what_must_be_read_is_told(result: rpscli.StudyResult) -> None:
-    odd = rpscli.load_study(SMALL | {"scale": [9.0]}, ["podium.bearing.semi_diagonal=150"])
+    odd = rpscli.load_study(
+        SMALL | {"scale": [9.0]}, ["podium.bearing.semi_diagonal=150"]
+    )
     assert any("150" in text or "m high" in text for text in odd.warnings), odd.warnings
     pooled = SMALL | {
         "scale": [9.0],
-        "reports": [{"overturning": {"columns": [], "rows": ["podium.bearing.curvature_ratio"]}}],
+        "reports": [
+            {"overturning": {"columns": [], "rows": ["podium.bearing.curvature_ratio"]}}
+        ],
     }
     assert result.study.warnings == []
-    assert any("beyond the usual" in note for note in rpscli.load_study(pooled).run().notes)
+    assert any(
+        "beyond the usual" in note for note in rpscli.load_study(pooled).run().notes
+    )
 
 
 def test_tables_of_many_values_draw_the_first_and_hold_all(tmp_path: Path) -> None:
     values = [round(0.2 + 0.005 * k, 3) for k in range(112)]
-    vary = [{"superstructure.storey_mass": ["200 t"]}, {"podium.bearing.curvature_ratio": values}]
+    vary = [
+        {"superstructure.storey_mass": ["200 t"]},
+        {"podium.bearing.curvature_ratio": values},
+    ]
     record = {"source": "synthetic:?pga=0.5g&duration=1&dt=0.02", "seed": [1]}
-    study = {"rps": 1, "title": "Many", "base": SMALL["base"], "vary": vary, "records": [record]}
+    study = {
+        "rps": 1,
+        "title": "Many",
+        "base": SMALL["base"],
+        "vary": vary,
+        "records": [record],
+    }
     found = rpscli.load_study(study | {"reports": ["overturning"]}).run(jobs=1)
     target = Figure(figsize=(2.0, 3.0))  # names alone are wider
     assert not found.failures
     found.draw("overturning", target)
     assert len(target.axes[0].get_xticks()) == 1
     assert len(found.draw("overturning").axes[0].get_xticks()) == 9
-    shares = [column for column in found.report("overturning").tables[""] if ";" not in column.name]
+    shares = [
+        column
+        for column in found.report("overturning").tables[""]
+        if ";" not in column.name
+    ]
     assert len(shares) == 1 + 112 + 2
     assert str(tmp_path / "overturning.png") in found.write(tmp_path)
 
@@ -282,27 +330,45 @@ def test_studies_without_histories_have_no_statistics() -> None:
 
 
 def test_they_show_themselves_in_a_line(result: rpscli.StudyResult) -> None:
-    assert repr(result.study).startswith("Study(title=A small study, points=24, systems=4, ")
-    assert repr(result).startswith("StudyResult(title=A small study, points=24, survived=")
+    assert repr(result.study).startswith(
+        "Study(title=A small study, points=24, systems=4, "
+    )
+    assert repr(result).startswith(
+        "StudyResult(title=A small study, points=24, survived="
+    )
     assert "<td>A small study</td>" in result._repr_html_()
 
 
 def test_changes_of_the_impact_law_are_mapped(tmp_path: Path) -> None:
     """By a script beside the study: the median of what stood twice, and who overturned."""
     variables = runpy.run_path(str(ROOT / "cases/studies/impact_law/changes.py"))
-    heads = [variables[name] for name in ("ENDS", "STOREYS", "PERIOD", "SLENDERNESS", "MASSES")]
+    heads = [
+        variables[name] for name in ("ENDS", "STOREYS", "PERIOD", "SLENDERNESS", "MASSES")
+    ]
     heads += [variables["LAW"], "outcome [-]", *variables["RESULTS"]]
     rows = [
         ["0.5", "3", "0.3", "0.1", "3", law, end, str(rotation), "2"]
-        for law, rotations in {"flexible": (1.0, 2.0, 4.0), "rigid": (1.5, 4.0, 4.0)}.items()
-        for rotation, end in zip(rotations, ("survived", "survived", f"{law} stood"), strict=True)
+        for law, rotations in {
+            "flexible": (1.0, 2.0, 4.0),
+            "rigid": (1.5, 4.0, 4.0),
+        }.items()
+        for rotation, end in zip(
+            rotations, ("survived", "survived", f"{law} stood"), strict=True
+        )
     ]
     rows[-1][6] = "overturned_rocking"
-    (tmp_path / "points.csv").write_text("\n".join(",".join(row) for row in [heads, *rows]) + "\n")
+    (tmp_path / "points.csv").write_text(
+        "\n".join(",".join(row) for row in [heads, *rows]) + "\n"
+    )
     variables["main"](tmp_path)
     assert (tmp_path / "changes.png").is_file()
     pairs = [
-        ((row[6].startswith("over"), {n: float(row[7 + i]) for i, n in enumerate(heads[7:])}))
+        (
+            (
+                row[6].startswith("over"),
+                {n: float(row[7 + i]) for i, n in enumerate(heads[7:])},
+            )
+        )
         for row in rows
     ]
     assert variables["changes"](list(zip(pairs[:3], pairs[3:], strict=True))) == [
@@ -310,18 +376,29 @@ def test_changes_of_the_impact_law_are_mapped(tmp_path: Path) -> None:
     ]  # fmt: skip
 
 
-def test_many_systems_print_few_lines(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_many_systems_print_few_lines(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """What limits and reports ask for, verdicts once; the rest with `--all`."""
     monkeypatch.chdir(tmp_path)
     alphas = [0.10, 0.12, 0.15]
-    vary = [{"podium.bearing.slenderness": alphas}, {"podium.bearing.curvature_ratio": [0.4, 0.5]}]
+    vary = [
+        {"podium.bearing.slenderness": alphas},
+        {"podium.bearing.curvature_ratio": [0.4, 0.5]},
+    ]
     vary.append({"superstructure.period": [0.4, 0.5, 0.6]})
-    study = SMALL | {"vary": vary, "limits": {"rotation_ratio": 1e-3}, "reports": ["overturning"]}
+    study = SMALL | {
+        "vary": vary,
+        "limits": {"rotation_ratio": 1e-3},
+        "reports": ["overturning"],
+    }
     records = ["synthetic:?pga=0.5g&duration=2&dt=0.02&seed=1"]
     study |= {"records": records, "scale": [0.5, 0.6, 0.7, 0.8]}
     (tmp_path / "many.yaml").write_text(json.dumps(study), encoding="utf-8")
     words = ["sweep", "many.yaml", "--figures", "none"]
-    short, whole = (CliRunner().invoke(program, [*words, *more]) for more in ([], ["--all"]))
+    short, whole = (
+        CliRunner().invoke(program, [*words, *more]) for more in ([], ["--all"])
+    )
     assert short.exit_code == whole.exit_code == 10, short.stderr
     assert short.stdout.count("\n") <= 60 < whole.stdout.count("\n")
     assert whole.stdout.count("EXCEEDED") == 72 > short.stdout.count("EXCEEDED") > 3

@@ -37,8 +37,16 @@ def reproduce(tmp_path_factory: pytest.TempPathFactory) -> Reproduce:
             folder = tmp_path_factory.mktemp(study)
             options = [word for override in overrides for word in ("--set", override)]
             with pytest.MonkeyPatch.context() as patch:
-                patch.setattr("rpscli.report.figures.style.picture", lambda *_: b"a figure")
-                command = ["sweep", str(CASES / f"{study}.yaml"), "-o", str(folder), *options]
+                patch.setattr(
+                    "rpscli.report.figures.style.picture", lambda *_: b"a figure"
+                )
+                command = [
+                    "sweep",
+                    str(CASES / f"{study}.yaml"),
+                    "-o",
+                    str(folder),
+                    *options,
+                ]
                 result = CliRunner().invoke(program, command)
             assert result.exit_code == 0, result.stderr
             folders[key] = folder

@@ -58,12 +58,18 @@ def test_figure_3_amplification(reproduce: Reproduce) -> None:
 
     def factor(rows: list[Row], phase: str, rho: str) -> Array:
         name = "frequency" if rows is frequency else "damping"
-        return np.array(values(rows, rho=rho, result=f"{phase}.first_order.{name}_ratio.0"))
+        return np.array(
+            values(rows, rho=rho, result=f"{phase}.first_order.{name}_ratio.0")
+        )
 
-    critical, half, large = (factor(frequency, "rolling", r) for r in ("critical", "0.5", "1.5"))
+    critical, half, large = (
+        factor(frequency, "rolling", r) for r in ("critical", "0.5", "1.5")
+    )
     for rho in ("critical", "0.5", "1.5"):
         # larger while rolling than while rocking
-        rolling, rocking = (factor(frequency, phase, rho) for phase in ("rolling", "rocking"))
+        rolling, rocking = (
+            factor(frequency, phase, rho) for phase in ("rolling", "rocking")
+        )
         assert np.all(rolling > rocking)
         # Larger in frequency than in damping. With stiffness-proportional damping (n = 1) both
         # are the same but for gravity, which adds to one what it takes from the other: 5e-4.
@@ -95,7 +101,13 @@ def test_figure_4a_size(reproduce: Reproduce) -> None:
 
     assert np.all(np.abs(excess("critical")) < 0.015)
     assert np.all(np.diff(excess("1.5")) < 0.0)  # the smaller, the worse
-    told(CASES / "README.md", "off for R < 1.5 and rho > 1.5 |", 100 * excess("1.5")[0], 0.5, 1.5)
+    told(
+        CASES / "README.md",
+        "off for R < 1.5 and rho > 1.5 |",
+        100 * excess("1.5")[0],
+        0.5,
+        1.5,
+    )
     # less than while rocking, for every size
     rocking = reproduce("figure_4a", "figure_4a_rocking")
     slow = np.array(values(rolling, rho="critical", result=f"rolling.{OWN}"))
@@ -132,7 +144,8 @@ def test_figure_5_number_of_storeys(reproduce: Reproduce) -> None:
         assert np.all(np.diff(positive) < 0.0)
         assert positive[-1] / positive[0] < 0.97
     spread = [
-        np.ptp(values(rows, rho="1.5", R=size, result=f"rolling.{OWN}")) for size in ("1", "3")
+        np.ptp(values(rows, rho="1.5", R=size, result=f"rolling.{OWN}"))
+        for size in ("1", "3")
     ]
     assert spread[0] > 4.0 * spread[1]  # mostly for small columns
 

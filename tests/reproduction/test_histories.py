@@ -70,7 +70,9 @@ def check_profiles(rows: list[Row], quantities: tuple[str, ...]) -> None:
 
 
 @pytest.mark.evidence("buildings on bearings under earthquakes", "published")
-def test_figure_9_for_a_few_motions(reproduce: Reproduce, fema_record: RecordLoader) -> None:
+def test_figure_9_for_a_few_motions(
+    reproduce: Reproduce, fema_record: RecordLoader
+) -> None:
     """The motions that overturn none of the nine structures in the study of them all."""
     few = "records=[fema_p695:farfield/3/a, fema_p695:farfield/7/a, fema_p695:farfield/11/b]"
     check_profiles(reproduce("figure_9", "figure_9", few), ("mean",))
@@ -120,7 +122,12 @@ def test_figure_7(points: list[Row]) -> None:
     assert all(np.corrcoef(each, flat[small])[0, 1] > 0.8 for each in curved[:, small])
     off, less = np.median(np.abs(of_flat - 1.0), axis=1), 1.0 - np.median(of_flat, axis=1)
     told(
-        README, "| median difference", *100 * off[:2], 0.5, 1.5, *100 * np.array([off[2], less[2]])
+        README,
+        "| median difference",
+        *100 * off[:2],
+        0.5,
+        1.5,
+        *100 * np.array([off[2], less[2]]),
     )
     alone = np.sum(np.isinf(curved) & (flat < 1.0), axis=(1, 2, 3))
     stand = np.sum(np.isfinite(curved) & np.isinf(flat), axis=(1, 2, 3))
@@ -147,8 +154,16 @@ def test_figure_8_small_rotations_and_slopes(points: list[Row]) -> None:
     # saturated: beyond a tenth of theta_cr it grows for positive stiffness alone
     assert np.all(np.abs(slopes[:, :2]) < 0.2)
     assert np.all(slopes[:, 2] > 0.35)
-    assert np.all(np.diff(slopes[:, 2]) > 0.0)  # the more so the more flexible the building
-    told(README, "theta_cr/10 slopes of", slopes[:, :2].min(), slopes[:, :2].max(), *slopes[:, 2])
+    assert np.all(
+        np.diff(slopes[:, 2]) > 0.0
+    )  # the more so the more flexible the building
+    told(
+        README,
+        "theta_cr/10 slopes of",
+        slopes[:, :2].min(),
+        slopes[:, :2].max(),
+        *slopes[:, 2],
+    )
     three, six, nine = least.min(axis=1)
     told(README, "least values", nine, 9, six, 6, three, 3)
     told(THEORY, "small rotations | not below", nine, six, three)
@@ -156,7 +171,9 @@ def test_figure_8_small_rotations_and_slopes(points: list[Row]) -> None:
 
 @pytest.mark.evidence("buildings on bearings under earthquakes", "published")
 @pytest.mark.long
-def test_figure_8_bilinear_summary(reproduce: Reproduce, fema_record: RecordLoader) -> None:
+def test_figure_8_bilinear_summary(
+    reproduce: Reproduce, fema_record: RecordLoader
+) -> None:
     rows = reproduce("figure_8", "figure_8")
     slope = column(rows, "k_s").reshape(3, 3)
     saturation = column(rows, "saturation_rotation_ratio").reshape(3, 3)
@@ -194,7 +211,9 @@ def test_the_printed_table_is_that_of_the_readme() -> None:
     head, *rows = table(CASES / "README.md", "The counts themselves")
     counts = [row[head.index("as recorded")] for row in rows]
     assert [int(computed) for computed, _, _ in cells] == list(map(int, counts))
-    assert all(int(one) - int(other) == round(100 * float(by)) for one, other, by in cells)
+    assert all(
+        int(one) - int(other) == round(100 * float(by)) for one, other, by in cells
+    )
 
 
 README = CASES / "README.md"
@@ -255,7 +274,9 @@ def energy_rows(points: Sequence[Row]) -> Iterator[list[str]]:
     parts += [(name, (slice(None), slice(None), i)) for i, name in enumerate(ends)]
     parts += [(f"tan(alpha) = {t:.2f}", (i,)) for i, t in enumerate((0.10, 0.15, 0.20))]
     for name, part in parts:
-        impacts, creating, created, net = (np.asarray(values[part]).ravel() for values in whole)
+        impacts, creating, created, net = (
+            np.asarray(values[part]).ravel() for values in whole
+        )
         some = impacts > 0
         lost = created + net
         yield [
@@ -267,19 +288,23 @@ def energy_rows(points: Sequence[Row]) -> Iterator[list[str]]:
 
 @pytest.mark.long
 def test_energy_at_impacts(reproduce: Reproduce, fema_record: RecordLoader) -> None:
-    assert [*energy_rows(reproduce("table_3", "points"))] == table(README, "## Energy at impacts")[
-        1:
-    ]
+    assert [*energy_rows(reproduce("table_3", "points"))] == table(
+        README, "## Energy at impacts"
+    )[1:]
 
 
 @pytest.mark.long
-def test_what_the_flexible_law_changes(reproduce: Reproduce, fema_record: RecordLoader) -> None:
+def test_what_the_flexible_law_changes(
+    reproduce: Reproduce, fema_record: RecordLoader
+) -> None:
     """Figures 8 and 9, rigid / flexible."""
     laws = ((), (FLEXIBLE,))
     both = [reproduce("figure_8", "figure_8", *law) for law in laws]
     names = ("base_shear_ratio_at_uplift", "saturation_rotation_ratio",
              "saturation_base_shear_ratio", "k_s")  # fmt: skip
-    for place, (n, rho, *shown) in enumerate(table(README, "Figure 8, bilinear summary")[1:]):
+    for place, (n, rho, *shown) in enumerate(
+        table(README, "Figure 8, bilinear summary")[1:]
+    ):
         found = [
             " / ".join(f"{float(rows[place][name]):.{digits}f}" for rows in both)
             for name, digits in zip(names, (2, 3, 2, 2), strict=True)
@@ -290,11 +315,15 @@ def test_what_the_flexible_law_changes(reproduce: Reproduce, fema_record: Record
     text = " ".join(README.read_text("utf-8").split())
     points = [reproduce("figure_9", "points", *law) for law in laws]
     impacts = [f"{column(rows, 'impacts').sum() / 1e3:.0f} thousand" for rows in points]
-    fell = [sum(row["outcome"].startswith("overturned") for row in rows) for rows in points]
+    fell = [
+        sum(row["outcome"].startswith("overturned") for row in rows) for rows in points
+    ]
     assert f"fewer impacts, {impacts[1]} in place of {impacts[0]}," in text
     assert f"{fell[1]} of 900 in place of {fell[0]}" in text
     flexible = reproduce("figure_8", "points", FLEXIBLE)
-    assert f"(0 of {column(flexible, 'impacts').sum() / 1e3:.0f} thousand impacts)" in text
+    assert (
+        f"(0 of {column(flexible, 'impacts').sum() / 1e3:.0f} thousand impacts)" in text
+    )
     assert column(flexible, "creating_impacts").sum() == 0
 
 
@@ -341,7 +370,10 @@ def cells_of(rows: Sequence[Row], scales: dict[str, float], rank: int = 6) -> li
         cells.append(f"{median:.3g} ({low:.3g} to {high:.3g})")
     k = int(fell.sum())
     low = beta.ppf(0.025, k, of - k + 1) if k else 0.0
-    return [*cells, f"{k} ({100 * low:.0f} to {100 * beta.ppf(0.975, k + 1, of - k):.0f} %)"]
+    return [
+        *cells,
+        f"{k} ({100 * low:.0f} to {100 * beta.ppf(0.975, k + 1, of - k):.0f} %)",
+    ]
 
 
 CONTACT = ROOT / "cases/studies/contact/README.md"
@@ -385,7 +417,9 @@ BUILDING = (
 def test_numbers_of_the_study_of_impact_laws(tmp_path: Path) -> None:
     """Rotations and shears are of motions under which both stand and uplift."""
     found = load_study(LAW.with_name("impact_law.yaml")).run(tmp_path / "run").columns
-    names = [found[name].astype(str) for name in ("record", *BUILDING, "podium.impact.law")]
+    names = [
+        found[name].astype(str) for name in ("record", *BUILDING, "podium.impact.law")
+    ]
     order = np.lexsort(names).reshape(2, 576, 44)  # flexible, then rigid
     fell = np.char.startswith(found["outcome"][order], "overturned")
     stood = (~fell & (found["uplifts"][order] > 0)).all(axis=0)
@@ -395,21 +429,31 @@ def test_numbers_of_the_study_of_impact_laws(tmp_path: Path) -> None:
         flexible, rigid = np.where(stood, found[name][order], np.nan)
         return np.asarray(rigid / flexible)
 
-    of_all, differ = 100 * fell.mean(axis=(1, 2)), np.abs(np.diff(fell.sum(axis=2), axis=0))
+    of_all, differ = (
+        100 * fell.mean(axis=(1, 2)),
+        np.abs(np.diff(fell.sum(axis=2), axis=0)),
+    )
     told(LAW, "tell the laws apart.** It is", of_all[0], 100 * (differ <= 1).mean(), 44)
     assert (differ.max(), round(of_all[1], 1)) == (5, round(of_all[0], 1))
     rotation = ratios("max_rotation")
     off = np.abs(np.nanmedian(rotation, axis=1) - 1)
     told(LAW, "median rotation**: within", 2, 100 * (off <= 0.02).mean(), 100 * off.max())
     changed = 100 * (fell[0] != fell[1]).mean()
-    told(LAW, "One motion in ten is below", *np.nanquantile(rotation, [0.05, 0.95]), changed)
+    told(
+        LAW,
+        "One motion in ten is below",
+        *np.nanquantile(rotation, [0.05, 0.95]),
+        changed,
+    )
     whole = np.where(fell, np.inf, found["max_rotation"][order])
     high = np.quantile(whole, 0.84, axis=2, method="inverted_cdf")
     high = high[:, np.isfinite(high).all(axis=0) & (high > 0).all(axis=0)]
     moves = 100 * (np.quantile(high[1] / high[0], [0.05, 0.95]) - 1)
     told(LAW, "over 44 motions moves by", *moves)
     shear = ratios("max_base_shear")
-    period, eta, slope = (found[name][order[0, :, 0]].astype(float) for name in BUILDING[1:4])
+    period, eta, slope = (
+        found[name][order[0, :, 0]].astype(float) for name in BUILDING[1:4]
+    )
     stout = eta * slope**2 > 0.12 - 1e-9
     stiff = shear[stout & (period == 0.15)]
     less = 100 * (1 - np.array([np.nanmedian(stiff), np.nanmedian(stiff, axis=1).min()]))
@@ -420,5 +464,7 @@ def test_numbers_of_the_study_of_impact_laws(tmp_path: Path) -> None:
     told(LAW, "in the same range `rigid` is", *less)
     ends = 100 * (np.nanquantile(shear[period >= 0.6], [0.05, 0.95]) - 1)
     told(LAW, "nine of ten motions are within", *ends)
-    of_shear, of_drift = (np.nanmedian(of, axis=1) for of in (shear, ratios("drift_ratio")))
+    of_shear, of_drift = (
+        np.nanmedian(of, axis=1) for of in (shear, ratios("drift_ratio"))
+    )
     assert np.min(np.corrcoef(of_shear, of_drift)) > 0.9

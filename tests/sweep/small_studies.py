@@ -16,7 +16,14 @@ from rpscli.case.study.study import Study
 from rpscli.report.study.report import Found
 from rpscli.studies import Study as LaidOut
 from rpscli.studies import load_study
-from rpscli.sweep.evaluation import FAILED, MISSING, SCALARS, PointResults, at_path, stacked
+from rpscli.sweep.evaluation import (
+    FAILED,
+    MISSING,
+    SCALARS,
+    PointResults,
+    at_path,
+    stacked,
+)
 from rpscli.sweep.points import StudyPoints, lay_out
 from rpscli.sweep.table import StoredPoints, Table
 
@@ -100,7 +107,9 @@ def stored(outcome: str = "survived", **results: object) -> Stored:
     """A made-up result."""
     whole: dict[str, object] = dict.fromkeys(SCALARS["timehistory"], 0.0)
     shears = results.pop("storey_shears", [3.0, 2.0, 1.0])
-    return Stored(outcome, None, {**whole, "scale": 1.0, **results, "storey_shears": shears})
+    return Stored(
+        outcome, None, {**whole, "scale": 1.0, **results, "storey_shears": shears}
+    )
 
 
 def fallen(falls: object, **results: object) -> Stored:
@@ -112,9 +121,15 @@ def reader(rows: Iterable[Stored | None]) -> Callable[[Iterable[str]], PointResu
     """Reads columns of rows by their names, as a store does."""
     points = [row or Stored(MISSING, None, {}) for row in rows]
     names = dict.fromkeys(name for point in points for name in point.results)
-    columns = {name: stacked([point.results.get(name) for point in points]) for name in names}
+    columns = {
+        name: stacked([point.results.get(name) for point in points]) for name in names
+    }
     outcomes = np.array([point.outcome for point in points], dtype="U20")
-    told = {n: point.message or "" for n, point in enumerate(points) if point.outcome == FAILED}
+    told = {
+        n: point.message or ""
+        for n, point in enumerate(points)
+        if point.outcome == FAILED
+    }
 
     def read(wanted: Iterable[str]) -> PointResults:
         known = {name: at_path(columns, name) for name in wanted}
@@ -133,22 +148,33 @@ def place(layout: StudyPoints, number: int) -> Place:
 
 
 def made(
-    make: Make, answer: Answer, *changes: tuple[str, str], text: str = STUDY, fixed: Any = None
+    make: Make,
+    answer: Answer,
+    *changes: tuple[str, str],
+    text: str = STUDY,
+    fixed: Any = None,
 ) -> StoredPoints:
     """Results, as reports take them, of 2 slendernesses x 3 curvatures x 3 records x 2 scales."""
     layout = lay_out(make(text, *changes))
     read = reader(answer(place(layout, number)) for number in range(len(layout)))
     table = Table.of(layout, read)
-    results = SimpleNamespace(table=table, context=layout.context, stored=read, fixed_base=fixed)
+    results = SimpleNamespace(
+        table=table, context=layout.context, stored=read, fixed_base=fixed
+    )
     return cast("StoredPoints", results)
 
 
 def fixed_base(layout: StudyPoints, shears: list[float]) -> dict[Any, Any]:
     """The same storey shears on a fixed base of all systems under all records."""
-    systems, known = range(len(layout.properties)), [each for each in layout.records if each]
+    systems, known = (
+        range(len(layout.properties)),
+        [each for each in layout.records if each],
+    )
     return {(system, record): np.array(shears) for system in systems for record in known}
 
 
 def cells(found: Found, suffix: str = "") -> dict[str, list[Any]]:
     """Values of the columns of a table of a report, by name."""
-    return {c.name: np.asarray(c.values, dtype=object).tolist() for c in found.tables[suffix]}
+    return {
+        c.name: np.asarray(c.values, dtype=object).tolist() for c in found.tables[suffix]
+    }

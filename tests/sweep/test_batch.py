@@ -10,7 +10,14 @@ from typing import Any
 
 import numpy as np
 import pytest
-from paper_structures import FLAT, building, needs_compiled_kernels, podium, stillness, waves
+from paper_structures import (
+    FLAT,
+    building,
+    needs_compiled_kernels,
+    podium,
+    stillness,
+    waves,
+)
 from pydantic import ValidationError
 
 from rpscli.analyses.demand import Request, demands, histories
@@ -39,10 +46,19 @@ def rows(results: PointResults) -> list[dict[str, object]]:
     """Outcome, message and results of each point, None where it has none."""
     found = []
     for row, outcome in enumerate(results.outcomes.tolist()):
-        told: dict[str, object] = {"outcome": outcome, "message": results.messages.get(row)}
+        told: dict[str, object] = {
+            "outcome": outcome,
+            "message": results.messages.get(row),
+        }
         for name, column in results.columns.items():
             value = column[row]
-            told[name] = value.tolist() if value.ndim else None if np.isnan(value) else float(value)
+            told[name] = (
+                value.tolist()
+                if value.ndim
+                else None
+                if np.isnan(value)
+                else float(value)
+            )
         found.append({name: value for name, value in told.items() if value is not None})
     return found
 
@@ -53,7 +69,9 @@ def test_bits_do_not_depend_on_the_batch(study_of: Make) -> None:
     backwards = run_batch(layout.context, list(layout)[::-1])
     alone = [run_batch(layout.context, [layout[number]]) for number in (0, 17, 35)]
     assert rows(backwards)[::-1] == rows(together)
-    assert [rows(one)[0] for one in alone] == [rows(together)[number] for number in (0, 17, 35)]
+    assert [rows(one)[0] for one in alone] == [
+        rows(together)[number] for number in (0, 17, 35)
+    ]
 
 
 UPWARDS = "synthetic:?pga=0.3g&duration=4&dt=0.02&seed=2"
@@ -85,7 +103,9 @@ def test_results_are_those_of_a_single_time_history(
         for name in set(single) & set(SCALARS["timehistory"]):
             # Kernels for one and for many histories round differently; impacts amplify that.
             expected = (
-                single[name] if single[name] is None else pytest.approx(single[name], rel=1e-6)
+                single[name]
+                if single[name] is None
+                else pytest.approx(single[name], rel=1e-6)
             )
             assert row.get(name) == expected, name
 
@@ -93,7 +113,9 @@ def test_results_are_those_of_a_single_time_history(
 def test_whole_histories_tell_more_and_nothing_else(study_of: Make) -> None:
     friction = ("podium.friction=0.12",)  # less than is asked of it: columns slide
     change = ("scale: [", "whole_histories: true\nscale: [")
-    brief, whole = (lay_out(study_of(STUDY, *of, overrides=friction)) for of in ((), (change,)))
+    brief, whole = (
+        lay_out(study_of(STUDY, *of, overrides=friction)) for of in ((), (change,))
+    )
     context, more = brief.context, whole.context
     for number in (3, 20):
         (without,) = rows(run_batch(context, [brief[number]]))
@@ -158,7 +180,10 @@ def test_pushover_points_have_the_curve(study_of: Make) -> None:
 
 
 MEMBERS = ("scale: [", "perturb: {members: 4, seed: 7}\nscale: [")
-SAMPLE = ("scale: [", "sample: {size: 8, ranges: {podium.cap_beam_mass_ratio: [5, 10]}}\nscale: [")
+SAMPLE = (
+    "scale: [",
+    "sample: {size: 8, ranges: {podium.cap_beam_mass_ratio: [5, 10]}}\nscale: [",
+)
 
 
 def test_the_last_axis_runs_fastest(study_of: Make) -> None:
@@ -172,7 +197,9 @@ def test_the_last_axis_runs_fastest(study_of: Make) -> None:
     assert [point.number for point in design] == list(range(len(design)))
 
 
-def test_members_of_an_ensemble_multiply_and_begin_with_the_point_itself(study_of: Make) -> None:
+def test_members_of_an_ensemble_multiply_and_begin_with_the_point_itself(
+    study_of: Make,
+) -> None:
     design = lay_out(study_of(STUDY, MEMBERS))
     assert len(design) == 36 * 4
     first = [design[i] for i in range(4)]
@@ -204,7 +231,9 @@ def test_distributions_have_the_moments_that_are_asked_for() -> None:
     # The error of the mean of a scrambled Sobol sample of smooth functions is below 1/n^1.
     assert drawn.mean(axis=0) == pytest.approx([2.0] * 3, rel=1e-3)
     assert drawn.std(axis=0) == pytest.approx([0.4] * 3, rel=1e-2)
-    assert np.log(drawn[:, 2]).std() == pytest.approx(math.sqrt(math.log1p(0.04)), rel=1e-2)
+    assert np.log(drawn[:, 2]).std() == pytest.approx(
+        math.sqrt(math.log1p(0.04)), rel=1e-2
+    )
 
 
 def test_latin_hypercube_has_one_value_in_each_stratum() -> None:
@@ -217,7 +246,11 @@ def test_ranges_may_have_the_unit_of_their_key() -> None:
     ranges: dict[str, Any] = {width: ["323 mm", 0.337]}
     ranges[period] = {"distribution": "normal", "mean": "420 ms", "cov": 0.1}
     found = SampleSection(size=2, ranges=ranges).ranges
-    assert (found[width].low, found[width].high, found[period].mean) == (0.323, 0.337, 0.42)
+    assert (found[width].low, found[width].high, found[period].mean) == (
+        0.323,
+        0.337,
+        0.42,
+    )
     with pytest.raises(ValidationError, match=r"is a mass, but must be a length"):
         SampleSection(size=2, ranges={width: ["323 kg", 0.337]})
 
@@ -242,7 +275,10 @@ def test_records_are_scaled_to_a_measure(study_of: Make, measure: str) -> None:
 
 def test_sa_is_taken_at_the_first_period_of_each_system(study_of: Make) -> None:
     sa = ("scale: [0.5, 1.0]", "scale: {measure: Sa, values: [2.0]}")
-    vary = ("  - podium.bearing.c", "  - superstructure.period: [0.3, 0.6]\n  - podium.bearing.c")
+    vary = (
+        "  - podium.bearing.c",
+        "  - superstructure.period: [0.3, 0.6]\n  - podium.bearing.c",
+    )
     design = lay_out(study_of(STUDY, sa, vary))
     context = design.context
     periods = set()
@@ -260,7 +296,9 @@ def test_sa_is_taken_at_the_first_period_of_each_system(study_of: Make) -> None:
 
 def test_keys_do_not_depend_on_how_a_study_arrives_at_a_point(study_of: Make) -> None:
     whole = lay_out(study_of())
-    turned = lay_out(study_of(STUDY, ("critical, 0.5, 0", "0, critical"), ("0.5, 1.0", "1.0")))
+    turned = lay_out(
+        study_of(STUDY, ("critical, 0.5, 0", "0, critical"), ("0.5, 1.0", "1.0"))
+    )
     first, second = (all_keys(design) for design in (whole, turned))
     assert len(set(first)) == len(first)
     assert set(second) < set(first)
@@ -269,7 +307,10 @@ def test_keys_do_not_depend_on_how_a_study_arrives_at_a_point(study_of: Make) ->
 
 
 def test_batches_hold_every_point_once_and_one_size_of_building(study_of: Make) -> None:
-    vary = ("  - podium.bearing.c", "  - superstructure.storeys: [2, 3]\n  - podium.bearing.c")
+    vary = (
+        "  - podium.bearing.c",
+        "  - superstructure.storeys: [2, 3]\n  - podium.bearing.c",
+    )
     design = lay_out(study_of(STUDY, vary))
     pending = [number for number in range(len(design)) if number % 5]
     found = list(batches(design, pending, jobs=2))
@@ -290,7 +331,9 @@ class Points:
         found = demands([self.history(number) for number in range(count)])
         self.outcomes = np.array([one.outcome for one in found])
         names = "max_rotation", "max_base_shear"
-        self.columns = {name: np.array([getattr(one, name) for one in found]) for name in names}
+        self.columns = {
+            name: np.array([getattr(one, name) for one in found]) for name in names
+        }
 
     def __getitem__(self, number: int) -> int:
         return number
@@ -306,7 +349,9 @@ def notes(points: Points) -> list[str]:
 
 
 @needs_compiled_kernels
-def test_points_that_change_with_half_the_steps_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_points_that_change_with_half_the_steps_are_named(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     (found,) = notes(Points(4))
     assert found.startswith("steps: of 4 points (of 4) computed again")
     assert "1 changed: point 3 (" in found

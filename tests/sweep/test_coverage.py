@@ -67,7 +67,9 @@ def fitted(
         cluster = np.repeat(np.arange(len(beyond)), 2)
     intensity = np.broadcast_to(LEVELS, beyond.shape).ravel().copy()
     of_levels, settings = np.repeat(cluster, len(LEVELS)), Bootstrap(resamples, 0.9, seed)
-    return lognormal_fit(intensity, beyond.ravel(), of_levels, 1.0, np.array(LEVELS), settings)
+    return lognormal_fit(
+        intensity, beyond.ravel(), of_levels, 1.0, np.array(LEVELS), settings
+    )
 
 
 EVENTS = clusters([f"fema_p695:farfield/{pair}/a" for pair in range(1, 23)], by="events")
@@ -90,12 +92,19 @@ def test_bands_and_shares_hold_what_they_say(
     count = len(set(cluster_of))
     pairs_of = [np.flatnonzero(np.array(cluster_of) == place) for place in range(count)]
     truth = fitted(every, 0, 1)
-    held, shares = np.zeros((draws, 3), dtype=bool), np.zeros((draws, len(LEVELS)), dtype=bool)
+    held, shares = (
+        np.zeros((draws, 3), dtype=bool),
+        np.zeros((draws, len(LEVELS)), dtype=bool),
+    )
     for seed in range(draws):
-        drawn = [pairs_of[n] for n in np.random.default_rng(seed).integers(0, count, count)]
+        drawn = [
+            pairs_of[n] for n in np.random.default_rng(seed).integers(0, count, count)
+        ]
         beyond = every[np.concatenate(drawn)]
         cluster = np.repeat(np.arange(count), [2 * len(pairs) for pairs in drawn])
-        fit, alone = (fitted(beyond, 200, seed, by) for by in (cluster, np.arange(len(cluster))))
+        fit, alone = (
+            fitted(beyond, 200, seed, by) for by in (cluster, np.arange(len(cluster)))
+        )
         held[seed] = (
             fit.median_band[0] <= truth.median <= fit.median_band[1],
             fit.beta_band[0] <= truth.beta <= fit.beta_band[1],
@@ -134,7 +143,9 @@ def test_intervals_of_shares_hold_what_they_promise(
                 counts[place] += found.low <= truth <= found.high
         held.append(counts[0] / draws)
         naive.append(counts[1] / draws)
-    for (low, high), part in zip((SHOWN[2][:2], SHOWN[2][2:]), (held, naive), strict=True):
+    for (low, high), part in zip(
+        (SHOWN[2][:2], SHOWN[2][2:]), (held, naive), strict=True
+    ):
         assert low - 0.051 < 100 * min(part) <= 100 * max(part) < high + 0.051
 
 
@@ -151,7 +162,12 @@ def test_intervals_of_clusters_of_any_likeness_hold_their_share() -> None:
                 for truth in (0.1, 0.5):
                     shape = (200, recordings, members)
                     common = generator.normal(size=(*shape[:2], 1)) * likeness**0.5
-                    values = common + generator.normal(size=shape) * (1.0 - likeness) ** 0.5
-                    shares = [clustered(each.ravel(), cluster) for each in values < norm.ppf(truth)]
+                    values = (
+                        common + generator.normal(size=shape) * (1.0 - likeness) ** 0.5
+                    )
+                    shares = [
+                        clustered(each.ravel(), cluster)
+                        for each in values < norm.ppf(truth)
+                    ]
                     held = np.mean([share.low <= truth <= share.high for share in shares])
                     assert held > 0.95 - 3.0 * 0.0154

@@ -57,7 +57,8 @@ search: {{first: 8, most: 64, resolution: 0.001, resamples: 400}}
 """
 
 TWO = FRAME.replace(
-    f"{SLENDERNESS}: [0.05, 0.35]\n", f"{SLENDERNESS}: [0.05, 0.35]\n  {SIZE}: [800 mm, 2 m]\n"
+    f"{SLENDERNESS}: [0.05, 0.35]\n",
+    f"{SLENDERNESS}: [0.05, 0.35]\n  {SIZE}: [800 mm, 2 m]\n",
 ).replace(MINIMISED, f"minimise: {{{SLENDERNESS}: 10, {SIZE}: 1}}")
 
 BUILDING = f"""\
@@ -100,7 +101,9 @@ def design_json(design: Sweep) -> SweepJson:
 
 
 @pytest.mark.evidence("design", "exact")
-def test_one_unknown_against_the_exact_answer(design: Sweep, design_json: SweepJson) -> None:
+def test_one_unknown_against_the_exact_answer(
+    design: Sweep, design_json: SweepJson
+) -> None:
     # 30 % of seven are two: the third largest peak must not lift the frame.
     found = design_json(FRAME, "--set", "search.resamples=0")
     exact, close = sorted(PEAKS)[-3], 1.01 * 0.001 * 0.3
@@ -138,7 +141,9 @@ def test_two_unknowns_against_the_exact_answer(design_json: SweepJson) -> None:
     assert values[SIZE] == 0.8
     assert 0.0 <= values[SLENDERNESS] - sorted(PEAKS)[-3] < 0.3 * 0.02
     assert found["at_bounds"] == [{"key": SIZE, "end": "least"}]
-    assert any("better designs may lie beyond" in warning for warning in found["warnings"])
+    assert any(
+        "better designs may lie beyond" in warning for warning in found["warnings"]
+    )
     assert [requirement["binds"] for requirement in found["requirements"]] == [True]
 
 
@@ -194,9 +199,16 @@ def test_verdicts_are_those_of_a_study(design_json: SweepJson) -> None:
 
 HAZARD = "PGV [m/s],rate [1/year]\n0.1,1e-2\n0.3,2e-3\n0.8,3e-4\n2,2e-5\n"
 RATE = (
-    BUILDING.replace("scale: [1.0, 1.5]", "scale: {measure: PGV, values: [0.9, 0.3, 0.6]}")
-    .replace(BUILDING[BUILDING.index("limits:") : BUILDING.index("minimise:")], "limits: {}\n")
-    .replace("limits: {}", "limits: {annual_rate: 1e-4}\nhazard: {file: hazard.csv, measure: PGV}")
+    BUILDING.replace(
+        "scale: [1.0, 1.5]", "scale: {measure: PGV, values: [0.9, 0.3, 0.6]}"
+    )
+    .replace(
+        BUILDING[BUILDING.index("limits:") : BUILDING.index("minimise:")], "limits: {}\n"
+    )
+    .replace(
+        "limits: {}",
+        "limits: {annual_rate: 1e-4}\nhazard: {file: hazard.csv, measure: PGV}",
+    )
 )
 
 
@@ -209,7 +221,9 @@ def test_a_limit_on_the_annual_rate(design_json: SweepJson, workplace: Path) -> 
     points = csv_rows("points.csv", "out")
     levels = np.array([0.3, 0.6, 0.9])
     fine = np.geomspace(0.1, 20.0, 200_001)
-    curve = np.array([[float(x) for x in line.split(",")] for line in HAZARD.splitlines()[1:]])
+    curve = np.array(
+        [[float(x) for x in line.split(",")] for line in HAZARD.splitlines()[1:]]
+    )
     x, height = np.log(curve.T)
     beyond = height[-1] + np.diff(height)[-1] / np.diff(x)[-1] * (np.log(fine) - x[-1])
     rates = np.exp(np.where(fine > 2.0, beyond, np.interp(np.log(fine), x, height)))
@@ -219,7 +233,11 @@ def test_a_limit_on_the_annual_rate(design_json: SweepJson, workplace: Path) -> 
         own = points[15 * place : 15 * place + 15]
         fallen = [
             np.mean(
-                [p["outcome [-]"].startswith("over") for p in own if p["PGV [m/s]"] == f"{v:g}"]
+                [
+                    p["outcome [-]"].startswith("over")
+                    for p in own
+                    if p["PGV [m/s]"] == f"{v:g}"
+                ]
             )
             for v in levels
         ]
@@ -235,8 +253,12 @@ def test_a_limit_on_the_annual_rate(design_json: SweepJson, workplace: Path) -> 
     low, high = requirement["interval"]
     assert low <= requirement["value"] < 1e-4 < high
     (verdict,) = found["validation"]
-    assert verdict["exceeded"] == (verdict["value"] > 1e-4) == (found["validated"] is False)
-    life = RATE.replace("annual_rate: 1e-4", f"probability_in_50_years: {-np.expm1(-50.0 * 1e-4)}")
+    assert (
+        verdict["exceeded"] == (verdict["value"] > 1e-4) == (found["validated"] is False)
+    )
+    life = RATE.replace(
+        "annual_rate: 1e-4", f"probability_in_50_years: {-np.expm1(-50.0 * 1e-4)}"
+    )
     assert design_json(life)["requirements"][0]["limit"] == pytest.approx(1e-4, rel=1e-12)
 
 
@@ -249,9 +271,13 @@ def test_perturbed_histories_are_parts_of_their_records(design_json: SweepJson) 
     for place, row in enumerate(designs):
         own = points[20 * place : 20 * place + 20]
         for scale in ("1", "1.5"):
-            fallen = [p["outcome [-]"].startswith("over") for p in own][2 * (scale != "1") :]
+            fallen = [p["outcome [-]"].startswith("over") for p in own][
+                2 * (scale != "1") :
+            ]
             share = np.mean([each for n, each in enumerate(fallen) if n % 4 < 2])
-            assert float(row[f"overturning at scale = {scale} [-]"]) == pytest.approx(share)
+            assert float(row[f"overturning at scale = {scale} [-]"]) == pytest.approx(
+                share
+            )
 
 
 @pytest.mark.long
@@ -272,7 +298,9 @@ def test_interrupted_and_resumed_or_in_two_threads_it_ends_in_the_same_bytes(
 
 
 def test_validation(design: Sweep, design_json: SweepJson, workplace: Path) -> None:
-    unseen = 'validate: {records: [{source: "pulse:half_sine?period=0.4", amplitude: [%s]}]}\n'
+    unseen = (
+        'validate: {records: [{source: "pulse:half_sine?period=0.4", amplitude: [%s]}]}\n'
+    )
     found = design_json(FRAME + unseen % "0.1 g, 0.2 g")
     assert found["validated"] is True
     found = design_json(FRAME + unseen % "0.1 g, 0.4 g", exit_code=10)
@@ -313,9 +341,24 @@ def test_a_dry_run_computes_nothing(design_json: SweepJson, workplace: Path) -> 
         ("0.35]", "0.02]", "12:31", "must rise from the least value to the largest"),
         ("[0.05, 0.35]", "[0.05]", "12:31", "must be two numbers, [least, largest]"),
         ("[0.05, 0.35]", "[low, high]", "12:31", "must be two numbers"),
-        (f"{SLENDERNESS}: [0.05", "podium.devices[0].gap: [0.1", "12:3", "podium.devices.0.gap?"),
-        (f"{SLENDERNESS}: [0.05", "podium.bearing.slendernes: [0.05", "12:3", "did you mean"),
-        (f"{WEDGE}: {{{SLENDERNESS}: 2, plus: 0.1}}", f"{WEDGE}: 2", "14:", "must be a linear sum"),
+        (
+            f"{SLENDERNESS}: [0.05",
+            "podium.devices[0].gap: [0.1",
+            "12:3",
+            "podium.devices.0.gap?",
+        ),
+        (
+            f"{SLENDERNESS}: [0.05",
+            "podium.bearing.slendernes: [0.05",
+            "12:3",
+            "did you mean",
+        ),
+        (
+            f"{WEDGE}: {{{SLENDERNESS}: 2, plus: 0.1}}",
+            f"{WEDGE}: 2",
+            "14:",
+            "must be a linear sum",
+        ),
         ("[0.05, 0.35]", "", "12:3", "has no value; write one"),
         ("minimise:", "records: 3\nminimise:", "19:1", "twice"),
         ("2, plus", "2, pluss", "14:", "needs pluss, which is not under variables"),
@@ -327,15 +370,35 @@ def test_a_dry_run_computes_nothing(design_json: SweepJson, workplace: Path) -> 
         ("limits: {uplift: 0.3}\n", "", "", "limits is missing"),
         (MINIMISED, "", "", "minimise is missing"),
         ("limits: {", "limits: {annual_rate: 1e-4, ", "18:", "needs a hazard curve"),
-        ("search:", "tolerance: 0.02\nsearch:", "20:1", "tolerance is gone: every design"),
+        (
+            "search:",
+            "tolerance: 0.02\nsearch:",
+            "20:1",
+            "tolerance is gone: every design",
+        ),
         ("variables:", "find:", "11:1", "find is gone: write `variables`"),
         ("search:", "confirm: {}\nsearch:", "20:1", "confirm is gone: write `validate`"),
-        (MINIMISED, "minimise: [max_rotation]", "19:11", "Pareto front, are gone; write a sum"),
-        ("search: {first: 8", "search: {first: 2", "20:", "must be a whole number from 4 to"),
+        (
+            MINIMISED,
+            "minimise: [max_rotation]",
+            "19:11",
+            "Pareto front, are gone; write a sum",
+        ),
+        (
+            "search: {first: 8",
+            "search: {first: 2",
+            "20:",
+            "must be a whole number from 4 to",
+        ),
         ("search:", "validate: {}\nsearch:", "20:", "must have records or a share"),
         ("search:", "validate: {share: 0.01}\nsearch:", "20:", "leaves none"),
         ("search:", "vary: []\nsearch:", "20:", "vary is not a key of the format"),
-        ("variables:", "variables:\n  limits.uplift: [0, 1]", "12:3", "must not change in"),
+        (
+            "variables:",
+            "variables:\n  limits.uplift: [0, 1]",
+            "12:3",
+            "must not change in",
+        ),
         (f"{WEDGE}: {{", f"{SLENDERNESS}: {{", "14:", "varies"),
     ],
 )
@@ -348,11 +411,18 @@ def test_refusals(design: Sweep, old: str, new: str, place: str, said: str) -> N
 
 
 def test_the_constant_of_a_sum_may_have_a_unit() -> None:
-    text = FRAME.replace("linked:\n", f"linked:\n  {SIZE}: {{{SLENDERNESS}: 2, plus: 1400 mm}}\n")
-    assert parse_design(text, "design.yaml").file.linked[SIZE] == {SLENDERNESS: 2, "plus": 1.4}
+    text = FRAME.replace(
+        "linked:\n", f"linked:\n  {SIZE}: {{{SLENDERNESS}: 2, plus: 1400 mm}}\n"
+    )
+    assert parse_design(text, "design.yaml").file.linked[SIZE] == {
+        SLENDERNESS: 2,
+        "plus": 1.4,
+    }
 
 
-def test_what_a_design_takes_from_its_base_is_said_first(design: Sweep, workplace: Path) -> None:
+def test_what_a_design_takes_from_its_base_is_said_first(
+    design: Sweep, workplace: Path
+) -> None:
     yielding = BASE.replace("  damping:", "  yield: {ratio: 1.2}\n  damping:")
     (workplace / "base.yaml").write_text(f"{yielding}limits: {{drift_ratio: 0.01}}\n")
     first, second, *_ = design(BUILDING, "--dry-run").stderr.splitlines()
@@ -365,7 +435,10 @@ def test_cases_studies_and_designs_are_told_apart(design: Sweep, workplace: Path
     assert "is a case without `variables`" in design(BASE).stderr
     assert "is a file without `variables`" in design("rps: 1").stderr
     (workplace / "task.yaml").write_text(FRAME, encoding="utf-8")
-    for command, said in (("sweep", "is a design"), ("timehistory", "`rps design task.yaml`")):
+    for command, said in (
+        ("sweep", "is a design"),
+        ("timehistory", "`rps design task.yaml`"),
+    ):
         result = CliRunner().invoke(program, [command, "task.yaml"])
         assert result.exit_code == 3
         assert said in result.stderr
@@ -395,7 +468,9 @@ def test_the_shipped_design_against_a_grid(no_figures: None) -> None:
     """
     file = str(ROOT / "cases/designs/column_width.yaml")
     result = CliRunner().invoke(program, ["design", file, "--json", "-o", "out"])
-    assert result.exit_code == 10, result.stderr  # two of the 14 other motions overturn it
+    assert result.exit_code == 10, (
+        result.stderr
+    )  # two of the 14 other motions overturn it
     found = json.loads(result.stdout)
     text, axis = read_text(file), np.linspace(0.0, 1.0, 31)
     task = parse_design(text, file)
@@ -404,14 +479,23 @@ def test_the_shipped_design_against_a_grid(no_figures: None) -> None:
     design = lay_out(task.study_of(values))
     context = design.context
     numbers = range(0, len(design), LARGEST_BATCH)
-    batches = [[design[n] for n in range(f, min(f + LARGEST_BATCH, len(design)))] for f in numbers]
+    batches = [
+        [design[n] for n in range(f, min(f + LARGEST_BATCH, len(design)))]
+        for f in numbers
+    ]
     results = [run_batch(context, batch) for batch in batches]
     outcomes = np.concatenate([found.outcomes for found in results])
     fallen = np.char.startswith(outcomes, "overturned").reshape(-1, 22)
 
-    shear = np.concatenate([found.columns["max_base_shear"] for found in results]).reshape(-1, 22)
-    drift = np.concatenate([found.columns["drift_ratio"] for found in results]).reshape(-1, 22)
-    shear = np.quantile(np.where(fallen, np.inf, shear), 0.5, axis=1, method="inverted_cdf")
+    shear = np.concatenate(
+        [found.columns["max_base_shear"] for found in results]
+    ).reshape(-1, 22)
+    drift = np.concatenate([found.columns["drift_ratio"] for found in results]).reshape(
+        -1, 22
+    )
+    shear = np.quantile(
+        np.where(fallen, np.inf, shear), 0.5, axis=1, method="inverted_cdf"
+    )
     # Of 22 one may overturn, and three may drift more than 84 % are to.
     weights = weights_of(range(22), 500, 1)
     passes = (weights @ fallen.T <= 1) & (weights @ (fallen | (drift > 0.006)).T <= 3)
@@ -422,7 +506,9 @@ def test_the_shipped_design_against_a_grid(no_figures: None) -> None:
 
 
 @pytest.mark.parametrize(("beside", "fails"), [((3, 4, 5, 7, 8), 5), ((4, 5, 7), 0)])
-def test_a_best_design_that_stands_alone_is_told(beside: tuple[int, ...], fails: int) -> None:
+def test_a_best_design_that_stands_alone_is_told(
+    beside: tuple[int, ...], fails: int
+) -> None:
     holds = np.array([[True] * 9])
     holds[0, list(beside)] = False
     answer: Any = SimpleNamespace(places=np.linspace(0.0, 1.0, 9)[:, None], passes=holds)

@@ -10,14 +10,25 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from rpscli.report.study.fragility import FragilityOptions, LimitStates, fragilities, fragility
+from rpscli.report.study.fragility import (
+    FragilityOptions,
+    LimitStates,
+    fragilities,
+    fragility,
+)
 from rpscli.report.study.scatter import (
     PulseSection,
     SpectrumOptions,
     overturning_spectrum,
     records_without_period,
 )
-from rpscli.sweep.statistics.lognormal import Bootstrap, Lognormal, band, lognormal_fit, probit_fit
+from rpscli.sweep.statistics.lognormal import (
+    Bootstrap,
+    Lognormal,
+    band,
+    lognormal_fit,
+    probit_fit,
+)
 from sweep.small_studies import (
     BROKEN,
     RHO,
@@ -161,7 +172,10 @@ def test_variations_of_the_same_motions_do_not_pretend_to_more_data() -> None:
     once = fit(im, im > 0.7, resamples=0)
     often = fit(np.repeat(im, 50), np.repeat(im > 0.7, 50), weight=1 / 50, resamples=0)
     assert often.beta == pytest.approx(once.beta, rel=1e-6)
-    assert fit(np.repeat(im, 50), np.repeat(im > 0.7, 50), resamples=0).beta < 0.3 * once.beta
+    assert (
+        fit(np.repeat(im, 50), np.repeat(im > 0.7, 50), resamples=0).beta
+        < 0.3 * once.beta
+    )
 
 
 @pytest.mark.evidence("statistics and fragilities", "exact")
@@ -177,7 +191,9 @@ def test_the_penalised_fit_is_the_maximum_of_its_objective() -> None:
         density = np.exp(-0.5 * eta**2) / math.sqrt(2.0 * math.pi)
         w = density**2 / (p * (1.0 - p))
         information = w.sum() * (w @ x**2) - (w @ x) ** 2
-        return float(np.sum(np.log(np.where(y, p, 1.0 - p))) + 0.5 * math.log(information))
+        return float(
+            np.sum(np.log(np.where(y, p, 1.0 - p))) + 0.5 * math.log(information)
+        )
 
     a, b = float(found.intercept[0]), float(found.slope[0])
     top = objective(a, b)
@@ -227,13 +243,19 @@ def test_bands_leave_out_bootstrap_samples_without_a_fit() -> None:
 MEASURED = ("scale: [0.5, 1.0]", "scale: {measure: PGV, values: [0.2, 0.4, 0.8]}")
 
 
-def test_overturned_points_exceed_every_limit_and_failed_ones_none(study_of: Make) -> None:
+def test_overturned_points_exceed_every_limit_and_failed_ones_none(
+    study_of: Make,
+) -> None:
     def answer(at: Place) -> Stored:
         ratio = 0.9 if at["number"] % 2 else 0.1
-        return fallen(at["scale"] == 0.8, rotation_ratio=ratio) if at["number"] else BROKEN
+        return (
+            fallen(at["scale"] == 0.8, rotation_ratio=ratio) if at["number"] else BROKEN
+        )
 
     options = FragilityOptions(
-        limits=LimitStates(rotation_ratio=(0.5,), drift_ratio=(0.01,)), series=(), resamples=0
+        limits=LimitStates(rotation_ratio=(0.5,), drift_ratio=(0.01,)),
+        series=(),
+        resamples=0,
     )
     report = fragilities(made(study_of, answer, MEASURED), options)
     assert [curve.limit.label for curve in report.curves] == [
@@ -246,7 +268,9 @@ def test_overturned_points_exceed_every_limit_and_failed_ones_none(study_of: Mak
     assert (rotation.counted, rotation.failed) == (53, 1)
     assert (drift.exceeded, overturning.exceeded) == (18, 18)
     assert rotation.exceeded > 18
-    assert rotation.observed.intensity.tolist() == pytest.approx([0.2, 0.4, 0.8], rel=1e-12)
+    assert rotation.observed.intensity.tolist() == pytest.approx(
+        [0.2, 0.4, 0.8], rel=1e-12
+    )
     # Each of three limits counts the 18 overturned histories; drift and overturning are separated.
     counts = f"36 of {rotation.exceeded + 18} histories beyond a limit overturned"
     notes = list(report.notes)
@@ -254,8 +278,12 @@ def test_overturned_points_exceed_every_limit_and_failed_ones_none(study_of: Mak
     said = "2 of 3 curves, such as drift_ratio > 0.01: the data are separated"
     assert notes[2].startswith(said)
     lost = ((curve, f"{n} of 400 fail") for n, curve in enumerate(report.curves))
-    assert [*report.told(lost)] == ["3 of 3 curves, such as rotation_ratio > 0.5: 0 of 400 fail"]
-    assert notes[0].startswith("pools 2 values of podium.bearing.slenderness and 3 values")
+    assert [*report.told(lost)] == [
+        "3 of 3 curves, such as rotation_ratio > 0.5: 0 of 400 fail"
+    ]
+    assert notes[0].startswith(
+        "pools 2 values of podium.bearing.slenderness and 3 values"
+    )
     assert notes[1].endswith(counts)
 
 
@@ -270,7 +298,9 @@ def test_a_median_beyond_all_intensities_is_called_extrapolated(
         return stored(rotation_ratio=0.9 if high else 0.1)
 
     options = FragilityOptions(
-        limits=LimitStates(rotation_ratio=(0.5,), overturning=False), series=(), resamples=0
+        limits=LimitStates(rotation_ratio=(0.5,), overturning=False),
+        series=(),
+        resamples=0,
     )
     results = made(study_of, answer, MEASURED)
     (curve,) = fragilities(results, options).curves
@@ -287,21 +317,31 @@ scale: [0.2, 0.4]
 
 def test_overturning_spectra_are_dimensionless(study_of: Make) -> None:
     text = WITHOUT_RECORDS + PULSES.replace(", mine.txt", "")
-    results = made(study_of, lambda at: fallen(at["scale"] > 0.3, scale=at["scale"]), text=text)
+    results = made(
+        study_of, lambda at: fallen(at["scale"] > 0.3, scale=at["scale"]), text=text
+    )
     found = overturning_spectrum(results, SpectrumOptions())
     points, p = cells(found), results.table.layout.properties[0].frequency_parameter
-    assert points["frequency_over_p"][:2] == pytest.approx([4.0 * math.pi / p] * 2, rel=1e-12)
+    assert points["frequency_over_p"][:2] == pytest.approx(
+        [4.0 * math.pi / p] * 2, rel=1e-12
+    )
     # A sampled sine has its peak on a sample: the amplitude is exact to rounding.
     amplitudes = points["amplitude_over_g_tan_alpha"][:2]
     assert amplitudes == pytest.approx([0.2 / 0.10, 0.4 / 0.10], rel=1e-9)
     drawn: Any = found.drawn("title")
-    (least,) = [line for line in drawn.axes[0].lines if line.get_label() == "least that overturns"]
+    (least,) = [
+        line for line in drawn.axes[0].lines if line.get_label() == "least that overturns"
+    ]
     assert least.get_ydata() == pytest.approx([4.0, 4.0], rel=1e-9)
 
 
-def test_a_file_has_its_place_in_a_spectrum_and_systems_share_the_axes(study_of: Make) -> None:
+def test_a_file_has_its_place_in_a_spectrum_and_systems_share_the_axes(
+    study_of: Make,
+) -> None:
     lines = [f"{0.01 * i} {math.sin(math.pi * i / 40.0)}" for i in range(81)]
-    Path("mine.txt").write_text("# Time (s) Acceleration (m/s2)\n" + "\n".join(lines) + "\n")
+    Path("mine.txt").write_text(
+        "# Time (s) Acceleration (m/s2)\n" + "\n".join(lines) + "\n"
+    )
     # Rounding decides at the border of uplift: 1e-9 of the critical rotation is none in a figure.
     low = stored(scale=0.4, rotation_ratio=1e-9)
     results = made(study_of, lambda _: low, text=WITHOUT_RECORDS + PULSES)
@@ -324,4 +364,7 @@ def test_a_file_has_its_place_in_a_spectrum_and_systems_share_the_axes(study_of:
     assert set(points["outcome"]) == {"survived"}
     alone = overturning_spectrum(results, SpectrumOptions(pulses={"mine.txt": pulse}))
     drawn: Any = alone.drawn("title")
-    assert [line.get_label() for line in drawn.axes[0].lines] == ["at rest", "least that overturns"]
+    assert [line.get_label() for line in drawn.axes[0].lines] == [
+        "at rest",
+        "least that overturns",
+    ]

@@ -84,8 +84,12 @@ def test_the_model_tells_more_outcomes_than_thresholds(
         key = f"{int(row['test']):03d}"
         values = motions[f"t{key}"] * float(motions[f"s{key}"])
         motion = GroundMotion(values, 0.005, key, key, "table motion")
-        (workplace / "motions" / f"Test{key}.at2").write_text(at2_text(motion), encoding="utf-8")
-        lines += [f"Test{key},specimen {n},{row[f'specimen_{n}_overturned']}" for n in (1, 2)]
+        (workplace / "motions" / f"Test{key}.at2").write_text(
+            at2_text(motion), encoding="utf-8"
+        )
+        lines += [
+            f"Test{key},specimen {n},{row[f'specimen_{n}_overturned']}" for n in (1, 2)
+        ]
     (workplace / "observed.csv").write_text("\n".join(lines) + "\n", encoding="utf-8")
     for n in (1, 2):
         name = f"specimen_{n}.yaml"
@@ -109,7 +113,9 @@ reports: [comparison]
         observed = np.array([float(row["observed [SI]"]) == 1.0 for row in pairs])
         shares = []
         for name in ("pga [m/s2]", "pgv [m/s]"):
-            at = np.array([float(points[int(row["point [-]"]) - 1][name]) for row in pairs])
+            at = np.array(
+                [float(points[int(row["point [-]"]) - 1][name]) for row in pairs]
+            )
             shares.append(np.mean((at >= judged.threshold(at, observed)) == observed))
         # Published first results with this model are 0.89 and 0.92; thresholds are fitted here.
         assert float(counted["agreed_share [-]"]) > max(shares)
@@ -134,7 +140,9 @@ def test_the_readme_shows_what_its_commands_give(
     stored = motions_of(granite)
     numbers = [int(row["test"]) for row in observed_rows(granite)]
     tests = {
-        k: GroundMotion(stored[f"t{k:03d}"] * float(stored[f"s{k:03d}"]), 0.005, f"{k}", "", "")
+        k: GroundMotion(
+            stored[f"t{k:03d}"] * float(stored[f"s{k:03d}"]), 0.005, f"{k}", "", ""
+        )
         for k in numbers
     }
     convert.write(
@@ -148,7 +156,9 @@ def test_the_readme_shows_what_its_commands_give(
         r"^(.*), (fitted|held out): (\d+) of (\d+) .*?(\d+) over", printed, re.MULTILINE
     )
     outcomes = {(name, part): tuple(map(int, counts)) for name, part, *counts in lines}
-    held = {name: counts for (name, part), counts in outcomes.items() if part == "held out"}
+    held = {
+        name: counts for (name, part), counts in outcomes.items() if part == "held out"
+    }
     found = {
         told: [counts for name, counts in held.items() if by in name]
         for told, by in {

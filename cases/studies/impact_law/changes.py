@@ -16,7 +16,10 @@ import numpy as np
 from matplotlib.figure import Figure
 
 STOREYS, PERIOD = "superstructure.storeys [-]", "superstructure.period [s]"
-SLENDERNESS, MASSES = "podium.bearing.slenderness [-]", "podium.superstructure_mass_ratio [-]"
+SLENDERNESS, MASSES = (
+    "podium.bearing.slenderness [-]",
+    "podium.superstructure_mass_ratio [-]",
+)
 ENDS = "podium.bearing.curvature_ratio [-]"
 LAW, LOSS = "podium.impact.law [-]", "podium.impact.loss [-]"
 RESULTS = {"rotation_ratio [-]": "rotation", "base_shear_ratio [-]": "base shear"}
@@ -44,7 +47,9 @@ def main(folder: Path) -> None:
     """Read, pair, draw."""
     with (folder / "points.csv").open(encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
-    key, values = (LOSS, ("1.0", "0.4")) if LOSS in rows[0] else (LAW, ("flexible", "rigid"))
+    key, values = (
+        (LOSS, ("1.0", "0.4")) if LOSS in rows[0] else (LAW, ("flexible", "rigid"))
+    )
     down, across = ((STOREYS,), (SLENDERNESS,))
     if key == LAW:
         down, across = ((STOREYS, PERIOD), (SLENDERNESS, MASSES))
@@ -54,7 +59,9 @@ def main(folder: Path) -> None:
             row["outcome [-]"].startswith("overturned"),
             {name: float(row[name] or "nan") for name in RESULTS},
         )
-        cells[tuple(row[name] for name in (ENDS, *down, *across))][row[key]].append(motion)
+        cells[tuple(row[name] for name in (ENDS, *down, *across))][row[key]].append(
+            motion
+        )
     panels, lines, columns = (
         list(dict.fromkeys(cell[part] for cell in cells))
         for part in (slice(1), slice(1, 1 + len(down)), slice(1 + len(down), None))
@@ -66,13 +73,19 @@ def main(folder: Path) -> None:
         at = panels.index(place[0]), lines.index(place[1]), columns.index(place[2])
         maps[:, *at] = changes(pairs)
     largest = float(np.nanmax(np.abs(maps)))
-    figure = Figure(figsize=(8.0, 2.0 + 0.36 * len(lines) * len(maps)), layout="constrained")
-    grid = figure.subplots(len(maps), len(panels), squeeze=False, sharex=True, sharey=True)
+    figure = Figure(
+        figsize=(8.0, 2.0 + 0.36 * len(lines) * len(maps)), layout="constrained"
+    )
+    grid = figure.subplots(
+        len(maps), len(panels), squeeze=False, sharex=True, sharey=True
+    )
     for (result, panel), axes in np.ndenumerate(grid):
         image = axes.imshow(
             maps[result, panel], cmap="RdBu_r", vmin=-largest, vmax=largest, aspect="auto"
         )
-        axes.set_xticks(range(len(columns)), [", ".join(each) for each in columns], rotation=90)
+        axes.set_xticks(
+            range(len(columns)), [", ".join(each) for each in columns], rotation=90
+        )
         axes.set_yticks(range(len(lines)), [", ".join(each) for each in lines])
         if result == 0:
             axes.set_title(f"rho = {panels[panel][0]}")

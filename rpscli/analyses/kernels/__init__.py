@@ -1,1 +1,3 @@
-"""Structures and records in, histories out: what the analyses hand to the compiled kernels."""
+"""Structures and records in, histories out: what the analyses hand
+to the compiled kernels.
+"""

@@ -38,7 +38,8 @@ from rpscli.physics.state import (
 from rpscli.records.ground_motion import MotionComponents
 
 MOST_NUMBERS = 1e9
-"""Of one history and what follows from it: 8 GB, of which those that are reached are taken."""
+"""Of one history and what follows from it: 8 GB, of which those
+that are reached are taken."""
 
 MOST_STEPS = 1e10
 """Of one history: more than an hour."""
@@ -51,7 +52,9 @@ FIRST_LOG = 4096
 
 
 class Request(NamedTuple):
-    """A history to run: numbers of its structure and its motion among all, and a factor."""
+    """A history to run: numbers of its structure and its motion
+    among all, and a factor.
+    """
 
     system: int
     motion: int
@@ -68,9 +71,11 @@ def run_of(
     events: int = 0,
     finer: int = 1,
 ) -> Run:
-    """Input of the kernel, with room for results, and rows and events of the first history.
+    """Input of the kernel, with room for results, and rows and
+    events of the first history.
 
-    With `pairs` all motions have two horizontal components, and systems are those of pairs.
+    With `pairs` all motions have two horizontal components, and
+    systems are those of pairs.
     """
     first = systems.view(np.ndarray)
     n = int(first["n"][0])
@@ -107,7 +112,9 @@ def run_of(
 
 
 def follow(run: Run, lanes: int, *, interruptible: bool = False) -> None:
-    """Follow every history of a run, of one component or of pairs; writes `run.results`."""
+    """Follow every history of a run, of one component or of
+    pairs; writes `run.results`.
+    """
     from rpscli.physics.integrate import integrate
 
     prepare(run.ways, lanes)
@@ -122,8 +129,9 @@ class SampledHistory:
     motion: MotionComponents  # Of the ground, as dense as the samples
     samples: Record  # (intervals + 1,)
     floors: NDArray[np.float64]
-    """(intervals + 1, 3, n) displacements [m] and velocities [m/s] relative to the ground, absolute
-    accelerations [m/s2]; behind those in x come those in y of pairs, and upwards on springs."""
+    """(intervals + 1, 3, n) displacements [m] and velocities [m/s] relative to the
+    ground, absolute accelerations [m/s2]; behind those in x come those in y of
+    pairs, and upwards on springs."""
     log: Record  # (events,)
     devices: NDArray[np.float64]  # (intervals + 1, 4, devices), see `physics.run.Output`
 
@@ -138,8 +146,9 @@ def longest_history(
 
 def numbers_of_a_sample(structure: PodiumStructure) -> int:
     """Count of the numbers at each sample of a history and all that follows from it."""
-    # Of a floor u, u', u'', drift and shear, and u, u'' on a fixed base; of the podium time,
-    # ground, u_b, v_b, moment, four forces of all columns and of one, and what is stored.
+    # Of a floor u, u', u'', drift and shear, and u, u'' on a fixed base; of the podium
+    # time, ground, u_b, v_b, moment, four forces of all columns and of one, and what is
+    # stored.
     return 7 * structure.storeys + len(SAMPLE) + 14 + 4 * len(structure.devices)
 
 
@@ -155,10 +164,10 @@ def refuse_endless(
     numbers = float(samples) * numbers_of_a_sample(structure)
     if numbers > MOST_NUMBERS:
         raise CaseError(
-            f"the history may have {samples} samples of"
-            f" {structure.storeys} storeys, {8e-9 * numbers:.3g} GB, which must not be more than"
-            f" {8e-9 * MOST_NUMBERS:.3g} GB; {remedy}, or resample the record, whose dt is"
-            f" {motion.dt:g} s"
+            f"the history may have {samples} samples of {structure.storeys} storeys,"
+            f" {8e-9 * numbers:.3g} GB, which must not be more than"
+            f" {8e-9 * MOST_NUMBERS:.3g} GB; {remedy}, or resample the record, whose dt"
+            f" is {motion.dt:g} s"
         )
     refuse_steps(most_steps(structure, settings, motion.duration), structure)
 
@@ -168,21 +177,22 @@ def refuse_steps(steps: float, structure: PodiumStructure) -> None:
     if steps <= MOST_STEPS:
         return
     cause = (
-        "the record is too long, or the highest modes of the building are too stiff or too"
-        " strongly damped; give a shorter analysis.free_vibration, damp by `modal`, or use"
-        " fewer storeys"
+        "the record is too long, or the highest modes of the building are too stiff or"
+        " too strongly damped; give a shorter analysis.free_vibration, damp by `modal`,"
+        " or use fewer storeys"
     )
     alone = steps_a_second(replace(structure, devices=()))
     each = [steps_a_second(replace(structure, devices=(d,))) for d in structure.devices]
     if each and max(each) > 2.0 * alone:
         i = each.index(max(each))
         cause = (
-            f"podium.devices.{i} ({structure.devices[i].kind}) is so stiff, or damps so strongly,"
-            " that steps must be short; use less of it, a larger exponent, or a friction damper"
+            f"podium.devices.{i} ({structure.devices[i].kind}) is so stiff, or damps so"
+            " strongly, that steps must be short; use less of it, a larger exponent, or"
+            " a friction damper"
         )
     raise CaseError(
-        f"the history may take {steps:.3g} steps, which must not be more than {MOST_STEPS:.3g}:"
-        f" {cause}"
+        f"the history may take {steps:.3g} steps, which must not be more than"
+        f" {MOST_STEPS:.3g}: {cause}"
     )
 
 
@@ -192,7 +202,9 @@ def sampled_history(
     settings: TimeHistorySettings,
     finer: int = 1,
 ) -> SampledHistory:
-    """Run one history and keep everything, at so many even parts of each sampling interval."""
+    """Run one history and keep everything, at so many even parts
+    of each sampling interval.
+    """
     pairs = motion.y is not None
     systems = stacked_systems([(structure, settings)], pairs=pairs)
     refuse_endless(structure, settings, motion, finer)
@@ -201,7 +213,13 @@ def sampled_history(
     events = FIRST_LOG
     while True:
         run = run_of(
-            systems, [motion], [Request(0, 0)], pairs=pairs, rows=rows, events=events, finer=finer
+            systems,
+            [motion],
+            [Request(0, 0)],
+            pairs=pairs,
+            rows=rows,
+            events=events,
+            finer=finer,
         )
         follow(run, lanes=1, interruptible=seconds > WORTH_A_THREAD)
         history = run.results[0]

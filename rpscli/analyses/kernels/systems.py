@@ -19,27 +19,31 @@ DEVICE_KINDS = {kind: code for code, kind in enumerate((*DEVICES.values(), OwnDa
 """Codes of laws in the kernels."""
 
 LEAST_SHAKEN = 1e-3
-"""Modes that hardly take part are not given more weight than those that take part so much."""
+"""Modes that hardly take part are not given more weight than
+those that take part so much."""
 
 
 SYSTEMS_KEPT = 128
-"""Records of systems that are kept: to make one takes longer than to copy what of it is used."""
+"""Records of systems that are kept: to make one takes longer than to
+copy what of it is used."""
 
 STACKS_KEPT = 4
 """Records of many systems that are kept: the batches of a study share them."""
 
 _PLAIN = record_type(SYSTEM)
 _SQUARE = ("phi", "storey_shear_of")
-"""Matrices of modes, most of a record, which stand together; of few storeys little is used."""
+"""Matrices of modes, most of a record, which stand together; of
+few storeys little is used."""
 
 
 def stacked_systems(
     systems: Sequence[tuple[PodiumStructure, TimeHistorySettings]], *, pairs: bool = False
 ) -> Record:
-    """Structures with as many storeys and axes, each with its settings: (S axes,) records to read.
+    """Structures with as many storeys and axes, each with its settings:
+    (S axes,) records to read.
 
-    Of each that in x comes first, then where both components act that in y, which planar ones
-    refuse, then that upwards of floors on springs.
+    Of each that in x comes first, then where both components act that in y, which planar
+    ones refuse, then that upwards of floors on springs.
     """
     every = []
     for structure, settings in systems:
@@ -63,13 +67,17 @@ def stacked_systems(
 
 
 def directions(structure: PodiumStructure, *, pairs: bool) -> list[PodiumStructure]:
-    """The structure in x, in y where both components act, and upwards on vertical springs."""
+    """The structure in x, in y where both components act, and
+    upwards on vertical springs.
+    """
     upwards = [] if structure.upwards is None else [structure.upwards]
     return [structure, *[structure.across] * pairs, *upwards]
 
 
 @lru_cache(STACKS_KEPT)
-def _stacked(systems: tuple[tuple[PodiumStructure, TimeHistorySettings], ...], axes: int) -> Record:
+def _stacked(
+    systems: tuple[tuple[PodiumStructure, TimeHistorySettings], ...], axes: int
+) -> Record:
     stacked = records(SYSTEM, count=len(systems))
     n = systems[0][0].storeys
     rows = stacked.view(_PLAIN, np.ndarray)
@@ -101,7 +109,9 @@ def _system(structure: PodiumStructure, settings: TimeHistorySettings) -> Record
 
 
 def fill_podium(record: Record, structure: PodiumStructure) -> None:
-    """The rocking storey, its devices with the constants of their laws, and what it stands on."""
+    """The rocking storey, its devices with the constants of their
+    laws, and what it stands on.
+    """
     b = structure.bearing
     record["n"] = structure.storeys
     record["axes"] = 1
@@ -128,7 +138,10 @@ def fill_podium(record: Record, structure: PodiumStructure) -> None:
 
         numbers = impact.factor * (1.0 - impact.loss), impact.factor * impact.loss
         record["impact_law"] = address_of(own.restitution, own.taken()[own.restitution])
-        record["impact_constants"][: 2 + len(impact.constants)] = *numbers, *impact.constants
+        record["impact_constants"][: 2 + len(impact.constants)] = (
+            *numbers,
+            *impact.constants,
+        )
     record["columns"] = structure.columns
     record["devices"] = len(structure.devices)
     for i, device in enumerate(structure.devices):
@@ -140,7 +153,9 @@ def fill_podium(record: Record, structure: PodiumStructure) -> None:
 
             law = device.law
             taken = device.law.taken()
-            watched = 0 if law.watched is None else address_of(law.watched, taken[law.watched])
+            watched = (
+                0 if law.watched is None else address_of(law.watched, taken[law.watched])
+            )
             record["own_law"][i, 0] = address_of(law.force, taken[law.force])
             record["own_law"][i, 1:] = watched, law.linear is None
     if (bed := structure.bed) is not None:
@@ -160,14 +175,17 @@ def fill_podium(record: Record, structure: PodiumStructure) -> None:
 def fill_settings(
     record: Record, structure: PodiumStructure, settings: TimeHistorySettings
 ) -> None:
-    """Limits and steps; refuse a start beyond the overturning limit, or a model that ends there."""
+    """Limits and steps; refuse a start beyond the overturning limit, or
+    a model that ends there.
+    """
     critical = structure.critical_rotation
     end = structure.bearing.largest_rotation
     limit = settings.overturning_limit * critical
     if limit > end:
         raise ValueError(
-            f"overturning_limit = {settings.overturning_limit:.6g} times theta_cr must not exceed"
-            f" {end:.6g} rad, where the columns lie down; use less than {end / critical:.4g}"
+            f"overturning_limit = {settings.overturning_limit:.6g} times theta_cr must"
+            f" not exceed {end:.6g} rad, where the columns lie down; use less than"
+            f" {end / critical:.4g}"
         )
     if abs(settings.initial_rotation) >= limit:
         raise ValueError(
@@ -193,7 +211,8 @@ def fill_settings(
 
 def fill_building(record: Record, building: Superstructure) -> None:
     """The modes of the fixed base, mass-normalised, with the storey shears of each."""
-    # Any weights would do for `physics.floors`; these let the fewest steps pass the bound.
+    # Any weights would do for `physics.floors`; these let the fewest steps pass the
+    # bound.
     n = record["n"] = building.storeys
     omega = building.frequencies
     xi = building.damping_ratios
@@ -221,43 +240,51 @@ def fill_building(record: Record, building: Superstructure) -> None:
         record["hardening"] = building.hardening
     record["bend_ratio"] = np.max(omega2 * omega2 * of_accelerations / of_shears)
     record["shear_bound_of"][:n] = np.sum(shears.T**2 / of_shears, axis=1) ** -0.5
-    record["acceleration_bound_of"][:n] = np.sum(shapes.T**2 / of_accelerations, axis=1) ** -0.5
+    record["acceleration_bound_of"][:n] = (
+        np.sum(shapes.T**2 / of_accelerations, axis=1) ** -0.5
+    )
 
 
 UPLIFTED_ANGLE = 0.9
 """Largest step times the highest uplifted frequency [rad], at accuracy 1."""
 
 LOSS = 1.06e-5
-"""A step of angle z takes this times z^8 from a vibration's energy: of the rule of order 6."""
+"""A step of angle z takes this times z^8 from a vibration's
+energy: of the rule of order 6."""
 
 MOST_LOST = 5e-6
-"""Part of its energy that steps may take from the fastest vibration, which has `USUAL_SHARE` of all
-at most. It shortens the steps of buildings with less than some 7 % of damping in their last mode,
-of one storey, whose only mode may have all energy, nearly always: by that share and, since ground
-that changes from sample to sample gives and takes more of it, by its square."""
+"""Part of its energy that steps may take from the fastest vibration, which has
+`USUAL_SHARE` of all at most. It shortens the steps of buildings with less than some 7 %
+of damping in their last mode, of one storey, whose only mode may have all energy, nearly
+always: by that share and, since ground that changes from sample to sample gives and takes
+more of it, by its square."""
 
 USUAL_SHARE = 0.2
-"""Effective mass of the last mode over all, which is its share of what impacts give: less than
-this in nearly all buildings of several storeys."""
+"""Effective mass of the last mode over all, which is its share of what impacts give: less
+than this in nearly all buildings of several storeys."""
 
 UPLIFTED_DECAY = 0.7
-"""Largest step times the fastest decay rate, where that asks for more: at 1 the energy of a
-building with 90 % of damping closes to 4e-6, which falls with the seventh power. The rule is
-unstable beyond about 4."""
+"""Largest step times the fastest decay rate, where that asks for more: at 1 the energy of
+a building with 90 % of damping closes to 4e-6, which falls with the seventh power. The
+rule is unstable beyond about 4."""
 
 STEP_ERROR = 1e-7
-"""Largest error of a step in the tilt's rate, over what that is and changes by, at accuracy 1; as
-orders 6 and 5 differ. Steps made for the fastest of several modes hardly ever come near. Where the
-tilt itself changes faster, over one storey, in large rotations of short columns, past theta_cr
-under floors that weigh hundreds of them, or near upright, they are shorter."""
+"""Largest error of a step in the tilt's rate, over what that is and changes by, at
+accuracy 1; as orders 6 and 5 differ. Steps made for the fastest of several modes hardly
+ever come near. Where the tilt itself changes faster, over one storey, in large rotations
+of short columns, past theta_cr under floors that weigh hundreds of them, or near
+upright, they are shorter."""
 
 PASSES_ERROR = 1 / 16
-"""Of that under both components: the wobble of tall buildings at small tilts, hundreds of passes
-each of which depends on the one before, ends too early with more. Rotations ask for a quarter."""
+"""Of that under both components: the wobble of tall buildings at small tilts,
+hundreds of passes each of which depends on the one before, ends too early with more.
+Rotations ask for a quarter."""
 
 
 def step_error(settings: TimeHistorySettings, share: float = 1.0) -> float:
-    """Largest error of a step, over the velocities of the tilt; a share of the usual one."""
+    """Largest error of a step, over the velocities of the tilt;
+    a share of the usual one.
+    """
     return max(share * STEP_ERROR * settings.accuracy**-6, LEAST_ERROR)
 
 
@@ -267,7 +294,8 @@ LEAST_ERROR = 1e-12
 STEP_SECONDS = 1.5e-6
 MODE_SECONDS = 2e-7
 STRENGTH_SECONDS = 2e-8
-"""About the time of a step of one history, what each mode adds, and each of a storey that yields.
+"""About the time of a step of one history, what each mode adds, and each
+of a storey that yields.
 """
 
 
@@ -282,19 +310,20 @@ def uplifted_rate(structure: PodiumStructure) -> float:
 
 
 LINEAR_SPEEDS = 1e-8, 1e-6
-"""Of sqrt(g R): up to the first of these velocities a power of it is taken as linear, too little to
-be felt; up to the second where the power would else decay faster than `FASTEST_POWER`. Both at
-accuracy 1, which divides them."""
+"""Of sqrt(g R): up to the first of these velocities a power of it is taken as linear, too
+little to be felt; up to the second where the power would else decay faster than
+`FASTEST_POWER`. Both at accuracy 1, which divides them."""
 
 START_SPEED = 3e-6
-"""Of sqrt(g R), over the accuracy's square: so fast a tilt to any side begins to slide. More slowly
-friction turns its velocity to where it is pushed so soon that thousands of steps would follow it.
-What is let go by a margin that falls by m' a second has a = m' t, and so much after sqrt(2 v/m').
+"""Of sqrt(g R), over the accuracy's square: so fast a tilt to any side begins to slide.
+More slowly friction turns its velocity to where it is pushed so soon that thousands of
+steps would follow it. What is let go by a margin that falls by m' a second has a = m' t,
+and so much after sqrt(2 v/m').
 """
 
 FASTEST_POWER = 6e4
-"""Of a power of the velocity: its decay rate where it is taken as linear, over sqrt(g/R), if that
-can be had."""
+"""Of a power of the velocity: its decay rate where it is taken as linear, over
+sqrt(g/R), if that can be had."""
 
 MOST_POWER_STEPS = 5e8
 """Of one history whose dampers shorten its steps: some minutes."""
@@ -303,7 +332,8 @@ MOST_POWER_STEPS = 5e8
 def powers(structure: PodiumStructure) -> list[tuple[float, float]]:
     """Coefficient and exponent of dampers whose force rises steeply about rest."""
     laws = (
-        (getattr(d, "coefficient", 0.0), getattr(d, "exponent", 1.0)) for d in structure.devices
+        (getattr(d, "coefficient", 0.0), getattr(d, "exponent", 1.0))
+        for d in structure.devices
     )
     return [(coefficient, exponent) for coefficient, exponent in laws if exponent < 1.0]
 
@@ -314,12 +344,16 @@ def linear_speed(structure: PodiumStructure, accuracy: float) -> float:
     g = structure.gravity
     least, most = (share * math.sqrt(g * R) for share in LINEAR_SPEEDS)
     limit = FASTEST_POWER * math.sqrt(g / R) * least_base_mass(structure)
-    speeds = [(c / limit) ** (1.0 / (1.0 - exponent)) for c, exponent in powers(structure)]
+    speeds = [
+        (c / limit) ** (1.0 / (1.0 - exponent)) for c, exponent in powers(structure)
+    ]
     return float(min(max([least, *speeds]), most)) / accuracy
 
 
 def steps_a_second(structure: PodiumStructure, accuracy: float = 1.0) -> float:
-    """A bound on steps a second, with those that a power of the velocity asks for about rest."""
+    """A bound on steps a second, with those that a power of the
+    velocity asks for about rest.
+    """
     speed = linear_speed(structure, accuracy)
     damping = sum(c * speed ** (exponent - 1.0) for c, exponent in powers(structure))
     about_rest = damping / least_base_mass(structure) / UPLIFTED_DECAY
@@ -330,8 +364,9 @@ def steps_a_second(structure: PodiumStructure, accuracy: float = 1.0) -> float:
 
 def uplifted_angle(structure: PodiumStructure) -> float:
     """Largest step times the highest uplifted frequency [rad]."""
-    # A step of angle z loses LOSS z^8 of a vibration's energy, thus w t z^7 of that in the time t;
-    # what the dampers do not take in 1/(2 xi w) goes on for as long as histories are followed.
+    # A step of angle z loses LOSS z^8 of a vibration's energy, thus w t z^7 of that in
+    # the time t; what the dampers do not take in 1/(2 xi w) goes on for as long as
+    # histories are followed.
     if (building := structure.superstructure) is None:
         return UPLIFTED_ANGLE
     damped = float(2.0 * building.damping_ratios[-1] * building.frequencies[-1])
@@ -342,17 +377,24 @@ def uplifted_angle(structure: PodiumStructure) -> float:
     return float(min(UPLIFTED_ANGLE, drift ** (1.0 / 7.0)))
 
 
-def most_steps(structure: PodiumStructure, settings: TimeHistorySettings, duration: float) -> float:
-    """Steps of a history that never comes to rest, but for those that events and errors add."""
+def most_steps(
+    structure: PodiumStructure, settings: TimeHistorySettings, duration: float
+) -> float:
+    """Steps of a history that never comes to rest, but for those
+    that events and errors add.
+    """
     free = longest_free_vibration(structure, settings)
     return (duration + free) * steps_a_second(structure, settings.accuracy)
 
 
 SWINGS = 2.0
-"""Free vibration `auto` of columns that roll from rest and never come to it, over their period."""
+"""Free vibration `auto` of columns that roll from rest and never come
+to it, over their period."""
 
 
-def longest_free_vibration(structure: PodiumStructure, settings: TimeHistorySettings) -> float:
+def longest_free_vibration(
+    structure: PodiumStructure, settings: TimeHistorySettings
+) -> float:
     """Longest time that a history may be followed after its record [s]."""
     if settings.free_vibration is not None:
         return settings.free_vibration
@@ -390,8 +432,8 @@ def bedded_rate(structure: PodiumStructure) -> float:
 
 def highest_frequency(structure: PodiumStructure) -> float:
     """A bound on the frequencies of the uplifted structure [rad/s]."""
-    # A free beam of at least N m_c Io/4 + m_b adds at most the first storey's spring over that
-    # (Theory (10.5); Weyl's inequality).
+    # A free beam of at least N m_c Io/4 + m_b adds at most the first storey's spring over
+    # that (Theory (10.5); Weyl's inequality).
     square = (structure.gravity / structure.bearing.semi_diagonal) * (
         1.0 + abs(2.0 * structure.bearing.curvature_ratio - 1.0)
     )
@@ -402,7 +444,9 @@ def highest_frequency(structure: PodiumStructure) -> float:
 
 
 def fastest_decay(structure: PodiumStructure) -> float:
-    """A bound on the decay rates of the uplifted structure [1/s], by the same inequality for C."""
+    """A bound on the decay rates of the uplifted structure [1/s], by
+    the same inequality for C.
+    """
     if (building := structure.superstructure) is None:
         return 0.0
     fixed = np.max(2.0 * building.damping_ratios * building.frequencies)
@@ -411,4 +455,7 @@ def fastest_decay(structure: PodiumStructure) -> float:
 
 def least_base_mass(structure: PodiumStructure) -> float:
     """Inertia against u_b at theta = 0 without the floors: columns and cap beam [kg]."""
-    return 0.25 * structure.columns_mass * structure.bearing.inertia_ratio + structure.cap_beam_mass
+    return (
+        0.25 * structure.columns_mass * structure.bearing.inertia_ratio
+        + structure.cap_beam_mass
+    )

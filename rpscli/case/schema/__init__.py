@@ -1,1 +1,3 @@
-"""The format of a case: every key, what it may hold, and what is wrong with a document."""
+"""The format of a case: every key, what it may hold, and what
+is wrong with a document.
+"""

@@ -33,13 +33,14 @@ class DeviceSection(Section):
     """A device between ground and cap beam; its kind says which keys it has."""
 
     kind: Annotated[str, NameOf(DAMPERS)]
-    """viscous or friction damper, elastic stop, unbonded tendon in the axis of each column, or the
-    resistance of the columns to rolling, which goes with rigid ends alone; other keys name one by
-    its number, from 0: podium.devices.0.force"""
+    """viscous or friction damper, elastic stop, unbonded tendon in the axis of each
+    column, or the resistance of the columns to rolling, which goes with rigid ends alone;
+    other keys name one by its number, from 0: podium.devices.0.force"""
     coefficient: Annotated[float | None, Quantity("N s/m", symbol="c", above=0)] = None
     """viscous: c, the force at a velocity of 1 m/s, P = c |u_b'|^a"""
     exponent: Annotated[
-        float | None, Quantity(symbol="a", at_least=0.2, at_most=2, remedy="1 is a linear damper")
+        float | None,
+        Quantity(symbol="a", at_least=0.2, at_most=2, remedy="1 is a linear damper"),
     ] = None
     """viscous: a of P = c |u_b'|^a; 1 if left out"""
     force: Annotated[float | None, Quantity("N", symbol="F_d", above=0)] = None
@@ -55,8 +56,8 @@ class DeviceSection(Section):
     yield_force: Annotated[float | None, Quantity("N", symbol="P_y", above=0)] = None
     """tendon: P_y of one; left out: it never yields"""
     lever: Annotated[float | None, Quantity("m", symbol="f", above=0)] = None
-    """rolling_resistance: f, lever by which the normal force lies ahead of the contact; a moment f
-    N at either end of the columns"""
+    """rolling_resistance: f, lever by which the normal force lies ahead of the contact; a
+    moment f N at either end of the columns"""
 
 
 OWN_DAMPERS = OwnLaws("kind", DAMPERS, DeviceSection)
@@ -68,29 +69,36 @@ Mass = Annotated[float, Quantity("kg", above=0)]
 Time = Annotated[float, Quantity("s", above=0)]
 Masses = Annotated[float | tuple[float, ...], Quantity("kg", above=0, per_storey=True)]
 Lengths = Annotated[float | tuple[float, ...], Quantity("m", above=0, per_storey=True)]
-Stiffnesses = Annotated[float | tuple[float, ...], Quantity("N/m", above=0, per_storey=True)]
+Stiffnesses = Annotated[
+    float | tuple[float, ...], Quantity("N/m", above=0, per_storey=True)
+]
 Forces = Annotated[float | tuple[float, ...], Quantity("N", above=0, per_storey=True)]
 Profile = Literal["sine", "uniform", "linear", "flexural"]
 
 
 class DampingSection(Section):
-    """Damping of the building on a fixed base: Rayleigh if modes are named, else modal."""
+    """Damping of the building on a fixed base: Rayleigh if
+    modes are named, else modal.
+    """
 
     ratio: DampingRatio
     """critical damping ratio"""
     modes: ModePair | None = None
-    """the two modes of Rayleigh damping, counted from 1; left out: the same ratio in every mode.
-    One storey, or one mode named twice: stiffness-proportional"""
+    """the two modes of Rayleigh damping, counted from 1; left out: the same ratio in
+    every mode. One storey, or one mode named twice: stiffness-proportional"""
 
 
 class YieldSection(Section):
-    """Storeys that yield at a shear, elastic on the way back; strengths are given in one way."""
+    """Storeys that yield at a shear, elastic on the way back;
+    strengths are given in one way.
+    """
 
     ratio: Annotated[float | None, Quantity(symbol="F_1/V_st", above=0)] = None
-    """F_1/V_st, strength of the first storey over the base shear at uplift; upwards strengths go as
-    the shears of the first mode on a fixed base"""
+    """F_1/V_st, strength of the first storey over the base shear at uplift; upwards
+    strengths go as the shears of the first mode on a fixed base"""
     shears: Forces | None = None
-    """strengths F_i in place of ratio: one value, or a list from the bottom; the same in y"""
+    """strengths F_i in place of ratio: one value, or a list from
+    the bottom; the same in y"""
     hardening: Annotated[float, Quantity(symbol="h", at_least=0, below=1)] = 0.0
     """h, stiffness after yielding over the elastic one, kinematic, of all storeys"""
 
@@ -109,7 +117,9 @@ class AcrossSection(Section):
 class SuperstructureSection(Section):
     """The building on the cap beam: a shear building."""
 
-    storeys: Annotated[int, Whole(0, MOST_STOREYS, remedy="0 = no building, a rigid frame")]
+    storeys: Annotated[
+        int, Whole(0, MOST_STOREYS, remedy="0 = no building, a rigid frame")
+    ]
     """number of storeys; 0 = none, a rigid rolling or rocking frame"""
     storey_mass: Masses | None = None
     """floor mass: one value, or a list from the bottom"""
@@ -118,22 +128,27 @@ class SuperstructureSection(Section):
     period: Time | None = None
     """first period on a fixed base; scales the profile"""
     profile: Profile | None = None
-    """distribution of the stiffness: a sine, linear or flexural first mode, or uniform stiffness;
-    sine if a period is given without it, up to twice as stiff at the roof as at the bottom"""
+    """distribution of the stiffness: a sine, linear or flexural first mode, or
+    uniform stiffness; sine if a period is given without it, up to twice as stiff at
+    the roof as at the bottom"""
     stiffness: Stiffnesses | None = None
     """storey stiffness in place of period and profile: one value, or a list"""
     damping: DampingSection | None = None
     """damping of the building on a fixed base"""
     vertical_period: Time | None = None
-    """first period of the vertical vibration on the cap beam, in which floors move up and down on
-    springs; left out: they rise rigidly with the beam"""
+    """first period of the vertical vibration on the cap beam, in which floors move up and
+    down on springs; left out: they rise rigidly with the beam"""
     vertical_damping: DampingRatio | None = None
-    """damping ratio of each vertical mode; 0.05 if a vertical period is given without it"""
+    """damping ratio of each vertical mode; 0.05 if a vertical
+    period is given without it"""
     yields: YieldSection | None = Field(
-        None, alias="yield", description="strengths of the storeys; left out: they stay elastic"
+        None,
+        alias="yield",
+        description="strengths of the storeys; left out: they stay elastic",
     )
     y: AcrossSection | None = None
-    """another stiffness in the second horizontal direction; left out: the same as in the first"""
+    """another stiffness in the second horizontal direction; left out:
+    the same as in the first"""
 
 
 class DimensionsSection(Section):
@@ -146,7 +161,8 @@ class DimensionsSection(Section):
     wedge_width: Length | None = None
     """2B', across the outer edges of the arcs; ignored for flat ends"""
     radius: Annotated[
-        float, Quantity("m", symbol="r, of the arcs", at_least=0, remedy="use 0 for flat ends")
+        float,
+        Quantity("m", symbol="r, of the arcs", at_least=0, remedy="use 0 for flat ends"),
     ]
     """r of the arcs; 0 = flat ends"""
 
@@ -163,12 +179,16 @@ class BearingSection(Section):
     curvature_ratio: Annotated[
         float | Literal["critical"] | None,
         Quantity(
-            symbol="rho = r/2H", at_least=0, remedy="use 0 for flat ends", words=("critical",)
+            symbol="rho = r/2H",
+            at_least=0,
+            remedy="use 0 for flat ends",
+            words=("critical",),
         ),
     ] = None
     """rho = r/2H; 0 = flat ends; critical = (1 - tan(alpha)/tan(alpha'))/2"""
     dimensions: DimensionsSection | None = None
-    """sizes in place of semi_diagonal, slenderness, wedge_slenderness and curvature_ratio"""
+    """sizes in place of semi_diagonal, slenderness,
+    wedge_slenderness and curvature_ratio"""
     inertia_ratio: Annotated[
         float,
         Quantity(
@@ -181,8 +201,8 @@ class BearingSection(Section):
     inertia_ratio_axial: Annotated[
         float | None, Quantity(symbol="I_3/(m_c R^2), I_3 about the axis", above=0)
     ] = None
-    """I_3/(m_c R^2), I_3 about the column's axis, where both components act; left out: solid round
-    columns, (B'/R)^2/2"""
+    """I_3/(m_c R^2), I_3 about the column's axis, where both components act; left out:
+    solid round columns, (B'/R)^2/2"""
 
 
 class ImpactSection(Section):
@@ -199,16 +219,16 @@ class ImpactSection(Section):
         float | None,
         Quantity(symbol="kappa = (1 - e)/(1 - e of the law)", at_least=0, at_most=1.5),
     ] = None
-    """kappa: part of the law's loss at an impact, 1 - e = kappa (1 - e of the law); 1 = impulse at
-    the edges, 0.3 to 0.5 = spread over plane ends on a damped bed; left out: 0.3 with contact
-    plane, else 1"""
+    """kappa: part of the law's loss at an impact, 1 - e = kappa (1 - e of the law); 1 =
+    impulse at the edges, 0.3 to 0.5 = spread over plane ends on a damped bed; left out:
+    0.3 with contact plane, else 1"""
     factor: PositiveRatio = 1.0
     """multiplies the restitution of the law"""
     contact_time: Annotated[
         float, Quantity("s", symbol="t_c", at_least=0, at_most=LONGEST_CONTACT)
     ] = CONTACT_TIME
-    """t_c, how long an impact takes, where both horizontal components act: the nearer a pass to
-    upright, the more of an impact's loss it has; 0 = passes lose nothing"""
+    """t_c, how long an impact takes, where both horizontal components act: the nearer a
+    pass to upright, the more of an impact's loss it has; 0 = passes lose nothing"""
 
 
 OWN_IMPACTS = OwnLaws("law", IMPACT_LAWS, ImpactSection)
@@ -219,11 +239,13 @@ def _law_alone(value: object) -> object:
 
 
 class ContactSection(Section):
-    """What the ends of the columns bear on; other kinds than rigid take one of three sizes."""
+    """What the ends of the columns bear on; other kinds than rigid
+    take one of three sizes.
+    """
 
     kind: Literal["rigid", "plane", "edges"] = "rigid"
-    """rigid: nothing moves before uplift; plane: a compliant joint that lifts gradually; edges: two
-    compliant edges that lift at once"""
+    """rigid: nothing moves before uplift; plane: a compliant joint that lifts gradually;
+    edges: two compliant edges that lift at once"""
     period_ratio: Annotated[float | None, Quantity(symbol="r = T/T_1", above=1)] = None
     """first period in full contact over that on a fixed base, as measured"""
     stiffness: Annotated[float | None, Quantity("N/m", symbol="K_s", above=0)] = None
@@ -253,8 +275,8 @@ class PlanSection(RowsSection):
     """Where columns stand: along the motion, and across it."""
 
     y: RowsSection | None = None
-    """in the second horizontal direction, with a column wherever two rows cross; forces of columns
-    under both components need it"""
+    """in the second horizontal direction, with a column wherever two rows cross; forces
+    of columns under both components need it"""
 
 
 Modulus = Annotated[float, Quantity("Pa", symbol="E", above=0)]
@@ -294,7 +316,9 @@ class PodiumSection(Section):
     """gamma = m_b/(N m_c); 0 = no cap beam, free-standing columns"""
     superstructure_mass_ratio: PositiveRatio | None = None
     """eta = M_tot/m_b, building over cap beam"""
-    cap_beam_mass: Annotated[float | None, Quantity("kg", symbol="m_b", at_least=0)] = None
+    cap_beam_mass: Annotated[float | None, Quantity("kg", symbol="m_b", at_least=0)] = (
+        None
+    )
     """m_b; in place of a ratio"""
     column_mass: Mass | None = None
     """m_c of one column; in place of cap_beam_mass_ratio"""
@@ -302,19 +326,24 @@ class PodiumSection(Section):
     """their number N"""
     bearing: BearingSection
     """shape of one column"""
-    impact: Annotated[ImpactSection, OWN_IMPACTS, BeforeValidator(_law_alone)] = ImpactSection()
+    impact: Annotated[ImpactSection, OWN_IMPACTS, BeforeValidator(_law_alone)] = (
+        ImpactSection()
+    )
     """impact law; a law's name alone may stand here"""
     contact: ContactSection = ContactSection()
-    """what the ends of the columns bear on: rigid, or giving way, with a period before uplift"""
+    """what the ends of the columns bear on: rigid, or giving way,
+    with a period before uplift"""
     friction: Annotated[
         float | None, Quantity(symbol="of friction, at both ends of the columns", above=0)
     ] = None
-    """coefficient of friction at both ends of the columns; the friction demand is then judged"""
+    """coefficient of friction at both ends of the columns; the
+    friction demand is then judged"""
     plan: PlanSection | None = None
     """where columns stand; gives the overturning moment in their forces, with
     superstructure.storey_height"""
     column: ColumnSection | None = None
-    """section and material of a column; give its moment and the pressure under its ends"""
+    """section and material of a column; give its moment and
+    the pressure under its ends"""
     devices: tuple[Annotated[DeviceSection, OWN_DAMPERS], ...] = ()
     """dampers, stops and tendons between ground and cap beam, at most 8"""
 
@@ -344,7 +373,9 @@ class RecordSection(Section):
     source: Text
     """a file, a member of a record set, or a pulse; both components of a pair: `?both`"""
     x: Text | None = Field(
-        None, exclude=True, description="in place of source where y is given: the first component"
+        None,
+        exclude=True,
+        description="in place of source where y is given: the first component",
     )
     y: Text | None = None
     """second horizontal component, which acts together with the first one"""
@@ -366,7 +397,9 @@ class RecordSection(Section):
     def _first_component(cls, value: object) -> object:
         if isinstance(value, dict) and "x" in value and "source" not in value:
             x = value["x"]
-            fits = isinstance(x, str) and x.strip()  # else it is refused as x, which is enough
+            fits = (
+                isinstance(x, str) and x.strip()
+            )  # else it is refused as x, which is enough
             return {"source": x if fits else "x", **value}
         return value
 
@@ -390,7 +423,8 @@ class AnalysisSection(Section):
     overturning_displacement: Annotated[
         float | None, Quantity("m", symbol="of the cap beam", above=0)
     ] = None
-    """displacement of the cap beam that does too, such as a moat or the length of a seat"""
+    """displacement of the cap beam that does too, such as a
+    moat or the length of a seat"""
     gravity: Annotated[float, Quantity("m/s2", above=0)] = STANDARD_GRAVITY
     """g"""
     accuracy: PositiveRatio = 1.0

@@ -10,7 +10,13 @@ from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
 from rpscli.case.schema.fields import CHECKED_BY_ITSELF
-from rpscli.case.schema.keys import annotation_at, field_at, fields_of, section_at, unknown_key
+from rpscli.case.schema.keys import (
+    annotation_at,
+    field_at,
+    fields_of,
+    section_at,
+    unknown_key,
+)
 from rpscli.case.text.document import MOST_FAULTS, Document, Fault, Path, dotted, shown
 from rpscli.errors import listed, nearest
 
@@ -21,7 +27,9 @@ KEYS_SHOWN = 12
 
 
 def checked(model: type[Model], document: Document) -> Model:
-    """The sections of a document, each valid in itself; raises CaseError with all faults."""
+    """The sections of a document, each valid in itself; raises
+    CaseError with all faults.
+    """
     read = None
     errors = list[ErrorDetails]()
     try:
@@ -36,12 +44,18 @@ def checked(model: type[Model], document: Document) -> Model:
 def _told(
     model: type[BaseModel], document: Document, errors: list[ErrorDetails]
 ) -> Iterator[Fault]:
-    """What reading found, keys with nothing behind them, and what pydantic says of the others."""
+    """What reading found, keys with nothing behind them, and what
+    pydantic says of the others.
+    """
     known = fields_of(model)
-    by_itself = {key for key, field in known.items() if CHECKED_BY_ITSELF in field.metadata}
+    by_itself = {
+        key for key, field in known.items() if CHECKED_BY_ITSELF in field.metadata
+    }
     inside = {key: of for key, of in document.content.items() if key not in by_itself}
     # Among the values of a varied key null takes the key out.
-    empty = [p for p in _nulls(inside, ()) if p[0] != "vary" or [*map(type, p[3:])] != [int]]
+    empty = [
+        p for p in _nulls(inside, ()) if p[0] != "vary" or [*map(type, p[3:])] != [int]
+    ]
     announced = {fault.path for fault in document.faults}.intersection(empty)
     unknown = list[Path]()
     missing = list[Path]()
@@ -59,7 +73,9 @@ def _told(
             continue  # faulty by what is told already
         elif kind == "missing":
             missing.append(path)
-        elif kind != "too_short" or not document.at(path):  # else its values are refused one by one
+        elif kind != "too_short" or not document.at(
+            path
+        ):  # else its values are refused one by one
             text = f"{shown(document.at(path))} {_rule(error, path, model)}"
             yield Fault(path, f"{dotted(path)} = {text}")
     if "rps" in known and inside.keys().isdisjoint(known):
@@ -67,7 +83,9 @@ def _told(
     yield from _misnamed(model, unknown, missing)
 
 
-def _misnamed(model: type[BaseModel], unknown: list[Path], missing: list[Path]) -> Iterator[Fault]:
+def _misnamed(
+    model: type[BaseModel], unknown: list[Path], missing: list[Path]
+) -> Iterator[Fault]:
     """Unknown keys, and missing ones that none of these was taken for."""
     meant = set[Path | None]()
     for number, path in enumerate(unknown):
@@ -89,7 +107,9 @@ def _nulls(value: object, path: Path) -> Iterator[Path]:
 
 
 def _path(error: ErrorDetails, document: Document) -> Path:
-    """Path in the document: pydantic's location without its names for branches of a union."""
+    """Path in the document: pydantic's location without its names
+    for branches of a union.
+    """
     missing = error["type"] == "missing"
     path: Path = ()
     for part in error["loc"][:-1] if missing else error["loc"]:
@@ -105,7 +125,9 @@ def _rule(error: ErrorDetails, path: Path, model: type[BaseModel]) -> str:
         suggestion = nearest(str(error["input"]), words)
         some = [*words[:KEYS_SHOWN], f"one of {len(words) - KEYS_SHOWN} more"]
         known = listed(some if len(words) > KEYS_SHOWN + 1 else words)
-        return f"must be {known}" + (f"; did you mean {suggestion}?" if suggestion else "")
+        return f"must be {known}" + (
+            f"; did you mean {suggestion}?" if suggestion else ""
+        )
     if kind in {"model_type", "model_attributes_type"}:
         section = section_at(model, path)
         keys = [*fields_of(section)] if section else []

@@ -1,7 +1,7 @@
 """Kinds of field: what a value of a file may be, and its JSON schema.
 
-Each is a mark inside `typing.Annotated` from which pydantic takes the check and the schema, so
-that bounds, unit and meaning stand once, beside the field.
+Each is a mark inside `typing.Annotated` from which pydantic takes the check and the
+schema, so that bounds, unit and meaning stand once, beside the field.
 """
 
 from __future__ import annotations
@@ -37,7 +37,8 @@ from rpscli.units import KINDS, Written, si_value
 class Section(BaseModel):
     """A mapping of the file: unknown keys are refused, and nothing changes later.
 
-    The text below a key is its description; validators are built when they are first used.
+    The text below a key is its description; validators are built
+    when they are first used.
     """
 
     model_config = ConfigDict(
@@ -52,7 +53,9 @@ class Section(BaseModel):
 
     @classmethod
     def build(cls) -> None:
-        """Build what was put off, of all sections: pydantic before 2.14 dumps none without."""
+        """Build what was put off, of all sections: pydantic before
+        2.14 dumps none without.
+        """
         cls.model_rebuild()
         for section in cls.__subclasses__():
             section.build()
@@ -79,7 +82,9 @@ BOUNDS: dict[str, tuple[str, Callable[[float, float], bool], str]] = {
 
 
 class Mark:
-    """What a value must be: `read` refuses what it is not, and `json_schema` describes it."""
+    """What a value must be: `read` refuses what it is not, and
+    `json_schema` describes it.
+    """
 
     read: Callable[..., Any]
     json_schema: Callable[..., dict[str, Any]]
@@ -113,7 +118,9 @@ class Quantity(Mark):
     @property
     def rule(self) -> str:
         """The bounds in words, such as ``> 0 and <= 1``."""
-        return " and ".join(f"{BOUNDS[name][0]} {b:g}" for name, b in self._bounds.items())
+        return " and ".join(
+            f"{BOUNDS[name][0]} {b:g}" for name, b in self._bounds.items()
+        )
 
     def read(self, value: object) -> float | str:
         """The SI value, or the word; raises pydantic's error if it is neither."""
@@ -139,7 +146,9 @@ class Quantity(Mark):
     @property
     def _not_a_number(self) -> str:
         words = "".join(f", or the word {word}" for word in self.words)
-        kind = "a number" if self.unit == PLAIN else f"{KINDS[self.unit][0]} in {self.unit}"
+        kind = (
+            "a number" if self.unit == PLAIN else f"{KINDS[self.unit][0]} in {self.unit}"
+        )
         return f"must be {kind}{words}"
 
     def _with_unit(self, text: str) -> float:
@@ -147,7 +156,10 @@ class Quantity(Mark):
             refuse(f"{self._not_a_number}; did you mean {suggestion}?")
         if self.unit == PLAIN:
             share = ", as 0.05 for 5 %" * ("%" in text)
-            refuse(f"is text; it {self._not_a_number}, without unit and without quotes{share}")
+            refuse(
+                f"is text; it {self._not_a_number}, without unit and without"
+                f" quotes{share}"
+            )
         try:
             return si_value(text, self.unit)
         except ValueError as error:
@@ -161,7 +173,9 @@ class Quantity(Mark):
         each = core_schema.tuple_schema([one], variadic_item_index=0, min_length=1)
         return core_schema.tagged_union_schema(
             {"one": one, "each": each},
-            discriminator=lambda value: "each" if isinstance(value, list | tuple) else "one",
+            discriminator=lambda value: (
+                "each" if isinstance(value, list | tuple) else "one"
+            ),
         )
 
     def json_schema(self) -> dict[str, Any]:
@@ -178,7 +192,11 @@ class Quantity(Mark):
             items = {"anyOf": [*forms]} if len(forms) > 1 else forms[0]
             forms.append({"type": "array", "items": items, "minItems": 1})
         extra = {"symbol": self.symbol} if self.symbol else {}
-        return ({"anyOf": forms} if len(forms) > 1 else forms[0]) | {"unit": self.unit} | extra
+        return (
+            ({"anyOf": forms} if len(forms) > 1 else forms[0])
+            | {"unit": self.unit}
+            | extra
+        )
 
 
 @dataclass(frozen=True)
@@ -192,11 +210,16 @@ class Whole(Mark):
     def read(self, value: object) -> int:
         """The value; raises pydantic's error if it is not one."""
         if isinstance(value, bool) or not isinstance(value, Integral):
-            whole = isinstance(value, float) and value.is_integer() and f"; write {value:.0f}"
+            whole = (
+                isinstance(value, float) and value.is_integer() and f"; write {value:.0f}"
+            )
             refuse(f"must be a whole number{whole or ''}")
         number = int(value)
         if number < self.at_least or (self.at_most is not None and number > self.at_most):
-            refuse(f"must be a whole number {self.rule}{f'; {self.remedy}' if self.remedy else ''}")
+            refuse(
+                "must be a whole number"
+                f" {self.rule}{f'; {self.remedy}' if self.remedy else ''}"
+            )
         return number
 
     @property
@@ -230,7 +253,10 @@ class NameOf(Mark):
         if isinstance(value, str) and (value in self.registry or value in self.names):
             return value
         meant = nearest(str(value), self.names)
-        refuse(f"must be {listed(self.names)}" + (f"; did you mean {meant}?" if meant else ""))
+        refuse(
+            f"must be {listed(self.names)}"
+            + (f"; did you mean {meant}?" if meant else "")
+        )
 
     def json_schema(self) -> dict[str, Any]:
         """The JSON schema."""
@@ -238,18 +264,26 @@ class NameOf(Mark):
 
 
 DampingRatio = Annotated[
-    float, Quantity(symbol="of critical damping", at_least=0, below=1, remedy="5 % is 0.05")
+    float,
+    Quantity(symbol="of critical damping", at_least=0, below=1, remedy="5 % is 0.05"),
 ]
 
 
 def _two(value: object) -> object:
     if not isinstance(value, list | tuple) or len(value) != 2:
-        refuse("must be two modes, as in [1, 2]; leave modes out to damp every mode equally")
+        refuse(
+            "must be two modes, as in [1, 2]; leave modes out to damp every mode equally"
+        )
     return value
 
 
 Mode = Annotated[int, Whole(1, remedy="modes count from 1")]
-_MODES = {"type": "array", "items": {"type": "integer", "minimum": 1}, "minItems": 2, "maxItems": 2}
+_MODES = {
+    "type": "array",
+    "items": {"type": "integer", "minimum": 1},
+    "minItems": 2,
+    "maxItems": 2,
+}
 ModePair = Annotated[tuple[Mode, Mode], BeforeValidator(_two), WithJsonSchema(_MODES)]
 """Two modes of vibration, counted from 1."""
 
@@ -262,11 +296,15 @@ def _text(value: object) -> str:
     return value
 
 
-Text = Annotated[str, PlainValidator(_text), WithJsonSchema({"type": "string", "minLength": 1})]
+Text = Annotated[
+    str, PlainValidator(_text), WithJsonSchema({"type": "string", "minLength": 1})
+]
 """Text that says something."""
 
 
-def must_be(kinds: type | tuple[type, ...], text: str, *, filled: bool = False) -> BeforeValidator:
+def must_be(
+    kinds: type | tuple[type, ...], text: str, *, filled: bool = False
+) -> BeforeValidator:
     """A value of some kinds; `text` says what it is if not."""
 
     def check(value: object) -> object:
@@ -305,22 +343,30 @@ class ValueRange(Section):
 
 @dataclass(frozen=True)
 class Several:
-    """One value, a list of them, or numbers at equal spaces; in each case a tuple of values."""
+    """One value, a list of them, or numbers at equal spaces; in
+    each case a tuple of values.
+    """
 
     item: Any
     alone: bool = True
     spaced: bool = True
     least: int = 1
 
-    def __get_pydantic_core_schema__(self, _: object, handler: GetCoreSchemaHandler) -> CoreSchema:
+    def __get_pydantic_core_schema__(
+        self, _: object, handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
         item = handler.generate_schema(self.item)
         after = core_schema.no_info_after_validator_function
-        each = core_schema.tuple_schema([item], variadic_item_index=0, min_length=self.least)
+        each = core_schema.tuple_schema(
+            [item], variadic_item_index=0, min_length=self.least
+        )
         forms: dict[Any, CoreSchema] = {"a list": each}
         if self.alone:
             forms["a value"] = after(lambda value: (value,), item)
         if self.spaced:
-            spaced = after(lambda section: section.values, handler.generate_schema(ValueRange))
+            spaced = after(
+                lambda section: section.values, handler.generate_schema(ValueRange)
+            )
             forms["a range"] = core_schema.chain_schema([spaced, each])
 
         def form(value: object) -> str:
@@ -338,7 +384,8 @@ class Several:
 
 @dataclass(frozen=True)
 class OneOf:
-    """A mapping that is one of several kinds of section, under its name: ``name: {option: value}``.
+    """A mapping that is one of several kinds of section, under its name:
+    ``name: {option: value}``.
 
     In JSON schemas a name may stand alone, as where a file is read before it is checked.
     """
@@ -349,7 +396,9 @@ class OneOf:
 
     def name_of(self, value: object) -> str:
         """The kind of a value; refuses what has none."""
-        if not isinstance(value, str) and not (isinstance(value, dict) and len(value) == 1):
+        if not isinstance(value, str) and not (
+            isinstance(value, dict) and len(value) == 1
+        ):
             refuse("must be a name, or one `name: {option: value}`")
         name = value if isinstance(value, str) else str(next(iter(value)))
         if name not in self.sections and (now := self.gone.get(name)):
@@ -359,7 +408,9 @@ class OneOf:
             refuse(f"is not a {self.what}; {hint(name, self.sections, known)}")
         return name
 
-    def __get_pydantic_core_schema__(self, _: object, handler: GetCoreSchemaHandler) -> CoreSchema:
+    def __get_pydantic_core_schema__(
+        self, _: object, handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
         def inside(value: Any) -> object:
             (options,) = value.values()
             if not isinstance(options, dict):
@@ -383,14 +434,17 @@ class OneOf:
             "minProperties": 1,
             "maxProperties": 1,
             "additionalProperties": False,
-            "properties": {k: {"anyOf": [handler(each), {"type": "null"}]} for k, each in kinds},
+            "properties": {
+                k: {"anyOf": [handler(each), {"type": "null"}]} for k, each in kinds
+            },
         }
         return {"anyOf": [{"enum": list(self.sections)}, one]}
 
 
 @dataclass(frozen=True, eq=False)
 class OwnLaws:
-    """A section of ours, or where `key` names a law of another package that with its constants.
+    """A section of ours, or where `key` names a law of another package
+    that with its constants.
 
     They are keys like ours, known once a document names the law.
     """
@@ -407,9 +461,14 @@ class OwnLaws:
             constants = self.registry[name].constants
             with self.registry.blaming(name):
                 if taken := [*constants.keys() & self.ours.model_fields.keys()]:
-                    raise ValueError(f"its constant {taken[0]} must not be a key of rps; rename it")
+                    raise ValueError(
+                        f"its constant {taken[0]} must not be a key of rps; rename it"
+                    )
                 keys: dict[str, Any] = {
-                    constant: (Annotated[float, quantity], Field(description=f"of {name}"))
+                    constant: (
+                        Annotated[float, quantity],
+                        Field(description=f"of {name}"),
+                    )
                     for constant, quantity in constants.items()
                 }
                 keys[self.key] = (Literal[name], Field(description="of another package"))

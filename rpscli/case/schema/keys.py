@@ -1,6 +1,8 @@
-"""The keys of a format: units, meaning and bounds, and what an unknown one was meant to be.
+"""The keys of a format: units, meaning and bounds, and what an
+unknown one was meant to be.
 
-They are told one by one, for readers, and as JSON schemas, for editors and other programs.
+They are told one by one, for readers, and as JSON schemas, for
+editors and other programs.
 """
 
 from __future__ import annotations
@@ -39,7 +41,9 @@ def inside(annotation: Any) -> Iterator[Any]:
     """An annotation or a field, and all types and marks that it is made of."""
     yield annotation
     field = isinstance(annotation, FieldInfo)
-    parts = (annotation.annotation, *annotation.metadata) if field else get_args(annotation)
+    parts = (
+        (annotation.annotation, *annotation.metadata) if field else get_args(annotation)
+    )
     for part in parts:
         yield from inside(part)
 
@@ -76,7 +80,8 @@ def annotation_at(model: type[BaseModel], path: Path) -> Any:
     """Annotation of the value at a path, or None; an index stands for any element."""
     below: Any = model
     for key in (part for part in path if isinstance(part, str)):
-        # Keys that the user chooses, or further options, which may be equally spaced numbers.
+        # Keys that the user chooses, or further options, which may be equally spaced
+        # numbers.
         chosen = (
             get_args(part)[1] if get_origin(part) is dict else ValueRange
             for part in inside(below)
@@ -88,7 +93,9 @@ def annotation_at(model: type[BaseModel], path: Path) -> Any:
 
 
 def section_at(model: type[BaseModel], path: Path) -> type[BaseModel] | None:
-    """The model of the mapping at a path, or None if there is no mapping in the format."""
+    """The model of the mapping at a path, or None if there is
+    no mapping in the format.
+    """
     return section_of(annotation_at(model, path))
 
 
@@ -108,12 +115,18 @@ def known_paths(model: type[BaseModel], path: Path = ()) -> tuple[Path, ...]:
 
 
 REMOVED = {
-    "analysis.recontact_rule": "floors always get what the bounces left out would give them"
-    " (was: limit); remove the key",
-    "analysis.overturning_rotation": "use overturning_displacement, where the cap beam is at this"
-    " rotation, or from theta_cr on overturning_limit, the rotation over theta_cr",
-    "reports.comparison.fit": "the report counts outcomes of every system; choose one by them, and"
-    " judge it by a study of other records; remove the key",
+    "analysis.recontact_rule": (
+        "floors always get what the bounces left out would give them (was: limit);"
+        " remove the key"
+    ),
+    "analysis.overturning_rotation": (
+        "use overturning_displacement, where the cap beam is at this rotation, or from"
+        " theta_cr on overturning_limit, the rotation over theta_cr"
+    ),
+    "reports.comparison.fit": (
+        "the report counts outcomes of every system; choose one by them, and judge it"
+        " by a study of other records; remove the key"
+    ),
 }
 """Keys of earlier versions, and what to do without them."""
 
@@ -125,7 +138,9 @@ ELEMENT = re.compile(r"\[(\d+)\]")
 def unknown_key(
     model: type[BaseModel], path: Path, *, suggest: bool = True
 ) -> tuple[Fault, Path | None]:
-    """The fault of an unknown key, and the known key it was taken for, if one is looked for."""
+    """The fault of an unknown key, and the known key it was taken
+    for, if one is looked for.
+    """
     *above, key = path
     parent = tuple(above)
     text = f"{dotted(path)} is not a key of the format"
@@ -156,7 +171,9 @@ def unknown_key(
 
 
 def _meant(model: type[BaseModel], parent: Path, key: str) -> Path | None:
-    """The known key that was probably meant: the same word, a sibling, a similar or longer one."""
+    """The known key that was probably meant: the same word, a sibling,
+    a similar or longer one.
+    """
     siblings = {name: (*parent, name) for name in _keys_in(annotation_at(model, parent))}
     anywhere = {str(path[-1]): path for path in reversed(known_paths(model))}
     meant = anywhere.get(key)
@@ -172,7 +189,9 @@ def _meant(model: type[BaseModel], parent: Path, key: str) -> Path | None:
 @lru_cache(maxsize=1024)
 def unit(key: str) -> str:
     """SI unit of a case key; ``-`` for plain numbers and words."""
-    si_unit = next((mark.unit for mark in _marks_of(key) if isinstance(mark, Quantity)), "1")
+    si_unit = next(
+        (mark.unit for mark in _marks_of(key) if isinstance(mark, Quantity)), "1"
+    )
     return "-" if si_unit == "1" else si_unit
 
 
@@ -198,7 +217,8 @@ SECTIONS = {
     "analysis": "10", "analysis.recontact_tolerance": "3, 10", "analysis.initial_rotation": "3",
     "analysis.overturning_limit": "3", "analysis.gravity": "2", "limits": "8, 15, 16",
 }  # fmt: skip
-"""Sections of THEORY.md in which keys enter; a key without a line has those of its parent."""
+"""Sections of THEORY.md in which keys enter; a key without a line
+has those of its parent."""
 
 
 class KeyReference(NamedTuple):
@@ -231,9 +251,16 @@ def _reference(key: str, field: FieldInfo) -> KeyReference:
     quantity = number if isinstance(number, Quantity) else None
     literals = (get_args(part) for part in marks if get_origin(part) is Literal)
     listed_names = (mark.names for mark in marks if isinstance(mark, NameOf))
-    words = (word for each in (*literals, *listed_names) for word in each if isinstance(word, str))
+    words = (
+        word
+        for each in (*literals, *listed_names)
+        for word in each
+        if isinstance(word, str)
+    )
     section = section_of(field.annotation)
-    single = quantity is not None and not (section and "at_most" not in section.model_fields)
+    single = quantity is not None and not (
+        section and "at_most" not in section.model_fields
+    )
     keys = {} if section is None else fields_of(section)
     default = field.get_default()
     return KeyReference(
@@ -275,8 +302,13 @@ class PresentKeys(GenerateJsonSchema):
 
 
 def json_schema_of(model: type[BaseModel]) -> dict[str, Any]:
-    """JSON schema of a model; ``unit`` beside a number is the SI unit of a bare number."""
+    """JSON schema of a model; ``unit`` beside a number is the
+    SI unit of a bare number.
+    """
     schema = model.model_json_schema(schema_generator=PresentKeys)
+    for section in [schema, *schema["$defs"].values()]:
+        if "description" in section:
+            section["description"] = " ".join(section["description"].split())
     return {"$schema": DIALECT, **schema}
 
 

@@ -1,8 +1,9 @@
-"""Acceptance limits as pydantic models: one key for each result of the table that may be limited.
+"""Acceptance limits as pydantic models: one key for each result of the
+table that may be limited.
 
-A limit is a number, which every record must keep; or a number that a share of the records may
-exceed, `{at_most: 0.5, share: 0.1}`; or one for a fractile, `{at_most: 0.5, fractile: 0.84}`.
-Results of which small values are bad have `at_least` in place of `at_most`.
+A limit is a number, which every record must keep; or a number that a share of the records
+may exceed, `{at_most: 0.5, share: 0.1}`; or one for a fractile, `{at_most: 0.5, fractile:
+0.84}`. Results of which small values are bad have `at_least` in place of `at_most`.
 """
 
 from __future__ import annotations
@@ -21,11 +22,14 @@ Fractile = Annotated[float, Quantity(above=0, below=1, remedy="84 % is 0.84")]
 
 
 _WITHOUT_SOURCE = {"use_attribute_docstrings": False}
-"""Option of models that no class statement defines: looking for their source takes long."""
+"""Option of models that no class statement defines: looking for
+their source takes long."""
 
 
 class LimitRule(Section):
-    """A limit for the records of a study together; a single history must keep it anyway."""
+    """A limit for the records of a study together; a single
+    history must keep it anyway.
+    """
 
     share: Admissible | None = None
     """share of the records that may exceed the limit; 0 by default"""
@@ -48,13 +52,22 @@ def _limit(quantity: ResultQuantity) -> Any:
 
 @cache
 def _limit_of(unit: str, zero: bool, key: str) -> Any:  # noqa: FBT001 -- whether 0 is admissible
-    number = Annotated[float, Quantity(unit, at_least=0) if zero else Quantity(unit, above=0)]
+    number = Annotated[
+        float, Quantity(unit, at_least=0) if zero else Quantity(unit, above=0)
+    ]
     fields: Any = {key: (number, Field(description="admissible value"))}
     rule = create_model(
-        f"Limit_{unit}_{key}{zero:d}", __base__=LimitRule, __cls_kwargs__=_WITHOUT_SOURCE, **fields
+        f"Limit_{unit}_{key}{zero:d}",
+        __base__=LimitRule,
+        __cls_kwargs__=_WITHOUT_SOURCE,
+        **fields,
     )
-    form = Discriminator(lambda of: "rule" if isinstance(of, dict | LimitRule) else "number")
-    return Annotated[Annotated[rule, Tag("rule")] | Annotated[number, Tag("number")], form]
+    form = Discriminator(
+        lambda of: "rule" if isinstance(of, dict | LimitRule) else "number"
+    )
+    return Annotated[
+        Annotated[rule, Tag("rule")] | Annotated[number, Tag("number")], form
+    ]
 
 
 def described(quantity: ResultQuantity) -> str:
@@ -67,7 +80,9 @@ _FIELDS: Any = {
     quantity.name: (_limit(quantity) | None, Field(None, description=described(quantity)))
     for quantity in LIMITED
 }
-_LIMITS = create_model("Limits", __base__=Section, __cls_kwargs__=_WITHOUT_SOURCE, **_FIELDS)
+_LIMITS = create_model(
+    "Limits", __base__=Section, __cls_kwargs__=_WITHOUT_SOURCE, **_FIELDS
+)
 
 
 class LimitsSection(_LIMITS, use_attribute_docstrings=True):
@@ -80,7 +95,9 @@ class LimitsSection(_LIMITS, use_attribute_docstrings=True):
 
 
 class StudyLimits(LimitsSection):
-    """Limits of studies and designs, which may be on the reliability; it needs a `hazard`."""
+    """Limits of studies and designs, which may be on the
+    reliability; it needs a `hazard`.
+    """
 
     annual_rate: Annotated[float, Quantity(symbol="1/year", above=0)] | None = None
     """how often a year the structure may overturn, from shares at all intensities"""

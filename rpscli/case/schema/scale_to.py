@@ -35,7 +35,9 @@ MeasureName = Annotated[Measure, NameOf(MEASURES), BeforeValidator(_scalable)]
 
 
 def measured_value(value: object, info: ValidationInfo) -> float:
-    """A value of the measure that stands before it, in SI: a number, or text with a unit."""
+    """A value of the measure that stands before it, in SI: a
+    number, or text with a unit.
+    """
     if (measure := info.data.get("measure")) is None:
         return 1.0  # whatever it is: the measure is refused
     number = Quantity(MEASURES[measure].unit, symbol=measure, above=0).read(value)
@@ -46,7 +48,9 @@ def measured_value(value: object, info: ValidationInfo) -> float:
 MeasuredValue = Annotated[
     float,
     PlainValidator(measured_value),
-    WithJsonSchema({"anyOf": [{"type": "number", "exclusiveMinimum": 0}, {"type": "string"}]}),
+    WithJsonSchema(
+        {"anyOf": [{"type": "number", "exclusiveMinimum": 0}, {"type": "string"}]}
+    ),
 ]
 
 
@@ -64,7 +68,8 @@ class ScaleToSection(Section):
     """A value of an intensity measure of the horizontal record, in place of a factor."""
 
     measure: MeasureName
-    """PGA, Sa, AvgSa [m/s2], PGV, FIV3, CAV, Arias [m/s], PGD or Housner [m] when scaled"""
+    """PGA, Sa, AvgSa [m/s2], PGV, FIV3, CAV, Arias [m/s], PGD
+    or Housner [m] when scaled"""
     value: MeasuredValue
     """what it is to be, SI or with a unit, such as 0.4 g"""
     period: Annotated[Annotated[float | None, Quantity("s", above=0)], at_period] = None
@@ -72,12 +77,15 @@ class ScaleToSection(Section):
     damping: DampingRatio = 0.05
     """of Sa, AvgSa or Housner"""
     of: Of | None = None
-    """what of a pair of components it is, rotd50, geomean, rotd100, larger or x (the first); left
-    out: rotd50 at an angle, and where both are among the records; else component, its own"""
+    """what of a pair of components it is, rotd50, geomean, rotd100, larger or x
+    (the first); left out: rotd50 at an angle, and where both are among the
+    records; else component, its own"""
 
 
 def scale_to_of(text: str) -> ScaleToSection:
-    """The target that a text asks for: ``PGA=0.4g``, ``Sa(0.6 s)=1 g``, ``PGV(rotd100)=0.5``."""
+    """The target that a text asks for: ``PGA=0.4g``, ``Sa(0.6 s)=1
+    g``, ``PGV(rotd100)=0.5``.
+    """
     match = _TARGET.fullmatch(text)
     if match is None:
         raise ValueError("write MEASURE=VALUE, as in PGA=0.4g, or Sa(0.6 s)=1g")
@@ -88,14 +96,20 @@ def scale_to_of(text: str) -> ScaleToSection:
         known = MEASURES.names()
         if measure not in known:
             known_are = f"known are {', '.join(known)}"
-            raise ValueError(f"{name} is not a measure; {hint(name, known, known_are, 0.6)}")
+            raise ValueError(
+                f"{name} is not a measure; {hint(name, known, known_are, 0.6)}"
+            )
     given: dict[str, Any] = {"measure": measure, "value": _number(value)}
     if MEASURES[measure].unit == "m/s2" and isinstance(given["value"], float):
         raise ValueError(f"say the unit: {name}={value} g, or {name}={value} m/s2")
     for part in () if inside is None else map(str.strip, inside.split(",")):
-        key, read = ("of", part.lower()) if part.lower() in OF else ("period", _number(part))
+        key, read = (
+            ("of", part.lower()) if part.lower() in OF else ("period", _number(part))
+        )
         if key in given:
-            raise ValueError(f"({inside}): holds a period and one of {', '.join(OF)} at most")
+            raise ValueError(
+                f"({inside}): holds a period and one of {', '.join(OF)} at most"
+            )
         given[key] = read
     try:
         return ScaleToSection.model_validate(given)

@@ -31,8 +31,8 @@ _TITLE = re.compile(r"\s*([^\s\[]+)\s*(?:\[\s*([^\]]*?)\s*\])?\s*")
 class Observation(NamedTuple):
     """One line: under which record, of which system, and what was seen.
 
-    `system` are values of the keys as `comparable` has them; `values` are SI, 1 for overturned, and
-    NaN where nothing was observed.
+    `system` are values of the keys as `comparable` has them; `values` are SI, 1 for
+    overturned, and NaN where nothing was observed.
     """
 
     line: int
@@ -66,14 +66,17 @@ class _Column(NamedTuple):
             return math.nan
         if self.name == OVERTURNED:
             if cell.lower() not in _YES:
-                raise ValueError("must be 1 or 0, true or false, yes or no; empty: not seen")
+                raise ValueError(
+                    "must be 1 or 0, true or false, yes or no; empty: not seen"
+                )
             return _YES[cell.lower()]
         value = math.nan
         with suppress(ValueError):
             value = float(cell)
         if not 0.0 <= value < math.inf:
             raise ValueError(
-                "must be a number >= 0: the largest value without its sign; empty: not measured"
+                "must be a number >= 0: the largest value without its sign; empty: not"
+                " measured"
             )
         return value * si_value(f"1 {self.unit}", self.si_unit) if self.unit else value
 
@@ -90,7 +93,9 @@ def comparable(key: str, value: object) -> str:
 def read_observed(
     name: str | None, folder: Folder, axes: Sequence[Axis], document: Document
 ) -> Observed | None:
-    """The observations that a study names; the document refuses what is wrong with them."""
+    """The observations that a study names; the document refuses
+    what is wrong with them.
+    """
     if name is None:
         return None
     try:
@@ -114,7 +119,9 @@ def read_observed(
             new = _observation(line, columns, row)
             before = seen.setdefault((new.record, new.system), new)
             if before is not new:
-                text = f"{shown(new.record)} of this system is already in line {before.line}"
+                text = (
+                    f"{shown(new.record)} of this system is already in line {before.line}"
+                )
                 raise ValueError(f"{text}; remove one, or add a column that differs")  # noqa: TRY301
         except ValueError as error:
             faults.append(_fault(name, line, str(error)))
@@ -154,10 +161,14 @@ def _title_faults(columns: Sequence[_Column], known: Sequence[str]) -> Iterator[
                 yield f"{shown(column.name)} [{column.unit}] {error}"
 
 
-def _observation(line: int, columns: Sequence[_Column], row: Sequence[str]) -> Observation:
+def _observation(
+    line: int, columns: Sequence[_Column], row: Sequence[str]
+) -> Observation:
     """A line; raises ValueError with what is wrong with it."""
     if len(row) != len(columns):
-        raise ValueError(f"has {len(row)} cells and {len(columns)} titles; make them equal")
+        raise ValueError(
+            f"has {len(row)} cells and {len(columns)} titles; make them equal"
+        )
     record = ""
     system = []
     values = []

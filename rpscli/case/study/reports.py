@@ -17,13 +17,16 @@ from rpscli.registry import Registry
 
 _VARIED = "varied keys"
 VariedKeys = Annotated[AnyKeys, _VARIED]
-"""Keys under `vary`, or record and scale: one, several, or none to pool all that differs."""
+"""Keys under `vary`, or record and scale: one, several, or none
+to pool all that differs."""
 VariedKey = Annotated[Text, _VARIED]
 """One of them."""
 
 
 def varied_keys(options: Section, path: Path = ()) -> Iterator[tuple[Path, str]]:
-    """Varied keys that options name, whatever the options are called, and where they stand."""
+    """Varied keys that options name, whatever the options are
+    called, and where they stand.
+    """
     for name, key_field in type(options).model_fields.items():
         value = getattr(options, name)
         if isinstance(value, Section):
@@ -76,8 +79,8 @@ Options = TypeVar("Options", bound=ReportOptions)
 class ReportKind(Generic[Options]):
     """Options of a kind of report, and what else the study file must know of it.
 
-    `check` holds rules that join the options with the rest of the study; `analyses` are those
-    whose results it shows.
+    `check` holds rules that join the options with the rest of the study; `analyses` are
+    those whose results it shows.
     """
 
     options: type[Options]
@@ -89,10 +92,13 @@ ReportKinds = Mapping[str, ReportKind[Any]]
 """The kinds by name."""
 
 GONE = {
-    "contrast": "`table: {rows: ..., columns: ..., statistic: median}` has the medians of each"
-    " system, and points.csv every history; use these",
-    "directions": "pairs with ?both act together, and points.csv has every angle; remove the"
-    " report",
+    "contrast": (
+        "`table: {rows: ..., columns: ..., statistic: median}` has the medians of each"
+        " system, and points.csv every history; use these"
+    ),
+    "directions": (
+        "pairs with ?both act together, and points.csv has every angle; remove the report"
+    ),
     "efficiency": "the beta of a fragility is the scatter by its measure; use `fragility:"
     " {measure: ...}` for each measure",
     "demand_sample": "points.csv has the demands of every history; remove the report",
@@ -112,17 +118,25 @@ def format_with(kinds: ReportKinds) -> type[StudyFile]:
 def _format(kinds: tuple[tuple[str, type[Section]], ...]) -> type[StudyFile]:
     if not kinds:
         return StudyFile
-    each: Any = Annotated[tuple[Annotated[Any, OneOf("report", dict(kinds), GONE)], ...], A_LIST]
+    each: Any = Annotated[
+        tuple[Annotated[Any, OneOf("report", dict(kinds), GONE)], ...], A_LIST
+    ]
     field = each, Field((), description=StudyFile.model_fields["reports"].description)
-    return create_model("StudyFile", __base__=StudyFile, __doc__=StudyFile.__doc__, reports=field)
+    return create_model(
+        "StudyFile", __base__=StudyFile, __doc__=StudyFile.__doc__, reports=field
+    )
 
 
 def written_out(document: Document, known: Registry[Any]) -> tuple[Document, ReportKinds]:
-    """A study whose reports all have options, if none by name; the kinds by which it is read."""
+    """A study whose reports all have options, if none by name; the
+    kinds by which it is read.
+    """
     reports = document.content.get("reports")
     if not isinstance(reports, list):
         return document, dict(known)
-    named = [name for each in reports for name in (each if isinstance(each, dict) else [each])]
+    named = [
+        name for each in reports for name in (each if isinstance(each, dict) else [each])
+    ]
     others = [name for name in named if isinstance(name, str) and name not in known]
     # Those of other packages only if it names others; what is named must be usable.
     kinds = known.everything() if others else dict(known)
@@ -139,7 +153,9 @@ def written_out(document: Document, known: Registry[Any]) -> tuple[Document, Rep
 
 
 def requests_of(document: Document, file: StudyFile) -> tuple[ReportRequest, ...]:
-    """Reports of a study that is written out; each has files of its own, as lines, lines_2."""
+    """Reports of a study that is written out; each has files of
+    its own, as lines, lines_2.
+    """
     requests: list[ReportRequest] = []
     taken = {*OF_THE_STUDY}
     for index, options in enumerate(file.reports):

@@ -1,7 +1,7 @@
 """The study file as pydantic models: every key, its meaning and bounds.
 
-What `base` and the varied keys hold belongs to the case format and is checked as a case; rules
-that join several keys stand in `study`.
+What `base` and the varied keys hold belongs to the case format and is checked as a case;
+rules that join several keys stand in `study`.
 """
 
 from __future__ import annotations
@@ -38,7 +38,12 @@ from rpscli.case.schema.fields import (
 )
 from rpscli.case.schema.keys import unit
 from rpscli.case.schema.limits import StudyLimits
-from rpscli.case.schema.scale_to import MeasuredValue, MeasureName, at_period, measured_value
+from rpscli.case.schema.scale_to import (
+    MeasuredValue,
+    MeasureName,
+    at_period,
+    measured_value,
+)
 from rpscli.case.text.document import Place, shown
 from rpscli.errors import LARGEST, is_number
 from rpscli.records.measures import Of
@@ -48,7 +53,8 @@ from rpscli.units import in_si
 Number = Annotated[float, Quantity()]
 Seed = Annotated[int, Whole(0)]
 Share = Annotated[
-    float, Quantity(symbol="share of the value", at_least=0, below=1, remedy="1 % is 0.01")
+    float,
+    Quantity(symbol="share of the value", at_least=0, below=1, remedy="1 % is 0.01"),
 ]
 PositiveNumber = Annotated[float, Quantity(above=0)]
 
@@ -63,7 +69,9 @@ def _ends_in_si(value: object, info: ValidationInfo) -> object:
 
 _NUMBER = {"type": ["number", "string"]}
 Option = Annotated[
-    Any, must_be((int, float, str), "a value or a list of values"), WithJsonSchema(_NUMBER)
+    Any,
+    must_be((int, float, str), "a value or a list of values"),
+    WithJsonSchema(_NUMBER),
 ]
 InUnit = Annotated[float, Quantity(), WithJsonSchema(_NUMBER)]
 """A number, or in the file a text with the unit of a key."""
@@ -79,7 +87,9 @@ Numbers = Annotated[tuple[float, ...], Several(Number)]
 PositiveNumbers = Annotated[tuple[float, ...], Several(PositiveNumber)]
 """Numbers above zero: one, several, or a range of them."""
 
-MeasuredValues = Annotated[tuple[float, ...], Several(MeasuredValue), BeforeValidator(_ends_in_si)]
+MeasuredValues = Annotated[
+    tuple[float, ...], Several(MeasuredValue), BeforeValidator(_ends_in_si)
+]
 """Values of an intensity measure, with or without a unit: one, several, or a range."""
 
 Axes = Annotated[
@@ -100,7 +110,9 @@ Values = tuple[Any, ...]
 
 @dataclass(frozen=True)
 class Axis:
-    """Keys that go together, a row of values for each position, and where each was written."""
+    """Keys that go together, a row of values for each position,
+    and where each was written.
+    """
 
     keys: tuple[str, ...]
     rows: tuple[Values, ...]
@@ -109,7 +121,9 @@ class Axis:
 
     @property
     def naming(self) -> tuple[str, ...]:
-        """Keys that name a row: the first, but all of designs, and where it has a value twice."""
+        """Keys that name a row: the first, but all of designs, and
+        where it has a value twice.
+        """
         twice = len({repr(row[0]) for row in self.rows}) < len(self.rows)
         return self.keys if twice or self.of_designs else self.keys[:1]
 
@@ -130,7 +144,11 @@ def is_moderate(value: object) -> bool:
 
 def with_keys(value: object) -> object:
     """Each value with its key, whose unit it may have."""
-    return {key: (key, of) for key, of in value.items()} if isinstance(value, dict) else value
+    return (
+        {key: (key, of) for key, of in value.items()}
+        if isinstance(value, dict)
+        else value
+    )
 
 
 def _linear(given: tuple[str, object]) -> dict[str, float]:
@@ -138,7 +156,10 @@ def _linear(given: tuple[str, object]) -> dict[str, float]:
     if isinstance(terms, dict) and PLUS in terms:
         terms = terms | {PLUS: in_si(terms[PLUS], unit(key))}
     if not isinstance(terms, dict) or not all(map(is_moderate, terms.values())):
-        refuse(f"must be a linear sum, {{key: factor, plus: number}}, of numbers up to {LARGEST:g}")
+        refuse(
+            "must be a linear sum, {key: factor, plus: number}, of numbers up to"
+            f" {LARGEST:g}"
+        )
     return terms
 
 
@@ -146,7 +167,9 @@ _TERMS = {"type": "object", "additionalProperties": {"type": "number"}} | {
     "properties": {PLUS: _NUMBER}
 }
 Linked = Annotated[
-    dict[str, Annotated[dict[str, float], PlainValidator(_linear), WithJsonSchema(_TERMS)]],
+    dict[
+        str, Annotated[dict[str, float], PlainValidator(_linear), WithJsonSchema(_TERMS)]
+    ],
     BeforeValidator(with_keys),
 ]
 """Keys that are linear sums of others."""
@@ -159,7 +182,8 @@ class MeasureScale(Section):
     """Every record scaled to given values of an intensity measure."""
 
     measure: MeasureName
-    """PGA, Sa, AvgSa [m/s2], PGV, FIV3, CAV, Arias [m/s], PGD or Housner [m] when scaled"""
+    """PGA, Sa, AvgSa [m/s2], PGV, FIV3, CAV, Arias [m/s], PGD
+    or Housner [m] when scaled"""
     values: MeasuredValues
     """values to scale to, SI or with a unit"""
     period: Annotated[Time | None, at_period] = None
@@ -167,8 +191,9 @@ class MeasureScale(Section):
     damping: DampingRatio = 0.05
     """of Sa, AvgSa or Housner"""
     of: Of | None = None
-    """what of a pair of components it is, rotd50, geomean, rotd100, larger or x (the first); left
-    out: rotd50 at an angle, and where both are among the records; else component, its own"""
+    """what of a pair of components it is, rotd50, geomean, rotd100, larger or x
+    (the first); left out: rotd50 at an angle, and where both are among the
+    records; else component, its own"""
 
 
 Scale = Annotated[
@@ -176,7 +201,8 @@ Scale = Annotated[
     Discriminator(
         lambda value: (
             "to a measure"
-            if isinstance(value, MeasureScale) or (isinstance(value, dict) and "measure" in value)
+            if isinstance(value, MeasureScale)
+            or (isinstance(value, dict) and "measure" in value)
             else "by factors"
         )
     ),
@@ -219,13 +245,24 @@ class RangeSection(Section):
     def _complete(self) -> Self:
         ends = (self.low, self.high)
         moments = (self.mean, self.cov)
-        uniform = None not in ends and moments == (None, None) and self.distribution == "uniform"
+        uniform = (
+            None not in ends
+            and moments == (None, None)
+            and self.distribution == "uniform"
+        )
         if not uniform and (None in moments or ends != (None, None)):
-            refuse("must have low and high alone (uniform), or distribution, mean and cov")
+            refuse(
+                "must have low and high alone (uniform), or distribution, mean and cov"
+            )
         if uniform and not self.low < self.high:  # type: ignore[operator]
-            refuse(f"has low = {shown(self.low)}, which must be < high = {shown(self.high)}")
+            refuse(
+                f"has low = {shown(self.low)}, which must be < high = {shown(self.high)}"
+            )
         if self.distribution == "lognormal" and not (self.mean or 0.0) > 0.0:
-            refuse(f"has mean = {shown(self.mean)}, which must be > 0 for a lognormal distribution")
+            refuse(
+                f"has mean = {shown(self.mean)}, which must be > 0 for a lognormal"
+                " distribution"
+            )
         if self.mean == 0.0:
             refuse("has mean = 0, and cov is relative to it")
         return self
@@ -246,7 +283,11 @@ def _range(given: tuple[str, object]) -> object:
 Ranges = Annotated[
     dict[str, Annotated[RangeSection, BeforeValidator(_range)]],
     BeforeValidator(with_keys),
-    must_be(dict, "keys with their ranges, as in {podium.impact.factor: [0.9, 1]}", filled=True),
+    must_be(
+        dict,
+        "keys with their ranges, as in {podium.impact.factor: [0.9, 1]}",
+        filled=True,
+    ),
 ]
 
 
@@ -271,7 +312,8 @@ class PerturbSection(Section):
     restitution: Share = 0.01
     """largest change of the restitution, relative"""
     rotation: Annotated[float, Quantity("deg", at_least=0, at_most=45)] = 1.0
-    """largest turn of a pair whose components act together; matters with superstructure.y"""
+    """largest turn of a pair whose components act together;
+    matters with superstructure.y"""
     members: Annotated[int, Whole(2)] = 20
     """points in place of one; the first is the unperturbed one"""
     seed: Seed = 1
@@ -282,12 +324,13 @@ class HazardSection(Section):
     """A hazard curve: how often a year each intensity is exceeded at the site."""
 
     file: Text
-    """CSV with the header `PGV [cm/s],rate [1/year]`, and fractiles behind it, `0.16 [1/year]`;
-    seen from the study's folder"""
+    """CSV with the header `PGV [cm/s],rate [1/year]`, and fractiles behind it, `0.16
+    [1/year]`; seen from the study's folder"""
     measure: MeasureName
     """of its first column"""
     component: Of | None = None
-    """what of a pair of components it is of, as `of` in `scale`; said if it is not the same"""
+    """what of a pair of components it is of, as `of` in `scale`;
+    said if it is not the same"""
 
 
 class RecordPattern(Section):
@@ -310,7 +353,8 @@ Source = Annotated[
     ),
 ]
 Sources = Annotated[
-    tuple[Source, ...], must_be(list, "a list of sources, as in [fema_p695:*]", filled=True)
+    tuple[Source, ...],
+    must_be(list, "a list of sources, as in [fema_p695:*]", filled=True),
 ]
 
 
@@ -332,11 +376,11 @@ class StudyParts(TitledFile):
     scale: Scale | None = None
     """factors on the records, or values of a measure to scale them to"""
     independent: By = "recordings"
-    """what intervals, bootstraps and held-out parts take as a whole: recordings, of which all
-    components and angles are one, or events"""
+    """what intervals, bootstraps and held-out parts take as a whole: recordings, of which
+    all components and angles are one, or events"""
     whole_histories: bool = False
-    """follow each history by itself, with all its samples: roof displacement, floor velocity,
-    forces of a column, base shear over that of the fixed base; far slower"""
+    """follow each history by itself, with all its samples: roof displacement, floor
+    velocity, forces of a column, base shear over that of the fixed base; far slower"""
     perturb: PerturbSection | None = None
     """small perturbations around every point"""
     limits: StudyLimits | None = None
@@ -355,7 +399,8 @@ class StudyFile(StudyParts):
     vary: Axes = ()
     """axes of a product; the keys of one axis go together"""
     linked: Linked = Field(
-        {}, description="further keys as sums of those of an axis, {key: factor, plus: constant}"
+        {},
+        description="further keys as sums of those of an axis, {key: factor, plus: constant}",
     )
     sample: SampleSection | None = None
     """uncertain parameters; one more axis"""

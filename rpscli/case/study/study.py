@@ -117,22 +117,27 @@ def parse_study(
     document = read_yaml(text, name)
     if (kind := format_of(document)) == "case":
         raise CaseError(
-            f"{name}: this is a case, but a study is needed here; `rps timehistory {name}` computes"
-            " it, `rps init --study` writes a study"
+            f"{name}: this is a case, but a study is needed here; `rps timehistory"
+            f" {name}` computes it, `rps init --study` writes a study"
         )
     if kind == "design":
         raise CaseError(
-            f"{name}: this is a design, but a study is needed here; use `rps design {name}`"
+            f"{name}: this is a design, but a study is needed here; use `rps design"
+            f" {name}`"
         )
     document, of_base = overridden(document, overrides, StudyFile)
     digest = hashlib.sha256(text.encode()).hexdigest()
-    return study_of(document, of_base, kinds=kinds, folder=folder or Folder(), digest=digest)
+    return study_of(
+        document, of_base, kinds=kinds, folder=folder or Folder(), digest=digest
+    )
 
 
 def overridden(
     document: Document, overrides: Sequence[str], model: type[StudyParts]
 ) -> tuple[Document, list[str]]:
-    """A study or a design with its own overrides; those of its base, as `analysis.gravity`."""
+    """A study or a design with its own overrides; those of its
+    base, as `analysis.gravity`.
+    """
     own: list[str] = []
     of_base: list[str] = []
     for override in overrides:
@@ -150,7 +155,9 @@ def study_of(
     folder: Folder,
     digest: str,
 ) -> Study:
-    """A study from its document, as `parse_study` says; one of a design asks for no reports."""
+    """A study from its document, as `parse_study` says; one of a
+    design asks for no reports.
+    """
     whole, asked = (document, {}) if kinds is None else written_out(document, kinds)
     file = checked(format_with(asked), whole)
     reports = requests_of(whole, file)
@@ -193,7 +200,9 @@ def _base(document: Document, folder: Folder) -> tuple[Document, Folder | None]:
         raise CaseError(f"{here}: {error}") from None
     base = read_yaml(text, str(path))
     if (kind := format_of(base)) in ("study", "design"):
-        raise CaseError(f"{here} is a study, and a base is a case; name the case that it varies")
+        raise CaseError(
+            f"{here} is a study, and a base is a case; name the case that it varies"
+        )
     if "rps" not in base.content and kind != "case":
         raise CaseError(f"{here} has neither `rps` nor `superstructure`; name a case")
     return base, path
@@ -206,8 +215,9 @@ def _unequal(document: Document, file: StudyFile) -> Iterator[Fault]:
         for key in (key for key in columns if len(columns[key]) != len(columns[first])):
             text = (
                 f"{key} has {len(columns[key])} values, but"
-                f" {first}{document.where(('vary', index, first))} has {len(columns[first])}: the"
-                " keys of one axis go together; give equally many, or begin another axis with `-`"
+                f" {first}{document.where(('vary', index, first))} has"
+                f" {len(columns[first])}: the keys of one axis go together; give equally"
+                " many, or begin another axis with `-`"
             )
             yield Fault(("vary", index, key), text, at_key=True)
 
@@ -227,7 +237,9 @@ def _axes(document: Document, file: StudyFile) -> tuple[Axis, ...]:
     return tuple(axes)
 
 
-def linked_value(key: str, terms: Mapping[str, float], values: Sequence[float]) -> float | int:
+def linked_value(
+    key: str, terms: Mapping[str, float], values: Sequence[float]
+) -> float | int:
     """A linear sum of the values of its keys, as a case takes it."""
     factors = (factor for name, factor in terms.items() if name != PLUS)
     products = (factor * value for factor, value in zip(factors, values, strict=True))
@@ -244,10 +256,17 @@ def _with_linked(
         names = [name for name in terms if name != PLUS]
         axis = next((each for each in axes if names and {*names} <= {*each.keys}), None)
         if axis is None:
-            text = f"linked.{key} needs {listed(names or ['a key'], 'and')}, which no axis of vary"
-            raise document.refusal([Fault(path, f"{text} has; sums are of keys of one axis")])
+            text = (
+                f"linked.{key} needs {listed(names or ['a key'], 'and')}, which no axis"
+                " of vary"
+            )
+            raise document.refusal(
+                [Fault(path, f"{text} has; sums are of keys of one axis")]
+            )
         columns = [(axis.keys.index(name), unit(name)) for name in names]
-        rows: list[list[Any]] = [[in_si(row[at], si) for at, si in columns] for row in axis.rows]
+        rows: list[list[Any]] = [
+            [in_si(row[at], si) for at, si in columns] for row in axis.rows
+        ]
         if not all(map(is_number, itertools.chain(*rows))):
             text = f"linked.{key} is a sum of numbers; {names} are not"
             raise document.refusal([Fault(path, text)])
@@ -255,7 +274,9 @@ def _with_linked(
         values: tuple[Values, ...] = tuple(
             (*old, new) for old, new in zip(axis.rows, sums, strict=True)
         )
-        longer = Axis((*axis.keys, key), values, (*axis.places, (document.value_place(path),)))
+        longer = Axis(
+            (*axis.keys, key), values, (*axis.places, (document.value_place(path),))
+        )
         axes = tuple(longer if each is axis else each for each in axes)
     return axes
 
@@ -263,7 +284,9 @@ def _with_linked(
 def sources_of(
     document: Document, folder: Folder, *owner: str
 ) -> tuple[tuple[str, ...], list[Fault], list[str]]:
-    """Single sources of a list `records`, in order, each once; what is wrong, and notes."""
+    """Single sources of a list `records`, in order, each once;
+    what is wrong, and notes.
+    """
     place: Path = (*owner, "records")
     records = document.at(place)
     sources: list[str] = []
@@ -285,17 +308,25 @@ def sources_of(
 
 
 def _product(item: object, path: Path) -> list[str]:
-    """Sources of a mapping: every option may have several values, the first varies slowest."""
+    """Sources of a mapping: every option may have several values,
+    the first varies slowest.
+    """
     pattern = RecordPattern.model_validate(item)
     source = pattern.source
     extra = pattern.model_extra or {}
-    options = [[f"{key}={_text(value)}" for value in values] for key, values in extra.items()]
+    options = [
+        [f"{key}={_text(value)}" for value in values] for key, values in extra.items()
+    ]
     if (count := math.prod(map(len, options))) > MOST_SOURCES:
         raise ValueError(
-            f"{dotted(path)} stands for {count} ground motions, which must not be more than"
-            f" {MOST_SOURCES}; use fewer values of its options"
+            f"{dotted(path)} stands for {count} ground motions, which must not be more"
+            f" than {MOST_SOURCES}; use fewer values of its options"
         )
-    mark = "&" if "?" in source and not source.endswith("?") else "?" * (not source.endswith("?"))
+    mark = (
+        "&"
+        if "?" in source and not source.endswith("?")
+        else "?" * (not source.endswith("?"))
+    )
     return [
         f"{source}{mark if chosen else ''}{'&'.join(chosen)}"
         for chosen in itertools.product(*options)
@@ -309,16 +340,29 @@ def _text(value: object) -> str:
 
 
 def varying(document: Document) -> list[tuple[str, Path]]:
-    """Every key that varies or is sampled, in studies and designs, and where it stands."""
+    """Every key that varies or is sampled, in studies and
+    designs, and where it stands.
+    """
     vary = document.content.get("vary")
-    axes: list[Path] = [("vary", i) for i in range(len(vary) if isinstance(vary, list) else 0)]
+    axes: list[Path] = [
+        ("vary", i) for i in range(len(vary) if isinstance(vary, list) else 0)
+    ]
     owners = (*axes, ("sample", "ranges"), ("variables",), ("linked",))
     written = ((owner, document.at(owner)) for owner in owners)
-    return [(key, (*owner, key)) for owner, of in written if isinstance(of, dict) for key in of]
+    return [
+        (key, (*owner, key))
+        for owner, of in written
+        if isinstance(of, dict)
+        for key in of
+    ]
 
 
-def key_faults(document: Document, overrides: Sequence[str], folder: Folder) -> Iterator[Fault]:
-    """Keys that cannot vary: unknown ones, said twice, fixed by an override or by the study."""
+def key_faults(
+    document: Document, overrides: Sequence[str], folder: Folder
+) -> Iterator[Fault]:
+    """Keys that cannot vary: unknown ones, said twice, fixed by an
+    override or by the study.
+    """
     with suppress(RpsError, ValidationError):  # told with the systems
         # Constants of laws of other packages are keys once a case has named the law.
         CaseFile.model_validate(_base(document, folder)[0].content)
@@ -326,22 +370,31 @@ def key_faults(document: Document, overrides: Sequence[str], folder: Folder) -> 
     for key, path in varying(document):
         if key in seen:
             axis = " in another axis" if path[0] == seen[key][0] == "vary" else ""
-            text = f"{key} varies already{axis}{document.where(seen[key])}; remove one of them"
+            text = (
+                f"{key} varies already{axis}{document.where(seen[key])}; remove one of"
+                " them"
+            )
             yield Fault(path, text, at_key=True)
         seen[key] = path
     fixed = {text: text.partition("=")[0].strip() for text in overrides}
     for key, path in seen.items():
         inside: Path = tuple(part for part in key.split(".") if not part.isdecimal())
         if not inside or field_at(CaseFile, inside) is None:
-            yield Fault(path, unknown_key(CaseFile, inside or (key,))[0].text, at_key=True)
+            yield Fault(
+                path, unknown_key(CaseFile, inside or (key,))[0].text, at_key=True
+            )
         if others := sorted(other for other in seen if other.startswith(f"{key}.")):
-            text = f"{key} varies as a whole; {listed(others, 'and')} inside it must not vary too"
+            text = (
+                f"{key} varies as a whole; {listed(others, 'and')} inside it must not"
+                " vary too"
+            )
             yield Fault(path, text, at_key=True)
         for text, name in fixed.items():
             if f"{key}.".startswith(f"{name}.") or name.startswith(f"{key}."):
                 message = f"{key} varies in the study; --set {text} cannot fix it"
                 yield Fault(path, message, at_key=True)
-        # The record is said once: by the study's list, or by the case and its varied keys.
+        # The record is said once: by the study's list, or by the case and its varied
+        # keys.
         for owner, of in (("records", key.split(".")[0]), ("scale", key)):
             if of in {"record", f"record.{owner}"} and document.has((owner,)):
                 where = document.where((owner,))
@@ -350,12 +403,20 @@ def key_faults(document: Document, overrides: Sequence[str], folder: Folder) -> 
 
 
 def _analysis_faults(
-    document: Document, file: StudyFile, requests: tuple[ReportRequest, ...], kinds: ReportKinds
+    document: Document,
+    file: StudyFile,
+    requests: tuple[ReportRequest, ...],
+    kinds: ReportKinds,
 ) -> Iterator[Fault]:
-    """A rate without a hazard; keys and reports without a meaning with a modal or pushover one."""
+    """A rate without a hazard; keys and reports without a meaning with
+    a modal or pushover one.
+    """
     for key in ("annual_rate", "probability_in_50_years"):
         if document.has(("limits", key)) and not document.has(("hazard",)):
-            text = f"limits.{key} needs a hazard curve; add `hazard: {{file: FILE, measure: PGV}}`"
+            text = (
+                f"limits.{key} needs a hazard curve; add `hazard: {{file: FILE, measure:"
+                " PGV}`"
+            )
             yield Fault(("limits", key), text, at_key=True)
     if file.analysis == "timehistory":
         return
@@ -363,7 +424,9 @@ def _analysis_faults(
         if key in file.model_fields_set:
             text = f"{key} has no meaning with analysis: {file.analysis}; remove it"
             yield Fault((key,), text, at_key=True)
-    suitable = listed(name for name, kind in kinds.items() if file.analysis in kind.analyses)
+    suitable = listed(
+        name for name, kind in kinds.items() if file.analysis in kind.analyses
+    )
     for request in requests:
         if file.analysis not in (needed := kinds[request.kind].analyses):
             text = f"the report {request.kind} needs analysis: {listed(needed)}"
@@ -383,7 +446,8 @@ def _report_faults(
         faults = [
             Fault(
                 path := (*request.path, request.kind, *option),
-                f"{dotted(path)} = {key} does not vary in this study; use {listed(known)}",
+                f"{dotted(path)} = {key} does not vary in this study; use"
+                f" {listed(known)}",
             )
             for option, key in varied_keys(request.options)
             if key not in known
@@ -394,7 +458,9 @@ def _report_faults(
         yield from faults
 
 
-def _size_faults(file: StudyFile, axes: Sequence[Axis], sources: Sequence[str]) -> Iterator[Fault]:
+def _size_faults(
+    file: StudyFile, axes: Sequence[Axis], sources: Sequence[str]
+) -> Iterator[Fault]:
     """A study that is too large, at its largest part."""
     parts: dict[Path, int] = {("vary", i): len(axis.rows) for i, axis in enumerate(axes)}
     if file.sample is not None:
@@ -406,7 +472,9 @@ def _size_faults(file: StudyFile, axes: Sequence[Axis], sources: Sequence[str]) 
         name = "points"
         parts["records",] = max(len(sources), 1)
         if file.scale is not None:
-            values = file.scale.values if isinstance(file.scale, MeasureScale) else file.scale
+            values = (
+                file.scale.values if isinstance(file.scale, MeasureScale) else file.scale
+            )
             parts["scale",] = len(values)
         if file.perturb is not None:
             parts["perturb", "members"] = file.perturb.members
@@ -417,6 +485,6 @@ def _size_faults(file: StudyFile, axes: Sequence[Axis], sources: Sequence[str]) 
         )  # fmt: skip
         yield Fault(
             max(parts, key=lambda path: parts[path]),
-            f"the study has {found} {name} ({' x '.join(each)}), which must not be more than"
-            f" {most}; use fewer values, or several studies",
+            f"the study has {found} {name} ({' x '.join(each)}), which must not be more"
+            f" than {most}; use fewer values, or several studies",
         )

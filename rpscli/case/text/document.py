@@ -1,4 +1,6 @@
-"""A document read from a file: values, where each was written, and what is wrong with it."""
+"""A document read from a file: values, where each was written,
+and what is wrong with it.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +23,9 @@ def _cut(override: str) -> str:
 
 @dataclass(frozen=True)
 class Place:
-    """Position of a key or a value; files have rank 0, overrides follow in their order."""
+    """Position of a key or a value; files have rank 0,
+    overrides follow in their order.
+    """
 
     source: str
     line: int = 0
@@ -29,7 +33,9 @@ class Place:
     rank: int = 0
 
     def __str__(self) -> str:
-        return f"{self.source}:{self.line}:{self.column}" if self.line else _cut(self.source)
+        return (
+            f"{self.source}:{self.line}:{self.column}" if self.line else _cut(self.source)
+        )
 
     @property
     def order(self) -> tuple[int, int, int]:
@@ -54,7 +60,9 @@ class Fault:
 
 def dotted(path: Path) -> str:
     """A path as the user writes it, long keys cut."""
-    return ".".join(part if len(part) <= 60 else f"{part[:57]}..." for part in map(str, path))
+    return ".".join(
+        part if len(part) <= 60 else f"{part[:57]}..." for part in map(str, path)
+    )
 
 
 def path_of(key: str) -> Path:
@@ -67,7 +75,9 @@ def shown(value: object, width: int = 60) -> str:
     if value is None or isinstance(value, bool):
         return {None: "null", True: "true", False: "false"}[value]
     if isinstance(value, dict):
-        text = "{" + ", ".join(f"{key}: {shown(item)}" for key, item in value.items()) + "}"
+        text = (
+            "{" + ", ".join(f"{key}: {shown(item)}" for key, item in value.items()) + "}"
+        )
     elif isinstance(value, list | tuple):
         text = "[" + ", ".join(shown(item) for item in value) + "]"
     else:
@@ -84,7 +94,9 @@ MISSING = object()
 
 @dataclass(frozen=True, eq=False)
 class Document:
-    """Mappings, lists and scalars, with places by path, and what was wrong while reading them."""
+    """Mappings, lists and scalars, with places by path, and what was
+    wrong while reading them.
+    """
 
     name: str
     content: dict[str, Any]
@@ -96,7 +108,11 @@ class Document:
         """The value at a path, or MISSING."""
         value: Any = self.content
         for part in path:
-            is_index = isinstance(value, list) and isinstance(part, int) and -1 < part < len(value)
+            is_index = (
+                isinstance(value, list)
+                and isinstance(part, int)
+                and -1 < part < len(value)
+            )
             if not is_index and not (isinstance(value, dict) and part in value):
                 return MISSING
             value = value[part]
@@ -111,7 +127,9 @@ class Document:
         return self._place(path, self.keys)
 
     def value_place(self, path: Path) -> Place:
-        """Position of the value of a path; its nearest parent's, if it has none itself."""
+        """Position of the value of a path; its nearest
+        parent's, if it has none itself.
+        """
         return self._place(path, self.values)
 
     def _place(self, path: Path, places: Mapping[Path, Place]) -> Place:
@@ -134,7 +152,9 @@ class Document:
 
         inside = [fault for fault in self.faults if fault.path[:depth] == path]
         faults = tuple(replace(fault, path=fault.path[depth:]) for fault in inside)
-        return Document(self.name, self.at(path), below(self.keys), below(self.values), faults)
+        return Document(
+            self.name, self.at(path), below(self.keys), below(self.values), faults
+        )
 
     def refuse(self, faults: Iterable[Fault]) -> None:
         """Raise all faults together, if there are any."""
@@ -144,13 +164,18 @@ class Document:
     def refusal(self, faults: Iterable[Fault]) -> CaseError:
         """All faults, one a line, in the order of their places."""
         placed = [
-            (f.place or (self.key_place if f.at_key else self.value_place)(f.path), f.text)
+            (
+                f.place or (self.key_place if f.at_key else self.value_place)(f.path),
+                f.text,
+            )
             for f in faults
         ]
         placed.sort(key=lambda item: item[0].order)
         lines = list(dict.fromkeys(f"{place}: {text}" for place, text in placed))
         if (more := len(lines) - MOST_FAULTS) > 0:
-            lines[MOST_FAULTS:] = [f"{self.name}: {more} more faults; correct these first"]
+            lines[MOST_FAULTS:] = [
+                f"{self.name}: {more} more faults; correct these first"
+            ]
         return CaseError("\n".join(lines))
 
 
@@ -165,7 +190,9 @@ def format_of(document: Document) -> str:
 
 
 def text_of_values(values: Mapping[str, Any], name: str) -> str:
-    """Values as a file would say them: arrays of numpy become lists, keys what YAML knows."""
+    """Values as a file would say them: arrays of numpy become
+    lists, keys what YAML knows.
+    """
 
     def plain(value: object) -> object:
         if isinstance(value, PurePath):
@@ -178,6 +205,6 @@ def text_of_values(values: Mapping[str, Any], name: str) -> str:
         return json.dumps(values, default=plain)
     except (TypeError, ValueError, RecursionError) as error:
         raise CaseError(
-            f"{name}: cannot be written to a file: {str(error)[:200]}; use text, numbers, lists,"
-            " arrays and mappings"
+            f"{name}: cannot be written to a file: {str(error)[:200]}; use text, numbers,"
+            " lists, arrays and mappings"
         ) from None

@@ -23,30 +23,41 @@ def read_text(source: str | Path) -> str:
     """Text of a case or study file; ``-`` reads the standard input."""
     if str(source) == STDIN:
         if sys.stdin is None:
-            raise CaseError("<stdin>: the standard input is closed; name a file, or pipe a case in")
+            raise CaseError(
+                "<stdin>: the standard input is closed; name a file, or pipe a case in"
+            )
         return decoded(_bounded(sys.stdin.buffer, "<stdin>"), "<stdin>")
     require_visible(str(source), CaseError)
     path = Path(source)
     try:
         kind = path.stat().st_mode
         if stat.S_ISDIR(kind):
-            example = "".join(f", such as {file}" for file in sorted(path.glob("*.yaml"))[:1])
+            example = "".join(
+                f", such as {file}" for file in sorted(path.glob("*.yaml"))[:1]
+            )
             raise CaseError(f"{source}: is a folder; name a file in it{example}")
         if stat.S_ISCHR(kind) or stat.S_ISBLK(kind):
-            raise CaseError(f"{source}: is a device; name a file, or `-` for the standard input")
+            raise CaseError(
+                f"{source}: is a device; name a file, or `-` for the standard input"
+            )
         with _opened(path, kind) as file:
             return decoded(_bounded(file, str(source)), str(source))
     except FileNotFoundError:
         raise CaseError(f"{source}: there is no such file{_similar(path)}") from None
     except (OSError, ValueError) as error:
-        reason = error.strerror if isinstance(error, OSError) and error.strerror else error
+        reason = (
+            error.strerror if isinstance(error, OSError) and error.strerror else error
+        )
         raise CaseError(
-            f"{str(source)[:200]}: cannot be read: {reason}; check the name and the permissions"
+            f"{str(source)[:200]}: cannot be read: {reason}; check the name and the"
+            " permissions"
         ) from None
 
 
 def opened(source: str | Path) -> dict[str, Any]:
-    """Text, name in messages, and folder of relative names of a file, or of the standard input."""
+    """Text, name in messages, and folder of relative names of a file,
+    or of the standard input.
+    """
     if str(source) == STDIN:
         return {"text": read_text(source), "name": "<stdin>", "folder": Path()}
     return {"text": read_text(source), "name": str(source), "folder": Path(source).parent}
@@ -59,7 +70,9 @@ def _opened(path: Path, kind: int) -> BinaryIO:
     pipe = os.fdopen(os.open(path, os.O_RDONLY | os.O_NONBLOCK), "rb")
     if not select.select([pipe], [], [], _PATIENCE)[0]:
         pipe.close()
-        raise CaseError(f"{path}: nothing writes to this pipe; name a file, or write to it first")
+        raise CaseError(
+            f"{path}: nothing writes to this pipe; name a file, or write to it first"
+        )
     os.set_blocking(pipe.fileno(), True)
     return pipe
 
@@ -68,8 +81,8 @@ def _bounded(file: BinaryIO, name: str) -> bytes:
     data = file.read(LARGEST + 1)
     if len(data) > LARGEST:
         raise CaseError(
-            f"{name}: more than {LARGEST / 1e6:g} MB is not a case or a study; records are named by"
-            " their files, not written out"
+            f"{name}: more than {LARGEST / 1e6:g} MB is not a case or a study; records"
+            " are named by their files, not written out"
         )
     return data
 
@@ -83,8 +96,8 @@ def decoded(data: bytes, name: str) -> str:
         line = before.count(b"\n") + 1
         column = len(before) - before.rfind(b"\n")
         raise CaseError(
-            f"{name}:{line}:{column}: the byte 0x{data[error.start]:02x} is not UTF-8; save the"
-            " file as UTF-8 text"
+            f"{name}:{line}:{column}: the byte 0x{data[error.start]:02x} is not UTF-8;"
+            " save the file as UTF-8 text"
         ) from None
 
 
@@ -103,5 +116,7 @@ def _similar(path: Path) -> str:
     if similar := nearest(path.stem, names):
         return f"; did you mean {folder / names[similar]}?"
     return (
-        "; check its name" if path.suffix == ".csv" else "; `rps init` writes a case to start from"
+        "; check its name"
+        if path.suffix == ".csv"
+        else "; `rps init` writes a case to start from"
     )

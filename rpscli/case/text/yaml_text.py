@@ -1,4 +1,6 @@
-"""Strict YAML: text -> Document with positions, core-schema scalars and no duplicate keys."""
+"""Strict YAML: text -> Document with positions, core-schema
+scalars and no duplicate keys.
+"""
 
 from __future__ import annotations
 
@@ -15,14 +17,20 @@ from rpscli.errors import CaseError
 
 REMEDIES = {
     "\\t' that cannot start": "there is a tab here; indent with spaces",
-    "mapping values are not allowed": "a colon is not expected here; indent the keys of one"
+    "mapping values are not"
+    " allowed": "a colon is not expected here; indent the keys of one"
     " mapping alike, and put text that holds a colon and a blank in quotes",
-    "could not find expected ':'": "a key without its colon; write `key: value`, with a blank"
+    "could not find"
+    " expected ':'": "a key without its colon; write `key: value`, with a blank"
     " after the colon",
-    "expected <block end>": "the indentation does not fit; the keys of one mapping begin in the"
+    "expected"
+    " <block end>": "the indentation does not fit; the keys of one mapping begin in the"
     " same column",
-    "expected ',' or": "a bracket or brace is not closed, or a comma is missing before this",
-    "found undefined alias": "no anchor of this name is defined before; text that begins with *"
+    "expected"
+    " ',' or": "a bracket or brace is not closed, or a comma is missing before this",
+    "found"
+    " undefined"
+    " alias": "no anchor of this name is defined before; text that begins with *"
     " needs quotes",
     "found unexpected end of stream": "a quotation mark is not closed",
     "cannot start any token": "text that begins with this character needs quotes",
@@ -38,10 +46,12 @@ def syntax_error(error: yaml.YAMLError, text: str, name: str) -> str:
         before = text[: error.position]
         line = before.count("\n") + 1
         column = len(before) - before.rfind("\n")
-        code = error.character if isinstance(error.character, int) else ord(error.character)
+        code = (
+            error.character if isinstance(error.character, int) else ord(error.character)
+        )
         return (
-            f"{name}:{line}:{column}: the character U+{code:04X} is not allowed in YAML; delete it"
-            " and save the file as UTF-8 text"
+            f"{name}:{line}:{column}: the character U+{code:04X} is not allowed in YAML;"
+            " delete it and save the file as UTF-8 text"
         )
     assert isinstance(error, yaml.MarkedYAMLError), "PyYAML has no third kind of error"
     mark = error.problem_mark or error.context_mark
@@ -50,7 +60,9 @@ def syntax_error(error: yaml.YAMLError, text: str, name: str) -> str:
     problem = error.problem or "cannot be read"
     remedy = next((remedy for part, remedy in REMEDIES.items() if part in problem), None)
     if remedy is None:
-        return f"{place}: this is not YAML: {problem}; compare with what `rps init` writes"
+        return (
+            f"{place}: this is not YAML: {problem}; compare with what `rps init` writes"
+        )
     if start and any(word in (error.context or "") for word in ("flow", "quoted")):
         # The bracket or the quotation mark that is not closed.
         remedy += f"; it opens at line {start.line + 1}, column {start.column + 1}"
@@ -86,13 +98,17 @@ class CoreLoader(yaml.SafeLoader):
     nodes = 0
 
     def compose_node(self, parent: Node | None, index: int) -> Node | None:
-        """Compose one node, unless there are more, or deeper ones, than anything sensible."""
+        """Compose one node, unless there are more, or deeper
+        ones, than anything sensible.
+        """
         self.depth += 1
         self.nodes += 1
         if self.depth > DEEPEST or self.nodes > 2 * LARGEST:  # keys are nodes too
             mark = self.peek_event().start_mark  # type: ignore[no-untyped-call]
             deep = self.depth > DEEPEST
-            problem = f"nested over {DEEPEST} deep" if deep else f"over {2 * LARGEST} nodes"
+            problem = (
+                f"nested over {DEEPEST} deep" if deep else f"over {2 * LARGEST} nodes"
+            )
             raise yaml.composer.ComposerError(None, None, problem, mark)
         node = super().compose_node(parent, index)
         self.depth -= 1
@@ -107,20 +123,24 @@ def read_yaml(text: str, name: str) -> Document:
     r"""Read one YAML document whose root is a mapping."""
     root = _root(text, name)
     if root is None or (isinstance(root, ScalarNode) and not root.value):
-        raise CaseError(f"{name}: the file is empty; `rps init` writes a case to start from")
+        raise CaseError(
+            f"{name}: the file is empty; `rps init` writes a case to start from"
+        )
     reader = _Reader(name, text)
     content = reader.value(root, ())
     if not isinstance(content, dict):
         place = reader.place(root)
         raise CaseError(
-            f"{place}: the file holds {shown(content, 22)}, not a mapping; it must begin with keys,"
-            " as in `rps: 1`"
+            f"{place}: the file holds {shown(content, 22)}, not a mapping; it must begin"
+            " with keys, as in `rps: 1`"
         )
     return Document(name, content, reader.keys, reader.values, tuple(reader.faults))
 
 
 def read_value(text: str, name: str) -> Any:
-    """Value of one YAML scalar or flow collection (``0.2``, ``[1, 2]``), without positions."""
+    """Value of one YAML scalar or flow collection (``0.2``, ``[1,
+    2]``), without positions.
+    """
     root = _root(text, name)
     if root is None:
         raise CaseError(f"{name}: no value; write null to remove the key")
@@ -140,8 +160,8 @@ def _root(text: str, name: str) -> Node | None:
         raise CaseError(syntax_error(error, text, name)) from None
     if second is not None:
         raise CaseError(
-            f"{name}:{second.start_mark.line + 1}:1: a second document begins here; one file"
-            " holds one document: remove the `---` line, or split the file"
+            f"{name}:{second.start_mark.line + 1}:1: a second document begins here; one"
+            " file holds one document: remove the `---` line, or split the file"
         )
     return root
 
@@ -165,21 +185,30 @@ class _Reader:
         place = self.values[path] = self.place(node)
         self.count += 1
         if self.count > LARGEST:
-            raise CaseError(f"{place}: more than {LARGEST} values; do aliases multiply them?")
+            raise CaseError(
+                f"{place}: more than {LARGEST} values; do aliases multiply them?"
+            )
         if any(node is other for other in self.open_nodes):
-            raise CaseError(f"{place}: the anchor holds an alias of itself; write the value out")
+            raise CaseError(
+                f"{place}: the anchor holds an alias of itself; write the value out"
+            )
         self.open_nodes.append(node)
         value: Any = None
         tag = node.tag.removeprefix(TAG)
         named = f"{dotted(path)}: " if path else ""
         if isinstance(node, MappingNode) and tag == "map":
-            value = {key: self.value(item, (*path, key)) for key, item in self.pairs(node, path)}
+            value = {
+                key: self.value(item, (*path, key))
+                for key, item in self.pairs(node, path)
+            }
         elif isinstance(node, SequenceNode) and tag == "seq":
             written = self.text[node.start_mark.index : node.end_mark.index]
             if node.flow_style and (text := _comma_in_list(written)):
                 self.fault(path, node, named + text)
             else:
-                value = [self.value(item, (*path, i)) for i, item in enumerate(node.value)]
+                value = [
+                    self.value(item, (*path, i)) for i, item in enumerate(node.value)
+                ]
         elif isinstance(node, ScalarNode) and tag in SCALARS:
             try:
                 value = _scalar(tag, node.value)
@@ -200,7 +229,10 @@ class _Reader:
             key = str(key_node.value)
             here = (*path, key)
             if here in self.keys:
-                first = f"first at line {self.keys[here].line}, column {self.keys[here].column}"
+                first = (
+                    f"first at line {self.keys[here].line}, column"
+                    f" {self.keys[here].column}"
+                )
                 text = f"{dotted(here)} is written twice, {first}; keep one of them"
                 self.fault(here, key_node, text)
                 continue
@@ -230,18 +262,21 @@ def _no_key(node: Node) -> str:
 
 
 _FRACTION = re.compile(r",(\d+)(?=\s*[,}])")
-"""What stands behind a decimal comma in braces, where YAML reads a key without a value."""
+"""What stands behind a decimal comma in braces, where YAML
+reads a key without a value."""
 
 
 def _comma_in_list(text: str) -> str:
-    """The first decimal comma, as in ``[0,15, 0,2]``, in words; empty where blanks tell of none."""
+    """The first decimal comma, as in ``[0,15, 0,2]``, in words; empty
+    where blanks tell of none.
+    """
     items = re.split(r",\s+", text[1:-1].strip())
     close = [re.fullmatch(r"(\d+),(\d[^,]*)", item) for item in items if "," in item]
     if len(items) == 1 or not close or not all(close) or (first := close[0]) is None:
         return ""
     return (
-        f"{first[0]} has a decimal comma; write {first[1]}.{first[2]}, or for two numbers a blank"
-        " behind the comma"
+        f"{first[0]} has a decimal comma; write {first[1]}.{first[2]}, or for two numbers"
+        " a blank behind the comma"
     )
 
 

@@ -1,4 +1,6 @@
-"""Parts that every command shares: groups, options, streams, tables, errors and exit codes."""
+"""Parts that every command shares: groups, options, streams,
+tables, errors and exit codes.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +10,9 @@ from rpscli.errors import hint
 
 
 class Group(click.Group):
-    """Commands in the order in which they were given; an unknown one is told the nearest name."""
+    """Commands in the order in which they were given; an unknown one
+    is told the nearest name.
+    """
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Names in that order."""

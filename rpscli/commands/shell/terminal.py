@@ -1,7 +1,8 @@
-"""Streams of a command: results on the standard output, all else on the standard error; errors.
+"""Streams of a command: results on the standard output, all else on
+the standard error; errors.
 
-What takes long says on the standard error how far it is: in a line that comes and goes where
-somebody looks at a terminal.
+What takes long says on the standard error how far it is: in a line that comes and goes
+where somebody looks at a terminal.
 """
 
 from __future__ import annotations
@@ -42,16 +43,20 @@ LONGEST_HEAD = 14
 MOST_LINES = 9
 """Letters of a word that is not broken, in cells and in heads; lines of heads."""
 ALL_FOLD = 0
-"""Lines of heads where numbers are broken as well, since one column beside the keys is too wide."""
+"""Lines of heads where numbers are broken as well, since one column
+beside the keys is too wide."""
 LAST = -MOST_LINES
-"""The last way: columns that are as narrow as their words leave it to others to give room."""
+"""The last way: columns that are as narrow as their words leave
+it to others to give room."""
 GAP = 3
 """Between two columns."""
 
 
 @dataclass(frozen=True)
 class Terminal:
-    """One JSON document in place of tables; quiet: neither tables nor notes, but errors."""
+    """One JSON document in place of tables; quiet: neither
+    tables nor notes, but errors.
+    """
 
     as_json: bool = False
     quiet: bool = False
@@ -70,7 +75,9 @@ class Terminal:
                 self.told.add(text)
                 self.note(f"warning: {text}")
 
-    def warn_first(self, texts: Sequence[str], where: str, most: int = WARNINGS_SHOWN) -> None:
+    def warn_first(
+        self, texts: Sequence[str], where: str, most: int = WARNINGS_SHOWN
+    ) -> None:
         """The first warnings, and how many there are besides."""
         self.warn(texts[:most])
         if len(texts) > most:
@@ -107,29 +114,42 @@ def _fitting(table: Table, console: Console) -> Iterator[RichTable]:
 
 
 def _widths(table: Table, columns: Sequence[int], room: int, *, fold: bool) -> list[int]:
-    """Widths that fit, or none: heads of numbers break into as few lines as do, then words fold.
+    """Widths that fit, or none: heads of numbers break into as few
+    lines as do, then words fold.
 
     Numbers never do, but where one column beside the keys is too wide.
     """
     heads = [visible(table.heads[i]) for i in columns]
     rows = table.rows
     cells = [[visible(row[i]) for row in rows] for i in columns]
-    wide = [max(1, *map(len, [head, *own])) for head, own in zip(heads, cells, strict=True)]
-    in_head = [min(max(map(len, head.split()), default=1), LONGEST_HEAD) for head in heads]
+    wide = [
+        max(1, *map(len, [head, *own])) for head, own in zip(heads, cells, strict=True)
+    ]
+    in_head = [
+        min(max(map(len, head.split()), default=1), LONGEST_HEAD) for head in heads
+    ]
     for lines in (1, 2, 3, MOST_LINES, *[ALL_FOLD] * fold, LAST):
         widths = []
         least = []
-        for index, head, own, most, word in zip(columns, heads, cells, wide, in_head, strict=True):
+        for index, head, own, most, word in zip(
+            columns, heads, cells, wide, in_head, strict=True
+        ):
             if index < table.words:
-                longest = max((len(part) for cell in own for part in cell.split()), default=0)
+                longest = max(
+                    (len(part) for cell in own for part in cell.split()), default=0
+                )
                 least.append(max(min(longest, LONGEST_WORD), word))
                 widths.append(most)
                 continue
             number = max([word, *map(len, own)])
-            broken = (w for w in range(number, most + 1) if len(wrap(head, w)) <= abs(lines))
+            broken = (
+                w for w in range(number, most + 1) if len(wrap(head, w)) <= abs(lines)
+            )
             widths.append(next(broken, most))
             least.append({1: number, ALL_FOLD: 1}.get(lines, widths[-1]))
-        give = [i for i, n in enumerate(columns) if n < table.words or lines in {1, ALL_FOLD}]
+        give = [
+            i for i, n in enumerate(columns) if n < table.words or lines in {1, ALL_FOLD}
+        ]
         for _ in range(sum(widths) + GAP * (len(widths) - 1) - room):
             if lines == LAST:
                 give = [i for i in give if widths[i] > least[i]]
@@ -143,12 +163,16 @@ def _widths(table: Table, columns: Sequence[int], room: int, *, fold: bool) -> l
 
 
 def _made(table: Table, columns: Sequence[int], widths: Sequence[int]) -> RichTable:
-    """Some columns of a table: words stand left, numbers right; a listing has no heads."""
+    """Some columns of a table: words stand left, numbers
+    right; a listing has no heads.
+    """
     from rich import box
     from rich.table import Table as RichTable
 
     if listing := not any(table.heads):
-        made = RichTable(box=None, show_header=False, pad_edge=False, padding=(0, 2, 0, 0))
+        made = RichTable(
+            box=None, show_header=False, pad_edge=False, padding=(0, 2, 0, 0)
+        )
     else:
         made = RichTable(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False)
     fixed: Sequence[int | None] = widths or [None] * len(columns)
@@ -165,7 +189,9 @@ def _made(table: Table, columns: Sequence[int], widths: Sequence[int]) -> RichTa
 
 
 def rendered(tables: Iterable[Part]) -> str:
-    """Text of tables for the standard output: coloured and as wide as a terminal, if it is one."""
+    """Text of tables for the standard output: coloured and as wide as
+    a terminal, if it is one.
+    """
     from rich.console import Console
 
     screen = sys.stdout is not None and sys.stdout.isatty()
@@ -201,7 +227,9 @@ def _parts(tables: Iterable[Part], console: Console) -> Iterator[RichTable | Tex
 
 
 def emit(text: str, stream: TextIO | None) -> None:
-    """Write at once; what cannot be encoded becomes ``?``, and a reader that left is no error."""
+    """Write at once; what cannot be encoded becomes ``?``, and a
+    reader that left is no error.
+    """
     if stream is None:
         return
     encoding = stream.encoding or "utf-8"
@@ -212,7 +240,9 @@ def emit(text: str, stream: TextIO | None) -> None:
         # What is still in the stream's buffer must not fail again when the program ends.
         os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
         if stream is sys.stdout and not isinstance(error, BrokenPipeError):
-            raise OutputError(f"standard output: cannot be written: {error.strerror}") from None
+            raise OutputError(
+                f"standard output: cannot be written: {error.strerror}"
+            ) from None
 
 
 INTERRUPTED = 130
@@ -230,7 +260,9 @@ class Ending(NamedTuple):
 
     @classmethod
     def of(cls, error: BaseException) -> Ending:
-        """All faults of the command line are one kind; words of hundreds of letters are cut."""
+        """All faults of the command line are one kind; words of
+        hundreds of letters are cut.
+        """
         name = type(error).__name__
         code = getattr(error, "exit_code", INTERNAL)
         if isinstance(error, click.ClickException):
@@ -241,21 +273,29 @@ class Ending(NamedTuple):
         elif isinstance(error, KeyboardInterrupt | click.Abort):
             name = "Interrupted"
             code = INTERRUPTED
-            text = "interrupted; no file is half written; the same command may be given again"
+            text = (
+                "interrupted; no file is half written; the same command may be given"
+                " again"
+            )
         elif isinstance(error, OSError):
             place = f"{str(error.filename)[:200]}: " if error.filename else ""
-            text = f"{place}{error.strerror or error}; check the path, its permissions and the disk"
+            text = (
+                f"{place}{error.strerror or error}; check the path, its permissions and"
+                " the disk"
+            )
         elif isinstance(error, MemoryError | RecursionError):
             text = "there is not enough memory; use fewer points, samples or storeys"
         else:
             last = traceback.extract_tb(error.__traceback__)[-1:]
             where = f" ({Path(last[0].filename).name}:{last[0].lineno})" if last else ""
             text = (
-                f"internal error{where}: {name}: {error}; this is a fault of rps: please report it"
-                f" with the traceback that {TRACEBACK}=1 shows"
+                f"internal error{where}: {name}: {error}; this is a fault of rps: please"
+                f" report it with the traceback that {TRACEBACK}=1 shows"
             )
         # The end of a path says most of it.
-        cut = re.sub(r"\S{301,}", lambda word: f"{word[0][:140]}...{word[0][-140:]}", text)
+        cut = re.sub(
+            r"\S{301,}", lambda word: f"{word[0][:140]}...{word[0][-140:]}", text
+        )
         return cls(name, cut, code)
 
 
@@ -269,7 +309,9 @@ def report(error: BaseException, *, as_json: bool) -> int:
 
 
 def concluded(document: Mapping[str, Any], error: RpsError | None) -> dict[str, Any]:
-    """The document of a result with its exit code; status ``ok`` although a limit is exceeded."""
+    """The document of a result with its exit code; status ``ok``
+    although a limit is exceeded.
+    """
     if error is not None and not isinstance(error, LimitExceeded):
         return {**document, **failure_document(*Ending.of(error))}
     code = 0 if error is None else error.exit_code
@@ -287,12 +329,16 @@ def _lines(error: BaseException) -> str:
     ending = Ending.of(error)
     if ending.code == INTERNAL and os.environ.get(TRACEBACK):
         return "".join(traceback.format_exception(error))
-    if type(error).__name__ == "NoArgsIsHelpError":  # click >= 8.2: a group without a subcommand
+    if (
+        type(error).__name__ == "NoArgsIsHelpError"
+    ):  # click >= 8.2: a group without a subcommand
         return f"{ending.message}\n"
     usage = ""
     if isinstance(error, click.UsageError) and error.ctx is not None:
         usage = f"{error.ctx.get_usage()}\ntry {error.ctx.command_path} --help\n"
-    return usage + "".join(f"error: {line}\n" for line in visible(ending.message).splitlines())
+    return usage + "".join(
+        f"error: {line}\n" for line in visible(ending.message).splitlines()
+    )
 
 
 MANY = 5000
@@ -309,8 +355,12 @@ _bars: list[Any] = []
 
 
 @contextmanager
-def _line(what: str, terminal: Terminal) -> Iterator[Callable[[int, int, str], None] | None]:
-    """A line until the work is done, and a function for how far it is; None if nobody looks."""
+def _line(
+    what: str, terminal: Terminal
+) -> Iterator[Callable[[int, int, str], None] | None]:
+    """A line until the work is done, and a function for how far it
+    is; None if nobody looks.
+    """
     if terminal.quiet or sys.stderr is None or not sys.stderr.isatty():
         yield None
         return
@@ -329,28 +379,36 @@ def _line(what: str, terminal: Terminal) -> Iterator[Callable[[int, int, str], N
         task = bar.add_task(what, total=None)
 
         def tell(done: int, total: int, text: str) -> None:
-            bar.update(task, completed=done, total=total, description=f"{done}/{total}{text}")
+            bar.update(
+                task, completed=done, total=total, description=f"{done}/{total}{text}"
+            )
 
         yield tell
 
 
 @contextmanager
 def passing_time(what: str, terminal: Terminal) -> Iterator[None]:
-    """A line with the work in progress and the time that has passed, where somebody looks."""
+    """A line with the work in progress and the time that has
+    passed, where somebody looks.
+    """
     with _line(what, terminal):
         yield
 
 
 @contextmanager
 def counted(what: str, terminal: Terminal) -> Iterator[Callable[[int, int], None]]:
-    """A function that shows how many of how many are done: a bar on a terminal, else one line."""
+    """A function that shows how many of how many are done: a bar on a
+    terminal, else one line.
+    """
     with _line(what, terminal) as tell:
         if tell is None:
             terminal.note(what)
         yield lambda done, total: tell(done, total, f", {what}") if tell else None
 
 
-def watched(what: str, terminal: Terminal, numbers: range, *, many: int = MANY) -> Iterator[int]:
+def watched(
+    what: str, terminal: Terminal, numbers: range, *, many: int = MANY
+) -> Iterator[int]:
     """The numbers; how many are done is shown where they are many."""
     if len(numbers) < many:
         yield from numbers
@@ -372,8 +430,9 @@ def patience(
         return nullcontext()
     steps = most_steps(case.structure, case.analysis, motion.duration)
     terminal.note(
-        f"a long history: about {steps:.2g} steps of {case.structure.storeys} modes, {seconds:.0f}"
-        " s if it does not come to rest before; analysis.free_vibration shortens it"
+        f"a long history: about {steps:.2g} steps of {case.structure.storeys} modes,"
+        f" {seconds:.0f} s if it does not come to rest before; analysis.free_vibration"
+        " shortens it"
     )
     return passing_time("computing", terminal)
 
@@ -385,7 +444,10 @@ def announce_compilation(terminal: Terminal) -> None:
 
     @contextmanager
     def announced(kernel: str) -> Iterator[None]:
-        nowhere = f"each time: no folder that is yours alone can be written; name one in {VARIABLE}"
+        nowhere = (
+            "each time: no folder that is yours alone can be written; name one in"
+            f" {VARIABLE}"
+        )
         often = "once for this version" if cache_folder() else nowhere
         terminal.note(f"compiling the {kernel}, {often}: {USUALLY}")
         with passing_time(f"compiling the {kernel} ({USUALLY})", terminal):
@@ -398,14 +460,18 @@ def announce_compilation(terminal: Terminal) -> None:
 def progress_report(
     terminal: Terminal, kept: int, total: int
 ) -> Iterator[Callable[[Progress], None]]:
-    """A function that shows how far a study is: a bar on a terminal, else a line now and then."""
+    """A function that shows how far a study is: a bar on a terminal,
+    else a line now and then.
+    """
     due = FIRST_LINE
     with nullcontext() if kept == total else _line("", terminal) as tell:
 
         def report(progress: Progress) -> None:
             nonlocal due  # later and later: logs stay short
             if tell is not None:
-                tell(progress.done, total, "".join(f", {text}" for text in _pace(progress)))
+                tell(
+                    progress.done, total, "".join(f", {text}" for text in _pace(progress))
+                )
             elif progress.seconds >= due and progress.done < progress.total:
                 due = progress.seconds * GROWTH
                 terminal.note(progress_line(progress))

@@ -1,7 +1,7 @@
 """What all devices of a lane do together.
 
-Linear dampers, friction and rolling resistance are sums of a lane, and lanes act together. What has
-branches or powers is looked at device by device.
+Linear dampers, friction and rolling resistance are sums of a lane, and lanes act
+together. What has branches or powers is looked at device by device.
 """
 
 from __future__ import annotations
@@ -10,7 +10,13 @@ import math
 
 from rpscli.physics.compile import compiled, inlined
 from rpscli.physics.devices.device import is_apart
-from rpscli.physics.devices.table import drag_of, load_device, power_of, resistance_of, tension_of
+from rpscli.physics.devices.table import (
+    drag_of,
+    load_device,
+    power_of,
+    resistance_of,
+    tension_of,
+)
 from rpscli.physics.devices.worked import Worked, worked
 from rpscli.physics.lane import (
     Polar,
@@ -29,13 +35,14 @@ from rpscli.physics.laws.place import Place, length
 from rpscli.physics.state import Record
 
 STOP_SPEED = 5e-3
-"""Of that at which sliding begins: what slides more slowly to any side is stopped, or turned to
-where it is pushed. A step may err by a fiftieth of it, however slow the motion is."""
+"""Of that at which sliding begins: what slides more slowly to any side is
+stopped, or turned to where it is pushed. A step may err by a fiftieth of it,
+however slow the motion is."""
 
 STOP_SPEED_OF_PASSES = 1e-9
 SLOW_RATE = 1e-3
-"""Of sqrt(g R), and of sqrt(g/R): the same of rigid ends. What passes upright asks for velocities
-in proportion, except where it tilts more slowly than this."""
+"""Of sqrt(g R), and of sqrt(g/R): the same of rigid ends. What passes upright asks for
+velocities in proportion, except where it tilts more slowly than this."""
 
 
 @inlined
@@ -79,11 +86,14 @@ def load_devices(s: Record, l: int, system: Record) -> None:
 
 
 @inlined
-def paces(s: Record, l: int, at: Place, tilt: Polar) -> tuple[float, float, float, float, float]:
-    """u_b' along the tilt, across it, and its size [m/s]; rates against which friction acts.
+def paces(
+    s: Record, l: int, at: Place, tilt: Polar
+) -> tuple[float, float, float, float, float]:
+    """u_b' along the tilt, across it, and its size [m/s]; rates
+    against which friction acts.
 
-    These are of dampers [m/s] and of rolling resistance [rad/s]; in one plane they have the sign of
-    `direction`.
+    These are of dampers [m/s] and of rolling resistance [rad/s]; in one plane they have
+    the sign of `direction`.
     """
     out = s.diameter[l] * at.C * tilt.p
     aside = s.diameter[l] * at.h * tilt.q
@@ -175,7 +185,9 @@ def begin_work(s: Record, weight: float) -> None:
 
 @compiled
 def act_branched_at_stage(s: Record, weight: float) -> None:
-    """`act_branched` at a stage of the step, in all lanes that have such; adds to their work."""
+    """`act_branched` at a stage of the step, in all lanes that have
+    such; adds to their work.
+    """
     for l in range(lanes_of(s)):
         if s.branched[l] > 0.0:
             at = worked(s, l, new_tilt_of(s, l), new_rate_of(s, l))
@@ -187,6 +199,9 @@ def act_branched_at_stage(s: Record, weight: float) -> None:
 @inlined
 def power_in_step(s: Record, l: int, i: int) -> float:
     """Mean of what a device dissipated in the step just taken [W]."""
-    mean = s.square_constant[i, l] * s.mean_square[l] + s.pace_constant[i, l] * s.mean_pace[l]
+    mean = (
+        s.square_constant[i, l] * s.mean_square[l]
+        + s.pace_constant[i, l] * s.mean_pace[l]
+    )
     mean += s.swing_constant[i, l] * s.mean_swing[l]
     return s.device_work[i, l] if is_apart(s, l, i) else mean  # type: ignore[no-any-return]

@@ -36,14 +36,17 @@ def may_be_watched(s: Record, l: int, which: int) -> bool:
 def slowing(s: Record, l: int, end: int) -> tuple[float, float]:
     """What falls below zero where friction stops a tilt, and its slope.
 
-    In one plane the rate in the direction of friction; to any side |u_b'|^2 over that of a stop.
+    In one plane the rate in the direction of friction; to any side
+    |u_b'|^2 over that of a stop.
     """
     if ways_of(s) == 1:
         p, a = (s.new_v[l], s.new_a[l]) if end > 0 else (s.v[l], s.a[l])
         return s.direction[l] * p, s.direction[l] * a
     speed = s.new_speed[l] if end > 0 else s.speed[l]
     least = s.stop_speed[l]
-    return speed * speed - least * least, s.new_square_rate[l] if end > 0 else s.square_rate[l]
+    return speed * speed - least * least, s.new_square_rate[
+        l
+    ] if end > 0 else s.square_rate[l]
 
 
 @inlined
@@ -63,9 +66,9 @@ KINK = 0.25
 def watched(s: Record, l: int, which: int, end: int) -> tuple[bool, float, float]:
     """A watched value and its slope, at the start (0) or the end (1) of the step.
 
-    Number 0 is the rate of the tilt in the direction of friction, 1 + i and 1 + SLOTS + i belong to
-    device i; `SLOWING` is the velocity of what friction brakes while it may tilt to any side.
-    Returns first whether there is such a one.
+    Number 0 is the rate of the tilt in the direction of friction, 1 + i and 1 + SLOTS + i
+    belong to device i; `SLOWING` is the velocity of what friction brakes while it may
+    tilt to any side. Returns first whether there is such a one.
     """
     if which == SLOWING or (which == 0 and ways_of(s) == 1 and has_friction(s, l)):
         value, slope = slowing(s, l, end)
@@ -82,7 +85,9 @@ def watched(s: Record, l: int, which: int, end: int) -> tuple[bool, float, float
 
 @compiled
 def change_law(s: Record, l: int, log: Record, which: int) -> bool:
-    """What a watched value that fell below zero stands for; True if friction now holds the tilt."""
+    """What a watched value that fell below zero stands for; True if
+    friction now holds the tilt.
+    """
     if which == 0:  # what goes round goes on
         _, n, t, _, q = polar(s, l, tilt_of(s, l), rate_of(s, l))
         s.v[l] = 0.0

@@ -1,4 +1,6 @@
-"""What is asked of a device: a function each, most of which most devices leave as they are here."""
+"""What is asked of a device: a function each, most of which most
+devices leave as they are here.
+"""
 
 from __future__ import annotations
 
@@ -43,7 +45,9 @@ def nothing_stored(s: Record, l: int, i: int, at: Worked) -> float:
 
 
 @compiled
-def nothing_watched(s: Record, l: int, i: int, end: int, second: bool) -> tuple[bool, float, float]:
+def nothing_watched(
+    s: Record, l: int, i: int, end: int, second: bool
+) -> tuple[bool, float, float]:
     """What falls below zero where the law changes, and its slope, at an end of the step.
 
     First whether there is such a one; a device may watch a second one.
@@ -53,7 +57,9 @@ def nothing_watched(s: Record, l: int, i: int, end: int, second: bool) -> tuple[
 
 @compiled
 def no_other(s: Record, l: int, i: int, second: bool) -> tuple[int, int]:
-    """The branch after the watched value has fallen below zero, and the event to log, or -1."""
+    """The branch after the watched value has fallen below zero, and
+    the event to log, or -1.
+    """
     return IDLE, -1
 
 
@@ -75,7 +81,9 @@ class Device(NamedTuple):
 
     kind: int
     load: Callable[..., Any]
-    at: Callable[..., Any]  # force, rate at which it is worked, displacement: as `seen` has them
+    at: Callable[
+        ..., Any
+    ]  # force, rate at which it is worked, displacement: as `seen` has them
     drag: Callable[..., Any] = no_drag
     resistance: Callable[..., Any] = no_resistance
     tension: Callable[..., Any] = no_tension

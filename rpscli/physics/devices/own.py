@@ -66,7 +66,11 @@ def watched(
     faster = 0.5 * rate / max(speed, 1e-150)
     later = asked(s, l, i, 1, path + near * out, speed + near * faster)
     before = asked(s, l, i, 1, path - near * out, speed - near * faster)
-    return True, sign * asked(s, l, i, 1, path, speed), sign * (later - before) / (2.0 * near)
+    return (
+        True,
+        sign * asked(s, l, i, 1, path, speed),
+        sign * (later - before) / (2.0 * near),
+    )
 
 
 @compiled
@@ -87,9 +91,13 @@ DEVICE = Device(OWN, load, at, drag=drag, power=power, watched=watched, change=c
 
 @compiled
 def find_branches(s: Record, l: int) -> None:
-    """Own laws follow the branch on whose side of zero their watched value is: after a jump."""
+    """Own laws follow the branch on whose side of zero their
+    watched value is: after a jump.
+    """
     for i in range(s.devices[l]):
         if s.device_kind[i, l] == OWN and s.own_law[i, 1, l] != 0:
             at = worked(s, l, tilt_of(s, l), rate_of(s, l))
             speed = length(at.along, at.across)
-            s.branch[i, l] = WORKING if asked(s, l, i, 1, at.path, speed) >= 0.0 else BEYOND
+            s.branch[i, l] = (
+                WORKING if asked(s, l, i, 1, at.path, speed) >= 0.0 else BEYOND
+            )

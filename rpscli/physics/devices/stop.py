@@ -67,7 +67,9 @@ def watched(
     branch = s.branch[i, l]
     if second and branch != BEYOND:
         return False, 0.0, 0.0
-    x, p, a = (s.new_x[l], s.new_v[l], s.new_a[l]) if end > 0 else (s.x[l], s.v[l], s.a[l])
+    x, p, a = (
+        (s.new_x[l], s.new_v[l], s.new_a[l]) if end > 0 else (s.x[l], s.v[l], s.a[l])
+    )
     at = place_of(s, l, x)
     diameter = s.diameter[l]
     stiffness = s.law[i, STOP_STIFFNESS, l]
@@ -113,7 +115,9 @@ DEVICE = Device(
 
 @compiled
 def begin_excursion(s: Record, l: int, log: Record) -> None:
-    """Leave x = 0: friction acts against growing tilts, and a stop without a gap is met at once."""
+    """Leave x = 0: friction acts against growing tilts, and a stop
+    without a gap is met at once.
+    """
     s.direction[l] = 1.0
     for i in range(s.devices[l]):
         if s.device_kind[i, l] == STOP:
@@ -125,7 +129,9 @@ def begin_excursion(s: Record, l: int, log: Record) -> None:
 
 @compiled
 def take_up_stops(s: Record, l: int, log: Record) -> None:
-    """At a closest approach: what moves outwards again is met by stops that had let go."""
+    """At a closest approach: what moves outwards again is met
+    by stops that had let go.
+    """
     for i in range(s.devices[l]):
         if s.device_kind[i, l] == STOP and s.branch[i, l] == BEYOND:
             s.branch[i, l] = WORKING

@@ -78,7 +78,9 @@ def power_of(s: Record, l: int, i: int, at: Worked) -> float:
 
 @compiled
 def stored_in(s: Record, l: int, i: int, at: Worked) -> float:
-    """Energy stored in a device over that at the start [J]; a yielded tendon's may be negative."""
+    """Energy stored in a device over that at the start [J]; a yielded
+    tendon's may be negative.
+    """
     for device in DEVICES:
         if s.device_kind[i, l] == device.kind:
             return device.stored(s, l, i, at)  # type: ignore[no-any-return]
@@ -89,8 +91,9 @@ def stored_in(s: Record, l: int, i: int, at: Worked) -> float:
 def device_at(s: Record, l: int, i: int, at: Worked) -> tuple[float, float, float]:
     """Force of a device, the rate at which it is worked, and its displacement.
 
-    Of horizontal devices the resistance with |u_b|; of a tendon the tension of one with its
-    elongation; of rolling resistance the horizontal force that does the same, M/(2 R C).
+    Of horizontal devices the resistance with |u_b|; of a tendon the tension of
+    one with its elongation; of rolling resistance the horizontal force that
+    does the same, M/(2 R C).
     """
     for device in DEVICES:
         if s.device_kind[i, l] == device.kind:
@@ -106,7 +109,9 @@ def watched_of(
     end: int,
     second: bool,
 ) -> tuple[bool, float, float]:
-    """What a device watches at the start (0) or the end (1) of the step, and its slope."""
+    """What a device watches at the start (0) or the end (1) of
+    the step, and its slope.
+    """
     for device in DEVICES:
         if s.device_kind[i, l] == device.kind:
             return device.watched(s, l, i, end, second)  # type: ignore[no-any-return]

@@ -41,7 +41,9 @@ def tension(s: Record, l: int, i: int, e: float) -> float:
         return 0.0
     if s.branch[i, l] == WORKING:
         stretch = e - s.permanent[i, l]
-        return float(s.law[i, TENDON_PRESTRESS, l] + s.law[i, TENDON_STIFFNESS, l] * stretch)
+        return float(
+            s.law[i, TENDON_PRESTRESS, l] + s.law[i, TENDON_STIFFNESS, l] * stretch
+        )
     return float(s.law[i, TENDON_YIELD, l])
 
 
@@ -100,13 +102,21 @@ def at(s: Record, l: int, i: int, at: Worked) -> tuple[float, float, float]:
 
 
 DEVICE = Device(
-    TENDON, load, at, tension=tension, power=power, stored=stored, watched=watched, change=change
+    TENDON,
+    load,
+    at,
+    tension=tension,
+    power=power,
+    stored=stored,
+    watched=watched,
+    change=change,
 )
 
 
 UNLOADED = 1e-12
-"""Share of its limit by which a tendon that yielded is below it once the tilt turns: a margin of
-zero could be negative by rounding at the end of a short step, and the tendon yield on the way back.
+"""Share of its limit by which a tendon that yielded is below it once the tilt turns:
+a margin of zero could be negative by rounding at the end of a short step, and the
+tendon yield on the way back.
 """
 
 

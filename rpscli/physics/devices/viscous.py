@@ -25,7 +25,9 @@ def load(s: Record, l: int, i: int, system: Record) -> None:
 def drag(s: Record, l: int, i: int, path: float, speed: float) -> float:
     """Resistance over |u_b'|, up to a small velocity that of a linear one."""
     exponent = s.law[i, DAMPER_EXPONENT, l] - 1.0
-    return float(s.law[i, DAMPER_COEFFICIENT, l] * max(speed, s.linear_speed[l]) ** exponent)
+    return float(
+        s.law[i, DAMPER_COEFFICIENT, l] * max(speed, s.linear_speed[l]) ** exponent
+    )
 
 
 @compiled

@@ -20,14 +20,17 @@ class Worked(NamedTuple):
     along: float  # u_b' along the tilt and across it [m/s]
     across: float
     C: float  # height of the cap beam's path, over R
-    e: float  # elongation of a tendon [m], de/dx, and the angle psi of its end from the vertical
+    # elongation of a tendon [m], de/dx, and the angle psi of its end from the vertical
+    e: float
     lever: float
     sin_psi: float
     cos_psi: float
 
 
 @compiled
-def worked(s: Record, l: int, tilt: tuple[float, float], rate: tuple[float, float]) -> Worked:
+def worked(
+    s: Record, l: int, tilt: tuple[float, float], rate: tuple[float, float]
+) -> Worked:
     """How devices are worked at a tilt and its rate."""
     now = polar(s, l, tilt, rate)
     diameter = s.diameter[l]
@@ -49,11 +52,13 @@ def worked(s: Record, l: int, tilt: tuple[float, float], rate: tuple[float, floa
 
 @compiled
 def tendon_elongation(s: Record, l: int, x: float) -> tuple[float, float, float, float]:
-    """Elongation e of a tendon, de/dx, and sine and cosine of psi, at a tilt x (11.7) to (11.10).
+    """Elongation e of a tendon, de/dx, and sine and cosine of psi, at a
+    tilt x (11.7) to (11.10).
 
-    The middle of either end moves by (M_1, M_2) from where it stood; with E its distance from there
-    a tendon is longer by e = 2 E. Seen from the contact, which lies B + r x from that place along
-    the ground while rolling and B + r beta while rocking, de/dx = 2 cos(psi) times that distance.
+    The middle of either end moves by (M_1, M_2) from where it stood; with E its distance
+    from there a tendon is longer by e = 2 E. Seen from the contact, which lies B + r x
+    from that place along the ground while rolling and B + r beta while rocking, de/dx = 2
+    cos(psi) times that distance.
     """
     y = x if s.rolls[l] > 0.0 else s.beta[l]
     half_sine = math.sin(0.5 * x)

@@ -1,8 +1,8 @@
 """The laws, each once, of plain named numbers (Theory, sections 1, 2, 12 and 13).
 
-The tilt is a vector (a, b) = x (cos phi, sin phi); along it and across it its rate is p = x' and
-q = x phi'. One plane is its first component alone, signed by the side s: x = s a may then pass
-through zero, and nothing across it exists. With K = J/x^2, over N m_c R^2,
+The tilt is a vector (a, b) = x (cos phi, sin phi); along it and across it its rate is p =
+x' and q = x phi'. One plane is its first component alone, signed by the side s: x = s a
+may then pass through zero, and nothing across it exists. With K = J/x^2, over N m_c R^2,
 
     A r''_n = C z_n - arms - bed - c_r p + G_n + [(K - A)/x + K'/2] q^2 - D p^2        D = A'/2
     K r''_t = h z_t - c_t q + G_t - K' p q                                             h = u/x
@@ -12,9 +12,11 @@ through zero, and nothing across it exists. With K = J/x^2, over N m_c R^2,
     g_f     = g + a_v, of floors on springs less than it by 2 [M_tot a_v + sum Gamma f]/(N m_c)
               over 1 + 2 gamma + 2 gamma eta: they press with M_tot g - sum Gamma f (14.3)
 
-G is what tendons and rolling resistance do, P what dampers and stops push the cap beam with. Kept
-beyond the ends of a phase of motion all is smooth, which is what the search of events needs.
+G is what tendons and rolling resistance do, P what dampers and stops push the cap
+beam with. Kept beyond the ends of a phase of motion all is smooth, which is what
+the search of events needs.
 
-`geometry` and `plane_bed` are the contacts, for arrays as well; `place` is geometry and inertia at
-a tilt, `motion` the equation of motion, `contacts` the forces that follow. `lane` asks them.
+`geometry` and `plane_bed` are the contacts, for arrays as well; `place` is geometry
+and inertia at a tilt, `motion` the equation of motion, `contacts` the forces that
+follow. `lane` asks them.
 """

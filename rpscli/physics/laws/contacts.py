@@ -20,8 +20,8 @@ class Masses(NamedTuple):
 def shears(masses: Masses, beam: float, a_g: float, V: float) -> tuple[float, float]:
     """F of all columns at their upper and lower ends, in one direction [N].
 
-    It acts to the right on what is above, under u_b'' and a_g; V is the base shear and what devices
-    push the beam with.
+    It acts to the right on what is above, under u_b'' and a_g; V is the base shear and
+    what devices push the beam with.
     """
     upper = masses.cap_beam * (beam + a_g) - V
     return upper, upper + masses.columns * (0.5 * beam + a_g)

@@ -1,7 +1,7 @@
 """Contact geometry of a kinematic bearing: three constants for each phase of motion.
 
-A column of semi-diagonal R leans by x = |theta| >= 0.  It stands on an arc of radius r while
-x < beta (rolling) and on the arc's end beyond (rocking)::
+A column of semi-diagonal R leans by x = |theta| >= 0.  It stands on an arc of radius r
+while x < beta (rolling) and on the arc's end beyond (rocking)::
 
           .-----------.            k = 2 rho cos(alpha),  rho = r / 2H
          (             )
@@ -17,14 +17,15 @@ Expanding sin(alpha - x), cos(alpha - x), ... in sin x and cos x leaves, in both
     B(x) = p cos x + q sin x               lever arm of the weight, over R
     C(x) = c + p sin x - q cos x           height of the cap beam's path, over R
 
-with  C' = B  and  B' = c - C, so one sine and one cosine give the rest, Theory (1.9) to (1.11):
+with  C' = B  and  B' = c - C, so one sine and one cosine give the
+rest, Theory (1.9) to (1.11):
 
     S = B^2 + C^2 = p^2 + q^2 - c^2 + 2 c C
     u_b / 2R = u0 + c x - q sin x - p cos x        (odd in theta)
     v_b / 2R = v0 + p sin x - q cos x              (even in theta)
 
-Every function takes floats or arrays; `laws` compiles them for the kernel. This module itself needs
-numpy only.
+Every function takes floats or arrays; `laws` compiles them for the kernel. This module
+itself needs numpy only.
 """
 
 from __future__ import annotations
@@ -97,7 +98,9 @@ def end_displacement(
     """
     y, sin_y, less_y = rolled
     sin_x, less_x = turned
-    across = half_width * less_x + radius * ((y - sin_y) + (sin_y * less_x - less_y * sin_x))
+    across = half_width * less_x + radius * (
+        (y - sin_y) + (sin_y * less_x - less_y * sin_x)
+    )
     upwards = half_width * sin_x + radius * (sin_y * sin_x - less_y * (1.0 - less_x))
     return across, upwards, half_width + radius * y
 
@@ -131,10 +134,11 @@ def arm_root(phase: Phase) -> float:
 
 
 def critical_rotation(rolling: Phase, rocking: Phase, beta: float) -> float:
-    """theta_cr: the smallest positive root of B on the branch that is really travelled [rad].
+    """theta_cr: the smallest positive root of B on the branch that
+    is really travelled [rad].
 
-    The column rolls up to beta and rocks beyond; B is continuous at beta, so a root of the rolling
-    branch counts only if it lies before beta.
+    The column rolls up to beta and rocks beyond; B is continuous at beta, so a root of
+    the rolling branch counts only if it lies before beta.
     """
     root = arm_root(rolling)
     return root if root <= beta else arm_root(rocking)
@@ -143,7 +147,9 @@ def critical_rotation(rolling: Phase, rocking: Phase, beta: float) -> float:
 def path_along(
     rolling: Phase, rocking: Phase, beta: float, x: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], ...]:
-    """B, C, u_b/2R and v_b/2R along an array of x >= 0, each in its own phase [beta rad, x rad]."""
+    """B, C, u_b/2R and v_b/2R along an array of x >= 0, each in its own
+    phase [beta rad, x rad].
+    """
     cos_x = np.cos(x)
     sin_x = np.sin(x)
     rolls = x < beta

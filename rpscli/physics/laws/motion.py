@@ -8,18 +8,26 @@ from rpscli.physics.laws.place import Ends, Place
 
 @inlined
 def push(share: float, force: float, load: float, a_g: float) -> float:
-    """The z of a horizontal force at the cap beam and the ground's acceleration [1/s2]."""
+    """The z of a horizontal force at the cap beam and the
+    ground's acceleration [1/s2].
+    """
     return share * force - load * a_g
 
 
 @inlined
-def felt_gravity(g: float, g_up: float, spared: float, floors_mass: float, V_up: float) -> float:
-    """g_f, what contacts feel of g + a_v under forces V_up of the floors' springs [m/s2]."""
+def felt_gravity(
+    g: float, g_up: float, spared: float, floors_mass: float, V_up: float
+) -> float:
+    """g_f, what contacts feel of g + a_v under forces V_up of
+    the floors' springs [m/s2].
+    """
     return g_up - spared * (floors_mass * (g_up - g) + V_up)
 
 
 @inlined
-def weight_arms(at: Place, ends: Ends, weigh: float, w: float, g: float, g_f: float) -> float:
+def weight_arms(
+    at: Place, ends: Ends, weigh: float, w: float, g: float, g_f: float
+) -> float:
     """What weight turns the tilt back by, over N m_c R^2 [1/s2]."""
     return ((at.B - ends.sink * w) * g + at.Bv * (g_f - g)) * weigh
 

@@ -24,8 +24,9 @@ C2, C4, C6, C8, C10, C12, C14, C16, C18, C20 = (
 def sines(x: float) -> tuple[float, float, float]:
     """sin x, 1 - cos x and x - sin x by their series, without loss near zero [rad].
 
-    They leave less than 5e-16 for |x| <= pi/2, which no standing column exceeds. Terms are added in
-    pairs, and pairs of pairs (G. Estrin, 1960): what follows waits for five operations, not ten.
+    They leave less than 5e-16 for |x| <= pi/2, which no standing column exceeds. Terms
+    are added in pairs, and pairs of pairs (G. Estrin, 1960): what follows waits for
+    five operations, not ten.
     """
     z = x * x
     z2 = z * z
@@ -45,7 +46,9 @@ def length(x: float, y: float) -> float:
 
 
 class Column(NamedTuple):
-    """Inertia of columns and what they carry, over N m_c R^2, and the spin of a column's ends."""
+    """Inertia of columns and what they carry, over N m_c R^2, and the
+    spin of a column's ends.
+    """
 
     io_1: float  # Io - 1
     i_3: float  # I_3/(m_c R^2)
@@ -60,7 +63,9 @@ class Column(NamedTuple):
 
 
 class Ends(NamedTuple):
-    """What a bed changes: stiffness and damping of full contact, and how a plane end lifts."""
+    """What a bed changes: stiffness and damping of full contact,
+    and how a plane end lifts.
+    """
 
     k: float  # in full contact [1/s2], else 0
     c: float  # damping there [1/s], else 0
@@ -93,9 +98,17 @@ UPRIGHT = 1e-30
 
 @inlined
 def place_in_plane(
-    column: Column, phase: Phase, root: float, sine: float, less: float, w: float, dw: float
+    column: Column,
+    phase: Phase,
+    root: float,
+    sine: float,
+    less: float,
+    w: float,
+    dw: float,
 ) -> Place:
-    """A tilt in one plane, of which sine and 1 - cosine are given, under a patch w (12.6)."""
+    """A tilt in one plane, of which sine and 1 - cosine are
+    given, under a patch w (12.6).
+    """
     B = contact_arm(phase, 1.0 - less, sine)
     C = contact_height(phase, 1.0 - less, sine)
     Bv = B - root * w
@@ -126,7 +139,11 @@ def place_in_space(
     sine_x = sine * per_x
     less_x = less * per_x
     excess_x = excess * per_x
-    gap = phase.p * (sine - less_x) + phase.q * (less - excess_x) - (phase.u0 - phase.p) * per_x
+    gap = (
+        phase.p * (sine - less_x)
+        + phase.q * (less - excess_x)
+        - (phase.u0 - phase.p) * per_x
+    )
     h = at.C - gap
     G, G_slope = spun(column, sine, less, excess)
     G_x = G * per_x

@@ -1,4 +1,6 @@
-"""The record formats that can be read: told apart by content first, by extension second."""
+"""The record formats that can be read: told apart by content
+first, by extension second.
+"""
 
 from __future__ import annotations
 
@@ -35,7 +37,10 @@ class RecordFormat:
 
 _OURS = (
     RecordFormat(FORMAT, (".at2",), recognises_at2, read_at2, contents_of_at2),
-    *(RecordFormat(of.name, of.extensions, of.recognises, of.read, of.contents) for of in LAYOUTS),
+    *(
+        RecordFormat(of.name, of.extensions, of.recognises, of.read, of.contents)
+        for of in LAYOUTS
+    ),
 )
 _PLAIN = RecordFormat(
     "columns",
@@ -46,7 +51,9 @@ _PLAIN = RecordFormat(
 )
 """Accepts most, so it comes last."""
 
-FORMATS = Registry("formats", {form.name: form for form in (*_OURS, _PLAIN)}, RecordFormat)
+FORMATS = Registry(
+    "formats", {form.name: form for form in (*_OURS, _PLAIN)}, RecordFormat
+)
 """In the order of recognition."""
 
 _OTHER_QUANTITIES = {".vt2": "velocity", ".dt2": "displacement"}
@@ -64,8 +71,8 @@ def read_record(path: Path, of: Source) -> GroundMotion:
     extension = path.suffix.lower()
     if quantity := _OTHER_QUANTITIES.get(extension):
         raise RecordError(
-            f"{path}: {path.suffix} files hold {quantity}; give the acceleration record of the "
-            f"same station, {path.with_suffix('.AT2').name}"
+            f"{path}: {path.suffix} files hold {quantity}; give the acceleration record"
+            f" of the same station, {path.with_suffix('.AT2').name}"
         )
     text = read_text(path, of)
     form = _by_content(text)
@@ -80,16 +87,19 @@ def read_record(path: Path, of: Source) -> GroundMotion:
     mean = abs(float(motion.acceleration.mean()))
     if peak > _NONSENSE:
         raise text.fault(
-            f"the largest value is {peak:.3g} g, which is not a ground acceleration; the file is"
-            " damaged, fetch it again"
+            f"the largest value is {peak:.3g} g, which is not a ground acceleration; the"
+            " file is damaged, fetch it again"
         )
     doubts = {
         f"the mean is {mean / max(motion.pga, 1e-300):.2g} of the peak: an offset of the"
-        " instrument? Correct the record": motion.npts >= _MANY and mean > _OFFSET * motion.pga,
+        " instrument? Correct the record": motion.npts >= _MANY
+        and mean > _OFFSET * motion.pga,
         f"dt = {motion.dt:g} s is unusual for an accelerograph ({_FINEST:g} s to"
         f" {_COARSEST:g} s): check the time step": not _FINEST <= motion.dt <= _COARSEST,
-        f"PGA = {peak:.3g} g is beyond any recorded earthquake: check the units": peak > _STRONGEST,
-        f"PGA = {peak:.3g} g is weaker than can be felt: check the units": peak < _WEAKEST,
+        f"PGA = {peak:.3g} g is beyond any recorded earthquake: check the units": peak
+        > _STRONGEST,
+        f"PGA = {peak:.3g} g is weaker than can be felt: check the units": peak
+        < _WEAKEST,
     }
     told = (doubt for doubt, doubtful in doubts.items() if doubtful)
     return replace(motion, warnings=(*motion.warnings, *told))

@@ -1,8 +1,9 @@
-"""Formats of the agencies that record earthquakes, as data, and the one reader of all of them.
+"""Formats of the agencies that record earthquakes, as data, and the
+one reader of all of them.
 
-Corrected acceleration of COSMOS version 1, volume 2 of CSMIP and of GeoNet, SMC files of the USGS,
-K-NET and KiK-net, ESM and ITACA (DYNA 1.x). A file holds one channel, or several one after the
-other: a header, perhaps blocks of numbers, and the values.
+Corrected acceleration of COSMOS version 1, volume 2 of CSMIP and of GeoNet, SMC files of
+the USGS, K-NET and KiK-net, ESM and ITACA (DYNA 1.x). A file holds one channel, or
+several one after the other: a header, perhaps blocks of numbers, and the values.
 """
 
 from __future__ import annotations
@@ -27,7 +28,9 @@ Said = dict[str, Statement]  # statements of a header, by the names of `Layout.s
 
 
 class Words(NamedTuple):
-    """The words of a header for one thing: its name in messages, and the pattern of the line."""
+    """The words of a header for one thing: its name in messages, and
+    the pattern of the line.
+    """
 
     name: str
     pattern: str
@@ -35,20 +38,22 @@ class Words(NamedTuple):
 
 @dataclass(frozen=True)
 class Layout:
-    """A format: how a channel begins, what its header says, and how the values are written.
+    """A format: how a channel begins, what its header says, and
+    how the values are written.
 
-    `begins` is the first line of a file, and of each channel in it, `corrected` that of a channel
-    that can be read, `refusal` the message where others are possible. `header` is the number of its
-    lines, or the line that announces the values, its last one. It `says` the `count`, `step` [s],
-    `rate` [1/s], `duration` [s], `unit`, `peak`, `quantity` and `scale`, which may all be said
-    again, alike, the `place` of the station, and what a `Recording` has; for what is `needed` of
-    these, and missing, `lacks` is the message. `label` is the number and name of a channel in its
-    header, empty for formats with one channel; `unit` that of all files, and `width` that of a row,
-    None where the header says it. There may be several `series` of one length, without a line
-    between, the first one acceleration; a line `ends` them. `numbers` reads the blocks of numbers
-    before or behind the last line of the header, adds what they say, and tells where the values
-    begin. Values are `centred` if they have the offset of the sensor, which is removed, and that is
-    said.
+    `begins` is the first line of a file, and of each channel in it, `corrected` that of a
+    channel that can be read, `refusal` the message where others are possible. `header` is
+    the number of its lines, or the line that announces the values, its last one. It
+    `says` the `count`, `step` [s], `rate` [1/s], `duration` [s], `unit`, `peak`,
+    `quantity` and `scale`, which may all be said again, alike, the `place` of the
+    station, and what a `Recording` has; for what is `needed` of these, and missing,
+    `lacks` is the message. `label` is the number and name of a channel in its header,
+    empty for formats with one channel; `unit` that of all files, and `width` that of a
+    row, None where the header says it. There may be several `series` of one length,
+    without a line between, the first one acceleration; a line `ends` them. `numbers`
+    reads the blocks of numbers before or behind the last line of the header, adds what
+    they say, and tells where the values begin. Values are `centred` if they have the
+    offset of the sensor, which is removed, and that is said.
     """
 
     name: str
@@ -70,7 +75,9 @@ class Layout:
 
     def recognises(self, text: RecordText) -> bool:
         """True for a file that begins like one of this format."""
-        return re.match(self.begins, "\n".join(text.heads[:80]), re.IGNORECASE) is not None
+        return (
+            re.match(self.begins, "\n".join(text.heads[:80]), re.IGNORECASE) is not None
+        )
 
     def refused(self, text: RecordText) -> str:
         """The message for a file that holds no channel that can be read; else nothing."""
@@ -80,11 +87,15 @@ class Layout:
         return self.refusal.format(text.heads[0].partition("(")[0].strip()[:40])
 
     def contents(self, text: RecordText) -> list[Channel]:
-        """What the headers of all channels state; of a file without any that can be read why."""
+        """What the headers of all channels state; of a file without
+        any that can be read why.
+        """
         if refusal := self.refused(text):
             return [Channel(refusal=refusal)]
         channels = self.channels(text)
-        return [of._replace(recording=self.stated(text, of)[0].recording) for of in channels]
+        return [
+            of._replace(recording=self.stated(text, of)[0].recording) for of in channels
+        ]
 
     def channels(self, text: RecordText) -> list[Channel]:
         """Those that can be read."""
@@ -94,7 +105,9 @@ class Layout:
         titles = (self.begins, self.corrected)
         for start, line in enumerate(text.heads):
             # Few of the many lines begin with a letter.
-            if line[:1].isalpha() and all(re.match(of, line, re.IGNORECASE) for of in titles):
+            if line[:1].isalpha() and all(
+                re.match(of, line, re.IGNORECASE) for of in titles
+            ):
                 lines = text.heads[start : start + 20]
                 matches = (re.search(self.label, each, re.IGNORECASE) for each in lines)
                 match = next(filter(None, matches), None)
@@ -104,7 +117,9 @@ class Layout:
         return found
 
     def stated(self, text: RecordText, channel: Channel) -> tuple[Stated, int, Said]:
-        """The statements of the header of a channel, and the line where its values begin."""
+        """The statements of the header of a channel, and the
+        line where its values begin.
+        """
         start = channel.line
         heads = text.heads
         first = end = start + self.header if isinstance(self.header, int) else -1
@@ -138,13 +153,17 @@ class Layout:
             step = 1.0 / text.number(said["rate"], positive=True)
         known = {name: said[name].value for name in Recording._fields if name in said}
         if "date" in said:
-            known["origin"] = " ".join([said["date"].value, known.get("origin", "")]).strip()
+            known["origin"] = " ".join(
+                [said["date"].value, known.get("origin", "")]
+            ).strip()
         if self.label:
             known["direction"] = channel.label.partition("(")[0].strip()
         recording = Recording(**known)  # type: ignore[arg-type]
         if "magnitude" in said:
             recording = recording._replace(magnitude=text.number(said["magnitude"]))
-        return Stated(unit, step, 0.0, said.get("duration"), said.get("peak"), recording=recording)
+        return Stated(
+            unit, step, 0.0, said.get("duration"), said.get("peak"), recording=recording
+        )
 
     def read(self, text: RecordText) -> GroundMotion:
         """The acceleration of one channel."""
@@ -164,12 +183,18 @@ class Layout:
         )
         of = stated.recording
         place = said["place"].value if "place" in said else ""
-        words = [of.event, of.origin, " ".join(filter(None, (of.station, place, of.direction)))]
+        words = [
+            of.event,
+            of.origin,
+            " ".join(filter(None, (of.station, place, of.direction))),
+        ]
         if self.label:
             words.append(f"channel {channel.number}, {channel.label}")
         name = ""
         if "scale" in said:  # such as `3920(gal)/6182761`
-            if (match := re.fullmatch(r"(.*)\(gal\)\s*/(.*)", said["scale"].value)) is None:
+            if (
+                match := re.fullmatch(r"(.*)\(gal\)\s*/(.*)", said["scale"].value)
+            ) is None:
                 raise text.fault(
                     "the header lacks Scale Factor in the form of K-NET; fetch it again",
                     said["scale"].line,
@@ -182,12 +207,16 @@ class Layout:
             values = values - mean
             words.append(f"mean of {mean:.4g} {stated.unit} removed")
             name = text.path.name.replace(".", "_")  # the extension tells the component
-        return text.motion(stated, values, self.name, "; ".join(filter(None, words)), name=name)
+        return text.motion(
+            stated, values, self.name, "; ".join(filter(None, words)), name=name
+        )
 
 
 _NUMBER = rf"({NUMBER_PATTERN})"
 _UNIT = rf"({UNIT_PATTERN})"
-_MAGNITUDE = rf"^(?:.*\bM(?:oment Mag|w)|(?!.*\bM(?:oment Mag|w)\s*=).*\bMl)\s*=\s*{_NUMBER}"
+_MAGNITUDE = (
+    rf"^(?:.*\bM(?:oment Mag|w)|(?!.*\bM(?:oment Mag|w)\s*=).*\bMl)\s*=\s*{_NUMBER}"
+)
 """That of the moment, or the local one."""
 _UNKNOWN = -999.0  # of COSMOS
 
@@ -207,7 +236,8 @@ def _cosmos_numbers(text: RecordText, end: int, said: Said) -> int:
             break
     if len(reals) < 64 or reals[61] <= 0.0:
         raise text.fault(
-            "real-header value 62, the sampling interval in ms, is missing; fetch the file again"
+            "real-header value 62, the sampling interval in ms, is missing; fetch the"
+            " file again"
         )
     said["step"] = Statement("real-header value 62", f"{reals[61]} ms", end)
     if reals[63] != _UNKNOWN:
@@ -224,8 +254,8 @@ def _smc_numbers(text: RecordText, end: int, said: Said) -> int:
     rate = reals[1]
     if not (0 <= comments < MOST_VALUES and 0 < count < MOST_VALUES and 0.0 < rate < 1e4):
         raise text.fault(
-            f"the headers give {count} values, {rate:g} a second, {comments} comments, which no"
-            " record has; fetch the file again"
+            f"the headers give {count} values, {rate:g} a second, {comments} comments,"
+            " which no record has; fetch the file again"
         )
     peak = max(abs(reals[29]), abs(reals[31]))
     for name, value in {"count": count, "rate": rate, "peak": peak}.items():
@@ -234,14 +264,16 @@ def _smc_numbers(text: RecordText, end: int, said: Said) -> int:
 
 
 def _knet_numbers(text: RecordText, end: int, said: Said) -> int:
-    """Their number is that of samples in the stated duration; KiK-net numbers its directions."""
+    """Their number is that of samples in the stated duration;
+    KiK-net numbers its directions.
+    """
     duration = said.pop("duration")
     rate = text.number(said["rate"], positive=True)
     count = text.number(duration, positive=True) * rate
     if not 0.5 < count < MOST_VALUES:
         raise text.fault(
-            f"{duration.value} s at {rate:g} Hz are {count:.3g} values, which is more or less than"
-            " a record can have; correct the header",
+            f"{duration.value} s at {rate:g} Hz are {count:.3g} values, which is more or"
+            " less than a record can have; correct the header",
             duration.line,
         )
     said["count"] = duration._replace(value=f"{round(count)}")
@@ -249,7 +281,9 @@ def _knet_numbers(text: RecordText, end: int, said: Said) -> int:
         place = int(direction.value) - 1
         said["direction"] = direction._replace(value=("N-S", "E-W", "U-D")[place % 3])
         if place < 3 and "station" in said:
-            said["station"] = said["station"]._replace(value=f"{said['station'].value} borehole")
+            said["station"] = said["station"]._replace(
+                value=f"{said['station'].value} borehole"
+            )
     return end
 
 
@@ -266,8 +300,10 @@ COSMOS = Layout(
     (".v1", ".v1c", ".v2c"),
     begins=r".*?\(Format v0?1\.",
     corrected="Corrected acceleration",
-    refusal="the file holds {!r}; only corrected acceleration can be read, usually the file ending"
-    " in .v1 or .V2c",
+    refusal=(
+        "the file holds {!r}; only corrected acceleration can be read, usually the file"
+        " ending in .v1 or .V2c"
+    ),
     header=rf"\s*\d+\s+acceleration p(?:oin)?ts.*?units\s*=\s*{_UNIT}",
     label=r"^Sta Cha[n:]?\s*(\d+|\?)?\s*:\s*(\S.*)",
     says={
@@ -294,8 +330,10 @@ CSMIP = Layout(
     (".v2",),
     begins=r"CORRECTED ACCELEROGRAM\b.*\bCHAN\s+\d|UNCORRECTED ACCELEROGRAM\b|\* VOL1DS",
     corrected=r"CORRECTED ACCELEROGRAM\b.*\bCHAN\s+\d{1,9}:\s*\S",
-    refusal="the file holds an uncorrected accelerogram (volume 1); give the corrected one of"
-    " volume 2, usually the file ending in .V2",
+    refusal=(
+        "the file holds an uncorrected accelerogram (volume 1); give the corrected one"
+        " of volume 2, usually the file ending in .V2"
+    ),
     header=rf"\s*\d+\s+{_ACCEL}\s+{NUMBER_PATTERN}\s*SEC.*?(?:UNITS:|,\s*IN)\s*{_UNIT}",
     label=r"\bCHAN\s+(\d{1,9}):\s*(\S.*?)\s*(?:FROM)?\s*$",
     says={
@@ -326,7 +364,9 @@ GEONET = Layout(
     label=r"^()Component\s+(\S+)",
     says={
         "count": Words("Number of points", r"^Number of points\s+(\d+)"),
-        "step": Words("the interval of the data", rf"data at\s+{_NUMBER}\s*sec intervals"),
+        "step": Words(
+            "the interval of the data", rf"data at\s+{_NUMBER}\s*sec intervals"
+        ),
         "duration": Words("Duration", rf"\bDuration\s+{_NUMBER}\s*sec"),
         "peak": Words("peak", rf"^Acceleration:\s*peak\s+{_NUMBER}"),
         "unit": Words("unit", rf"^Acceleration:\s*peak\s+{NUMBER_PATTERN}\s*{_UNIT}"),
@@ -351,7 +391,10 @@ KNET = Layout(
     says=_keys(
         r"(?=\s)",
         rate="Sampling Freq(Hz)", duration="Duration Time(s)", scale="Scale Factor",
-        peak="Max. Acc. (gal)", station="Station Code", direction="Dir.", origin="Origin Time",
+        peak=(
+            "Max. Acc."
+            " (gal)"
+        ), station="Station Code", direction="Dir.", origin="Origin Time",
         start="Record Time", magnitude="Mag.",
     ),
     needed=("rate", "duration", "scale"),

@@ -1,8 +1,9 @@
-"""PEER AT2 acceleration records, in the spellings that are really found, and as they are written.
+"""PEER AT2 acceleration records, in the spellings that are really found,
+and as they are written.
 
-A header of three to seven lines says who recorded what, in which units, how many values (NPTS)
-and how far apart (DT); then follow the values, one to eight on a line. NPTS and DT may stand
-before or after their numbers, with or without "=", on one line or on two.
+A header of three to seven lines says who recorded what, in which units, how many values
+(NPTS) and how far apart (DT); then follow the values, one to eight on a line. NPTS and DT
+may stand before or after their numbers, with or without "=", on one line or on two.
 """
 
 from __future__ import annotations
@@ -30,7 +31,8 @@ _HEADER_LINES = 40
 _NPTS = re.compile(r"\bNPTS\b", re.IGNORECASE)
 _COUNT = re.compile(r"\bNPTS\s*(?:=\s*)?([0-9]+)\b", re.IGNORECASE)
 _STEP = rf"\bDT{STEP_PATTERN}"
-# Those that can be nothing else: a title may hold a word such as DT2, or a source with ?dt=.
+# Those that can be nothing else: a title may hold a word such as DT2, or a source with
+# ?dt=.
 _COUNT_GIVEN = r"\bNPTS\s*=\s*([0-9]+)\b"
 _STEP_GIVEN = rf"(?<![?&])\bDT(?=\s*=){STEP_PATTERN}"
 # Both numbers before both names, or behind them.
@@ -40,7 +42,9 @@ _BOTH = re.compile(
     re.IGNORECASE,
 )
 # What begins a row of values, spoilt ones (overflow, not a number) included.
-_VALUE = re.compile(rf"\s*(?:{NUMBER_PATTERN}(?=[\s,+-]|$)|\*+|[+-]?(?:nan|inf))", re.IGNORECASE)
+_VALUE = re.compile(
+    rf"\s*(?:{NUMBER_PATTERN}(?=[\s,+-]|$)|\*+|[+-]?(?:nan|inf))", re.IGNORECASE
+)
 _OTHER_SERIES = re.compile(r"\b(VELOCITY|DISPLACEMENT)\s+TIME\b", re.IGNORECASE)
 _DECLARES = r"\bUNITS?\s*(?:OF\b|IN\b|ARE\b|[=:])"
 # What a title that mentions units in passing does not look like.
@@ -53,7 +57,9 @@ _UNITS = re.compile(
 )
 
 
-_Header = tuple[Statement, Statement, int]  # of NPTS and of DT, and the first line of values
+_Header = tuple[
+    Statement, Statement, int
+]  # of NPTS and of DT, and the first line of values
 
 
 def recognises_at2(text: RecordText) -> bool:
@@ -67,8 +73,8 @@ def read_at2(text: RecordText) -> GroundMotion:
     header = _header(text)
     if header is None:
         raise text.fault(
-            "no header line gives NPTS and DT, so this is not a PEER AT2 file; for plain columns"
-            " of numbers rename it to .txt and give ?dt= and ?units="
+            "no header line gives NPTS and DT, so this is not a PEER AT2 file; for plain"
+            " columns of numbers rename it to .txt and give ?dt= and ?units="
         )
     npts, step, start = header
     stated, rounded = _stated(text, npts, step, start)
@@ -77,8 +83,8 @@ def read_at2(text: RecordText) -> GroundMotion:
     first = f"first {rest[0].strip()[:40]!r}" if rest else ""
     if any(map(numbers_in, rest)):
         raise text.fault(
-            f"more numbers follow after the {values.size} values and {first}; keep one record in a"
-            " file",
+            f"more numbers follow after the {values.size} values and {first}; keep one"
+            " record in a file",
             end,
         )
     note = [f"{len(rest)} line(s) of text after the values, {first}"] * bool(rest)
@@ -87,7 +93,9 @@ def read_at2(text: RecordText) -> GroundMotion:
 
 
 def contents_of_at2(text: RecordText) -> list[Channel]:
-    """The one channel, with earthquake, date, station and direction as far as titles say them."""
+    """The one channel, with earthquake, date, station and direction
+    as far as titles say them.
+    """
     header = _header(text)
     return [Channel(recording=_recording(_title(text, header[0])) if header else UNKNOWN)]
 
@@ -115,7 +123,9 @@ def _header(text: RecordText) -> _Header | None:
         if line.lstrip().startswith("#") or not _NPTS.search(line):
             continue
         end = len(text.lines)
-        start = next((i for i in range(index + 1, end) if _VALUE.match(text.heads[i])), end)
+        start = next(
+            (i for i in range(index + 1, end) if _VALUE.match(text.heads[i])), end
+        )
         if both := _BOTH.search(line):
             count, step = filter(None, both.groups())
             return Statement("NPTS", count, index), Statement("DT", step, index), start
@@ -127,21 +137,27 @@ def _header(text: RecordText) -> _Header | None:
     return None
 
 
-def _stated(text: RecordText, npts: Statement, dt: Statement, start: int) -> tuple[Stated, str]:
-    """Statements of the header, each once or alike, and a note on a step that may be rounded."""
+def _stated(
+    text: RecordText, npts: Statement, dt: Statement, start: int
+) -> tuple[Stated, str]:
+    """Statements of the header, each once or alike, and a note on a
+    step that may be rounded.
+    """
     counts = [npts]
     steps = [dt]
     for index, line in enumerate(text.heads[:start]):
         if other := _OTHER_SERIES.search(line):
             raise text.fault(
                 f"this is a {other[1].lower()} record ({line.strip()[:60]!r}); give the "
-                f"acceleration record of the same station, usually the file ending in .AT2",
+                "acceleration record of the same station, usually the file ending in"
+                " .AT2",
                 index,
             )
         if not _BOTH.search(line):
             counts += statements("NPTS", _COUNT_GIVEN, [(index, line)])
             steps += statements("DT", _STEP_GIVEN, [(index, line)])
-    # The line of the units stands next to that of NPTS: titles above may mention other units.
+    # The line of the units stands next to that of NPTS: titles above may mention other
+    # units.
     units: list[Statement] = []
     for index, line in reversed([*enumerate(text.heads[:start])]):
         if spelling := (_UNITS_DECLARED if units else _UNITS).search(line):
@@ -151,7 +167,8 @@ def _stated(text: RecordText, npts: Statement, dt: Statement, start: int) -> tup
     unit = text.unit(units)
     text.agreed(counts, text.count)
     text.agreed(steps, text.step)
-    # 1/256 s is printed as .0039 by PEER: a whole rate that prints the same, but is not the same.
+    # 1/256 s is printed as .0039 by PEER: a whole rate that prints the same, but is not
+    # the same.
     step = text.step(dt)
     numeral = dt.value.partition(" ")[0]
     resolution = last_digit(numeral) * step / text.number(dt._replace(value=numeral))
@@ -161,9 +178,9 @@ def _stated(text: RecordText, npts: Statement, dt: Statement, start: int) -> tup
     if abs(rate * agreed - 1.0) < 1e-9 or abs(1.0 / rate - agreed) > 0.5 * resolution:
         return stated, ""
     return stated, (
-        f"DT = {step:g} s is not a whole number of samples a second and may be rounded; taken"
-        f" as printed, times may be off by {50.0 * resolution / step:.1g} %; if it is"
-        f" 1/{rate} s, say ?dt={1.0 / rate:.9g}"
+        f"DT = {step:g} s is not a whole number of samples a second and may be rounded;"
+        f" taken as printed, times may be off by {50.0 * resolution / step:.1g} %; if it"
+        f" is 1/{rate} s, say ?dt={1.0 / rate:.9g}"
     )
 
 
@@ -176,9 +193,13 @@ def at2_text(motion: GroundMotion) -> str:
     # Its first line says that it is synthetic, or what it was converted from.
     made = motion.format in ("synthetic", "pulse")
     origin = (
-        "SYNTHETIC, NOT A RECORDING, MADE" if made else f"CONVERTED FROM {motion.format.upper()}"
+        "SYNTHETIC, NOT A RECORDING, MADE"
+        if made
+        else f"CONVERTED FROM {motion.format.upper()}"
     )
-    title = "; ".join(filter(None, [motion.source if made else motion.name, motion.description]))
+    title = "; ".join(
+        filter(None, [motion.source if made else motion.name, motion.description])
+    )
     # A title must not be taken for one of the header lines that carry numbers.
     for words in (r"\b(velocity|displacement)\s+(time)\b", r"\b(n)(pts)\b"):
         title = re.sub(words, r"\1-\2", remark(title), flags=re.IGNORECASE)

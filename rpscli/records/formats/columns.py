@@ -1,10 +1,11 @@
-"""Plain columns of numbers: time and acceleration, acceleration alone, or several by titles.
+"""Plain columns of numbers: time and acceleration, acceleration
+alone, or several by titles.
 
 Read are, in any line before the first number, `dt: 0.005` or `sampling interval = 5 ms`,
-`units: g`, `npts: 4000`, and titles of columns such as `Time (s), Acceleration (m/s2)`, units also
-in a row of their own. What they leave out (units; without times also the sampling interval) the
-user has to give. Of several quantities the only acceleration is taken, of several accelerations
-that which `?channel=` names.
+`units: g`, `npts: 4000`, and titles of columns such as `Time (s), Acceleration (m/s2)`,
+units also in a row of their own. What they leave out (units; without times also the
+sampling interval) the user has to give. Of several quantities the only acceleration is
+taken, of several accelerations that which `?channel=` names.
 """
 
 from __future__ import annotations
@@ -52,17 +53,23 @@ _PEAK = (
     rf"(?:[\[(]\s*({UNIT_PATTERN})\s*[\])]\s*[=:]\s*({NUMBER_PATTERN})(?=\s*$)"
     rf"|[=:]\s*({NUMBER_PATTERN})\s*({UNIT_PATTERN}))"
 )
-_CELL = re.compile(r"([^\[(]*?)[\s_]*(?:[\[(]([^\])]*)[\])]|\bin\s+(\S.*))?", re.IGNORECASE)
+_CELL = re.compile(
+    r"([^\[(]*?)[\s_]*(?:[\[(]([^\])]*)[\])]|\bin\s+(\S.*))?", re.IGNORECASE
+)
 _TIME = re.compile(r"time|t|seconds?|sec", re.IGNORECASE)
 _ACCELERATION = re.compile(
-    r"(?:ground\s*)?(?:acc(?:el(?:eration)?s?)?|a|a_?g)(?:[\s_.-]*\w{1,3})?", re.IGNORECASE
+    r"(?:ground\s*)?(?:acc(?:el(?:eration)?s?)?|a|a_?g)(?:[\s_.-]*\w{1,3})?",
+    re.IGNORECASE,
 )
 _SPECTRUM = re.compile(r"period|freq|spectr|\bp?sa\b", re.IGNORECASE)
 _OTHER = re.compile(r"\b(?:(vel\w*)|disp\w*)\b", re.IGNORECASE)
 _OTHER_UNIT = re.compile(r"(?:[cm]?m|in|ft)\s*(?:/\s*s(?:ec)?)?", re.IGNORECASE)
-_ANY_UNIT = re.compile(rf"{UNIT_PATTERN}|{_OTHER_UNIT.pattern}|m?s(?:ec)?|-", re.IGNORECASE)
+_ANY_UNIT = re.compile(
+    rf"{UNIT_PATTERN}|{_OTHER_UNIT.pattern}|m?s(?:ec)?|-", re.IGNORECASE
+)
 _NO_UNIT = re.compile(
-    r"(?:[NSEWUDXYZHV]\W?){1,3}\d?|\d+(?:\s*deg)?|\w*(?:corr|filt|proc|ground)\w*", re.IGNORECASE
+    r"(?:[NSEWUDXYZHV]\W?){1,3}\d?|\d+(?:\s*deg)?|\w*(?:corr|filt|proc|ground)\w*",
+    re.IGNORECASE,
 )
 """Words in brackets behind a name that are a direction, or a remark."""
 
@@ -83,14 +90,18 @@ class _Title(NamedTuple):
         """By its name or its unit; a name of another quantity decides."""
         if self.is_time or _OTHER.search(self.name):
             return False
-        return bool(_ACCELERATION.fullmatch(self.name) or canonical_unit(self.unit or "-"))
+        return bool(
+            _ACCELERATION.fullmatch(self.name) or canonical_unit(self.unit or "-")
+        )
 
 
 class _Table(NamedTuple):
-    """Lines of text before the first number, numbers of all rows, one after the other, and rows.
+    """Lines of text before the first number, numbers of all rows, one
+    after the other, and rows.
 
-    Of rows the number of values and the line of the file; `above` is the line of the words above
-    the first number, but for rulers, `announced` the number of values or rows.
+    Of rows the number of values and the line of the file; `above` is the line
+    of the words above the first number, but for rulers, `announced` the
+    number of values or rows.
     """
 
     header: tuple[Statement, ...]
@@ -121,7 +132,9 @@ def read_columns(text: RecordText) -> GroundMotion:
     titles = _titles(table, width)
     if even and width > 2 and text.channel and not titles:  # by their places
         line = int(table.lines[0])
-        titles = [_Title("time" if i == 0 else f"{i + 1}", "", line) for i in range(width)]
+        titles = [
+            _Title("time" if i == 0 else f"{i + 1}", "", line) for i in range(width)
+        ]
     _refuse_other_quantities(text, table, titles)
     if even and width > 1 and (width == 2 or titles):
         return _columns(text, table, titles)
@@ -132,13 +145,17 @@ def read_columns(text: RecordText) -> GroundMotion:
     values = table.values
     text.agreed_factor(stated.unit)
     dt = text.agreed_dt(stated.step)
-    # A whole number before decimal ones is a count or a flag: 4000, or 1 and then the time step.
-    numerals = [word for line in table.lines[:2] for word in numerals_in(text.lines[line])]
+    # A whole number before decimal ones is a count or a flag: 4000, or 1 and then the
+    # time step.
+    numerals = [
+        word for line in table.lines[:2] for word in numerals_in(text.lines[line])
+    ]
     flagged = values[0] != 0.0 and numerals[0].isdigit() and not numerals[1].isdigit()
     if flagged or values[0] == values.size - 1 or values[1] == values.size - 2 > 0:
         raise text.fault(
-            f"the first numbers, {numerals[0]} and {numerals[1]}, look like a header (a count or "
-            f"the time step), not like accelerations; remove them or begin their lines with #",
+            f"the first numbers, {numerals[0]} and {numerals[1]}, look like a header (a"
+            " count or the time step), not like accelerations; remove them or begin"
+            " their lines with #",
             int(table.lines[0]),
         )
     if values[0] == dt:
@@ -160,8 +177,14 @@ def _titles(table: _Table, width: int) -> list[_Title]:
     units: list[str] = []
     for line in reversed(table.header):
         for separator in (r"[,;\t]", r"\s{2,}|\t", r"\s+"):
-            cells = [_plain(cell).strip() for cell in re.split(separator, line.value.strip())]
-            if len(cells) != width or not all(cells) or any(":" in cell for cell in cells):
+            cells = [
+                _plain(cell).strip() for cell in re.split(separator, line.value.strip())
+            ]
+            if (
+                len(cells) != width
+                or not all(cells)
+                or any(":" in cell for cell in cells)
+            ):
                 continue
             bare = [cell.strip("()[]") for cell in cells]
             if not units and width > 1 and all(map(_ANY_UNIT.fullmatch, bare)):
@@ -169,13 +192,20 @@ def _titles(table: _Table, width: int) -> list[_Title]:
                 break
             titles = [_title(cell, line.line) for cell in cells]
             if units:
-                titles = [t._replace(unit=t.unit or u) for t, u in zip(titles, units, strict=True)]
+                titles = [
+                    t._replace(unit=t.unit or u)
+                    for t, u in zip(titles, units, strict=True)
+                ]
             last = line.line == table.above and width > 2
             spectrum = width > 1 and any(_SPECTRUM.search(each.name) for each in titles)
             if last or spectrum or any(each.is_acceleration for each in titles):
                 return titles
-    names = ["time" if re.fullmatch("m?s(?:ec)?", unit) else "acceleration" for unit in units]
-    return [_Title(*each, table.header[-1].line) for each in zip(names, units, strict=True)]
+    names = [
+        "time" if re.fullmatch("m?s(?:ec)?", unit) else "acceleration" for unit in units
+    ]
+    return [
+        _Title(*each, table.header[-1].line) for each in zip(names, units, strict=True)
+    ]
 
 
 def _title(cell: str, line: int) -> _Title:
@@ -200,11 +230,13 @@ def _table(text: RecordText) -> _Table:
         elif not widths:
             words = text.heads[index].strip().lstrip("#%!/*|").strip()
             header.append(Statement("header", words, index))
-            above = index if any(map(str.isalpha, words)) else above if line.strip() else -1
+            above = (
+                index if any(map(str.isalpha, words)) else above if line.strip() else -1
+            )
         elif row is None and not _is_comment(line):
             raise text.fault(
-                f"{line.strip()[:40]!r} stands among the values and is not a row of finite "
-                f"numbers{why_no_numbers(line)}; begin comments with #",
+                f"{line.strip()[:40]!r} stands among the values and is not a row of"
+                f" finite numbers{why_no_numbers(line)}; begin comments with #",
                 index,
             )
     if len(widths) > 3 and widths[0] == 2 and set(widths[1:]) == {1}:
@@ -212,7 +244,8 @@ def _table(text: RecordText) -> _Table:
         if not (count.isdigit() and int(count) == len(widths) - 1):
             raise text.fault(
                 f"{count} and {step} look like the number of values and their step, but"
-                f" {len(widths) - 1} values follow; correct them, or begin their line with #",
+                f" {len(widths) - 1} values follow; correct them, or begin their line"
+                " with #",
                 lines[0],
             )
         header.append(Statement("count and step", f"npts: {count}, dt: {step}", lines[0]))
@@ -224,17 +257,23 @@ def _table(text: RecordText) -> _Table:
             why = why_no_numbers(line)
             raise text.fault(f"{line.strip()[:40]!r} is not a row of numbers{why}", odd)
         raise text.fault(
-            f"no known format of ground motions: {len(widths)} row(s) of numbers; export the "
-            f"record as PEER AT2, or as columns of time and acceleration"
+            f"no known format of ground motions: {len(widths)} row(s) of numbers; export"
+            " the record as PEER AT2, or as columns of time and acceleration"
         )
     kept = tuple(line for line in header if line.value)
     said = statements("npts", _COUNT, ((of.line, of.value) for of in kept))
-    if (announced := text.agreed(said, text.count)) not in (None, len(values), len(widths)):
+    if (announced := text.agreed(said, text.count)) not in (
+        None,
+        len(values),
+        len(widths),
+    ):
         raise text.fault(
-            f"the header announces {announced} values and the file holds {len(widths)} row(s)"
-            f" and {len(values)} number(s); fetch it again, or correct the header"
+            f"the header announces {announced} values and the file holds {len(widths)}"
+            f" row(s) and {len(values)} number(s); fetch it again, or correct the header"
         )
-    return _Table(kept, np.array(values), np.array(widths), np.array(lines), above, announced)
+    return _Table(
+        kept, np.array(values), np.array(widths), np.array(lines), above, announced
+    )
 
 
 def _columns(text: RecordText, table: _Table, titles: list[_Title]) -> GroundMotion:
@@ -247,7 +286,9 @@ def _columns(text: RecordText, table: _Table, titles: list[_Title]) -> GroundMot
     if titles and (text.channel is not None or len(series) != 1):
         named = [Channel(i + 1, titles[i].line, titles[i].name) for i in series]
         place = text.chosen(named).number - 1
-    times = next((i for i, title in enumerate(titles) if title.is_time and i != place), None)
+    times = next(
+        (i for i, title in enumerate(titles) if title.is_time and i != place), None
+    )
     if times is None and width == 2 and not (titles and text.channel):
         times = 1 - place
     title = titles[place] if titles else None
@@ -261,13 +302,20 @@ def _columns(text: RecordText, table: _Table, titles: list[_Title]) -> GroundMot
 
 
 def _timed(
-    text: RecordText, table: _Table, stated: Stated, times: Array, place: int, titles: list[_Title]
+    text: RecordText,
+    table: _Table,
+    stated: Stated,
+    times: Array,
+    place: int,
+    titles: list[_Title],
 ) -> tuple[Stated, list[str]]:
     """The step of a column of times, and what is to be said of them."""
     numerals = (numerals_in(_plain(text.lines[line]))[place] for line in table.lines)
     resolution = printed_resolution(times, numerals)
     title = titles[place] if titles and titles[place].is_time else None
-    factor = 1.0 if title is None else text.time_factor(title.unit, title.line, is_unit=True)
+    factor = (
+        1.0 if title is None else text.time_factor(title.unit, title.line, is_unit=True)
+    )
     try:
         step = factor * uniform_step(times, resolution)
     except ValueError as error:
@@ -280,8 +328,8 @@ def _timed(
     known_to = max(1e-6 * step, 2.0 * coarsest / table.widths.size)
     if stated.step is not None and abs(stated.step - step) > known_to:
         raise text.fault(
-            f"the header says dt = {stated.step:g} s and the times advance by {step:g} s; "
-            f"correct the one or the other"
+            f"the header says dt = {stated.step:g} s and the times advance by {step:g} s;"
+            " correct the one or the other"
         )
     begin = factor * times[0]
     late = [f"times begin at {begin:g} s; taken as the record's zero"]
@@ -290,26 +338,30 @@ def _timed(
 
 
 def _wrapped(text: RecordText, table: _Table) -> str:
-    """A note on rows that were read one after the other; refuses rows that look otherwise."""
+    """A note on rows that were read one after the other; refuses
+    rows that look otherwise.
+    """
     width = int(table.widths[0])
     ragged = np.flatnonzero(table.widths[:-1] != width)
     if ragged.size or table.widths[-1] > width:
         bad = int(ragged[0]) if ragged.size else table.widths.size - 1
         raise text.fault(
-            f"a row of {table.widths[bad]} numbers among rows of {width}; every row but the "
-            f"last must be full: fetch the file again",
+            f"a row of {table.widths[bad]} numbers among rows of {width}; every row but"
+            " the last must be full: fetch the file again",
             int(table.lines[bad]),
         )
     first = table.values[::width]
     if table.announced == table.widths.size:
         raise text.fault(
-            f"the header announces {table.announced} values, as many as there are rows of {width}"
-            " numbers: name the columns in a line of titles, and one of them by ?channel=NAME"
+            f"the header announces {table.announced} values, as many as there are rows of"
+            f" {width} numbers: name the columns in a line of titles, and one of them by"
+            " ?channel=NAME"
         )
     if width == 2 or (first.size > 2 and bool(np.all(np.diff(first) > 0.0))):
         raise text.fault(
-            f"rows of {width} numbers whose first one increases look like time and several "
-            f"quantities; keep time and acceleration, or take one column by its place, ?channel=2"
+            f"rows of {width} numbers whose first one increases look like time and"
+            " several quantities; keep time and acceleration, or take one column by its"
+            " place, ?channel=2"
         )
     return f"rows of {width} numbers were read one after the other"
 
@@ -320,17 +372,24 @@ def _stated(text: RecordText, table: _Table, title: _Title | None) -> Stated:
     units = statements("units", _UNITS_KEY, lines)
     steps = statements("dt", _STEP, lines)
     peak = next(iter(statements("peak", _PEAK, lines)), None)
-    if title and title.unit and (canonical_unit(title.unit) or not _NO_UNIT.fullmatch(title.unit)):
+    if (
+        title
+        and title.unit
+        and (canonical_unit(title.unit) or not _NO_UNIT.fullmatch(title.unit))
+    ):
         units.append(Statement(f"the title {title.name}", title.unit, title.line))
     return Stated(text.unit(units), text.agreed(steps, text.step), peak=peak)
 
 
-def _refuse_other_quantities(text: RecordText, table: _Table, titles: list[_Title]) -> None:
+def _refuse_other_quantities(
+    text: RecordText, table: _Table, titles: list[_Title]
+) -> None:
     """Refuse spectra, and series of velocities or displacements."""
     for title in titles:
         if _SPECTRUM.search(title.name):
             raise text.fault(
-                f"the title {title.name[:40]!r} is that of a spectrum, not of a record over time",
+                f"the title {title.name[:40]!r} is that of a spectrum, not of a record"
+                " over time",
                 title.line,
             )
     if any(title.is_acceleration for title in titles):
@@ -342,7 +401,7 @@ def _refuse_other_quantities(text: RecordText, table: _Table, titles: list[_Titl
             if other and (not title.unit or _OTHER_UNIT.fullmatch(title.unit)):
                 name = "velocity" if other[1] else "displacement"
                 raise text.fault(
-                    f"the header says {line.value[:60]!r}: this is a {name} record; give the"
-                    " acceleration record of the same station",
+                    f"the header says {line.value[:60]!r}: this is a {name} record; give"
+                    " the acceleration record of the same station",
                     line.line,
                 )

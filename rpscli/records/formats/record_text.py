@@ -1,4 +1,6 @@
-"""The text of a record file, and what its header states: numbers, channels, rows of values."""
+"""The text of a record file, and what its header states: numbers,
+channels, rows of values.
+"""
 
 from __future__ import annotations
 
@@ -37,13 +39,16 @@ STEP_PATTERN = (
     r"\s*(?:[\[(]\s*([A-Za-z]+)\.?\s*[\])])?\s*[=:]?\s*"
     rf"({STATED_PATTERN}[.0-9]*)\s*((?!(?:dt|npts)\b)[A-Za-z]+)?"
 )
-"""The words behind the name of a time step: a unit in brackets, the number, a unit behind it."""
+"""The words behind the name of a time step: a unit in brackets, the
+number, a unit behind it."""
 
 _TIME_UNITS = {
     **dict.fromkeys(("", "s", "sec", "secs", "second", "seconds"), 1.0),
     **dict.fromkeys(("ms", "msec", "msecs", "millisecond", "milliseconds"), 1e-3),
 }
-_OTHER_TIMES = re.compile(r"(?:us|usec|ns|min|minutes?|hz|h|hours?|days?|years?)", re.IGNORECASE)
+_OTHER_TIMES = re.compile(
+    r"(?:us|usec|ns|min|minutes?|hz|h|hours?|days?|years?)", re.IGNORECASE
+)
 
 MOST_VALUES = 10_000_000  # of one series: more than a day at a hundred samples a second
 _SHOWN = 40  # letters of a value in a message
@@ -54,7 +59,9 @@ _LONGEST_STEP = 100.0
 
 
 class Statement(NamedTuple):
-    """One thing that a header says: its name, its value as printed, the line (from zero)."""
+    """One thing that a header says: its name, its value as
+    printed, the line (from zero).
+    """
 
     name: str
     value: str
@@ -64,8 +71,8 @@ class Statement(NamedTuple):
 class Channel(NamedTuple):
     """A channel of a file: its number, the line where it begins, what it calls itself.
 
-    Its header states a `recording`; `refusal` says why a file of a known format is not used, such
-    as an uncorrected record.
+    Its header states a `recording`; `refusal` says why a file of a known format is not
+    used, such as an uncorrected record.
     """
 
     number: int = 1
@@ -79,8 +86,9 @@ class Channel(NamedTuple):
 class Stated:
     """All that a file says of its values; None where it is silent.
 
-    `unit` is a canonical one of acceleration, `step` [s] that of the samples, `resolution` [s] what
-    its printing leaves open, `peak` in a unit behind it or in that of the values.
+    `unit` is a canonical one of acceleration, `step` [s] that of the samples,
+    `resolution` [s] what its printing leaves open, `peak` in a unit behind it
+    or in that of the values.
     """
 
     unit: str | None = None
@@ -93,10 +101,12 @@ class Stated:
 
 @dataclass(frozen=True)
 class RecordText:
-    """Lines of a record file without their ends, and the options that came with its source.
+    """Lines of a record file without their ends, and the options
+    that came with its source.
 
-    A stray carriage return counts as part of a line end. `dt` [s], the canonical unit `units` and
-    the `channel`, its number, from 1, or its name, are those that the user gave.
+    A stray carriage return counts as part of a line end. `dt` [s], the
+    canonical unit `units` and the `channel`, its number, from 1, or its name,
+    are those that the user gave.
     """
 
     path: Path
@@ -108,7 +118,9 @@ class RecordText:
 
     @cached_property
     def heads(self) -> tuple[str, ...]:
-        """The lines as far as a header goes, so that searching them takes a bounded time."""
+        """The lines as far as a header goes, so that searching
+        them takes a bounded time.
+        """
         return tuple(line[:_HEADER_WIDTH] for line in self.lines)
 
     @property
@@ -116,7 +128,9 @@ class RecordText:
         """File name without its extension, and the channel if one was asked for."""
         if self.channel is None:
             return stem_of(self.path)
-        return f"{stem_of(self.path)}_ch{re.sub(r'[^A-Za-z0-9]+', '_', self.channel[:40])}"
+        return (
+            f"{stem_of(self.path)}_ch{re.sub(r'[^A-Za-z0-9]+', '_', self.channel[:40])}"
+        )
 
     def fault(self, message: str, line: int | None = None) -> RecordError:
         """An error that names this file and, if given, the line (counted from zero)."""
@@ -127,19 +141,21 @@ class RecordText:
         """The unit of the values and its size in m/s2, from the file or from the user."""
         if (unit := stated or self.units) is None:
             raise self.fault(
-                "the file does not state the units of its values and none were given; say ?units=g"
-                f" (or another of {KNOWN_UNITS}) after the file name, or write a header line"
-                " 'units: g'"
+                "the file does not state the units of its values and none were given;"
+                f" say ?units=g (or another of {KNOWN_UNITS}) after the file name, or"
+                " write a header line 'units: g'"
             )
         if self.units is not None and ACCELERATIONS[self.units] != ACCELERATIONS[unit]:
             raise self.fault(
-                f"units = {self.units} contradicts the file, which says {unit}; leave the units "
-                f"out, or correct the file if its header is wrong"
+                f"units = {self.units} contradicts the file, which says {unit}; leave the"
+                " units out, or correct the file if its header is wrong"
             )
         return unit, ACCELERATIONS[unit]
 
     def agreed_dt(self, stated: float | None, tolerance: float = 1e-9) -> float:
-        """The sampling interval [s], from the file or from a user who does not contradict it."""
+        """The sampling interval [s], from the file or from a user
+        who does not contradict it.
+        """
         dt = stated if self.dt is None else self.dt
         fault = ""
         if dt is None:
@@ -150,10 +166,17 @@ class RecordText:
         if dt <= 0.0:
             fault = " must be positive"
         elif not _SHORTEST_STEP <= dt <= _LONGEST_STEP:
-            fault = " cannot be the time step of an acceleration record, which lies between"
-            fault += f" {_SHORTEST_STEP:g} s and {_LONGEST_STEP:g} s; correct the file or ?dt="
+            fault = (
+                " cannot be the time step of an acceleration record, which lies between"
+            )
+            fault += (
+                f" {_SHORTEST_STEP:g} s and {_LONGEST_STEP:g} s; correct the file or ?dt="
+            )
         elif stated is not None and abs(dt - stated) > tolerance * dt:
-            fault = f" contradicts the file, which says {stated} s; leave dt out, or correct the"
+            fault = (
+                f" contradicts the file, which says {stated} s; leave dt out, or correct"
+                " the"
+            )
             fault += " file if its header is wrong"
         if fault:
             raise self.fault(f"dt = {dt} s{fault}")
@@ -163,17 +186,21 @@ class RecordText:
         """Refuse a channel number: the format holds one channel."""
         if self.channel is not None:
             raise self.fault(
-                f"channel = {self.channel[:60]}: this file holds one channel; leave it out"
+                f"channel = {self.channel[:60]}: this file holds one channel; leave it"
+                " out"
             )
 
     def chosen(self, channels: Sequence[Channel]) -> Channel:
         """The channel whose number the user asked for, or the only one."""
         if not channels:
             raise self.fault(
-                "no series of accelerations begins in this file; if it is of another format than"
-                " its name says, give it another ending (.txt for columns of numbers)"
+                "no series of accelerations begins in this file; if it is of another"
+                " format than its name says, give it another ending (.txt for columns of"
+                " numbers)"
             )
-        listing = "; ".join(f"{channel.number}: {channel.label[:60]}" for channel in channels)
+        listing = "; ".join(
+            f"{channel.number}: {channel.label[:60]}" for channel in channels
+        )
         if self.channel is None:
             if len(channels) == 1:
                 return channels[0]
@@ -183,7 +210,9 @@ class RecordText:
             )
         asked = self.channel.strip().lower()
         shown = self.channel[:60]
-        wanted = [of for of in channels if asked in (str(of.number), of.label.strip().lower())]
+        wanted = [
+            of for of in channels if asked in (str(of.number), of.label.strip().lower())
+        ]
         if not wanted:
             raise self.fault(f"there is no channel {shown}; the file has {listing}")
         if len(wanted) > 1:
@@ -197,8 +226,13 @@ class RecordText:
         shown = numeral[:_SHOWN]
         if re.fullmatch(r"[+-]?[0-9]*,[0-9]+", numeral):
             fault = f"{shown} has a decimal comma; write {shown.replace(',', '.')}"
-        elif not re.fullmatch(NUMBER_PATTERN, numeral) or not math.isfinite(to_float(numeral)):
-            fault = f"{shown!r} is not a finite number; correct the header, or fetch the file again"
+        elif not re.fullmatch(NUMBER_PATTERN, numeral) or not math.isfinite(
+            to_float(numeral)
+        ):
+            fault = (
+                f"{shown!r} is not a finite number; correct the header, or fetch the file"
+                " again"
+            )
         elif positive and to_float(numeral) <= 0.0:
             fault = f"{shown} must be positive; correct the header"
         if fault:
@@ -211,30 +245,38 @@ class RecordText:
         count = int(numeral) if re.fullmatch("[0-9]{1,9}", numeral) else 0
         if not 0 < count <= MOST_VALUES:
             raise self.fault(
-                f"{stated.name} = {numeral[:_SHOWN]!r} should be a number of values, a whole number"
-                f" from 1 to {MOST_VALUES}; correct the header",
+                f"{stated.name} = {numeral[:_SHOWN]!r} should be a number of values, a"
+                f" whole number from 1 to {MOST_VALUES}; correct the header",
                 stated.line,
             )
         return count
 
     def step(self, stated: Statement) -> float:
-        """The time step that a header states [s]: its number, and perhaps a unit behind it."""
+        """The time step that a header states [s]: its number, and
+        perhaps a unit behind it.
+        """
         number, _, unit = stated.value.partition(" ")
         value = self.number(stated._replace(value=number), positive=True)
         factor = self.time_factor(unit, stated.line)
         return value if factor == 1.0 else float(f"{factor * value:.15g}")
 
     def time_factor(self, unit: str, line: int, *, is_unit: bool = False) -> float:
-        """The size of a unit of time [s]; other words say nothing where none has to stand."""
+        """The size of a unit of time [s]; other words say nothing
+        where none has to stand.
+        """
         factor = _TIME_UNITS.get(unit.strip(" .").lower())
         if factor is None and (is_unit or _OTHER_TIMES.fullmatch(unit.strip(" ."))):
-            raise self.fault(f"a time in {unit[:_SHOWN]!r} is not known; write s, or ms", line)
+            raise self.fault(
+                f"a time in {unit[:_SHOWN]!r} is not known; write s, or ms", line
+            )
         return factor or 1.0
 
     def agreed(
         self, said: Sequence[Statement], meaning: Callable[[Statement], Meant]
     ) -> Meant | None:
-        """The meaning that several statements of a header share; None if there is none."""
+        """The meaning that several statements of a header
+        share; None if there is none.
+        """
         for other in said[1:]:
             if meaning(other) != meaning(said[0]):
                 raise self.fault(
@@ -251,9 +293,9 @@ class RecordText:
         def meaning(each: Statement) -> str:
             if (unit := canonical_unit(each.value)) is None:
                 raise self.fault(
-                    f"{each.name} says {each.value.strip()[:_SHOWN]!r}, which is not a unit of"
-                    f" acceleration that is known ({KNOWN_UNITS}); correct it, or give the"
-                    " acceleration file",
+                    f"{each.name} says {each.value.strip()[:_SHOWN]!r}, which is not a"
+                    f" unit of acceleration that is known ({KNOWN_UNITS}); correct it,"
+                    " or give the acceleration file",
                     each.line,
                 )
             return unit
@@ -271,8 +313,9 @@ class RecordText:
     ) -> tuple[Array, int]:
         """Exactly `count` numbers of the lines from `start` on, and the line behind them.
 
-        Rows but the last have `width` numbers, if that is given; blank lines are skipped. Behind
-        the values stands the line `stop`, the end of the file, or a line `closed_by` a pattern.
+        Rows but the last have `width` numbers, if that is given; blank lines are
+        skipped. Behind the values stands the line `stop`, the end of the file, or a
+        line `closed_by` a pattern.
         """
         values = list[float]()
         last = start
@@ -283,8 +326,8 @@ class RecordText:
             if width and row and (short or len(row) > width):
                 at, held = (last, len(values) % width) if short else (index, len(row))
                 raise self.fault(
-                    f"{held} value(s) in a row where the format has {width}; the file is damaged,"
-                    " fetch it again",
+                    f"{held} value(s) in a row where the format has {width}; the file is"
+                    " damaged, fetch it again",
                     at,
                 )
             values += row
@@ -292,18 +335,29 @@ class RecordText:
         line = "".join(self.lines[index : index + 1])
         ended = closed_by is not None and re.match(closed_by, line, re.IGNORECASE)
         if len(values) != count or not (index == end or ended):
-            before = f"{line.strip()[:_SHOWN]!r}{why_no_numbers(line)}" if line else "the end"
+            before = (
+                f"{line.strip()[:_SHOWN]!r}{why_no_numbers(line)}" if line else "the end"
+            )
             raise self.fault(
-                f"the header announces {count} values, and {len(values)} stand before {before};"
-                " keep one record in a file, fetch it again if it is damaged, or correct the count",
+                f"the header announces {count} values, and {len(values)} stand before"
+                f" {before}; keep one record in a file, fetch it again if it is damaged,"
+                " or correct the count",
                 min(index, len(self.lines) - 1),
             )
         return np.array(values), index
 
     def motion(
-        self, stated: Stated, values: Array, form: str, words: str, *doubts: str, name: str = ""
+        self,
+        stated: Stated,
+        values: Array,
+        form: str,
+        words: str,
+        *doubts: str,
+        name: str = "",
     ) -> GroundMotion:
-        """The motion of values in their unit, held against what the header states of them."""
+        """The motion of values in their unit, held against what
+        the header states of them.
+        """
         unit, factor = self.agreed_factor(stated.unit)
         tolerance = 0.51 * stated.resolution / stated.step if stated.step else 0.0
         dt = self.agreed_dt(stated.step, max(tolerance, 1e-9))
@@ -311,9 +365,9 @@ class RecordText:
             off = abs(self.number(said) - (values.size - 0.5) * dt)
             if off > 0.51 * dt + last_digit(said.value):
                 raise self.fault(
-                    f"{said.name} = {said.value[:_SHOWN]} s, but {values.size} values {dt:g} s"
-                    f" apart last {values.size * dt:g} s; correct the header, or fetch the file"
-                    " again",
+                    f"{said.name} = {said.value[:_SHOWN]} s, but {values.size} values"
+                    f" {dt:g} s apart last {values.size * dt:g} s; correct the header,"
+                    " or fetch the file again",
                     said.line,
                 )
         if (said := stated.peak) is not None:
@@ -322,7 +376,9 @@ class RecordText:
             wanted = of_peak * abs(self.number(said._replace(value=numeral)))
             peak = float(np.max(np.abs(values)))
             if abs(peak - wanted) > 0.51 * of_peak * last_digit(numeral) + 1e-3 * wanted:
-                doubts += (f"the values peak at {peak:.6g} and the header says {wanted:.6g}",)
+                doubts += (
+                    f"the values peak at {peak:.6g} and the header says {wanted:.6g}",
+                )
         # A file that was written by rps says the unit of the one before it too.
         words = f"{re.sub('; values in [^;]*', '', words)}; values in {unit}"
         return GroundMotion(
@@ -331,13 +387,23 @@ class RecordText:
         )  # fmt: skip
 
 
-def statements(name: str, pattern: str, lines: Iterable[tuple[int, str]]) -> list[Statement]:
-    """Statements of one thing in numbered lines: a value, and a unit before or behind it."""
+def statements(
+    name: str, pattern: str, lines: Iterable[tuple[int, str]]
+) -> list[Statement]:
+    """Statements of one thing in numbered lines: a value, and a
+    unit before or behind it.
+    """
 
     def value(match: re.Match[str]) -> str:
-        return " ".join(sorted(filter(None, match.groups()), key=lambda word: word[0].isalpha()))
+        return " ".join(
+            sorted(filter(None, match.groups()), key=lambda word: word[0].isalpha())
+        )
 
-    found = ((i, each) for i, line in lines for each in re.finditer(pattern, line, re.IGNORECASE))
+    found = (
+        (i, each)
+        for i, line in lines
+        for each in re.finditer(pattern, line, re.IGNORECASE)
+    )
     return [Statement(name, value(each).strip(), i) for i, each in found]
 
 
@@ -364,8 +430,9 @@ _FOREIGN = {
     rb"%PDF": "a PDF document",
     rb"\x89PNG": "a picture",
     rb"\xd0\xcf\x11\xe0": "an old Excel or Word file; save the sheet as CSV",
-    rb"(?:\xef\xbb\xbf)?\s*<(?i:!doctype|html|head|\?xml)": "a web page, perhaps the log-in page of"
-    " the database; download the record itself",
+    rb"(?:\xef\xbb\xbf)?\s*<(?i:!doctype|html|head|\?xml)": (
+        "a web page, perhaps the log-in page of the database; download the record itself"
+    ),
 }
 _PADDING = re.compile(rb"\0{2,}|\0\Z")  # of old systems, to the ends of their blocks
 
@@ -377,7 +444,9 @@ def read_text(path: Path, of: Source) -> RecordText:
     units = of.values.get("units")
     unit = None if units is None else canonical_unit(units)
     if units is not None and unit is None:
-        raise RecordError(f"{of}: units = {units!r} is not known; use one of {KNOWN_UNITS}")
+        raise RecordError(
+            f"{of}: units = {units!r} is not known; use one of {KNOWN_UNITS}"
+        )
     try:
         if (size := path.stat().st_size) > _LARGEST_FILE:
             raise RecordError(
@@ -397,19 +466,23 @@ def read_text(path: Path, of: Source) -> RecordText:
     else:
         try:
             text = data.decode("utf-8-sig")
-        except UnicodeDecodeError:  # station names of older files; all bytes are Latin-1 letters
+        except (
+            UnicodeDecodeError
+        ):  # station names of older files; all bytes are Latin-1 letters
             text = data.decode("latin-1")
     text = re.sub(r"\r+\n?", "\n", text).rstrip("\x1a\n")
     if not text.strip():
         raise RecordError(
             f"{path}: the file is empty; fetch it again, or export the record as text"
         )
-    return RecordText(path, of, tuple(text.split("\n")), dt, unit, of.values.get("channel"))
+    return RecordText(
+        path, of, tuple(text.split("\n")), dt, unit, of.values.get("channel")
+    )
 
 
 _SUMMED = (1e-6, 1e-3)
-"""Shares of a step by which times may be off besides their rounding, from summing steps in double
-and in single precision."""
+"""Shares of a step by which times may be off besides their rounding, from summing steps
+in double and in single precision."""
 
 _COARSEST = 0.25
 """Share of a step beyond which rounding can no longer tell uniform times from others."""
@@ -417,7 +490,8 @@ _COARSEST = 0.25
 
 def printed_resolution(printed: Array, numerals: Iterable[str]) -> Array:
     """The unit of the last digit of each time of a column, dropped zeros included."""
-    # Of so many decimals or significant digits: one a decade, and growing by no more than ten.
+    # Of so many decimals or significant digits: one a decade, and growing by no more than
+    # ten.
     units = np.fromiter(map(last_digit, numerals), dtype=np.float64, count=printed.size)
     decades = np.floor(np.log10(np.maximum(np.abs(printed), 1e-12)))
     finest = math.inf
@@ -434,15 +508,19 @@ def uniform_step(times: Array, resolution: Array | float) -> float:
     if not steps.min() > 0.0:
         after = int(np.argmin(steps)) + 1
         raise ValueError(
-            f"the times do not increase after sample {after}; sort them, or print more digits"
+            f"the times do not increase after sample {after}; sort them, or print more"
+            " digits"
         )
     ordered = np.sort(steps)  # numpy's median imports masked arrays
     typical = 0.5 * float(ordered[(steps.size - 1) // 2] + ordered[steps.size // 2])
     rounding = np.minimum(0.5 * np.asarray(resolution), _COARSEST * typical)
     for summed in _SUMMED:
-        # Each time bounds the step from both sides; the bounds close in as the samples go on.
+        # Each time bounds the step from both sides; the bounds close in as the samples go
+        # on.
         allowance = np.broadcast_to(rounding + summed * typical, times.shape)
-        either = allowance[1:] + (allowance[0] if times[0] else 0.0)  # a printed zero is exact
+        either = allowance[1:] + (
+            allowance[0] if times[0] else 0.0
+        )  # a printed zero is exact
         elapsed = times[1:] - times[0]
         count = np.arange(1, times.size)
         lowest = float(np.max((elapsed - either) / count))
@@ -454,6 +532,6 @@ def uniform_step(times: Array, resolution: Array | float) -> float:
     off = np.abs(steps - typical)
     first = int(np.argmax(off > 0.5 * off.max()))
     raise ValueError(
-        f"the step after sample {first + 1} is {steps[first]:.6g} s, most others {typical:.6g} s;"
-        " resample the record to a uniform step first"
+        f"the step after sample {first + 1} is {steps[first]:.6g} s, most others"
+        f" {typical:.6g} s; resample the record to a uniform step first"
     )

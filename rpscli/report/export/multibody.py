@@ -1,11 +1,12 @@
 """The podium as rigid bodies in contact, for mujoco, which knows none of our equations.
 
-Each column slides along x and z and turns about y; an arc of radius r on its end is a sphere of
-that radius around (+-B, +-(H - r)), and flat ends are four tiny spheres at the corners. Spheres
-touch the ground, a plane, or the underside of the cap beam, a box that slides along x and z; it
-does not tilt, as floors stay level in the model. Floors slide on the beam, coupled by springs and
-dampers. Contacts push and never pull, rub without sliding (friction 3), and give back no energy
-when they close: nothing says when the podium lifts, or what happens at an impact.
+Each column slides along x and z and turns about y; an arc of radius r on its end is a
+sphere of that radius around (+-B, +-(H - r)), and flat ends are four tiny spheres at the
+corners. Spheres touch the ground, a plane, or the underside of the cap beam, a box that
+slides along x and z; it does not tilt, as floors stay level in the model. Floors slide on
+the beam, coupled by springs and dampers. Contacts push and never pull, rub without
+sliding (friction 3), and give back no energy when they close: nothing says when the
+podium lifts, or what happens at an impact.
 """
 
 from __future__ import annotations
@@ -26,7 +27,8 @@ CLOSING_STEPS = 4
 """Time constant of a contact in steps (`solref`); below 2 the engine is unstable."""
 
 CORNER = 1e-4
-"""Radius of the spheres at the corners of flat ends [m]: H is ten thousand times as large."""
+"""Radius of the spheres at the corners of flat ends [m]: H is ten
+thousand times as large."""
 
 SPACING = 6.0
 """Distance between columns [m]; without influence, as the beam stays level."""
@@ -51,7 +53,9 @@ SAME = 1e-3
 
 
 class Bodies(NamedTuple):
-    """R, tan(alpha), rho, I_o/(m_c R^2), masses, storeys from the bottom, gravity; SI units."""
+    """R, tan(alpha), rho, I_o/(m_c R^2), masses, storeys from the
+    bottom, gravity; SI units.
+    """
 
     R: float
     tan_alpha: float
@@ -70,7 +74,9 @@ def bodies_of(structure: PodiumStructure) -> Bodies:
     bearing = structure.bearing
     above = structure.superstructure
     names = ("masses", "stiffnesses", "damping_matrix")
-    masses, stiffnesses, damping = ((getattr(above, name) if above else ()) for name in names)
+    masses, stiffnesses, damping = (
+        (getattr(above, name) if above else ()) for name in names
+    )
     return Bodies(
         bearing.semi_diagonal, bearing.slenderness, bearing.curvature_ratio, bearing.inertia_ratio,
         structure.columns_mass, structure.cap_beam_mass, masses, stiffnesses, damping,
@@ -149,7 +155,15 @@ def _add_column(world: Element, of: Bodies, number: int, columns: int) -> None:
     for end, meets in ((-1, 1), (1, 2)):
         for side in (-1, 1):
             place = f"{side * B} 0 {end * (H - r)}"
-            _part(column, "geom", type="sphere", size=r, pos=place, contype=meets, conaffinity=0)
+            _part(
+                column,
+                "geom",
+                type="sphere",
+                size=r,
+                pos=place,
+                contype=meets,
+                conaffinity=0,
+            )
 
 
 def _add_cap_beam(world: Element, of: Bodies, columns: int, *, level: bool) -> None:
@@ -165,7 +179,8 @@ def _add_cap_beam(world: Element, of: Bodies, columns: int, *, level: bool) -> N
     if not level:
         _part(beam, "joint", name="beam tilt", type="hinge", axis="0 1 0")
     _part(beam, "geom", type="box", size=f"{reach} 1 {half}", contype=0, conaffinity=2)
-    # Rayleigh damping: what is left of C after the storeys' dampers acts against the beam.
+    # Rayleigh damping: what is left of C after the storeys' dampers acts against the
+    # beam.
     for i, (mass, row) in enumerate(zip(of.masses, of.damping_matrix, strict=True)):
         floor = _part(beam, "body")
         _part(floor, "inertial", pos="0 0 0", mass=mass, diaginertia="1 1 1")

@@ -1,4 +1,6 @@
-"""The podium as a spring of OpenSees that stiffens until it uplifts, and a damper for impacts."""
+"""The podium as a spring of OpenSees that stiffens until it uplifts,
+and a damper for impacts.
+"""
 
 from __future__ import annotations
 
@@ -100,7 +102,9 @@ def model_text(result: TimeHistoryResult, title: str, note: str) -> tuple[str, s
     C = np.zeros((0, 0)) if above is None else above.damping_matrix
     n = len(C)
     dampers = [(0, i + 1, float(C[i].sum())) for i in range(n)]
-    dampers += [(i + 1, j + 1, -float(C[i, j])) for i in range(n) for j in range(i + 1, n)]
+    dampers += [
+        (i + 1, j + 1, -float(C[i, j])) for i in range(n) for j in range(i + 1, n)
+    ]
     springs: list[tuple[float, ...]] = []
     springs += [] if above is None else [(k, 0.0) for k in above.stiffnesses.tolist()]
     meaning = "N/m and N s/m, of the storeys"

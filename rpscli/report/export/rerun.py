@@ -1,7 +1,7 @@
 """Runs the model beside this file, and draws it over the history of rps. Needs no rps.
 
-`model.xml` is run by mujoco, `model.py` by openseespy. The ground motion and the history of rps are
-in timehistory.csv; rerun.csv and rerun.png are written. All numbers are SI.
+`model.xml` is run by mujoco, `model.py` by openseespy. The ground motion and the history
+of rps are in timehistory.csv; rerun.csv and rerun.png are written. All numbers are SI.
 """
 
 from __future__ import annotations
@@ -38,7 +38,9 @@ def by_mujoco(time: Any, ground: Any, up: Any, start: dict[str, float]) -> Rows:
     mujoco = loaded("mujoco")
     model = mujoco.MjModel.from_xml_path(str(HERE / "model.xml"))
     data = mujoco.MjData(model)
-    joints = {model.joint(i).name: int(model.joint(i).qposadr[0]) for i in range(model.njnt)}
+    joints = {
+        model.joint(i).name: int(model.joint(i).qposadr[0]) for i in range(model.njnt)
+    }
     across = [place for name, place in joints.items() if name.startswith("across")]
     for name, place in joints.items():
         data.qpos[place] = start.get(name.rstrip("0123456789 "), 0.0)
@@ -68,7 +70,10 @@ def by_opensees(time: Any, ground: Any, _: Any, start: dict[str, float]) -> Rows
     parts = int(np.ceil(dt / AT_ONCE))
     for i in range(len(time)):
         if i and ops.analyze(parts, dt / parts) != 0:
-            sys.exit(f"OpenSees did not converge at {time[i]:g} s; make AT_ONCE in {__file__} less")
+            sys.exit(
+                f"OpenSees did not converge at {time[i]:g} s; make AT_ONCE in {__file__}"
+                " less"
+            )
         beam = ops.nodeDisp(1, 1)
         yield time[i], beam, ops.nodeDisp(2, 1) - beam if model["STOREYS"] else 0.0
 
@@ -82,8 +87,10 @@ def loaded(name: str) -> Any:
         while inner := cause.__cause__ or cause.__context__:
             cause = inner
         package = name.partition(".")[0]
-        sys.exit(f"{package} cannot be loaded: {cause}; install it (pip install {package}), and the"
-                 " libraries of the system that this names")  # fmt: skip
+        sys.exit(
+            f"{package} cannot be loaded: {cause}; install it (pip install"
+            f" {package}), and the libraries of the system that this names"
+        )  # fmt: skip
 
 
 def main() -> None:
@@ -92,7 +99,13 @@ def main() -> None:
     ours = np.genfromtxt(HERE / "timehistory.csv", delimiter=",", **as_they_are)
     names = ["cap_beam_displacement [m]", "storey_1_drift [m]"]
     u, v, theta = (ours[name][0] for name in (names[0], "lift [m]", "rotation [rad]"))
-    start = {"across": 0.5 * u, "up": 0.5 * v, "tilt": theta, "beam across": u, "beam up": v}
+    start = {
+        "across": 0.5 * u,
+        "up": 0.5 * v,
+        "tilt": theta,
+        "beam across": u,
+        "beam up": v,
+    }
     program = by_mujoco if (HERE / "model.xml").exists() else by_opensees
     known = ours.dtype.names or ()
     up = ours[UP] if UP in known else np.zeros(len(ours))
@@ -108,10 +121,14 @@ def main() -> None:
 
     found = np.transpose(rows)
     figure = Figure(figsize=(7.0, 6.0), layout="constrained")
-    for axes, name, other in zip(figure.subplots(2, sharex=True), names, found[1:], strict=True):
+    for axes, name, other in zip(
+        figure.subplots(2, sharex=True), names, found[1:], strict=True
+    ):
         mine = ours[name] if name in known else np.zeros(len(ours))
         largest = np.abs(mine).max(), np.abs(other).max()
-        sys.stdout.write("largest {}: rps {:.5g}, the other {:.5g}\n".format(name, *largest))
+        sys.stdout.write(
+            "largest {}: rps {:.5g}, the other {:.5g}\n".format(name, *largest)
+        )
         axes.plot(ours["time [s]"], mine, label="rps")
         axes.plot(found[0], other, "--", label=program.__name__.removeprefix("by_"))
         axes.set(xlabel="time [s]", ylabel=name)

@@ -1,4 +1,6 @@
-"""Animations of a time history, true to scale but for the storey drifts, and of mode shapes."""
+"""Animations of a time history, true to scale but for the storey
+drifts, and of mode shapes.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +21,13 @@ from rpscli.analyses.modal import ModalResult
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.errors import OutputError, UsageError
 from rpscli.report.figures import style
-from rpscli.report.figures.bearing import BearingView, SceneDevices, displaced, frame_end, outline
+from rpscli.report.figures.bearing import (
+    BearingView,
+    SceneDevices,
+    displaced,
+    frame_end,
+    outline,
+)
 from rpscli.report.figures.history import in_plane, lean_azimuth
 from rpscli.report.figures.look import ENCODER, MOST_FRAMES, USUAL, FilmRequest, Look
 from rpscli.report.figures.structure import COLUMNS, level_heights, modes_figure
@@ -29,14 +37,20 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-Motion = tuple[int, Callable[[int], None]]  # how many frames, and what moves to each of them
-Progress = Callable[[int, int], None]  # is told how many frames are drawn, and of how many
+Motion = tuple[
+    int, Callable[[int], None]
+]  # how many frames, and what moves to each of them
+Progress = Callable[
+    [int, int], None
+]  # is told how many frames are drawn, and of how many
 
 BOX_ASPECT = 0.8  # height of the picture over its width
 
 
 class Scene:
-    """The structure at one instant; `show` moves it to another. Of pairs where columns lean."""
+    """The structure at one instant; `show` moves it to another. Of
+    pairs where columns lean.
+    """
 
     def __init__(
         self, axes: style.Axes, result: TimeHistoryResult, title: str, speed: float
@@ -50,24 +64,39 @@ class Scene:
         height = 2.0 * structure.bearing.half_height
         self.width = 1.6 * max(height, 0.35 * float(self.levels[-1]))
         count = COLUMNS if structure.cap_beam_mass > 0.0 else 1
-        self.feet = np.linspace(-0.4, 0.4, count) * self.width if count > 1 else np.zeros(1)
+        self.feet = (
+            np.linspace(-0.4, 0.4, count) * self.width if count > 1 else np.zeros(1)
+        )
         self.thickness = 0.12 * height
         self.columns = [
             axes.fill([], [], fc="#C9C9C9", ec=style.BLACK, lw=0.8)[0] for _ in self.feet
         ]
         self.beam = axes.fill([], [], fc=style.BLUE, ec=style.BLACK, lw=0.8)[0]
-        self.floors = [axes.plot([], [], color=style.BLUE, lw=3.0)[0] for _ in self.levels[1:]]
-        self.sides = [axes.plot([], [], "k", lw=1.0)[0] for _ in (-1, 1)] if self.floors else []
+        self.floors = [
+            axes.plot([], [], color=style.BLUE, lw=3.0)[0] for _ in self.levels[1:]
+        ]
+        self.sides = (
+            [axes.plot([], [], "k", lw=1.0)[0] for _ in (-1, 1)] if self.floors else []
+        )
         base = float(self.levels[0])
-        self.devices = SceneDevices(axes, structure.devices, self.feet, 0.5 * self.width, base)
-        clock: dict[str, Any] = {"xycoords": "axes fraction", "textcoords": "offset points"}
-        self.clock = axes.annotate("", (1, 1), (0, 6), ha="right", fontweight="bold", **clock)
+        self.devices = SceneDevices(
+            axes, structure.devices, self.feet, 0.5 * self.width, base
+        )
+        clock: dict[str, Any] = {
+            "xycoords": "axes fraction",
+            "textcoords": "offset points",
+        }
+        self.clock = axes.annotate(
+            "", (1, 1), (0, 6), ha="right", fontweight="bold", **clock
+        )
         axes.figure.suptitle(title, fontsize=style.small(), parse_math=False)
         axes.axhline(0.0, color=style.BLACK, lw=1.0)
         drifts = f"; storey drifts x {self.magnification:g}" if self.floors else ""
         if of_pair:
             axes.set_title("along the tilt", loc="left", fontsize=style.small())
-        axes.set_xlabel(f"bearings to scale{drifts}; {_pace(speed)}", fontsize=style.small())
+        axes.set_xlabel(
+            f"bearings to scale{drifts}; {_pace(speed)}", fontsize=style.small()
+        )
         trace = result.trace
         shift = float(np.nanmax(np.abs(trace.cap_beam_displacement)))
         reach = 0.5 * self.width + shift + 0.12 * float(self.levels[-1])
@@ -75,7 +104,9 @@ class Scene:
         height = max(1.1 * top, 2.0 * reach * BOX_ASPECT)
         axes.set_xlim(-0.5 * height / BOX_ASPECT, 0.5 * height / BOX_ASPECT)
         axes.set_ylim(-0.06 * top, height - 0.06 * top)
-        axes.set_box_aspect(BOX_ASPECT)  # with these limits, a metre is as high as it is wide
+        axes.set_box_aspect(
+            BOX_ASPECT
+        )  # with these limits, a metre is as high as it is wide
         axes.set(yticks=[], xticks=[])
         axes.grid(visible=False)
 
@@ -108,7 +139,9 @@ class Scene:
 
 
 class PlanView:
-    """A column from above: foot, head and where it was, and the plane in which it leans."""
+    """A column from above: foot, head and where it was, and the
+    plane in which it leans.
+    """
 
     def __init__(self, axes: style.Axes, result: TimeHistoryResult) -> None:
         from matplotlib.patches import Circle
@@ -123,8 +156,13 @@ class PlanView:
         farthest = float(np.nanmax(trace.size("cap_beam_displacement")))
         self.reach = 1.15 * (radius + farthest)
         critical, _ = displaced(result.structure, result.structure.critical_rotation)
-        for size, colour, line in ((radius, style.BLACK, ":"), (critical, style.RED, "--")):
-            axes.add_patch(Circle((0.0, 0.0), size, fill=False, ec=colour, ls=line, lw=0.8))
+        for size, colour, line in (
+            (radius, style.BLACK, ":"),
+            (critical, style.RED, "--"),
+        ):
+            axes.add_patch(
+                Circle((0.0, 0.0), size, fill=False, ec=colour, ls=line, lw=0.8)
+            )
         self.plane = axes.plot([], [], color=style.BLACK, lw=0.6, ls=(0, (6, 3)))[0]
         self.way = axes.plot([], [], color=style.BLUE, lw=1.0)[0]
         self.head = Circle((0.0, 0.0), radius, fill=False, ec=style.BLUE, lw=1.6)
@@ -138,22 +176,31 @@ class PlanView:
         axes.set_title("a column from above", fontsize=style.small())
 
     def show(self, sample: int) -> None:
-        """Move the head to where it is at a sample, and turn the plane in which columns lean."""
+        """Move the head to where it is at a sample, and turn the
+        plane in which columns lean.
+        """
         at = slice(max(sample - self.memory, 0), sample + 1)
         self.way.set_data(self.x[at], self.y[at])
         self.middle.set_data(self.x[[sample]], self.y[[sample]])
         self.head.set_center((self.x[sample], self.y[sample]))
-        way = self.reach * np.array([np.cos(self.azimuth[sample]), np.sin(self.azimuth[sample])])
+        way = self.reach * np.array(
+            [np.cos(self.azimuth[sample]), np.sin(self.azimuth[sample])]
+        )
         self.plane.set_data(*np.outer(way, (-2.0, 2.0)))
         # Beside the line, by more than half of the word where the line stands upright.
-        self.right.set_position((0.8 * way[0] - 0.2 * way[1], 0.8 * way[1] + 0.2 * way[0]))
+        self.right.set_position(
+            (0.8 * way[0] - 0.2 * way[1], 0.8 * way[1] + 0.2 * way[0])
+        )
 
 
 def _pace(speed: float) -> str:
     """The speed of a film in words."""
     if f"{speed:.2g}" == "1":
         return "in real time"
-    return f"{max(speed, 1.0 / speed):.2g} times {'faster' if speed > 1.0 else 'slower'} than real"
+    return (
+        f"{max(speed, 1.0 / speed):.2g} times {'faster' if speed > 1.0 else 'slower'}"
+        " than real"
+    )
 
 
 def _magnification(result: TimeHistoryResult, levels: Array) -> float:
@@ -176,10 +223,16 @@ FramePlan: TypeAlias = tuple[NDArray[np.int64], float]
 
 
 def frame_plan(result: TimeHistoryResult, wanted: FilmRequest) -> FramePlan:
-    """Frames of a history, by default of all its motion; a UsageError if they are too many."""
+    """Frames of a history, by default of all its motion; a
+    UsageError if they are too many.
+    """
     time = result.trace.time
     rotation = np.abs(result.trace.rotation)
-    moving = np.flatnonzero(rotation > 0.01 * rotation.max()) if rotation.any() else np.empty(0)
+    moving = (
+        np.flatnonzero(rotation > 0.01 * rotation.max())
+        if rotation.any()
+        else np.empty(0)
+    )
     first = max(time[int(moving[0])] - 0.5, 0.0) if moving.size else 0.0
     last = min(time[int(moving[-1])] + 0.5, time[-1]) if moving.size else time[-1]
     last = last if wanted.last is None else min(wanted.last, time[-1])
@@ -189,13 +242,15 @@ def frame_plan(result: TimeHistoryResult, wanted: FilmRequest) -> FramePlan:
             f"--animate-from {first:g}: must be >= 0 and before the end at {time[-1]:g} s"
         )
     last = last if last > first else time[-1]
-    length = (last - first) / wanted.speed if wanted.speed else min(last - first, USUAL_LENGTH)
+    length = (
+        (last - first) / wanted.speed if wanted.speed else min(last - first, USUAL_LENGTH)
+    )
     count = length * wanted.rate
     if count > MOST_FRAMES:
         raise UsageError(
-            f"--animate-speed {wanted.speed:g}: {last - first:.4g} s make {count:.5g} frames, and"
-            f" {MOST_FRAMES} are the most; let it run faster, or show a part with --animate-from"
-            " and --animate-to"
+            f"--animate-speed {wanted.speed:g}: {last - first:.4g} s make {count:.5g}"
+            f" frames, and {MOST_FRAMES} are the most; let it run faster, or show a part"
+            " with --animate-from and --animate-to"
         )
     frames = max(int(count), 2)
     at = np.linspace(first, last, frames)
@@ -211,7 +266,9 @@ def history_film(
     look: Look = USUAL,
     progress: Progress = lambda *_: None,
 ) -> bytes:
-    """The structure where its columns lean, an end enlarged or one from above, and the record."""
+    """The structure where its columns lean, an end enlarged or one
+    from above, and the record.
+    """
     samples, speed = plan
 
     def draw(figure: style.Figure) -> Motion:
@@ -232,10 +289,14 @@ def history_film(
             detail = BearingView(panels["detail"], result.structure)
             shown = trace.rotation[samples]
             frame_end(panels["detail"], result.structure.bearing)
-            panels["detail"].set_title("lower end of a column, enlarged", fontsize=style.small())
+            panels["detail"].set_title(
+                "lower end of a column, enlarged", fontsize=style.small()
+            )
         for name, of, colour in (("y", trace.y, style.RED), ("x", trace, style.BLACK)):
             if of is not None:
-                record.plot(trace.time, of.ground_acceleration, color=colour, lw=0.6, label=name)
+                record.plot(
+                    trace.time, of.ground_acceleration, color=colour, lw=0.6, label=name
+                )
         if trace.y is not None:
             record.legend(loc="upper right", ncols=2, borderaxespad=0.1)
         first, last = trace.time[samples[[0, -1]]]
@@ -310,7 +371,9 @@ def _frames(
     figure.draw_without_rendering()  # which gives all their places
     figure.set_layout_engine("none")
     show(count - 1)
-    drawn = (each for axes in figure.axes for each in (*axes.lines, *axes.patches, *axes.texts))
+    drawn = (
+        each for axes in figure.axes for each in (*axes.lines, *axes.patches, *axes.texts)
+    )
     moving = sorted((each for each in drawn if each.stale), key=lambda each: each.zorder)
     for each in moving:
         each.set_animated(True)  # left out of what is drawn once
@@ -333,7 +396,9 @@ def _gif(frames: Iterator[Image], rate: int) -> bytes:
     first, *others = (frame.quantize(method=Quantize.FASTOCTREE) for frame in frames)
     file = io.BytesIO()
     milliseconds = round(1000 / rate)
-    first.save(file, "GIF", save_all=True, append_images=others, duration=milliseconds, loop=0)
+    first.save(
+        file, "GIF", save_all=True, append_images=others, duration=milliseconds, loop=0
+    )
     return file.getvalue()
 
 

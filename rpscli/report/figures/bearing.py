@@ -29,7 +29,9 @@ BRACE, POSTS, CABLES, NOWHERE = range(4)  # signs for devices in pictures of the
 
 
 class Drawn(NamedTuple):
-    """The drawing of a law; resistance, the force on the cap beam turned round, has the sign -1."""
+    """The drawing of a law; resistance, the force on the cap beam
+    turned round, has the sign -1.
+    """
 
     scene: int
     force: str = "resistance"
@@ -53,7 +55,9 @@ ARC_POINTS = 12
 def outline(
     bearing: Bearing, rotation: float = 0.0, displacement: float = 0.0, lift: float = 0.0
 ) -> Array:
-    """Corners of the column, (points, 2) [m], counter-clockwise; turned clockwise by `rotation`."""
+    """Corners of the column, (points, 2) [m], counter-clockwise; turned
+    clockwise by `rotation`.
+    """
     # Up to B the ends are flat, then arcs of radius r up to B', and sides are straight.
     H = bearing.half_height
     B = bearing.half_width
@@ -73,11 +77,19 @@ def displaced(structure: PodiumStructure, rotation: float) -> tuple[float, float
     return math.copysign(float(u[0]), rotation), float(v[0])
 
 
-def contact_points(bearing: Bearing, rotation: float, displacement: float, lift: float) -> Array:
-    """Contacts of a leaning column with ground and cap beam, (2, 2) [m]; arguments as above."""
+def contact_points(
+    bearing: Bearing, rotation: float, displacement: float, lift: float
+) -> Array:
+    """Contacts of a leaning column with ground and cap beam, (2, 2)
+    [m]; arguments as above.
+    """
     side = math.copysign(1.0, rotation)
-    reach = side * (bearing.half_width + bearing.radius * min(abs(rotation), bearing.beta))
-    return np.array([[reach, 0.0], [displacement - reach, 2.0 * bearing.half_height + lift]])
+    reach = side * (
+        bearing.half_width + bearing.radius * min(abs(rotation), bearing.beta)
+    )
+    return np.array(
+        [[reach, 0.0], [displacement - reach, 2.0 * bearing.half_height + lift]]
+    )
 
 
 COLUMN = "#DDDDDD"
@@ -88,19 +100,28 @@ LEAST_ASPECT = 0.2
 """Smallest one: stops may stand far from the column, and layouts need some height."""
 END_ASPECT = 1.0  # largest height of the picture of an end over its width
 NARROW = 1.5  # width of a picture in which a title needs more lines [in]
-BESIDE = 0.35  # length of the cap beam to either side of the column, over the column's width
+BESIDE = (
+    0.35  # length of the cap beam to either side of the column, over the column's width
+)
 ROOM = (0.16, 0.10, 0.03, 0.13)
 """For dimensions: left, right, below and above the column, as parts of the picture."""
 
 
 class SceneDevices:
-    """Devices in pictures of the structure, moved with the cap beam; a legend has their names."""
+    """Devices in pictures of the structure, moved with the cap beam;
+    a legend has their names.
+    """
 
-    # Posts stand at the gap of each stop, red and pushed aside beyond it; dampers share a brace;
-    # cables stand where the feet of the columns do. `half` is half the width of the beam, `base`
-    # the height of its underside at rest [m].
+    # Posts stand at the gap of each stop, red and pushed aside beyond it; dampers share a
+    # brace; cables stand where the feet of the columns do. `half` is half the width of
+    # the beam, `base` the height of its underside at rest [m].
     def __init__(
-        self, axes: style.Axes, devices: Sequence[Device], feet: Array, half: float, base: float
+        self,
+        axes: style.Axes,
+        devices: Sequence[Device],
+        feet: Array,
+        half: float,
+        base: float,
     ) -> None:
         self.feet = feet
         self.half = half
@@ -109,7 +130,11 @@ class SceneDevices:
         for device in devices:
             by_scene[DRAWN[type(device)].scene].append(device)
         self.stops: list[tuple[float, float, Line2D]] = [
-            (side, stop.gap, axes.plot([], [], color=style.BLACK, lw=2.5, label="stop")[0])
+            (
+                side,
+                stop.gap,
+                axes.plot([], [], color=style.BLACK, lw=2.5, label="stop")[0],
+            )
             for stop in by_scene[POSTS]
             for side in (-1.0, 1.0)
         ]
@@ -117,7 +142,12 @@ class SceneDevices:
         count = len(feet) if by_scene[CABLES] else 0
         self.tendons = [axes.plot([], [], **cable)[0] for _ in range(count)]
         kinds = dict.fromkeys(device.kind.replace("_", " ") for device in by_scene[BRACE])
-        look: dict[str, Any] = {"color": style.GREEN, "lw": 1.5, "marker": "s", "markevery": [1]}
+        look: dict[str, Any] = {
+            "color": style.GREEN,
+            "lw": 1.5,
+            "marker": "s",
+            "markevery": [1],
+        }
         look["label"] = f"{' and '.join(kinds)} damper"
         self.brace = axes.plot([], [], **look, ms=5.0)[0] if kinds else None
 
@@ -154,20 +184,25 @@ class BearingView:
         look: dict[str, Any] = {"color": style.RED, "ms": 4.0, "zorder": 4.0}
         self.contacts = axes.plot([], [], "o", **look)[0]
         self.thrust = axes.plot([], [], ls=(0, (5, 3)), lw=0.7, color=style.RED)[0]
-        self.devices = SceneDevices(axes, structure.devices, np.zeros(1), self.half, self.height)
+        self.devices = SceneDevices(
+            axes, structure.devices, np.zeros(1), self.half, self.height
+        )
         axes.set(xticks=[], yticks=[])
         axes.grid(visible=False)
 
     def show(self, rotation: float) -> tuple[float, float]:
         """Lean the column to a rotation [rad]; u_b and v_b there [m]."""
-        # The dashed line joins the contacts: the weight restores as long as it leans the other way.
+        # The dashed line joins the contacts: the weight restores as long as it leans the
+        # other way.
         bearing = self.structure.bearing
         shift, lift = displaced(self.structure, rotation)
         self.column.set_xy(outline(bearing, rotation, shift, lift))
         touching = contact_points(bearing, rotation, shift, lift)
         self.thrust.set_data(*touching.T)
         if rotation == 0.0:  # both edges of the flat part
-            touching = np.array([(side * x, y) for x, y in touching for side in (1.0, -1.0)])
+            touching = np.array(
+                [(side * x, y) for x, y in touching for side in (1.0, -1.0)]
+            )
             self.thrust.set_data([], [])
         if self.beam is None:
             touching = touching[: len(touching) // 2]  # nothing stands on it
@@ -182,10 +217,16 @@ class BearingView:
         return shift, lift
 
 
-def draw_bearing(axes: style.Axes, structure: PodiumStructure, rotation: float = 0.0) -> None:
-    """A column at a rotation [rad]: its dimensions at rest, displacement and lift if it leans."""
+def draw_bearing(
+    axes: style.Axes, structure: PodiumStructure, rotation: float = 0.0
+) -> None:
+    """A column at a rotation [rad]: its dimensions at rest,
+    displacement and lift if it leans.
+    """
     if not abs(rotation) < 0.5 * math.pi:
-        raise UsageError(f"rotation = {rotation:g} rad must be less than a quarter turn, 1.57 rad")
+        raise UsageError(
+            f"rotation = {rotation:g} rad must be less than a quarter turn, 1.57 rad"
+        )
     bearing = structure.bearing
     critical = structure.critical_rotation
     view = BearingView(axes, structure)
@@ -223,7 +264,9 @@ def draw_bearing(axes: style.Axes, structure: PodiumStructure, rotation: float =
 
 
 def draw_end(axes: style.Axes, bearing: Bearing, bed: Bed | None = None) -> None:
-    """The lower end of a column at rest, enlarged: its widths, the radius, the edge's height."""
+    """The lower end of a column at rest, enlarged: its widths, the
+    radius, the edge's height.
+    """
     half = bearing.end_half_width
     B = bearing.half_width
     x, y = outline(bearing).T
@@ -237,11 +280,16 @@ def draw_end(axes: style.Axes, bearing: Bearing, bed: Bed | None = None) -> None
         measure(axes, (-B, -step), (B, -step), f"2B = {2.0 * B:.4g} m")
     title = "an end, enlarged: flat"
     if not bearing.is_flat:
-        measure(axes, (-half, -3.2 * step), (half, -3.2 * step), f"2B' = {2.0 * half:.4g} m")
+        measure(
+            axes, (-half, -3.2 * step), (half, -3.2 * step), f"2B' = {2.0 * half:.4g} m"
+        )
         edge = bearing.radius * (1.0 - math.cos(bearing.beta))
         axes.plot([half, 1.5 * half], [edge, edge], color=style.GREY, lw=0.7, ls=":")
         middle = 0.5 * bearing.beta
-        arc = (B + bearing.radius * math.sin(middle), bearing.radius * (1.0 - math.cos(middle)))
+        arc = (
+            B + bearing.radius * math.sin(middle),
+            bearing.radius * (1.0 - math.cos(middle)),
+        )
         axes.annotate(
             f"r = {bearing.radius:.4g} m\nβ = {bearing.beta:.3g} rad",
             arc, (0.0, 4.0 * step), arrowprops={"arrowstyle": "->", "lw": 0.6},
@@ -260,7 +308,9 @@ def draw_end(axes: style.Axes, bearing: Bearing, bed: Bed | None = None) -> None
 
 
 def frame_end(axes: style.Axes, bearing: Bearing, below: float = 0.1) -> None:
-    """Bring the lower end of a column into view; `below` the ground, as a part of the picture."""
+    """Bring the lower end of a column into view; `below` the ground,
+    as a part of the picture.
+    """
     half = bearing.end_half_width
     _frame(axes, (-half, half, 0.0, 0.0), (0.2, 0.2, below, 1.0 - below), END_ASPECT)
 
@@ -268,7 +318,10 @@ def frame_end(axes: style.Axes, bearing: Bearing, below: float = 0.1) -> None:
 def _state(bearing: Bearing, critical: float, rotation: float, u: float, v: float) -> str:
     """The title of a panel, in two lines."""
     if rotation == 0.0:
-        return f"at rest\n$\\alpha$ = {bearing.alpha:.3g} rad, $R$ = {bearing.semi_diagonal:.4g} m"
+        return (
+            f"at rest\n$\\alpha$ = {bearing.alpha:.3g} rad, $R$ ="
+            f" {bearing.semi_diagonal:.4g} m"
+        )
     name = f"$\\theta$ = {rotation:.3g} rad"
     if rotation == bearing.beta:
         name = f"end of rolling: $\\beta$ = {rotation:.3g} rad"
@@ -299,7 +352,9 @@ def _frame(
     room: tuple[float, float, float, float],
     aspect: float,
 ) -> None:
-    """Limits of one scale both ways; `room` is kept free, in its parts; `aspect` at most."""
+    """Limits of one scale both ways; `room` is kept free, in its
+    parts; `aspect` at most.
+    """
     left, right, bottom, top = content
     across = 1.0 - room[0] - room[1]
     upwards = 1.0 - room[2] - room[3]
@@ -323,8 +378,16 @@ def measure(
     part: float = 0.5,
     turned: bool = False,
 ) -> None:
-    """A double arrow and, offset [pt] from a part of it, its text: on its left or below."""
-    line = {"arrowstyle": "<->", "lw": 0.6, "color": style.BLACK, "shrinkA": 0, "shrinkB": 0}
+    """A double arrow and, offset [pt] from a part of it, its
+    text: on its left or below.
+    """
+    line = {
+        "arrowstyle": "<->",
+        "lw": 0.6,
+        "color": style.BLACK,
+        "shrinkA": 0,
+        "shrinkB": 0,
+    }
     axes.annotate("", end, start, arrowprops=line)
     at = start[0] + part * (end[0] - start[0]), start[1] + part * (end[1] - start[1])
     beside = (-3.0, 0.0) if start[0] == end[0] else (0.0, -3.0)
@@ -352,7 +415,9 @@ def column_figure(result: TimeHistoryResult, title: str, figure: style.Figure) -
     draw_section_forces(sections, result.structure, demand)
 
 
-def draw_end_forces(axes: style.Axes, structure: PodiumStructure, demand: ColumnDemand) -> None:
+def draw_end_forces(
+    axes: style.Axes, structure: PodiumStructure, demand: ColumnDemand
+) -> None:
     """The column to scale; arrows of the forces on it, to a scale of their own."""
     bearing = structure.bearing
     s = demand.at_largest_moment
@@ -373,7 +438,13 @@ def draw_end_forces(axes: style.Axes, structure: PodiumStructure, demand: Column
         plate = place[0] + 2.0 * wide * np.array([-1.0, 1.0])
         axes.plot(plate, place[[1, 1]], color=style.BLACK, lw=1.2)
         force = LONGEST * height * np.array([F, N]) / largest
-        arrow = {"arrowstyle": "-|>", "lw": 1.2, "color": style.RED, "shrinkA": 0, "shrinkB": 0}
+        arrow = {
+            "arrowstyle": "-|>",
+            "lw": 1.2,
+            "color": style.RED,
+            "shrinkA": 0,
+            "shrinkB": 0,
+        }
         axes.annotate("", place, place - force, arrowprops=arrow)
         words = "\n".join(
             f"${letter}_\\mathrm{{{name}}}$ = {1e-3 * abs(value):.4g} kN"
@@ -425,7 +496,9 @@ def devices_figure(result: TimeHistoryResult, title: str, figure: style.Figure) 
 
 
 def draw_device(axes: style.Axes, result: TimeHistoryResult, index: int) -> None:
-    """Resistance of a device against displacement, of tendons tension against elongation."""
+    """Resistance of a device against displacement, of tendons
+    tension against elongation.
+    """
     style.require("devices", index, range(len(result.structure.devices)))
     trace = result.trace.devices
     device = result.structure.devices[index]
@@ -434,7 +507,11 @@ def draw_device(axes: style.Axes, result: TimeHistoryResult, index: int) -> None
     factor, prefix = style.engineering(float(np.nanmax(np.abs(force), initial=0.0)))
     axes.plot(trace.displacement[:, index], factor * force, color=style.BLUE, lw=0.8)
     style.cross(axes)
-    axes.set_title(f"device {index}: {device.kind.replace('_', ' ')}", fontsize=style.small())
-    stroke = drawn.stroke if result.motion.y is None else drawn.stroke.replace("u_b", "|u_b|")
+    axes.set_title(
+        f"device {index}: {device.kind.replace('_', ' ')}", fontsize=style.small()
+    )
+    stroke = (
+        drawn.stroke if result.motion.y is None else drawn.stroke.replace("u_b", "|u_b|")
+    )
     axes.set(xlabel=stroke, ylabel=f"{drawn.force} [{prefix}N]")
     axes.locator_params(axis="x", nbins=5)

@@ -1,4 +1,6 @@
-"""Demands and floor spectra over the height of the building; loops of storeys that yield."""
+"""Demands and floor spectra over the height of the building;
+loops of storeys that yield.
+"""
 
 from __future__ import annotations
 
@@ -36,14 +38,18 @@ def profile_figure(result: TimeHistoryResult, title: str, figure: style.Figure) 
     resultants = "largest resultants" if result.trace.y is not None else ""
     style.begin(figure, (title, record_name(result), resultants), 4.2)
     draws = draw_shears, draw_storey_drifts, draw_accelerations
-    panels = style.grid(figure, [partial(each, result=result) for each in draws], 3, sharey=True)
+    panels = style.grid(
+        figure, [partial(each, result=result) for each in draws], 3, sharey=True
+    )
     style.legend_below(figure, (panels[-1], panels[0]))
 
 
 def draw_shears(axes: style.Axes, result: TimeHistoryResult) -> None:
     """Largest storey shears, and V_st."""
     series = [*_series(result)]
-    factor, prefix = style.engineering(max(float(of.storey_shears.max()) for of, _ in series))
+    factor, prefix = style.engineering(
+        max(float(of.storey_shears.max()) for of, _ in series)
+    )
     for demands, look in series:
         axes.stairs(demands.storey_shears * factor, **STAIRS, **look)
     axes.set_xlabel(STOREY_SHEARS.in_unit(f"{prefix}N"))
@@ -83,7 +89,9 @@ def draw_accelerations(axes: style.Axes, result: TimeHistoryResult) -> None:
 def _series(result: TimeHistoryResult) -> Iterator[tuple[StoreyDemands, dict[str, Any]]]:
     yield isolated_demands(result), ISOLATED
     if (fixed := fixed_base_demands(result)) is not None:
-        yields = {"label": f"{FIXED['label']}, elastic"} if result.structure.yields else {}
+        yields = (
+            {"label": f"{FIXED['label']}, elastic"} if result.structure.yields else {}
+        )
         yield fixed, FIXED | yields
 
 
@@ -100,7 +108,9 @@ MOST_FLOORS = 3  # in the picture; the table has all
 
 
 def shown_floors(count: int, most: int = MOST_FLOORS) -> list[int]:
-    """Numbers of the floors that are drawn, from 1: the lowest, some between and the roof."""
+    """Numbers of the floors that are drawn, from 1: the lowest,
+    some between and the roof.
+    """
     floors = np.linspace(1.0, count, min(count, most))
     return [int(floor + 0.5) for floor in floors]
 
@@ -117,14 +127,18 @@ def floor_spectra_figure(
     damping = f"{style.percent(isolated.damping)} damping"
     style.begin(figure, (title, record, damping, "steps of 1 ms or less"), 4.8)
     draws = [
-        partial(draw_floor_spectrum, isolated=isolated, fixed=fixed, floor=floor, name=name)
+        partial(
+            draw_floor_spectrum, isolated=isolated, fixed=fixed, floor=floor, name=name
+        )
         for name in SPECTRA
         for floor in floors
     ]
     panels = style.grid(figure, draws, len(floors), sharex=True, sharey="row")
     for axes, floor in zip(panels, floors, strict=False):
         axes.set_title(f"floor {floor}")
-    for axes in panels[:: len(floors)]:  # once all are drawn, since a row shares its limits
+    for axes in panels[
+        :: len(floors)
+    ]:  # once all are drawn, since a row shares its limits
         axes.set_ylim(bottom=0.0)
         axes.set_ylabel(axes.get_ylabel().partition(", ")[2])
     style.legend_below(figure, panels)
@@ -137,7 +151,9 @@ def draw_floor_spectrum(
     floor: int,
     name: str = "pseudo_acceleration",
 ) -> None:
-    """The spectrum of a floor, counted from 1, or its `displacement`; beside the fixed base."""
+    """The spectrum of a floor, counted from 1, or its
+    `displacement`; beside the fixed base.
+    """
     place = floor - 1
     style.require("floors", floor, range(1, len(isolated.displacement) + 1))
     axes.plot(isolated.periods, getattr(isolated, name)[place], **ISOLATED)
@@ -159,15 +175,21 @@ def loops_figure(result: TimeHistoryResult, title: str, figure: style.Figure) ->
     rows = -(-len(storeys) // columns)
     style.begin(figure, (title, record_name(result), result.sampling), 0.9 + 2.1 * rows)
     draws = [partial(draw_loop, result=result, storey=storey) for storey in storeys]
-    style.legend_below(figure, style.grid(figure, draws, columns, sharex=True, sharey=True))
+    style.legend_below(
+        figure, style.grid(figure, draws, columns, sharex=True, sharey=True)
+    )
 
 
 def draw_loop(axes: style.Axes, result: TimeHistoryResult, storey: int) -> None:
-    """Shear of a storey, counted from 1, over its drift, and the lines on which it yields."""
+    """Shear of a storey, counted from 1, over its drift, and the
+    lines on which it yields.
+    """
     structure = result.structure
     trace = result.trace
     if not structure.yields:
-        raise UsageError("a panel of loop: needs storeys that yield, superstructure.yield")
+        raise UsageError(
+            "a panel of loop: needs storeys that yield, superstructure.yield"
+        )
     style.require("storeys", storey, range(1, structure.storeys + 1))
     place = storey - 1
     seen = [structure, structure.across][: 1 if trace.y is None else 2]
@@ -184,7 +206,10 @@ def draw_loop(axes: style.Axes, result: TimeHistoryResult, storey: int) -> None:
         reach = 1e3 * max(float(np.abs(of.drifts[:, place]).max()), 1.2 * F / k)
         for side in (-1.0, 1.0):
             ends = np.array([-reach, reach])
-            line = building.hardening * 1e-3 * k * ends + (1.0 - building.hardening) * side * F
+            line = (
+                building.hardening * 1e-3 * k * ends
+                + (1.0 - building.hardening) * side * F
+            )
             known = "yields" if side > 0.0 and way is structure else None
             axes.plot(ends, line, color=style.GREY, lw=0.8, ls="--", label=known)
         label = name if trace.y is not None else "shear $f$ of springs"

@@ -39,7 +39,9 @@ def record_name(result: TimeHistoryResult) -> str:
 
 
 def lean_azimuth(trace: Trace) -> NDArray[np.float64]:
-    """Of the plane in which columns lean (samples,) [rad]: no half turns, in contact in between."""
+    """Of the plane in which columns lean (samples,) [rad]: no half
+    turns, in contact in between.
+    """
     assert trace.azimuth is not None, "both components act"
     leans = np.flatnonzero(trace.rotation > 0.0)
     if not leans.size:
@@ -58,7 +60,9 @@ def component(result: TimeHistoryResult, way: Way) -> TimeHistoryResult:
 
 
 def in_plane(result: TimeHistoryResult, *, one_sided: bool = False) -> TimeHistoryResult:
-    """The history where the columns lean, to both sides or to one; planar ones as they are."""
+    """The history where the columns lean, to both sides or to one;
+    planar ones as they are.
+    """
     trace = result.trace
     if trace.y is None or trace.azimuth is None:
         return result
@@ -69,12 +73,16 @@ def in_plane(result: TimeHistoryResult, *, one_sided: bool = False) -> TimeHisto
             continue
         x = getattr(trace, name)
         y = getattr(trace.y, name)
-        cosine, sine = (of(plane).reshape(-1, *[1] * (x.ndim - 1)) for of in (np.cos, np.sin))
+        cosine, sine = (
+            of(plane).reshape(-1, *[1] * (x.ndim - 1)) for of in (np.cos, np.sin)
+        )
         along[name] = cosine * x + sine * y
     side = np.where(np.cos(trace.azimuth - plane) < 0.0, -1.0, 1.0)
     rotation = side * trace.rotation
     rate = side * trace.rotation_rate
-    seen = replace(trace, **along, rotation=rotation, rotation_rate=rate, azimuth=None, y=None)
+    seen = replace(
+        trace, **along, rotation=rotation, rotation_rate=rate, azimuth=None, y=None
+    )
     return replace(result, trace=seen)
 
 
@@ -83,22 +91,35 @@ PALE = "#B5B5B5"
 """Of what lies below something else."""
 
 
-def displacement_figure(result: TimeHistoryResult, title: str, figure: style.Figure) -> None:
-    """Roof and cap beam over the ground; below, roof and floors at mid-height over the cap beam."""
+def displacement_figure(
+    result: TimeHistoryResult, title: str, figure: style.Figure
+) -> None:
+    """Roof and cap beam over the ground; below, roof and floors at
+    mid-height over the cap beam.
+    """
     draws = [draw_displacements, draw_drifts][: 2 if result.structure.storeys else 1]
     ways = WAYS if result.trace.y is not None else WAYS[:1]
-    panels = [partial(draw_one, result=result, way=way) for draw_one in draws for way in ways]
+    panels = [
+        partial(draw_one, result=result, way=way) for draw_one in draws for way in ways
+    ]
     words = title, record_name(result), result.sampling
     style.begin(figure, words, 1.2 + 1.8 * len(panels))
     style.grid(figure, panels, sharex=True)
 
 
-def draw_displacements(axes: style.Axes, result: TimeHistoryResult, way: Way = "x") -> None:
+def draw_displacements(
+    axes: style.Axes, result: TimeHistoryResult, way: Way = "x"
+) -> None:
     """Roof and cap beam, relative to the ground: the one thin upon the other."""
     trace = component(result, way).trace
     base = "cap beam" if result.structure.cap_beam_mass > 0.0 else "top of the columns"
     wide: dict[str, Any] = {"color": PALE, "lw": 3.0} if result.structure.storeys else {}
-    axes.plot(trace.time, trace.cap_beam_displacement, **{"color": style.BLACK} | wide, label=base)
+    axes.plot(
+        trace.time,
+        trace.cap_beam_displacement,
+        **{"color": style.BLACK} | wide,
+        label=base,
+    )
     _draw_floors(axes, result, way, trace.floor_displacements, "ground", 1)
 
 
@@ -110,7 +131,12 @@ def draw_drifts(axes: style.Axes, result: TimeHistoryResult, way: Way = "x") -> 
 
 
 def _draw_floors(
-    axes: style.Axes, result: TimeHistoryResult, way: Way, values: Array, over: str, most: int = 3
+    axes: style.Axes,
+    result: TimeHistoryResult,
+    way: Way,
+    values: Array,
+    over: str,
+    most: int = 3,
 ) -> None:
     """Some columns of (samples, n), the roof's first, with time below."""
     time = result.trace.time
@@ -146,11 +172,18 @@ NEAR = 8.0  # a level up to so many times the largest rotation is brought into v
 
 
 def rotation_figure(result: TimeHistoryResult, title: str, figure: style.Figure) -> None:
-    """Ground acceleration, rotation with its phases, and events; of pairs the azimuth as well."""
+    """Ground acceleration, rotation with its phases, and events; of
+    pairs the azimuth as well.
+    """
     rows = _rows(result)
     both = result.trace.azimuth is not None
     draws: list[Callable[..., None]]
-    draws = [draw_ground, draw_rotation, *[draw_azimuth] * both, *[draw_events] * bool(rows)]
+    draws = [
+        draw_ground,
+        draw_rotation,
+        *[draw_azimuth] * both,
+        *[draw_events] * bool(rows),
+    ]
     heights = [1.3 if both else 1.0, 2.4, *[0.9] * both, *[0.18 * len(rows)] * bool(rows)]
     height = 4.6 + 0.15 * len(rows) + 1.3 * both + 0.6 * style.narrow(figure)
     style.begin(figure, (title, record_name(result), result.sampling), height)
@@ -161,7 +194,9 @@ def rotation_figure(result: TimeHistoryResult, title: str, figure: style.Figure)
 
 def _rows(result: TimeHistoryResult) -> list[tuple[tuple[str, ...], str, str]]:
     """Kinds of event that there are."""
-    return [row for row in EVENT_ROWS if any(event.kind in row[0] for event in result.events)]
+    return [
+        row for row in EVENT_ROWS if any(event.kind in row[0] for event in result.events)
+    ]
 
 
 def draw_ground(axes: style.Axes, result: TimeHistoryResult) -> None:
@@ -172,14 +207,27 @@ def draw_ground(axes: style.Axes, result: TimeHistoryResult) -> None:
     if trace.y is not None:
         name = "in x"
         size = trace.size("ground_acceleration")
-        axes.fill_between(trace.time, -size, size, color="#DADADA", lw=0.0, label="± resultant")
-        axes.plot(trace.time, trace.y.ground_acceleration, color=style.RED, lw=0.7, label="in y")
-    axes.plot(trace.time, trace.ground_acceleration, color=style.BLACK, lw=0.7, label=name)
+        axes.fill_between(
+            trace.time, -size, size, color="#DADADA", lw=0.0, label="± resultant"
+        )
+        axes.plot(
+            trace.time, trace.y.ground_acceleration, color=style.RED, lw=0.7, label="in y"
+        )
+    axes.plot(
+        trace.time, trace.ground_acceleration, color=style.BLACK, lw=0.7, label=name
+    )
     axes.set(ylabel="ground\nacceleration [m/s²]", xlabel="time [s]")
     if limit > 0.0:
         for sign in (1.0, -1.0):
             axes.axhline(sign * limit, color=style.GREEN, lw=0.9, ls="--")
-        axes.plot([], [], color=style.GREEN, ls="--", lw=0.9, label="$g\\,\\tan\\alpha$ (uplift)")
+        axes.plot(
+            [],
+            [],
+            color=style.GREEN,
+            ls="--",
+            lw=0.9,
+            label="$g\\,\\tan\\alpha$ (uplift)",
+        )
     if limit > 0.0 or name:
         style.legend_above(axes)
 
@@ -189,7 +237,9 @@ def draw_azimuth(axes: style.Axes, result: TimeHistoryResult) -> None:
     azimuth = result.trace.azimuth
     leans = result.trace.rotation > 0.0
     if azimuth is None:
-        raise UsageError("a panel of azimuth: needs a history under both horizontal components")
+        raise UsageError(
+            "a panel of azimuth: needs a history under both horizontal components"
+        )
     shown = np.where(leans, np.degrees(azimuth), np.nan)
     jumps = np.flatnonzero(np.abs(np.diff(shown)) > QUARTER) + 1
     time = np.insert(result.trace.time, jumps, np.nan)
@@ -204,13 +254,17 @@ QUARTER = 90.0  # turns between two samples that are larger are not drawn as a l
 def levels(
     result: TimeHistoryResult, near: float = NEAR
 ) -> tuple[list[tuple[str, float, str, str]], float]:
-    """Of beta and theta_cr symbol, value, line and colour; how far to look to see the near ones."""
+    """Of beta and theta_cr symbol, value, line and colour; how far to
+    look to see the near ones.
+    """
     critical = result.structure.critical_rotation
     beta = result.structure.bearing.beta
     found = [("\\beta", beta, ":", style.PINK)] if beta > 0.0 else []
     found.append(("\\theta_{cr}", critical, "--", style.RED))
     largest = max(result.max_rotation, 1e-3 * critical)
-    return found, 1.12 * max(largest, *(v for _, v, *_ in found if v < near * largest), 0.0)
+    return found, 1.12 * max(
+        largest, *(v for _, v, *_ in found if v < near * largest), 0.0
+    )
 
 
 def draw_rotation(axes: style.Axes, result: TimeHistoryResult) -> None:
@@ -244,7 +298,9 @@ def draw_rotation(axes: style.Axes, result: TimeHistoryResult) -> None:
 
 
 def draw_events(axes: style.Axes, result: TimeHistoryResult) -> None:
-    """Marks at the times of the events, one row a kind, with their number: marks may merge."""
+    """Marks at the times of the events, one row a kind, with their
+    number: marks may merge.
+    """
     rows = _rows(result)
     axes.tick_params(axis="y", length=0.0, labelsize=0.9 * style.small())
     axes.set_ylim(len(rows) - 0.4, -0.6)
@@ -259,7 +315,9 @@ def draw_events(axes: style.Axes, result: TimeHistoryResult) -> None:
 
 
 def draw_moment(axes: style.Axes, result: TimeHistoryResult) -> None:
-    """Driving moment of ground and building against rotation, and 2 R W s B of the weight."""
+    """Driving moment of ground and building against rotation, and
+    2 R W s B of the weight.
+    """
     one_sided = result.trace.y is not None
     result = in_plane(result, one_sided=True)
     trace = result.trace
@@ -286,7 +344,9 @@ def draw_moment(axes: style.Axes, result: TimeHistoryResult) -> None:
 
 
 def _draw_longest(axes: style.Axes, result: TimeHistoryResult, factor: float) -> None:
-    """The swing to one side that turns the columns most, with its times and its direction."""
+    """The swing to one side that turns the columns most, with its
+    times and its direction.
+    """
     time = result.trace.time
     rotation = result.trace.rotation
     peak = int(np.nanargmax(np.abs(rotation)))
@@ -303,8 +363,15 @@ def _draw_longest(axes: style.Axes, result: TimeHistoryResult, factor: float) ->
     label = f"the largest swing, {time[first]:.2f} to {time[last - 1]:.2f} s"
     axes.plot(x, y, color=style.BLUE, lw=1.4, label=label)
     for place in np.linspace(0, len(x) - 2, 7).astype(int)[1:-1]:
-        line = {"arrowstyle": "-|>", "color": style.BLUE, "lw": 0.0, "mutation_scale": 10.0}
-        axes.annotate("", (x[place + 1], y[place + 1]), (x[place], y[place]), arrowprops=line)
+        line = {
+            "arrowstyle": "-|>",
+            "color": style.BLUE,
+            "lw": 0.0,
+            "mutation_scale": 10.0,
+        }
+        axes.annotate(
+            "", (x[place + 1], y[place + 1]), (x[place], y[place]), arrowprops=line
+        )
 
 
 YIELDED = "#882255"
@@ -325,14 +392,23 @@ def draw_energy(axes: style.Axes, result: TimeHistoryResult) -> None:
     largest = np.nanmax(np.abs([trace.energy_input, trace.energy_stored]))
     factor, prefix = style.engineering(float(largest))
     passes = result.both_components and not result.structure.passes_smoothly
-    names = [f"device {i}: {each.kind.replace('_', ' ')}" for i, each in enumerate(made.devices)]
+    names = [
+        f"device {i}: {each.kind.replace('_', ' ')}"
+        for i, each in enumerate(made.devices)
+    ]
     parts = [
-        *[(trace.energy_damped, "damped in the building", style.SKY)] * bool(made.storeys),
-        *[(trace.energy_damped_vertical, "damped vertically", style.PINK)] * bool(made.upwards),
+        *[(trace.energy_damped, "damped in the building", style.SKY)]
+        * bool(made.storeys),
+        *[(trace.energy_damped_vertical, "damped vertically", style.PINK)]
+        * bool(made.upwards),
         *[(trace.energy_bed, "dissipated in the joints", style.BLUE)] * bool(made.bed),
         *[(trace.energy_yielded, "yielding of storeys", YIELDED)] * made.yields,
         *zip(trace.devices.energy.T, names, cycle(DEVICE_COLOURS), strict=False),
-        (trace.energy_impact, f"lost at {'passes' if passes else 'impacts'} (net)", style.ORANGE),
+        (
+            trace.energy_impact,
+            f"lost at {'passes' if passes else 'impacts'} (net)",
+            style.ORANGE,
+        ),
         (trace.energy_stored, "kinetic, elastic and gravitational", style.GREEN),
     ]
     few = slice(None, None, 1 + len(trace.time) // MOST)
@@ -349,7 +425,9 @@ def draw_energy(axes: style.Axes, result: TimeHistoryResult) -> None:
 
 
 PIECES = 240  # of a path, each of one colour
-CIRCLE_NEAR = 3.0  # a circle up to so many times the largest displacement is brought into view
+CIRCLE_NEAR = (
+    3.0  # a circle up to so many times the largest displacement is brought into view
+)
 DARK = 0.88  # colours up to this part of a map can be seen on white
 
 
@@ -361,12 +439,19 @@ def orbit_figure(result: TimeHistoryResult, title: str, figure: style.Figure) ->
     panels = figure.subplots(*((2, 1) if narrow else (1, 2)))
     lines = draw_path(panels[0], result)
     draw_push(panels[1], result)
-    place: dict[str, Any] = {"location": "bottom", "shrink": 0.6, "aspect": 40, "pad": 0.03}
+    place: dict[str, Any] = {
+        "location": "bottom",
+        "shrink": 0.6,
+        "aspect": 40,
+        "pad": 0.03,
+    }
     figure.colorbar(lines, ax=panels, label="time [s]", **place)
 
 
 def draw_orbit(axes: style.Axes, result: TimeHistoryResult) -> None:
-    """The orbit of the cap beam with the circles of beta and theta_cr, and what colours mean."""
+    """The orbit of the cap beam with the circles of beta and
+    theta_cr, and what colours mean.
+    """
     axes.figure.colorbar(draw_path(axes, result), ax=axes, label="time [s]")
 
 
@@ -374,7 +459,9 @@ def draw_path(axes: style.Axes, result: TimeHistoryResult) -> LineCollection:
     """The orbit, without what its colours mean."""
     trace = result.trace
     if trace.y is None:
-        raise UsageError("a panel of orbit: needs a history under both horizontal components")
+        raise UsageError(
+            "a panel of orbit: needs a history under both horizontal components"
+        )
     drawn = (trace.cap_beam_displacement, trace.y.cap_beam_displacement)
     found, reach = levels(result, CIRCLE_NEAR)
     ends = result.structure.path(np.array([reach, *(value for _, value, *_ in found)]))[1]
@@ -388,22 +475,32 @@ def draw_path(axes: style.Axes, result: TimeHistoryResult) -> LineCollection:
 
 
 def draw_push(axes: style.Axes, result: TimeHistoryResult) -> None:
-    """Moment of ground and building about the contacts, x against y, with the uplift circle."""
+    """Moment of ground and building about the contacts, x against
+    y, with the uplift circle.
+    """
     trace = result.trace
     structure = result.structure
     assert trace.y is not None, "both components act"
     both = np.array([trace.driving_moment, trace.y.driving_moment])
-    lifts = np.finfo(float).tiny if structure.bed is None else structure.bed.uplift_rotation
+    lifts = (
+        np.finfo(float).tiny if structure.bed is None else structure.bed.uplift_rotation
+    )
     least = float(result.restoring_moment(np.array([lifts]))[0])
     factor, prefix = style.engineering(max(least, float(np.nanmax(np.hypot(*both)))))
     alone = structure.devices or result.motion.vertical is not None
-    name = f"uplift{', by the weight alone' if alone else ''}: {factor * least:.3g} {prefix}N m"
+    name = (
+        f"uplift{', by the weight alone' if alone else ''}: {factor * least:.3g}"
+        f" {prefix}N m"
+    )
     circles = [(factor * least, name, "--", style.BLACK)]
     if structure.bearing.is_spherical:
         circles = []  # they roll from the first moment on
     reach = 1.08 * factor * max(least, float(np.nanmax(np.abs(both))))
     _in_colours(axes, result, (factor * both[0], factor * both[1]), reach, circles)
-    axes.set(xlabel=f"driving moment, x [{prefix}N m]", ylabel=f"driving moment, y [{prefix}N m]")
+    axes.set(
+        xlabel=f"driving moment, x [{prefix}N m]",
+        ylabel=f"driving moment, y [{prefix}N m]",
+    )
 
 
 def _in_colours(
@@ -427,7 +524,9 @@ def _in_colours(
     points = np.column_stack(path)
     pieces = list(pairwise(edges))
     shades = mpl.colormaps[str(mpl.rcParams["image.cmap"])](np.linspace(0.0, DARK, 256))
-    lines = LineCollection([points[a : b + 1] for a, b in pieces], cmap=ListedColormap(shades))
+    lines = LineCollection(
+        [points[a : b + 1] for a, b in pieces], cmap=ListedColormap(shades)
+    )
     lines.set(linewidth=0.7, capstyle="round")
     lines.set_array(np.array([0.5 * (time[a] + time[b]) for a, b in pieces]))
     lines.set_clim(time[first], time[last])

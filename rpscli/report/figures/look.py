@@ -1,4 +1,6 @@
-"""The look of figures and films: formats, width, and what a user's own style file says."""
+"""The look of figures and films: formats, width, and what a
+user's own style file says.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +24,8 @@ FORMATS = ("png", "svg", "pdf")
 FIGURES: Registry[Callable[..., Any]] = Registry(
     "figures", {}, Callable[..., Any], taken=(*FORMATS, "none")
 )
-"""Panels of other packages, drawn into axes from a result; ours are in `rpscli.figures`."""
+"""Panels of other packages, drawn into axes from a result; ours
+are in `rpscli.figures`."""
 COLUMN_WIDTHS = {1: 3.5, 2: 7.0}
 """Widths of figures [in] that fill one or two columns of a journal: 89 and 178 mm."""
 
@@ -34,9 +37,15 @@ SMALL = 8.0 / 9.0  # numbers on axes, legends and headings, as a part of the fon
 class Look:
     """Formats, width and settings of the figures of a command."""
 
-    formats: tuple[str, ...] | None = None  # none at all if empty, None if the user did not say
-    columns: int | None = None  # of the page that a figure fills; None leaves it its own width
-    style: Mapping[str, Any] = field(default_factory=dict)  # matplotlib's settings, over ours
+    formats: tuple[str, ...] | None = (
+        None  # none at all if empty, None if the user did not say
+    )
+    columns: int | None = (
+        None  # of the page that a figure fills; None leaves it its own width
+    )
+    style: Mapping[str, Any] = field(
+        default_factory=dict
+    )  # matplotlib's settings, over ours
     added: tuple[str, ...] = ()  # names of `FIGURES`
 
     @property
@@ -45,7 +54,9 @@ class Look:
         return ("png",) if self.formats is None else self.formats
 
     def width(self, usual: float) -> float:
-        """Width of a figure [in]: its own, that of its columns, or that of the style file."""
+        """Width of a figure [in]: its own, that of its columns,
+        or that of the style file.
+        """
         if self.columns is not None:
             return min(usual, COLUMN_WIDTHS[self.columns])
         if "figure.figsize" in self.style:
@@ -89,12 +100,13 @@ class FilmRequest:
             raise UsageError(f"--animate {self.file}: must end with {' or '.join(RATES)}")
         if self.ending == ".mp4" and shutil.which(ENCODER) is None:
             raise UsageError(
-                f"--animate {self.file}: MP4 needs the program {ENCODER}, which is not on the"
-                f" path; install it, or write {self.file.with_suffix('.gif')}"
+                f"--animate {self.file}: MP4 needs the program {ENCODER}, which is not on"
+                f" the path; install it, or write {self.file.with_suffix('.gif')}"
             )
         if self.last is not None and (self.first or 0.0) >= self.last:
             raise UsageError(
-                f"--animate-to {self.last:g} must be later than --animate-from {self.first or 0:g}"
+                f"--animate-to {self.last:g} must be later than --animate-from"
+                f" {self.first or 0:g}"
             )
         require_writable_file(self.file)
 
@@ -118,7 +130,11 @@ def quiet_matplotlib() -> None:
     if "MPLCONFIGDIR" in os.environ or "matplotlib" in sys.modules:
         return
     # Elsewhere than on Linux the folder's name depends on the version of matplotlib.
-    where = ("XDG_CONFIG_HOME", "~/.config", "matplotlib") if sys.platform == "linux" else ("", "~")
+    where = (
+        ("XDG_CONFIG_HOME", "~/.config", "matplotlib")
+        if sys.platform == "linux"
+        else ("", "~")
+    )
     usual = users_folder(*where)
     if not (usual and is_writable(usual)) and (place := user_cache()):
         os.environ["MPLCONFIGDIR"] = str(place / "matplotlib")
@@ -144,13 +160,14 @@ def read_style(path: Path) -> dict[str, Any]:
         except (OSError, ValueError) as error:
             reason = getattr(error, "strerror", None) or "is not a text"
             raise UsageError(
-                f"--style {str(path)[:200]}: cannot be read: {reason}; name a style file of"
-                " matplotlib"
+                f"--style {str(path)[:200]}: cannot be read: {reason}; name a style file"
+                " of matplotlib"
             ) from None
     if any("axes.prop_cycle" in each for each in (*found, *texts)):
         raise UsageError(
-            f"--style {path}: axes.prop_cycle is gone: colours are the program's own, and stand for"
-            " things; remove the line, or draw into axes of yours with rpscli.figures"
+            f"--style {path}: axes.prop_cycle is gone: colours are the program's own, and"
+            " stand for things; remove the line, or draw into axes of yours with"
+            " rpscli.figures"
         )
     if texts:
         # Of a file that was not meant, a line is not shown.
@@ -159,11 +176,14 @@ def read_style(path: Path) -> dict[str, Any]:
         more = f" (and {len(texts) - 1} more)" if len(texts) > 1 else ""
         more += "; a # begins a remark there: write colours without it" * ("#" in first)
         raise UsageError(f"--style {path}: {first[:200]}{more}")
-    # Which window figures are shown in is no matter of style: matplotlib would say so each time.
+    # Which window figures are shown in is no matter of style: matplotlib would say so
+    # each time.
     return {key: value for key, value in found.items() if key not in NO_STYLE}
 
 
-NO_STYLE = frozenset(("backend", "backend_fallback", "interactive", "toolbar", "webagg.port"))
+NO_STYLE = frozenset(
+    ("backend", "backend_fallback", "interactive", "toolbar", "webagg.port")
+)
 
 
 @contextmanager

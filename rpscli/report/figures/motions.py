@@ -20,7 +20,14 @@ from rpscli.report.figures import style
 LOOKS = [
     (line, colour)
     for line in ("-", "--", "-.", ":")
-    for colour in (style.GREEN, style.ORANGE, style.SKY, style.PINK, style.BLACK, style.GREY)
+    for colour in (
+        style.GREEN,
+        style.ORANGE,
+        style.SKY,
+        style.PINK,
+        style.BLACK,
+        style.GREY,
+    )
 ]
 """Of the spectra of motions; those of mean and target are their own."""
 
@@ -34,11 +41,18 @@ QUANTITIES: dict[Quantity, tuple[str, str]] = {
 
 
 def record_figure(
-    motion: GroundMotion, spectrum: ResponseSpectrum, period: float | None, figure: style.Figure
+    motion: GroundMotion,
+    spectrum: ResponseSpectrum,
+    period: float | None,
+    figure: style.Figure,
 ) -> None:
-    """Time histories, and the spectrum with the first period of a building [s] if it is known."""
+    """Time histories, and the spectrum with the first period of a
+    building [s] if it is known.
+    """
     narrow = style.narrow(figure)
-    style.begin(figure, (motion.name, motion.description[:90]), 6.4 if narrow else 4.2, 8.0)
+    style.begin(
+        figure, (motion.name, motion.description[:90]), 6.4 if narrow else 4.2, 8.0
+    )
     rows, columns = (2, 1) if narrow else (1, 2)
     left, right = figure.subfigures(
         rows, columns, width_ratios=[1.45, 1.0][:columns], height_ratios=[1.6, 1.0][:rows],
@@ -67,7 +81,9 @@ def draw_motion(
     peak = int(np.argmax(np.abs(values)))
     axes.plot(time, values, color=colour, lw=0.7)
     axes.plot(time[peak], values[peak], "o", color=style.RED, ms=4.0)
-    axes.set(xlim=(0.0, motion.duration), xlabel="time [s]", ylabel=f"{quantity}\n[{unit}]")
+    axes.set(
+        xlim=(0.0, motion.duration), xlabel="time [s]", ylabel=f"{quantity}\n[{unit}]"
+    )
     text = f"peak {abs(values[peak]):.3g} at {time[peak]:.2f} s"
     if quantity == "acceleration":
         text = f"{text}, {motion.pga / STANDARD_GRAVITY:.3g} g"
@@ -89,7 +105,9 @@ def _frame(axes: style.Axes, spectrum: ResponseSpectrum) -> None:
 def draw_spectra(axes: style.Axes, spectra: Sequence[ResponseSpectrum]) -> None:
     """Pseudo-acceleration against period: each record thin, the median thick."""
     if not spectra:
-        raise UsageError("no spectra to be drawn; give `response_spectrum` of a record at least")
+        raise UsageError(
+            "no spectra to be drawn; give `response_spectrum` of a record at least"
+        )
     periods = spectra[0].periods
     values = np.array([spectrum.pseudo_acceleration for spectrum in spectra])
     for place, each in enumerate(values):
@@ -103,13 +121,16 @@ def draw_spectra(axes: style.Axes, spectra: Sequence[ResponseSpectrum]) -> None:
 def selection_figure(selection: Selection, title: str, figure: style.Figure) -> None:
     """Spectra on the left, PGV against PGD of the scaled motions on the right."""
     note = (
-        f"{len(selection.chosen)} of {selection.candidates}, {COMPONENTS[selection.of]}; misfit of"
-        f" the mean {selection.misfit:.3f}, factors at a bound: {selection.clamped}"
+        f"{len(selection.chosen)} of {selection.candidates}, {COMPONENTS[selection.of]};"
+        f" misfit of the mean {selection.misfit:.3f}, factors at a bound:"
+        f" {selection.clamped}"
     )
     narrow = style.narrow(figure)
     ratios = [1.6, 1.0]
     style.begin(figure, (title, note), 6.0 if narrow else 3.8, 8.0)
-    way: dict[str, Any] = {"height_ratios": ratios} if narrow else {"width_ratios": ratios}
+    way: dict[str, Any] = (
+        {"height_ratios": ratios} if narrow else {"width_ratios": ratios}
+    )
     left, right = figure.subplots(*((2, 1) if narrow else (1, 2)), **way)
     _draw_spectra(left, selection)
     _draw_peaks(right, selection)
@@ -130,14 +151,20 @@ def _draw_spectra(axes: style.Axes, selection: Selection) -> None:
     if selection.target.deviation is not None and selection.deviation is not None:
         drawn[0].set_label("median, deviations")
         scatters = selection.deviation, selection.target.deviation(periods)
-        for of, scatter, values in zip(drawn, scatters, (selection.mean, wanted), strict=True):
+        for of, scatter, values in zip(
+            drawn, scatters, (selection.mean, wanted), strict=True
+        ):
             for sign in (-1.0, 1.0):
                 look: dict[str, Any] = {"color": of.get_color(), "ls": of.get_linestyle()}
                 axes.plot(periods, values * np.exp(sign * scatter), lw=0.9, **look)
     if (asked := selection.requirements) is not None and asked.least < 1.0:
         label = f"{style.percent(asked.least)} of it"
-        axes.plot(periods, asked.least * wanted, color=style.RED, lw=1.2, ls=":", label=label)
-    axes.set(xscale="log", yscale="log", xlim=(periods[0], periods[-1]), xlabel="period [s]")
+        axes.plot(
+            periods, asked.least * wanted, color=style.RED, lw=1.2, ls=":", label=label
+        )
+    axes.set(
+        xscale="log", yscale="log", xlim=(periods[0], periods[-1]), xlabel="period [s]"
+    )
     damping = style.percent(selection.target.damping)
     axes.set_ylabel(f"pseudo-acceleration, {damping} damping [m/s²]")
     for axis in (axes.xaxis, axes.yaxis):
@@ -150,7 +177,14 @@ def _draw_peaks(axes: style.Axes, selection: Selection) -> None:
     velocities = [one.factor * one.pgv for one in selection.chosen]
     displacements = [one.factor * one.pgd for one in selection.chosen]
     axes.plot(velocities, displacements, "o", ms=4.0, color=style.GREY, label="motions")
-    axes.plot(selection.mean_pgv, selection.mean_pgd, "D", ms=6.0, color=style.BLUE, label="mean")
+    axes.plot(
+        selection.mean_pgv,
+        selection.mean_pgd,
+        "D",
+        ms=6.0,
+        color=style.BLUE,
+        label="mean",
+    )
     dashed: dict[str, Any] = {"color": style.RED, "ls": "--", "lw": 1.4}
     if selection.target.pgv is not None:
         axes.axvline(selection.target.pgv, **dashed, label="target")

@@ -1,4 +1,6 @@
-"""The structure at rest, to scale with its dimensions; its modes; its forces when pushed."""
+"""The structure at rest, to scale with its dimensions; its
+modes; its forces when pushed.
+"""
 
 from __future__ import annotations
 
@@ -71,14 +73,21 @@ def draw_structure(axes: style.Axes, structure: PodiumStructure) -> None:
         return
     few = building.storeys <= MOST_LEVELS
     for below, level, mass in zip(levels, levels[1:], building.masses, strict=False):
-        axes.plot([-0.5 * width, 0.5 * width], [level + thickness] * 2, color=style.BLUE, lw=2.2)
+        axes.plot(
+            [-0.5 * width, 0.5 * width], [level + thickness] * 2, color=style.BLUE, lw=2.2
+        )
         if few:
             beside(level + thickness, f" {_tonnes(float(mass))}")
         if few and building.storey_heights is not None:
             feet = (-edge, below + thickness), (-edge, level + thickness)
             measure(axes, *feet, f"{level - below:.4g} m")
     for side in (-0.5, 0.5):
-        axes.plot([side * width] * 2, [levels[0], levels[-1] + thickness], color=style.BLUE, lw=0.8)
+        axes.plot(
+            [side * width] * 2,
+            [levels[0], levels[-1] + thickness],
+            color=style.BLUE,
+            lw=0.8,
+        )
     scale = "heights to scale, widths not"
     if building.storey_heights is None:
         scale = "storey heights are not given: drawn as 3 m"
@@ -95,13 +104,17 @@ NORMALISED = "shapes scaled to 1 at their largest component"
 
 
 def modes_figure(result: ModalResult, title: str, figure: style.Figure) -> None:
-    """The podium's own mode and the first vibration modes: one column a mode, one row a state."""
+    """The podium's own mode and the first vibration modes: one column
+    a mode, one row a state.
+    """
     states = list(result.uplifted)
     vibrations = min(MOST_MODES, result.structure.storeys)
     width = max(1.0 + 1.5 * (1 + vibrations), 4.0)
     style.begin(figure, (title, NORMALISED), 0.9 + 2.1 * len(states), width)
     both = [(state, mode) for state in states for mode in range(1 + vibrations)]
-    draws = [partial(draw_mode, result=result, state=state, mode=mode) for state, mode in both]
+    draws = [
+        partial(draw_mode, result=result, state=state, mode=mode) for state, mode in both
+    ]
     panels = style.grid(figure, draws, 1 + vibrations, sharex=True, sharey=True)
     for axes, state in zip(panels[:: 1 + vibrations], states, strict=True):
         axes.set_ylabel(f"{state}\nheight [m]")
@@ -122,28 +135,44 @@ def draw_mode(axes: style.Axes, result: ModalResult, state: str, mode: int) -> N
         if result.full_contact is not None:  # in which the cap beam moves as well
             full = np.concatenate([[0.0], result.full_contact.shapes[:, mode - 1]])
         axes.plot(
-            full, levels, color=style.BLACK, ls="--", marker="o", ms=2.5, label="full contact"
+            full,
+            levels,
+            color=style.BLACK,
+            ls="--",
+            marker="o",
+            ms=2.5,
+            label="full contact",
         )
-    axes.plot([0.0, *shape], levels, color=style.BLACK, marker="o", ms=2.5, label="uplifted")
+    axes.plot(
+        [0.0, *shape], levels, color=style.BLACK, marker="o", ms=2.5, label="uplifted"
+    )
     if len(shape) > 1:
         elastic = [0.0, *(shape[1:] - shape[0])]
         axes.plot(elastic, levels[1:], color=style.RED, marker="o", ms=2.5, label=ELASTIC)
     axes.axvline(0.0, color=style.GREY, lw=0.5)
-    axes.set(xlabel="shape [-]", ylabel="height [m]", ylim=(-0.02 * levels[-1], 1.03 * levels[-1]))
+    axes.set(
+        xlabel="shape [-]",
+        ylabel="height [m]",
+        ylim=(-0.02 * levels[-1], 1.03 * levels[-1]),
+    )
     if mode == 0:
         rate = f"{modes.frequency_parameter:#.3g} rad/s"
         # Where the force is the same at every displacement, nothing grows or swings.
         rate = rate if modes.frequency_parameter else "0 (neutral)"
         axes.set_title(f"podium: $p_{{ext}}$ = {rate}")
     else:
-        axes.set_title(f"mode {mode}: $\\omega$ = {modes.frequencies[mode - 1]:#.3g} rad/s")
+        axes.set_title(
+            f"mode {mode}: $\\omega$ = {modes.frequencies[mode - 1]:#.3g} rad/s"
+        )
 
 
 LOWER_HEIGHT = 2.7  # of the end of a column and the restoring force [in]
 
 
 def bearing_figure(result: PushoverResult, title: str, figure: style.Figure) -> None:
-    """The states of a column, an end of it enlarged, and the restoring force with the states."""
+    """The states of a column, an end of it enlarged, and the
+    restoring force with the states.
+    """
     structure = result.structure
     beta = structure.bearing.beta
     critical = structure.critical_rotation
@@ -165,7 +194,10 @@ def bearing_figure(result: PushoverResult, title: str, figure: style.Figure) -> 
     draw_force(force, result)
     # As high as columns are with their titles: wide ones leave no gap.
     width = style.inches(figure)[0]
-    heights = [rows * (width / columns * float(cells[0].get_box_aspect()) + 0.6), LOWER_HEIGHT]
+    heights = [
+        rows * (width / columns * float(cells[0].get_box_aspect()) + 0.6),
+        LOWER_HEIGHT,
+    ]
     grid.set_height_ratios(heights)
     figure.set_size_inches(width, 0.3 + sum(heights))
     style.legend_below(figure, cells[: len(states)])
@@ -175,14 +207,18 @@ DISPLACEMENT = "cap beam displacement $u_b$ [m]"
 
 
 def storey_curve_figure(result: PushoverResult, title: str, figure: style.Figure) -> None:
-    """Force and lift of the cap beam against its displacement, to the critical rotation."""
+    """Force and lift of the cap beam against its displacement,
+    to the critical rotation.
+    """
     style.begin(figure, (title, "podium alone"), 4.8, 5.8)
     panels = [partial(draw_one, result=result) for draw_one in (draw_force, draw_lift)]
     style.grid(figure, panels, ratios=[2.6, 1.0], sharex=True)
 
 
 def draw_force(axes: style.Axes, result: PushoverResult) -> None:
-    """Force against displacement, rolling and rocking, and back where the way back is another."""
+    """Force against displacement, rolling and rocking, and back where
+    the way back is another.
+    """
     curve = result.curve
     beta = result.structure.bearing.beta
     factor, prefix = style.engineering(float(np.max(curve.force)))
@@ -193,7 +229,9 @@ def draw_force(axes: style.Axes, result: PushoverResult) -> None:
     if returns:
         axes.axhline(0.0, color=style.GREY, lw=0.6)
     if F[0] > 0.0:
-        axes.plot([0.0, 0.0], [0.0, F[0]], color=style.BLACK, lw=2.0, label="full contact")
+        axes.plot(
+            [0.0, 0.0], [0.0, F[0]], color=style.BLACK, lw=2.0, label="full contact"
+        )
     for inside, colour, name in _phases(result):
         axes.plot(u[inside], F[inside], color=colour, lw=2.0, label=name)
         if returns:
@@ -235,7 +273,10 @@ def _phases(result: PushoverResult) -> Iterator[tuple[NDArray[np.bool_], str, st
     """Points of the curve in each phase that there is, its colour and its name."""
     rotation = result.curve.rotation
     beta = result.structure.bearing.beta
-    phases = (rotation <= beta, style.BLUE, "rolling"), (rotation >= beta, style.RED, "rocking")
+    phases = (
+        (rotation <= beta, style.BLUE, "rolling"),
+        (rotation >= beta, style.RED, "rocking"),
+    )
     yield from (phase for phase in phases if np.count_nonzero(phase[0]) > 1)
 
 
@@ -255,7 +296,9 @@ def capacity_figure(result: PushoverResult, title: str, figure: style.Figure) ->
     ending = "a mechanism" if never else "the critical rotation"
     style.begin(figure, (title, f"floor forces pushed to {ending}"), 3.6)
     ratios = [1.6] if never else [1.6, 1.0]
-    panels = figure.subplots(1, len(ratios), sharey=True, width_ratios=ratios, squeeze=False)[0]
+    panels = figure.subplots(
+        1, len(ratios), sharey=True, width_ratios=ratios, squeeze=False
+    )[0]
     for axes in panels:
         draw_capacity(axes, result)
     if not never:
@@ -270,10 +313,16 @@ def capacity_figure(result: PushoverResult, title: str, figure: style.Figure) ->
 def draw_capacity(axes: style.Axes, result: PushoverResult) -> None:
     """Sum of floor forces against roof displacement by pattern, and where it uplifts."""
     if not result.capacity:
-        raise UsageError("a structure without storeys has no capacity curve; draw `storey_curve`")
-    factor, prefix = style.engineering(max(c.sum_of_floor_forces.max() for c in result.capacity))
+        raise UsageError(
+            "a structure without storeys has no capacity curve; draw `storey_curve`"
+        )
+    factor, prefix = style.engineering(
+        max(c.sum_of_floor_forces.max() for c in result.capacity)
+    )
     for k, curve in enumerate(result.capacity):
-        colour, line = LOOKS[k % len(LOOKS)]  # curves may coincide: the first is the widest
+        colour, line = LOOKS[
+            k % len(LOOKS)
+        ]  # curves may coincide: the first is the widest
         axes.plot(
             curve.roof_displacement, factor * curve.sum_of_floor_forces,
             color=colour, ls=line, lw=3.6 / (k + 1), label=curve.pattern.replace("_", " "),

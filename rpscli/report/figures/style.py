@@ -40,11 +40,14 @@ ROLLING_SHADE = "#DCEBF7"
 ROCKING_SHADE = "#FBE3D0"
 
 DPI = 150
-COMPRESSION = 3  # of PNG files: a tenth larger than at the usual 6, in two thirds of the time
+COMPRESSION = (
+    3  # of PNG files: a tenth larger than at the usual 6, in two thirds of the time
+)
 LINE = 0.15  # height of a line of small letters [in]
 
 WIDTH = 7.0  # width of a figure [in]: a page with its margins
-BESIDE = 0.7  # width of the label and the numbers beside a row of panels, and of the margins [in]
+# width of the label and the numbers beside a row of panels, and of the margins [in]
+BESIDE = 0.7
 TIGHT = 4.0  # height [in]
 
 STYLE: dict[str, Any] = {
@@ -61,7 +64,8 @@ STYLE: dict[str, Any] = {
     "ytick.direction": "in",
     "agg.path.chunksize": 20000,
     "pdf.fonttype": 42,  # TrueType: journals refuse the other kind
-    "svg.fonttype": "none",  # text stays text, in the first of several fonts that a viewer has
+    # text stays text, in the first of several fonts that a viewer has
+    "svg.fonttype": "none",
     "svg.hashsalt": "rps",  # the same data give the same file
 }
 
@@ -72,7 +76,10 @@ Target: TypeAlias = "Figure | SubFigure"
 At = tuple[float, float]
 
 SAVED: dict[str, dict[str, Any]] = {
-    "png": {"metadata": {"Software": None}, "pil_kwargs": {"compress_level": COMPRESSION}},
+    "png": {
+        "metadata": {"Software": None},
+        "pil_kwargs": {"compress_level": COMPRESSION},
+    },
     "svg": {"metadata": {"Date": None}},
     "pdf": {"metadata": dict.fromkeys(("CreationDate", "Creator", "Producer"))},
 }
@@ -86,20 +93,23 @@ Draw: TypeAlias = Callable[[Any], None]
 def picture(draw: Draw, look: Look, ending: str) -> bytes:
     """The file of a figure with a look, in the format of an ending."""
     with in_style(look), warnings.catch_warnings():
-        # Letters that the font lacks show in the picture; matplotlib prints a line for each.
+        # Letters that the font lacks show in the picture; matplotlib prints a line for
+        # each.
         warnings.filterwarnings("ignore", message="Glyph .* missing from font")
         warnings.filterwarnings("ignore", message="Matplotlib currently does not support")
         figure = drawn(draw, look)
         engine = figure.get_layout_engine()
         assert engine is not None, "it was asked for"
-        # Once, and no more: matplotlib would do it in a trial drawing, and again in the real one,
-        # which takes twice as long.
+        # Once, and no more: matplotlib would do it in a trial drawing, and again in the
+        # real one, which takes twice as long.
         engine.execute(figure)
         figure.set_layout_engine(None)
         buffer = io.BytesIO()
         figure.savefig(buffer, format=ending, **SAVED[ending])
     if ending == "svg":  # formulas name one font, and none to fall back on
-        return re.sub(rb"(font-family: '[^',]+')(?=[;\"])", rb"\1, sans-serif", buffer.getvalue())
+        return re.sub(
+            rb"(font-family: '[^',]+')(?=[;\"])", rb"\1, sans-serif", buffer.getvalue()
+        )
     return buffer.getvalue()
 
 
@@ -127,7 +137,9 @@ def drawn_into(target: Target | Axes, draw: Draw) -> Target:
 
     if isinstance(target, Axes):
         if (place := target.get_subplotspec()) is None:
-            raise UsageError("the axes are no subplot: give a figure, or axes of plt.subplots()")
+            raise UsageError(
+                "the axes are no subplot: give a figure, or axes of plt.subplots()"
+            )
         axes = target
         target = target.figure.add_subfigure(place)
         axes.remove()
@@ -139,7 +151,9 @@ def drawn_into(target: Target | Axes, draw: Draw) -> Target:
 
 
 def figure_files(figures: Mapping[str, Draw], look: Look) -> dict[str, Drawing]:
-    """The files of figures, given by their names without ending, in each format that is wanted."""
+    """The files of figures, given by their names without ending, in
+    each format that is wanted.
+    """
     return {
         name: Drawing(name, partial(picture, draw, look, ending))
         for stem, draw in figures.items()
@@ -167,8 +181,9 @@ def drawable_style(path: Path) -> dict[str, Any]:
             reason = " ".join(str(error).split())[:160]
     if reason or texts:
         raise UsageError(
-            f"--style {path}: cannot be drawn with: {reason or '; '.join(dict.fromkeys(texts))};"
-            " correct the style, or install what it asks for"
+            f"--style {path}: cannot be drawn with:"
+            f" {reason or '; '.join(dict.fromkeys(texts))}; correct the style, or install"
+            " what it asks for"
         )
     return settings
 
@@ -198,7 +213,9 @@ def grid(
 ) -> list[Axes]:
     """Panels in rows, the last maybe not full; labels of `shared` axes stand outside."""
     rows = -(-len(draws) // columns)
-    cells = figure.subplots(rows, columns, squeeze=False, height_ratios=ratios, **shared).ravel()
+    cells = figure.subplots(
+        rows, columns, squeeze=False, height_ratios=ratios, **shared
+    ).ravel()
     blank(cells[len(draws) :])
     for place, (axes, draw) in enumerate(zip(cells, draws, strict=False)):
         draw(axes)
@@ -214,12 +231,16 @@ def grid(
 
 
 def note(axes: Axes, text: str, at: At, offset: At, **look: Any) -> None:
-    """A small text, offset [pt] from a place in the axes to the side on which it then stands."""
+    """A small text, offset [pt] from a place in the axes to the side
+    on which it then stands.
+    """
     sides: dict[str, Any] = {
         "ha": "left" if offset[0] > 0.0 else "right" if offset[0] else "center",
         "va": "bottom" if offset[1] > 0.0 else "top" if offset[1] else "center",
     }
-    of: dict[str, Any] = {"textcoords": "offset points", "fontsize": small()} | sides | look
+    of: dict[str, Any] = (
+        {"textcoords": "offset points", "fontsize": small()} | sides | look
+    )
     axes.annotate(text, at, offset, **of)
 
 
@@ -252,7 +273,9 @@ def room(figure: Target, usual: float = WIDTH) -> float:
 
 
 def tight(figure: Target) -> bool:
-    """True of a figure of somebody in which there is no room for numbers inside panels."""
+    """True of a figure of somebody in which there is no room
+    for numbers inside panels.
+    """
     return given(figure) and inches(figure)[1] < TIGHT
 
 
@@ -284,8 +307,12 @@ def small() -> float:
     return SMALL * float(mpl.rcParams["font.size"])
 
 
-def begin(figure: Figure, words: Sequence[str], height: float, width: float = WIDTH) -> None:
-    """Size of a figure of ours [in]; title and remarks above it, in one line or the title above."""
+def begin(
+    figure: Figure, words: Sequence[str], height: float, width: float = WIDTH
+) -> None:
+    """Size of a figure of ours [in]; title and remarks above it, in one
+    line or the title above.
+    """
     if not given(figure):
         figure.set_size_inches(room(figure, width), height)
     title, *others = [part for part in words if part] or [""]
@@ -316,7 +343,9 @@ def width_of(text: str, size: float) -> float:
 
     def points(line: str) -> float:
         with suppress(ValueError):  # it is no formula
-            return float(measure(line, font, line.count("$") % 2 == 0 < line.count("$"))[0])
+            return float(
+                measure(line, font, line.count("$") % 2 == 0 < line.count("$"))[0]
+            )
         return float(measure(line, font, ismath=False)[0])
 
     font = FontProperties(size=size)
@@ -325,7 +354,9 @@ def width_of(text: str, size: float) -> float:
 
 
 def folded(text: str, room: float, size: float) -> str:
-    """A text in lines that fit into a room [in], broken at commas or words, never in formulas."""
+    """A text in lines that fit into a room [in], broken at commas or
+    words, never in formulas.
+    """
     lines = []
     for line in text.split("\n"):
         pieces = _PARTS.findall(line)
@@ -337,7 +368,11 @@ def folded(text: str, room: float, size: float) -> str:
                 lines.append(begun.rstrip())
                 begun = ""
             begun += piece
-            while "$" not in begun and len(begun) > 1 and width_of(begun.rstrip(), size) > room:
+            while (
+                "$" not in begun
+                and len(begun) > 1
+                and width_of(begun.rstrip(), size) > room
+            ):
                 fits = max(1, int(len(begun) * room / width_of(begun, size)))
                 lines.append(begun[:fits])
                 begun = begun[fits:]
@@ -354,14 +389,18 @@ def fit(panels: Iterable[Axes]) -> None:
     from matplotlib.text import Text
 
     for axes in panels:
-        # Labels are centred on panels, and each of a row gives some width to what is beside it.
+        # Labels are centred on panels, and each of a row gives some width to what is
+        # beside it.
         across = _room(axes) * (1.0 - BESIDE / inches(axes.figure)[0])
         # Layouts of others make room for legends above, by less height.
         share = (0.6 if tight(axes.figure) else 0.75) if given(axes.figure) else 1.3
         upwards = share * axes.get_window_extent().height / axes.figure.dpi
         # Beside its texts the children of axes are three titles.
         inside = (each for each in axes.get_children() if each not in axes.texts)
-        for text in (*(each for each in inside if isinstance(each, Text)), axes.xaxis.label):
+        for text in (
+            *(each for each in inside if isinstance(each, Text)),
+            axes.xaxis.label,
+        ):
             text.set_text(folded(text.get_text(), across, float(text.get_fontsize())))
         for each in (axes, *axes.child_axes):
             if "\n" in (label := each.yaxis.label).get_text():
@@ -389,7 +428,9 @@ def entries(panels: Iterable[Axes]) -> dict[str, Any]:
 
 
 def legend_above(axes: Axes) -> None:
-    """A legend on top of the axes, where it covers nothing; folded where they are narrow."""
+    """A legend on top of the axes, where it covers nothing;
+    folded where they are narrow.
+    """
     room = _room(axes)
     if not (found := entries([axes])):
         return
@@ -416,7 +457,9 @@ def _room(axes: Axes) -> float:
 
 
 def legend_below(figure: Figure, panels: Iterable[Axes]) -> None:
-    """One legend for several axes, below them; in somebody's figure the first entries only."""
+    """One legend for several axes, below them; in somebody's
+    figure the first entries only.
+    """
     if found := entries(panels):
         width, height = inches(figure)
         most = max(1, int(0.15 * height / LINE)) if given(figure) else None
@@ -427,7 +470,9 @@ def legend_below(figure: Figure, panels: Iterable[Axes]) -> None:
 
 
 def _arranged(found: dict[str, Any], room: float, most: int | None) -> dict[str, Any]:
-    """Handles, names and columns of a legend in a room [in], whose last entry says what is cut."""
+    """Handles, names and columns of a legend in a room [in], whose
+    last entry says what is cut.
+    """
     from matplotlib.lines import Line2D
 
     size = small()
@@ -435,7 +480,11 @@ def _arranged(found: dict[str, Any], room: float, most: int | None) -> dict[str,
     found = {folded(typeset(name), room - beside, size): of for name, of in found.items()}
     widths = [beside + width_of(name, size) for name in found]
     columns = next(
-        (n for n in range(len(found), 1, -1) if sum(max(widths[c::n]) for c in range(n)) <= room),
+        (
+            n
+            for n in range(len(found), 1, -1)
+            if sum(max(widths[c::n]) for c in range(n)) <= room
+        ),
         1,
     )
     rows = -(-len(found) // columns)
@@ -462,10 +511,15 @@ def engineering(largest: float) -> tuple[float, str]:
 
 
 def require(what: str, value: object, known: Iterable[object]) -> None:
-    """Refuse what is not there: an index from the end would draw another panel than is wanted."""
+    """Refuse what is not there: an index from the end would draw
+    another panel than is wanted.
+    """
     there = list(known)
     if value not in there:
-        names = ", ".join(map(str, there[:3])) + (f" to {there[-1]}" if len(there) > 3 else "")
+        names = ", ".join(map(str, there[:3])) + (
+            f" to {there[-1]}" if len(there) > 3 else ""
+        )
         raise UsageError(
-            f"{str(value)[:60]!r} is none of the {what}; there are {names or 'none to be drawn'}"
+            f"{str(value)[:60]!r} is none of the {what}; there are"
+            f" {names or 'none to be drawn'}"
         )

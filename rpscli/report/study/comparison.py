@@ -21,23 +21,55 @@ from rpscli.errors import beginning, listed
 from rpscli.report.figures import style
 from rpscli.report.study import fragility, panels
 from rpscli.report.study.fragility import Binned, binned
-from rpscli.report.study.report import Found, Report, keyed, label, labels, reached, without_uplift
+from rpscli.report.study.report import (
+    Found,
+    Report,
+    keyed,
+    label,
+    labels,
+    reached,
+    without_uplift,
+)
 from rpscli.report.table import Column
 from rpscli.sweep.points import StudyPoints
 from rpscli.sweep.statistics.fractiles import Share, clustered, demand, fractiles
 from rpscli.sweep.statistics.grouping import INTENSITY, Histories, grouping, own_keys
-from rpscli.sweep.table import Array, Indices, Intensity, StoredPoints, groups, leading_keys
+from rpscli.sweep.table import (
+    Array,
+    Indices,
+    Intensity,
+    StoredPoints,
+    groups,
+    leading_keys,
+)
 
 MOST_ROWS = 8  # of panels in the figure; the CSV files have all
 SHOWN = {
-    "": ("counted", "agreed_share", "overturned_observed", "overturned_computed", "failed"),
-    "_maxima": ("quantity", "counted", "overturned_computed", "median_ratio", "dispersion"),
+    "": (
+        "counted",
+        "agreed_share",
+        "overturned_observed",
+        "overturned_computed",
+        "failed",
+    ),
+    "_maxima": (
+        "quantity",
+        "counted",
+        "overturned_computed",
+        "median_ratio",
+        "dispersion",
+    ),
 }
 """Columns for readers, by what follows the report's name in that of the file."""
 
 QUANTITIES = {quantity.name: quantity for quantity in LIMITED}
 
-TOLD = {(1, 1): "both", (0, 1): "computed only", (1, 0): "observed only", (0, 0): "neither"}
+TOLD = {
+    (1, 1): "both",
+    (0, 1): "computed only",
+    (1, 0): "observed only",
+    (0, 0): "neither",
+}
 """Words for observed and computed overturning."""
 
 
@@ -46,7 +78,9 @@ class ComparisonOptions(fragility.MeasureOptions):
 
 
 class Endings(NamedTuple):
-    """Counts of both outcomes, the share of equal ones, shares that overturned by intensity."""
+    """Counts of both outcomes, the share of equal ones, shares that
+    overturned by intensity.
+    """
 
     both: int
     computed_only: int
@@ -63,7 +97,9 @@ class Endings(NamedTuple):
 
 
 class Compared(NamedTuple):
-    """One quantity of one system: 1 where overturned, or maxima [SI], infinite where overturned."""
+    """One quantity of one system: 1 where overturned, or maxima [SI],
+    infinite where overturned.
+    """
 
     values: tuple[object, ...]
     quantity: str
@@ -91,13 +127,17 @@ def comparison(study: StoredPoints, options: ComparisonOptions) -> Found:
                 of = system, name, pairs.points[seen], values[seen], intensity
                 compared.append(_compared(*of))
     kinds = {"": Endings, "_maxima": Maxima}
-    shown = [s for s, kind in kinds.items() if any(isinstance(c.found, kind) for c in compared)]
+    shown = [
+        s for s, kind in kinds.items() if any(isinstance(c.found, kind) for c in compared)
+    ]
     draw = partial(comparison_figure, systems.keys, compared, intensity)
     return Found(
         _tables(systems.keys, compared, intensity, layout),
         (lambda title: partial(draw, title)) if compared else None,
         [*pairs.notes, *systems.notes],
-        shown={suffix: dict.fromkeys((*systems.keys, *SHOWN[suffix]), "") for suffix in shown},
+        shown={
+            suffix: dict.fromkeys((*systems.keys, *SHOWN[suffix]), "") for suffix in shown
+        },
         remark="agreed: in brackets the 95 % interval of the share" * ("" in shown),
     )
 
@@ -106,7 +146,9 @@ def _compared(
     system: Histories, name: str, points: Indices, observed: Array, intensity: Intensity
 ) -> Compared:
     table = system.table
-    results = table.overturned if name == OVERTURNED else demand(table, table.columns[name])
+    results = (
+        table.overturned if name == OVERTURNED else demand(table, table.columns[name])
+    )
     known = ~table.failed[points]
     points = points[known]
     observed = observed[known]
@@ -123,11 +165,16 @@ def _compared(
         agreed = clustered(saw == fell, table.clusters[points])
         bins = (binned(table, points[kept], at[kept], of[kept]) for of in both)
         found = Endings._make((*counts, agreed, *bins))
-    return Compared(system.values, name, found, points, observed, computed, int((~known).sum()))
+    return Compared(
+        system.values, name, found, points, observed, computed, int((~known).sum())
+    )
 
 
 def _tables(
-    keys: Sequence[str], compared: Sequence[Compared], intensity: Intensity, layout: StudyPoints
+    keys: Sequence[str],
+    compared: Sequence[Compared],
+    intensity: Intensity,
+    layout: StudyPoints,
 ) -> dict[str, list[Column]]:
     """Endings, maxima, and every pair: hits and misses by record."""
     rows: dict[str, list[tuple[Any, ...]]] = {"": [], "_maxima": [], "_pairs": []}
@@ -145,15 +192,21 @@ def _tables(
         for point, observed, computed in pairs:
             request = layout[point].record
             assert request is not None, "points of histories have a record"
-            told = TOLD[int(observed), int(computed)] if each.quantity == OVERTURNED else None
+            told = (
+                TOLD[int(observed), int(computed)]
+                if each.quantity == OVERTURNED
+                else None
+            )
             at = request.source, point + 1, intensity.values[point], each.quantity
             rows["_pairs"].append((values, *at, observed, reached(computed), told))
     heads = {
         "": "counted, agreed, agreed_share, agreed_low, agreed_high, overturned_observed,"
         " overturned_computed, both, computed_only, observed_only, neither, failed",
         "_maxima": "quantity, counted, overturned_computed, median_ratio, dispersion, failed",
-        "_pairs": f"record, point, {intensity.name} [{intensity.unit}], quantity, observed [SI],"
-        " computed [SI], told",
+        "_pairs": (
+            f"record, point, {intensity.name} [{intensity.unit}], quantity, observed"
+            " [SI], computed [SI], told"
+        ),
     }
     return {suffix: keyed(keys, heads[suffix], of) for suffix, of in rows.items()}
 
@@ -183,7 +236,9 @@ def comparison_figure(
     style.legend_below(figure, grid.flat)
 
 
-def _draw_outcomes(axes: style.Axes, each: Compared, found: Endings, intensity: Intensity) -> str:
+def _draw_outcomes(
+    axes: style.Axes, each: Compared, found: Endings, intensity: Intensity
+) -> str:
     """Both shares by intensity; below and above, the outcomes that differ."""
     at = intensity.values[each.points]
     agreed = found.agreed
@@ -211,7 +266,9 @@ def _draw_maxima(axes: style.Axes, each: Compared, found: Maxima) -> str:
     observed = each.observed
     computed = each.computed
     drawn = np.isfinite(computed) & (computed > 0.0) & (observed > 0.0)
-    axes.plot(observed[drawn], computed[drawn], ls="", marker="o", ms=3.2, color=style.BLUE)
+    axes.plot(
+        observed[drawn], computed[drawn], ls="", marker="o", ms=3.2, color=style.BLUE
+    )
     if drawn.any():
         both = np.concatenate([observed[drawn], computed[drawn]])
         span = [float(both.min()), float(both.max())]
@@ -224,8 +281,9 @@ def _draw_maxima(axes: style.Axes, each: Compared, found: Maxima) -> str:
     name = QUANTITIES[each.quantity].axis_label
     axes.set(xlabel=f"observed {name}", ylabel=f"computed {name}")
     line = f"ratio {found.median:.2f} in the median, dispersion {found.dispersion:.2f}"
-    return f"{line}, n = {found.counted}" + f"\n{found.overturned} overturned (triangles)" * bool(
-        found.overturned
+    return (
+        f"{line}, n = {found.counted}"
+        + f"\n{found.overturned} overturned (triangles)" * bool(found.overturned)
     )
 
 
@@ -244,7 +302,9 @@ class Pairs(NamedTuple):
 
 
 def observed_pairs(layout: StudyPoints, observed: Observed) -> Pairs:
-    """Every point with the observation of its system and of its record by any of its names."""
+    """Every point with the observation of its system and of its
+    record by any of its names.
+    """
     records = _record_numbers(layout)
     rows = {
         (records[row.record], row.system): place
@@ -268,11 +328,13 @@ def observed_pairs(layout: StudyPoints, observed: Observed) -> Pairs:
     notes = []
     if unused := len(observed.rows) - len(np.unique(row)):
         notes.append(
-            f"{unused} of {len(observed.rows)} observations in {observed.name} have no point in"
-            " the study: their record, or their system, is not in it"
+            f"{unused} of {len(observed.rows)} observations in {observed.name} have no"
+            " point in the study: their record, or their system, is not in it"
         )
     if len(found) < len(layout):
-        notes.append(f"{len(layout) - len(found)} of {len(layout)} points have no observation")
+        notes.append(
+            f"{len(layout) - len(found)} of {len(layout)} points have no observation"
+        )
     return Pairs(found, values, tuple(notes))
 
 
@@ -281,7 +343,9 @@ def _record_numbers(layout: StudyPoints) -> dict[str, int]:
     sources = [record.source for record in layout.records if record is not None]
     names = [{s, PurePath(s).name, PurePath(s).stem} for s in sources]
     times = Counter(name for known in names for name in known)
-    short = {name: n for n, known in enumerate(names) for name in known if times[name] == 1}
+    short = {
+        name: n for n, known in enumerate(names) for name in known if times[name] == 1
+    }
     return short | {source: number for number, source in enumerate(sources)}
 
 
@@ -294,22 +358,22 @@ def unpaired(layout: StudyPoints) -> Iterator[str]:
         yield "the study has no list `records`, by which observations are found; add it"
     elif len(layout.scales) > 1 and INTENSITY not in observed.keys:
         yield (
-            f"the study has {len(layout.scales)} scales, and {observed.name} does not say which of"
-            " them was observed; add a column `scale`, or keep one scale"
+            f"the study has {len(layout.scales)} scales, and {observed.name} does not say"
+            " which of them was observed; add a column `scale`, or keep one scale"
         )
     elif not len(observed_pairs(layout, observed).points):
         yield (
             f"no line of {observed.name} has a record and a system of the study, such as"
-            f" {beginning(observed.rows[0].record)}; records go by their sources or the names of"
-            " files"
+            f" {beginning(observed.rows[0].record)}; records go by their sources or the"
+            " names of files"
         )
 
 
 class Maxima(NamedTuple):
     """Computed over observed maxima of one quantity.
 
-    `median` and `dispersion` (standard deviation of the logarithm) are those of the `counted`
-    ratios; `overturned` histories have none.
+    `median` and `dispersion` (standard deviation of the logarithm) are those of the
+    `counted` ratios; `overturned` histories have none.
     """
 
     counted: int
@@ -335,13 +399,17 @@ class RotationOptions(ReportOptions):
 
     key: VariedKey | None = None
     """varied key in which they differ; the last axis"""
-    reference: Any = Field(None, description="its value on the horizontal axis; the last one")
+    reference: Any = Field(
+        None, description="its value on the horizontal axis; the last one"
+    )
     panels: VariedKeys | None = None
     """varied keys, one panel for each value; each intensity by default"""
 
 
 class Paired(NamedTuple):
-    """Points (pairs,) of a system and of the reference that differ in one key, all computed."""
+    """Points (pairs,) of a system and of the reference that differ
+    in one key, all computed.
+    """
 
     value: object
     points: Indices
@@ -350,7 +418,9 @@ class Paired(NamedTuple):
 
 
 def rotation(study: StoredPoints, options: RotationOptions) -> Found:
-    """Largest rotations over alpha of each system and of the reference (paper, Figure 7)."""
+    """Largest rotations over alpha of each system and of the
+    reference (paper, Figure 7).
+    """
     table = study.table
     layout = study.table.layout
     leading = leading_keys(layout)
@@ -374,7 +444,10 @@ def rotation(study: StoredPoints, options: RotationOptions) -> Found:
     pairs = [each for group in shown.values() for each in group]
     count = len(systems) - 1
     alpha = np.array([properties.alpha for properties in layout.properties])
-    ratio = table.columns["max_rotation"] / alpha[np.arange(len(table)) // layout.points_of_system]
+    ratio = (
+        table.columns["max_rotation"]
+        / alpha[np.arange(len(table)) // layout.points_of_system]
+    )
     ratio = np.where(table.overturned, np.inf, ratio)
     every = [[each.references for each in pairs], [each.points for each in pairs]]
     ends = [
@@ -387,9 +460,15 @@ def rotation(study: StoredPoints, options: RotationOptions) -> Found:
             x, y = both = ratio[each.references], ratio[each.points]
             stood = np.isfinite(x) & np.isfinite(y)
             look = panels.look(place, count) | {"ls": "", "ms": 3.2}
-            axes.plot(x[stood], y[stood], **look, alpha=0.75, label=label(key, each.value))
-            at_frame = [np.minimum(of[~stood], end) for of, end in zip(both, ends, strict=True)]
-            (fell,) = axes.plot(*at_frame, **look, mfc="none", mew=0.9, clip_on=False, zorder=3)
+            axes.plot(
+                x[stood], y[stood], **look, alpha=0.75, label=label(key, each.value)
+            )
+            at_frame = [
+                np.minimum(of[~stood], end) for of, end in zip(both, ends, strict=True)
+            ]
+            (fell,) = axes.plot(
+                *at_frame, **look, mfc="none", mew=0.9, clip_on=False, zorder=3
+            )
             fell.set_in_layout(False)
         axes.plot([0.0, min(ends)], [0.0, min(ends)], "k--", lw=0.8)
 
@@ -398,8 +477,12 @@ def rotation(study: StoredPoints, options: RotationOptions) -> Found:
     rows = []
     names = list[str]()
     for each in pairs:
-        for mine, theirs in zip(each.points.tolist(), each.references.tolist(), strict=True):
-            named = layout.described(mine) | ({INTENSITY: layout[mine].scale} if factors else {})
+        for mine, theirs in zip(
+            each.points.tolist(), each.references.tolist(), strict=True
+        ):
+            named = layout.described(mine) | (
+                {INTENSITY: layout[mine].scale} if factors else {}
+            )
             names = list(named)
             ours, other = ((table.outcomes[n], float(ratio[n])) for n in (mine, theirs))
             rows.append((tuple(named.values()), *ours, reference.values[0], *other))
@@ -419,7 +502,9 @@ def rotation(study: StoredPoints, options: RotationOptions) -> Found:
             failed=sum(each.failed for each in pairs),
         ),
     )
-    return Found({"": keyed(names, f"{heads}, reference_rotation_over_alpha", rows)}, figure)
+    return Found(
+        {"": keyed(names, f"{heads}, reference_rotation_over_alpha", rows)}, figure
+    )
 
 
 def unknown_reference(
@@ -429,7 +514,9 @@ def unknown_reference(
     options = request.options
     report = f"the report {request.kind}"
     assert isinstance(options, RotationOptions), "requests have the options of their kind"
-    of_key = [axis for axis in axes if options.key is None or options.key in axis.keys][-1:]
+    of_key = [axis for axis in axes if options.key is None or options.key in axis.keys][
+        -1:
+    ]
     if not of_key:
         yield Fault(request.path, f"{report} needs a varied key: systems to compare")
         return
@@ -449,4 +536,6 @@ def unknown_reference(
 
 
 REPORT = Report(ComparisonOptions, comparison, requires=uncomparable)
-ROTATION = Report(RotationOptions, rotation, check=unknown_reference, requires=without_uplift)
+ROTATION = Report(
+    RotationOptions, rotation, check=unknown_reference, requires=without_uplift
+)

@@ -1,4 +1,6 @@
-"""Fragility: probability of exceeding a limit state against the intensity of the motion."""
+"""Fragility: probability of exceeding a limit state against the
+intensity of the motion.
+"""
 
 from __future__ import annotations
 
@@ -64,7 +66,9 @@ class LimitStates(create_model("LimitStates", __base__=Section, **_THRESHOLDS)):
 
 
 class LimitState(NamedTuple):
-    """Exceeded where a result is beyond a threshold; every overturned point exceeds it."""
+    """Exceeded where a result is beyond a threshold; every
+    overturned point exceeds it.
+    """
 
     result: str
     threshold: float | None
@@ -82,7 +86,9 @@ class LimitState(NamedTuple):
         """The state in the words of the results, with its unit."""
         if (known := LIMITS.get(self.result)) is None:
             return self.label
-        return f"{self.label.replace(self.result, known.label, 1)} {known.unit}".removesuffix(" -")
+        return f"{self.label.replace(self.result, known.label, 1)} {known.unit}".removesuffix(
+            " -"
+        )
 
 
 class MeasureOptions(ReportOptions):
@@ -97,11 +103,15 @@ class MeasureOptions(ReportOptions):
     damping: DampingRatio = Field(0.05, description="of Sa, AvgSa or Housner")
 
 
-Dispersion = Annotated[float, Quantity(symbol="standard deviation of ln", at_least=0, at_most=2)]
+Dispersion = Annotated[
+    float, Quantity(symbol="standard deviation of ln", at_least=0, at_most=2)
+]
 
 
 class DispersionSection(Section):
-    """Uncertainties in quadrature with the scatter of records (FEMA P695, section 7.3.4)."""
+    """Uncertainties in quadrature with the scatter of records
+    (FEMA P695, section 7.3.4).
+    """
 
     record_to_record: Dispersion | None = None
     """in place of the beta of the fit, such as 0.4"""
@@ -119,8 +129,12 @@ class DispersionSection(Section):
 
     def total(self, beta: Any) -> Any:
         """beta_TOT from that of records."""
-        own = beta if self.record_to_record is None else self.record_to_record + 0.0 * beta
-        return np.sqrt(own**2 + self.design_requirements**2 + self.test_data**2 + self.modelling**2)
+        own = (
+            beta if self.record_to_record is None else self.record_to_record + 0.0 * beta
+        )
+        return np.sqrt(
+            own**2 + self.design_requirements**2 + self.test_data**2 + self.modelling**2
+        )
 
 
 class FragilityOptions(MeasureOptions):
@@ -134,15 +148,19 @@ class FragilityOptions(MeasureOptions):
     )
     seed: Seed = Field(1, description="of the bootstrap")
     limits: LimitStates = Field(LimitStates(), description="limit states")
-    series: VariedKeys | None = Field(None, description="varied keys, one curve for each value")
+    series: VariedKeys | None = Field(
+        None, description="varied keys, one curve for each value"
+    )
     dispersion: DispersionSection = Field(
         DispersionSection(), description="uncertainty beyond the records"
     )
     at: dict[str, Option] = Field(
-        {}, description="intensities by name, {MCE: 0.6 m/s}: collapse margin ratios, probabilities"
+        {},
+        description="intensities by name, {MCE: 0.6 m/s}: collapse margin ratios, probabilities",
     )
     spectral_shape: PositiveNumber = Field(
-        1.0, description="factor SSF of FEMA P695 on collapse margin ratios, made for Sa(T1)"
+        1.0,
+        description="factor SSF of FEMA P695 on collapse margin ratios, made for Sa(T1)",
     )
 
     @property
@@ -172,7 +190,9 @@ class Binned(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Fragility:
-    """Data and fit of one limit state of one group of systems; `failed` points are left out."""
+    """Data and fit of one limit state of one group of systems;
+    `failed` points are left out.
+    """
 
     values: tuple[object, ...]
     limit: LimitState
@@ -200,16 +220,22 @@ class Fragilities:
 
     @property
     def notes(self) -> Iterator[str]:
-        """Notes on what is pooled, on overturning beyond limits, and on fits that are not plain."""
+        """Notes on what is pooled, on overturning beyond limits, and on
+        fits that are not plain.
+        """
         yield from self.systems.notes
         limited = [curve for curve in self.curves if curve.limit.threshold is not None]
         if fallen := sum(curve.overturned for curve in limited):
-            counts = f"{fallen} of {sum(c.exceeded for c in limited)} histories beyond a limit"
+            counts = (
+                f"{fallen} of {sum(c.exceeded for c in limited)} histories beyond a limit"
+            )
             yield f"an overturned history exceeds every limit: {counts} overturned"
         yield from self.told((curve, curve.fit.note) for curve in self.curves)
 
     def placed(self, curve: Fragility) -> tuple[str, str, int, int]:
-        """Panel, name and place among how many: systems in panels of states, or the reverse."""
+        """Panel, name and place among how many: systems in panels
+        of states, or the reverse.
+        """
         system = labels(self.systems.keys, curve.values)
         limit = curve.limit.title
         if len(self.systems.groups) > len(panels.COLOURS):
@@ -235,7 +261,9 @@ class Fragilities:
         x_label = f"{measure_name(self.intensity)} [{self.intensity.unit}]"
         row = 2 if len(groups) == 4 else 3
         shown = [*groups.values()]
-        return panels.panel_figure([*groups], shown, draw, in_row=row, x_label=x_label, **words)
+        return panels.panel_figure(
+            [*groups], shown, draw, in_row=row, x_label=x_label, **words
+        )
 
     def told(self, notes: Iterable[tuple[Fragility, str | None]]) -> Iterator[str]:
         """Notes on curves, a line for each kind."""
@@ -275,7 +303,9 @@ def _fragility(
     intensity = measured.values[kept]
     beyond = exceeds(table, limit.result, limit.threshold or 0.0)[kept]
     # Some way beyond the data on both sides.
-    low, high = (intensity.min() / 1.5, intensity.max() * 1.5) if len(kept) else (1.0, 1.0)
+    low, high = (
+        (intensity.min() / 1.5, intensity.max() * 1.5) if len(kept) else (1.0, 1.0)
+    )
     grid = np.geomspace(low, high, CURVE_POINTS)
     # Motions over points: directions, samples and members of an ensemble share a motion.
     shaken = layout.recordings[kept] * len(layout.scales) + layout.places.scale[kept]
@@ -285,17 +315,25 @@ def _fragility(
     means = np.bincount(cell, np.log(intensity)) / np.bincount(cell)
     level = np.exp(np.round(means, 9))[cell] if len(means) < len(kept) else intensity
     bootstrap = Bootstrap(options.resamples, options.confidence, options.seed)
-    fit = lognormal_fit(intensity, beyond, layout.clusters[kept], weight, grid, bootstrap, level)
+    fit = lognormal_fit(
+        intensity, beyond, layout.clusters[kept], weight, grid, bootstrap, level
+    )
     counts = len(kept), int(beyond.sum()), int(table.overturned[kept].sum())
     total = float(options.dispersion.total(fit.beta))
     largest = float(intensity.max(initial=0.0))
     seen = binned(table, kept, intensity, beyond)
     failed = len(group.every) - len(kept)
-    return Fragility(group.values, limit, fit, grid, seen, *counts, failed, place, total, largest)
+    return Fragility(
+        group.values, limit, fit, grid, seen, *counts, failed, place, total, largest
+    )
 
 
-def binned(table: Outcomes, kept: Indices, intensity: Array, beyond: NDArray[np.bool_]) -> Binned:
-    """Shares at each intensity, or in bins of equal numbers of points if there are too many."""
+def binned(
+    table: Outcomes, kept: Indices, intensity: Array, beyond: NDArray[np.bool_]
+) -> Binned:
+    """Shares at each intensity, or in bins of equal numbers of
+    points if there are too many.
+    """
     levels, place = np.unique(intensity, return_inverse=True)
     if len(levels) > 2 * MOST_BINS:
         order = np.argsort(np.argsort(intensity, kind="stable"), kind="stable")
@@ -321,10 +359,15 @@ def fragility_faults(layout: StudyPoints, options: FragilityOptions) -> Iterator
         yield f"at: {error.message()}"
 
 
-def margins(study: StoredPoints, options: FragilityOptions, found: Fragilities) -> list[Column]:
-    """Collapse margin ratios and probabilities at the intensities that the report names."""
-    # CMR is the median over the intensity, ACMR = SSF CMR, and P = Phi(-ln(ACMR)/beta_TOT): FEMA
-    # P695 (2009), chapter 7; its table 7-3 has the ACMR of probabilities of 10 and 20 %.
+def margins(
+    study: StoredPoints, options: FragilityOptions, found: Fragilities
+) -> list[Column]:
+    """Collapse margin ratios and probabilities at the
+    intensities that the report names.
+    """
+    # CMR is the median over the intensity, ACMR = SSF CMR, and P =
+    # Phi(-ln(ACMR)/beta_TOT): FEMA P695 (2009), chapter 7; its table 7-3 has the ACMR of
+    # probabilities of 10 and 20 %.
     from scipy.special import ndtr, ndtri
 
     factor = options.spectral_shape
@@ -342,8 +385,14 @@ def margins(study: StoredPoints, options: FragilityOptions, found: Fragilities) 
                 *(math.exp(-ndtri(share) * curve.total) for share in (0.1, 0.2)), fit.beta,
                 curve.total, ndtr(below / fit.beta), ndtr(below / curve.total), *ends,
             ))  # fmt: skip
-    heads = f"limit, name, {found.intensity.name} [{found.intensity.unit}], CMR, ACMR, ACMR_10"
-    heads += ", ACMR_20, beta, beta_total, probability_of_records, probability, probability_low"
+    heads = (
+        f"limit, name, {found.intensity.name} [{found.intensity.unit}], CMR, ACMR,"
+        " ACMR_10"
+    )
+    heads += (
+        ", ACMR_20, beta, beta_total, probability_of_records, probability,"
+        " probability_low"
+    )
     return keyed(found.systems.keys, f"{heads}, probability_high", rows)
 
 
@@ -355,9 +404,9 @@ def fragility(study: StoredPoints, options: FragilityOptions) -> Found:
     unit = found.intensity.unit
     curves = [((curve.values, curve.limit.label), curve) for curve in found.curves]
     fit_heads = (
-        f"limit, intensity, method, median [{unit}], median_low [{unit}], median_high [{unit}],"
-        " beta, beta_low, beta_high, beta_total, exceeded, counted, overturned_among_them, failed,"
-        " note"
+        f"limit, intensity, method, median [{unit}], median_low [{unit}], median_high"
+        f" [{unit}], beta, beta_low, beta_high, beta_total, exceeded, counted,"
+        " overturned_among_them, failed, note"
     )
     fits = [
         (
@@ -378,7 +427,9 @@ def fragility(study: StoredPoints, options: FragilityOptions) -> Found:
     tables = {
         "": keyed(keys, fit_heads, fits),
         **({"_at": margins(study, options, found)} if options.at else {}),
-        "_curves": keyed(keys, f"limit, {measure} [{unit}], probability, low, high", lines),
+        "_curves": keyed(
+            keys, f"limit, {measure} [{unit}], probability, low, high", lines
+        ),
         "_observed": [
             *keyed(keys, f"limit, {measure} [{unit}]", levels),
             *counted_columns(shares),
@@ -392,7 +443,9 @@ def fragility(study: StoredPoints, options: FragilityOptions) -> Found:
         remark += "; a median beyond the largest intensity computed is extrapolated"
     return Found(
         tables,
-        fragility_figure(found) if any(curve.fit.fitted for curve in found.curves) else None,
+        fragility_figure(found)
+        if any(curve.fit.fitted for curve in found.curves)
+        else None,
         list(found.notes),
         shown={"": dict.fromkeys(main, "")} | ({"_at": {}} if options.at else {}),
         remark=remark,
@@ -402,15 +455,26 @@ def fragility(study: StoredPoints, options: FragilityOptions) -> Found:
 def what_bands_hold(layout: StudyPoints, options: FragilityOptions) -> str:
     """The remark below numbers with bands."""
     drawn = len(np.unique(layout.recordings))
-    chosen = f"{drawn} {layout.independent}" if drawn > 1 else "histories under one record"
-    level = f"in brackets: {style.percent(options.confidence)} bands of the choice of {chosen}"
-    given = ", ".join(f"{key.replace('_', ' ')} {v:g}" for key, v in options.dispersion.given)
-    beyond = f"beta total: in quadrature with {given}" if given else "without modelling error"
+    chosen = (
+        f"{drawn} {layout.independent}" if drawn > 1 else "histories under one record"
+    )
+    level = (
+        f"in brackets: {style.percent(options.confidence)} bands of the choice of"
+        f" {chosen}"
+    )
+    given = ", ".join(
+        f"{key.replace('_', ' ')} {v:g}" for key, v in options.dispersion.given
+    )
+    beyond = (
+        f"beta total: in quadrature with {given}" if given else "without modelling error"
+    )
     return f"{level} (bootstrap of {options.resamples}); {beyond}; -: not determined"
 
 
 def fragility_figure(report: Fragilities) -> Callable[[str], style.Draw]:
-    """One panel a limit state with a fit; markers are observed shares, shades the bands."""
+    """One panel a limit state with a fit; markers are observed
+    shares, shades the bands.
+    """
     from scipy.special import ndtr
 
     drawn = [curve for curve in report.curves if curve.fit.fitted]
@@ -424,7 +488,9 @@ def fragility_figure(report: Fragilities) -> Callable[[str], style.Draw]:
             _, name, place, count = report.placed(curve)
             look = panels.look(place, count) | {"ms": 3.2}
             dashes = "--" if fit.method == "penalised" else "-"
-            axes.plot(grid, fit.curve, dashes, lw=1.4, markevery=[], label=name or None, **look)
+            axes.plot(
+                grid, fit.curve, dashes, lw=1.4, markevery=[], label=name or None, **look
+            )
             if len(curves) <= MOST_BANDS:
                 axes.fill_between(grid, *fit.band, color=look["color"], alpha=0.15, lw=0)
             axes.plot(seen.intensity, seen.share, ls="", alpha=0.8, **look)
@@ -435,7 +501,9 @@ def fragility_figure(report: Fragilities) -> Callable[[str], style.Draw]:
         axes.set_xlim(0.0, max(curve.grid[-1] for curve in curves))
         beyond_computed(axes, max(curve.largest for curve in curves), axes.get_xlim()[1])
 
-    banded = [curve for group in groups.values() if len(group) <= MOST_BANDS for curve in group]
+    banded = [
+        curve for group in groups.values() if len(group) <= MOST_BANDS for curve in group
+    ]
     bands = f"bands: {style.percent(report.confidence)}, the choice of records"
     if not banded:
         bands = f"bands of more than {MOST_BANDS} curves: see CSV"
@@ -449,8 +517,10 @@ def fragility_figure(report: Fragilities) -> Callable[[str], style.Draw]:
         "dotted: with further dispersion" * any(c.total != c.fit.beta for c in drawn),
         BEYOND_COMPUTED,
         "dashed: separated data, penalised fit" * penalised,
-        "overturning exceeds every limit" * any(c.limit.threshold is not None for c in drawn),
-        f"{missing} of {len(report.curves)} curves without a fit, see CSV" * bool(missing),
+        "overturning exceeds every limit"
+        * any(c.limit.threshold is not None for c in drawn),
+        f"{missing} of {len(report.curves)} curves without a fit, see CSV"
+        * bool(missing),
         panels.over(report.systems.pooled),
         panels.left_out(sum({curve.place: curve.failed for curve in drawn}.values())),
     )

@@ -1,4 +1,6 @@
-"""Storeys and floors of a study: shears over the height (paper, Figure 9), floor spectra."""
+"""Storeys and floors of a study: shears over the height (paper,
+Figure 9), floor spectra.
+"""
 
 from __future__ import annotations
 
@@ -24,7 +26,9 @@ from rpscli.sweep.table import Array, StoredPoints, groups
 class StoreyShearOptions(ReportOptions):
     """Mean and largest storey shears against those on a fixed base."""
 
-    panels: VariedKeys | None = Field(None, description="varied keys, one panel for each value")
+    panels: VariedKeys | None = Field(
+        None, description="varied keys, one panel for each value"
+    )
     unit: Literal["V_st", "kN"] = "V_st"
     """of the figure: the base shear at uplift, or kN to compare systems"""
 
@@ -53,9 +57,13 @@ class Profile(NamedTuple):
 
 
 def storey_shear(study: StoredPoints, options: StoreyShearOptions) -> Found:
-    """Profiles of each system at each intensity, or of the groups that the study names."""
+    """Profiles of each system at each intensity, or of the
+    groups that the study names.
+    """
     found = grouping(study.table, options.panels)
-    profiles = [profile for group in found.groups if (profile := profile_of(study, group))]
+    profiles = [
+        profile for group in found.groups if (profile := profile_of(study, group))
+    ]
     rows = [
         (one.values, storey, *ratios, *(ratio * one.static for ratio in ratios), *counts)
         for one in profiles
@@ -70,8 +78,8 @@ def storey_shear(study: StoredPoints, options: StoreyShearOptions) -> Found:
     if fallen := sum(group.overturned.number for group in histories):
         notes.append(
             f"means and largest shears are those of survivors: {fallen} of"
-            f" {sum(map(len, histories))} histories overturned and are left out, on the fixed base"
-            " too"
+            f" {sum(map(len, histories))} histories overturned and are left out, on the"
+            " fixed base too"
         )
     in_kn = options.unit == "kN"
 
@@ -121,14 +129,18 @@ def profile_of(study: StoredPoints, group: Histories) -> Profile | None:
     for row, number in enumerate(kept.tolist()):
         point = layout[number]
         assert point.record is not None, "points of histories have a record"
-        fixed[row] = abs(table.scale[number]) * study.fixed_base[point.system, point.record]
+        fixed[row] = (
+            abs(table.scale[number]) * study.fixed_base[point.system, point.record]
+        )
     unique = np.unique(statics[systems])
     shears = tuple(
         statistic(values, axis=0) if len(kept) else np.full(n, np.nan)
         for values in (table.storey_shears[kept, :n] / static, fixed / static)
         for statistic in (np.mean, np.max)
     )
-    return Profile(group.values, group, shears, float(unique[0]) if len(unique) == 1 else np.nan)
+    return Profile(
+        group.values, group, shears, float(unique[0]) if len(unique) == 1 else np.nan
+    )
 
 
 def unlike_buildings(layout: StudyPoints, options: StoreyShearOptions) -> Iterator[str]:
@@ -136,16 +148,24 @@ def unlike_buildings(layout: StudyPoints, options: StoreyShearOptions) -> Iterat
     yield from without_uplift(layout, options)
     keys = own_keys(layout) if options.panels is None else options.panels
     for group in groups(layout, keys):
-        systems = [layout.properties[i] for i in np.unique(group.points // layout.points_of_system)]
-        named = ", ".join(f"{key} = {value}" for key, value in zip(keys, group.values, strict=True))
+        systems = [
+            layout.properties[i]
+            for i in np.unique(group.points // layout.points_of_system)
+        ]
+        named = ", ".join(
+            f"{key} = {value}" for key, value in zip(keys, group.values, strict=True)
+        )
         of = f"the panel of {named}" if named else "its one panel"
         storeys = sorted({system.storeys for system in systems})
         if len(storeys) > 1:
             yield (
-                f"{of} holds buildings of {storeys} storeys; let `panels` name the key in which"
-                " they differ"
+                f"{of} holds buildings of {storeys} storeys; let `panels` name the key in"
+                " which they differ"
             )
-        elif options.unit == "kN" and len({system.static_base_shear for system in systems}) > 1:
+        elif (
+            options.unit == "kN"
+            and len({system.static_base_shear for system in systems}) > 1
+        ):
             yield f"{of} holds systems of different V_st, so that `unit` must be V_st"
 
 
@@ -156,7 +176,10 @@ class Floors(NamedTuple):
     fractiles: Array  # (3, 2, 2, n, p): by `STATES`, `SPECTRA`, floors and periods
 
 
-STATES = {"isolated": ("on bearings", style.BLUE), "fixed_base": ("fixed base", style.BLACK)}
+STATES = {
+    "isolated": ("on bearings", style.BLUE),
+    "fixed_base": ("fixed base", style.BLACK),
+}
 SPECTRA = {"pseudo_acceleration": "m/s2", "displacement": "m"}
 
 
@@ -165,8 +188,11 @@ def floor_spectra(study: StoredPoints, options: FloorSpectraOptions) -> Found:
     found = grouping(study.table)
     floors = []
     for group in found.computed:
-        spectra = np.array([study.floor_spectra(n, options.damping) for n in group.points.tolist()])
-        # An overturned history is larger than any demand; its building on a fixed base is not.
+        spectra = np.array(
+            [study.floor_spectra(n, options.damping) for n in group.points.tolist()]
+        )
+        # An overturned history is larger than any demand; its building on a fixed base is
+        # not.
         spectra[group.fallen, 0] = np.inf
         spread = np.quantile(spectra, THREE, axis=0, method="inverted_cdf")
         floors.append(Floors(group.values, spread))
@@ -194,7 +220,9 @@ def floor_spectra(study: StoredPoints, options: FloorSpectraOptions) -> Found:
 def floor_spectra_figure(
     keys: Sequence[str], floors: Sequence[Floors], note: str
 ) -> Callable[[str], style.Draw]:
-    """Median and 84 % fractile of the pseudo-acceleration, on the lowest floor and the roof."""
+    """Median and 84 % fractile of the pseudo-acceleration, on the
+    lowest floor and the roof.
+    """
     shown = [
         Floors((*one.values, number), one.fractiles[:, :, 0, number - 1])
         for one in floors
@@ -218,7 +246,9 @@ def floor_spectra_figure(
             each.xaxis.set_major_formatter("{x:g}")
 
     labels = {"x_label": "period [s]", "y_label": "pseudo-acceleration [m/s²]"}
-    return panels.in_panels((*keys, "floor"), shown, draw, limits=limits, note=note, **labels)
+    return panels.in_panels(
+        (*keys, "floor"), shown, draw, limits=limits, note=note, **labels
+    )
 
 
 def without_floors(layout: StudyPoints, _options: ReportOptions) -> Iterator[str]:

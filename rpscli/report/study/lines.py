@@ -1,4 +1,6 @@
-"""Lines: any result against a varied key, a list against another, demands against intensity."""
+"""Lines: any result against a varied key, a list against another,
+demands against intensity.
+"""
 
 from __future__ import annotations
 
@@ -60,12 +62,19 @@ class LinesOptions(ReportOptions):
         validation_alias=AliasChoices("result", "y"),
     )
     dashed: AnyKeys = Field((), description="results drawn dashed, as a comparison")
-    series: VariedKeys | None = Field(None, description="varied keys, one line for each value")
-    panels: VariedKeys | None = Field(None, description="varied keys, one panel for each value")
+    series: VariedKeys | None = Field(
+        None, description="varied keys, one line for each value"
+    )
+    panels: VariedKeys | None = Field(
+        None, description="varied keys, one panel for each value"
+    )
     statistic: Statistic = Field(
         "mean",
-        description="of points with one abscissa: the mean of survivors; or, with overturned"
-        " histories as larger than any demand, the median, the largest, or a fractile as 0.84",
+        description=(
+            "of points with one abscissa: the mean of survivors; or, with overturned"
+            " histories as larger than any demand, the median, the largest, or a"
+            " fractile as 0.84"
+        ),
     )
 
 
@@ -76,7 +85,9 @@ class Line(NamedTuple):
     result: str
     x: tuple[Any, ...]  # numbers, or words if the varied key has any
     y: tuple[float, ...]
-    counted: tuple[int, ...] = ()  # of the points that share an abscissa, those that stood
+    counted: tuple[
+        int, ...
+    ] = ()  # of the points that share an abscissa, those that stood
     overturned: tuple[int, ...] = ()
 
 
@@ -88,7 +99,9 @@ class Panel(NamedTuple):
 
 
 def lines(study: StoredPoints, options: LinesOptions) -> Found:
-    """The lines of every series of every panel; a statistic where points share an abscissa."""
+    """The lines of every series of every panel; a statistic where
+    points share an abscissa.
+    """
     layout = study.table.layout
     together = axis_keys(study.table.layout, options.x)
     panel_keys = options.panels or ()
@@ -101,10 +114,14 @@ def lines(study: StoredPoints, options: LinesOptions) -> Found:
     shown = []
     for group in found.groups:
         parts = itertools.product(names, group.parts(series))
-        of_group = [line for name, part in parts for line in _lines(columns, options, part, name)]
+        of_group = [
+            line for name, part in parts for line in _lines(columns, options, part, name)
+        ]
         shown.append(Panel(group.values, of_group))
     every = [line for panel in shown for line in panel.lines]
-    single = all(c + o < 2 for x in every for c, o in zip(x.counted, x.overturned, strict=True))
+    single = all(
+        c + o < 2 for x in every for c, o in zip(x.counted, x.overturned, strict=True)
+    )
     statistic = "" if single else statistic_words(options.statistic)
     x_name = shown_keys(layout, (options.x,))[0]
     series_keys = shown_keys(layout, series)
@@ -149,7 +166,9 @@ def lines(study: StoredPoints, options: LinesOptions) -> Found:
 
 def _left_out_of_means(shown: Sequence[Panel]) -> str:
     """The note on the histories that all means leave out."""
-    first = {repr((p.values, line.values)): line for p in shown for line in reversed(p.lines)}
+    first = {
+        repr((p.values, line.values)): line for p in shown for line in reversed(p.lines)
+    }
     overturned = sum(sum(line.overturned) for line in first.values())
     of = overturned + sum(sum(line.counted) for line in first.values())
     if not overturned:
@@ -163,7 +182,9 @@ def _left_out_of_means(shown: Sequence[Panel]) -> str:
 def _lines(
     columns: Mapping[str, Array], options: LinesOptions, series: Histories, name: str
 ) -> list[Line]:
-    """Lines of one result of one series: one, or one for each point if results are lists."""
+    """Lines of one result of one series: one, or one for each
+    point if results are lists.
+    """
     x = columns.get(options.x)
     y = columns.get(name)
     points: list[list[Any]] = [[]]
@@ -180,7 +201,9 @@ def _lines(
                 known = int((~np.isnan(y[group.survivors])).sum())
                 at = cell_of(options.x, *group.values)
                 points[0].append((at, found, known, group.overturned.number))
-    return [Line(series.values, name, *zip(*each, strict=True)) for each in points if each]
+    return [
+        Line(series.values, name, *zip(*each, strict=True)) for each in points if each
+    ]
 
 
 def _series(every: Sequence[Line]) -> list[tuple[object, ...]]:
@@ -212,7 +235,9 @@ def _draw(
         if len(series) == 1:
             place = results.index(line.result)
         x: Sequence[float] = line.x
-        if not all(isinstance(value, int | float) for value in line.x):  # each word has a place
+        if not all(
+            isinstance(value, int | float) for value in line.x
+        ):  # each word has a place
             x = range(len(line.x))
             axes.set_xticks(x, [plain(value) for value in line.x])
         parts = (labels(series_keys, line.values), names[line.result])
@@ -244,7 +269,9 @@ def _staggered(place: int, among: int) -> str | tuple[int, tuple[int, int]]:
 
 
 def _together(names: Sequence[str]) -> str:
-    """Label of the axis of one or two kinds of result, or of values that a legend tells apart."""
+    """Label of the axis of one or two kinds of result, or of values
+    that a legend tells apart.
+    """
     labels = dict.fromkeys(map(_axis, names))
     if len(labels) <= MOST_NAMED:
         return ", ".join(labels)
@@ -282,7 +309,9 @@ def unknown_results(
     for option, name in named:
         if quantity(analysis, name) is None:
             path: Path = (*request.path, request.kind, option)
-            meant = hint(name, KNOWN[analysis], f"`rps {analysis} CASE --json` has all names")
+            meant = hint(
+                name, KNOWN[analysis], f"`rps {analysis} CASE --json` has all names"
+            )
             text = f"{dotted(path)} = {name} is not a result of {analysis}"
             yield Fault(path, f"{text}{' and does not vary' * (option == 'x')}; {meant}")
 
@@ -299,16 +328,22 @@ class IdaOptions(ReportOptions):
         description="horizontal axis",
         validation_alias=AliasChoices("result", "demand"),
     )
-    panels: VariedKeys | None = Field(None, description="varied keys, one panel for each value")
+    panels: VariedKeys | None = Field(
+        None, description="varied keys, one panel for each value"
+    )
 
 
 class Ida(NamedTuple):
-    """Demands of one group at ascending intensities, or factors; infinite is overturned."""
+    """Demands of one group at ascending intensities, or
+    factors; infinite is overturned.
+    """
 
     values: tuple[object, ...]
     levels: list[Histories]
     heights: Array
-    curves: Array  # (curves, levels) of each record, sample and member, NaN where it failed
+    curves: (
+        Array  # (curves, levels) of each record, sample and member, NaN where it failed
+    )
     fractiles: Array  # (3, levels) of the points that did not fail
 
 
@@ -322,7 +357,9 @@ def ida(study: StoredPoints, options: IdaOptions) -> Found:
         levels = sorted(group.parts([INTENSITY]), key=_height)
         curves = np.column_stack([demands[level.every] for level in levels])
         spread = np.column_stack([fractiles(column, THREE) for column in curves.T])
-        shown.append(Ida(group.values, levels, np.array([*map(_height, levels)]), curves, spread))
+        shown.append(
+            Ida(group.values, levels, np.array([*map(_height, levels)]), curves, spread)
+        )
     (name,) = shown_keys(table.layout, (INTENSITY,))
     of = SCALARS["timehistory"][options.result]
     level_name = f"{name} [{unit_of(name)}]"
@@ -347,7 +384,9 @@ def ida(study: StoredPoints, options: IdaOptions) -> Found:
         for curve in panel.curves[:: max(1, len(panel.curves) // MOST_CURVES)]:
             line = _run_out(curve, levels, edge)
             axes.plot(*line, color=style.GREY, lw=0.8, label="single curves")
-        for fractile, (colour, dashes), share in zip(panel.fractiles, LINES, THREE, strict=True):
+        for fractile, (colour, dashes), share in zip(
+            panel.fractiles, LINES, THREE, strict=True
+        ):
             label = "median" if share == 0.5 else f"{style.percent(share)} fractile"
             line = _run_out(fractile, levels, edge)
             axes.plot(*line, color=colour, ls=dashes, lw=1.8, label=label)
@@ -362,7 +401,9 @@ def ida(study: StoredPoints, options: IdaOptions) -> Found:
         note=panels.noted(
             found,
             f"fractiles of {listed(numbers)} curves",
-            "level to the right: overturned at the next intensity" if found.overturned else "",
+            "level to the right: overturned at the next intensity"
+            if found.overturned
+            else "",
             "back to the left: stronger motions, smaller demands",
         ),
     )
@@ -374,7 +415,9 @@ def _height(level: Histories) -> float:
     return float(str(level.values[0]))
 
 
-def _run_out(values: Array, levels: Array, edge: float) -> tuple[list[float], list[float]]:
+def _run_out(
+    values: Array, levels: Array, edge: float
+) -> tuple[list[float], list[float]]:
     """A curve from the origin to the first level at which it leaves the frame."""
     x = [0.0]
     y = [0.0]
@@ -404,4 +447,6 @@ REPORT = Report(
     results=lambda options: (*options.result, *options.dashed),
     analyses=("timehistory", "modal", "pushover"),
 )
-IDA = Report(IdaOptions, ida, check=single_intensity, results=lambda options: [options.result])
+IDA = Report(
+    IdaOptions, ida, check=single_intensity, results=lambda options: [options.result]
+)

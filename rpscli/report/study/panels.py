@@ -33,7 +33,9 @@ LEAST_HEIGHT = 0.5
 
 
 def colour(place: int, count: int = 0) -> str:
-    """A colour for each of so many series: distinct ones, or shades of a scale beyond eight."""
+    """A colour for each of so many series: distinct ones, or shades
+    of a scale beyond eight.
+    """
     if count <= len(COLOURS):
         return COLOURS[place % len(COLOURS)]
     from matplotlib import colormaps, colors, rcParams
@@ -43,7 +45,9 @@ def colour(place: int, count: int = 0) -> str:
 
 def shaded(count: int) -> str:
     """A remark on more series than there are colours."""
-    return f"{count} series, more than colours: shades of a scale" * (count > len(COLOURS))
+    return f"{count} series, more than colours: shades of a scale" * (
+        count > len(COLOURS)
+    )
 
 
 def look(place: int, count: int) -> dict[str, Any]:
@@ -51,7 +55,9 @@ def look(place: int, count: int) -> dict[str, Any]:
     return {"color": colour(place, count), "marker": MARKERS[place % len(MARKERS)]}
 
 
-def corner(axes: style.Axes, x: str, y: str, text: str, size: float = 0.9, **look: Any) -> None:
+def corner(
+    axes: style.Axes, x: str, y: str, text: str, size: float = 0.9, **look: Any
+) -> None:
     """A text inside a panel, at its left or right and at its bottom or top."""
     place = {"left": 0.04, "right": 0.96, "bottom": 0.05, "top": 0.95}
     sides: dict[str, Any] = {"ha": x, "va": y, "transform": axes.transAxes}
@@ -64,7 +70,9 @@ def in_panels(
     draw: Callable[[style.Axes, Any], None],
     **words: Any,
 ) -> Callable[[str], style.Draw]:
-    """Panels that have `values` of keys; the last key's stand side by side if they fill a table."""
+    """Panels that have `values` of keys; the last key's stand side by
+    side if they fill a table.
+    """
     across = len(dict.fromkeys(str(panel.values[-1]) for panel in panels)) if keys else 1
     fills = 1 < across <= 5 and len(panels) % across == 0
     names = [labels(keys, panel.values) for panel in panels]
@@ -83,7 +91,9 @@ def panel_figure(
     limits: Callable[[style.Axes], object] | None = None,
     note: str = "",
 ) -> Callable[[str], style.Draw]:
-    """A figure that waits for its title: panels with titles, so many of them side by side."""
+    """A figure that waits for its title: panels with titles, so
+    many of them side by side.
+    """
 
     def fill(title: str, figure: style.Figure) -> None:
         from matplotlib import rcParams
@@ -105,11 +115,16 @@ def panel_figure(
         own = style.WIDTH if widest > 1 else 0.72 * style.WIDTH
         # A heading may be cut at its end: what is left out comes first.
         style.begin(figure, (title, remarks(cut, note)), height, own)
-        grid = figure.subplots(rows, columns, squeeze=False, sharex=True, sharey=share == "both")
+        grid = figure.subplots(
+            rows, columns, squeeze=False, sharex=True, sharey=share == "both"
+        )
         for axes, panel, name in zip(grid.flat, shown, titles, strict=False):
-            axes.locator_params(nbins=max(2, 5 - rows) if style.tight(figure) else MOST_TICKS)
+            axes.locator_params(
+                nbins=max(2, 5 - rows) if style.tight(figure) else MOST_TICKS
+            )
             draw(axes, panel)
-            # Without a height matplotlib would look for ticks under the title, at great length.
+            # Without a height matplotlib would look for ticks under the title, at great
+            # length.
             axes.set_title(name, y=1.0, fontsize=style.small())
         for place, axes in enumerate(grid.flat):
             if place >= len(shown):
@@ -132,7 +147,11 @@ def panel_figure(
 
 
 def first(
-    figure: style.Figure, panels: Sequence[Panel], columns: int, most: int, title_lines: int
+    figure: style.Figure,
+    panels: Sequence[Panel],
+    columns: int,
+    most: int,
+    title_lines: int,
 ) -> tuple[Sequence[Panel], str]:
     """The panels that have room, so many in a row, and a remark on the others."""
     if style.given(figure):

@@ -1,4 +1,6 @@
-"""All kinds of report by the names that studies call them, and what they need of a study."""
+"""All kinds of report by the names that studies call them, and
+what they need of a study.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +11,15 @@ from rpscli.analyses.result_quantities import LIMITED
 from rpscli.case.conditions import FRICTION, Condition
 from rpscli.case.text.document import Fault
 from rpscli.registry import Registry
-from rpscli.report.study import comparison, fragility, heights, lines, risk, scatter, table
+from rpscli.report.study import (
+    comparison,
+    fragility,
+    heights,
+    lines,
+    risk,
+    scatter,
+    table,
+)
 from rpscli.report.study.report import Report
 from rpscli.sweep.points import StudyPoints
 from rpscli.sweep.systems import needs_of
@@ -36,18 +46,27 @@ REPORTS: Registry[Report[Any]] = Registry(
 
 
 def asked(layout: StudyPoints) -> set[str]:
-    """Results of the limits and reports of a study, the main ones where it has no reports."""
+    """Results of the limits and reports of a study, the main ones
+    where it has no reports.
+    """
     limits = {limit.name for system in layout.properties for limit in system.limits}
     requests = layout.study.reports
-    main = set() if requests else {quantity.name for quantity in LIMITED if quantity.demand}
-    return limits.union(main, *(REPORTS[each.kind].results(each.options) for each in requests))
+    main = (
+        set() if requests else {quantity.name for quantity in LIMITED if quantity.demand}
+    )
+    return limits.union(
+        main, *(REPORTS[each.kind].results(each.options) for each in requests)
+    )
 
 
 def requirement_faults(layout: StudyPoints) -> Iterator[Fault]:
     """Limits on results that systems do not have, and reports that cannot be drawn."""
     own = layout.study.file.limits is not None
     limits = (
-        limit for system in layout.properties for limit in system.limits if limit.source != FRICTION
+        limit
+        for system in layout.properties
+        for limit in system.limits
+        if limit.source != FRICTION
     )
     for name in dict.fromkeys(limit.name for limit in limits):
         if lacking(layout, name, all):
@@ -62,12 +81,16 @@ def requirement_faults(layout: StudyPoints) -> Iterator[Fault]:
             yield Fault(request.path, f"the report {request.kind}: {text}")
 
 
-def lacking(layout: StudyPoints, name: str, which: Callable[[Iterable[bool]], bool] = any) -> bool:
+def lacking(
+    layout: StudyPoints, name: str, which: Callable[[Iterable[bool]], bool] = any
+) -> bool:
     """True if any, or all, systems of a study cannot have a result."""
     return which(name in properties.lacking for properties in layout.properties)
 
 
-def not_judged(layout: StudyPoints, conditions: Iterable[Condition] = ()) -> Iterator[str]:
+def not_judged(
+    layout: StudyPoints, conditions: Iterable[Condition] = ()
+) -> Iterator[str]:
     """Limits that some systems are not judged by, since they cannot have the result."""
     limits = (limit for system in layout.properties for limit in system.limits)
     for name in dict.fromkeys(limit.name for limit in (*limits, *conditions)):

@@ -38,10 +38,13 @@ else:
     DemandName = Literal[tuple(quantity.name for quantity in DEMANDS)]
 
 _WORDS = ("mean", "median", "largest")
-Statistic = Annotated[float | str, Quantity(symbol="a fractile", above=0, below=1, words=_WORDS)]
+Statistic = Annotated[
+    float | str, Quantity(symbol="a fractile", above=0, below=1, words=_WORDS)
+]
 """A statistic of several histories."""
 StatisticOrShare = Annotated[
-    float | str, Quantity(symbol="a fractile", above=0, below=1, words=(*_WORDS, "overturned"))
+    float | str,
+    Quantity(symbol="a fractile", above=0, below=1, words=(*_WORDS, "overturned")),
 ]
 """A statistic of several histories, or the share that overturned."""
 
@@ -55,9 +58,9 @@ Tables = Mapping[str, list[Column]]
 class Found:
     """Tables, figure and notes of a report.
 
-    `figure` draws its figure under a title; None where nothing can be drawn. `notes`
-    are what the user should know about the numbers. `shown` has labels of columns of tables that
-    are for the terminal too, none if all are; `remark` stands below them.
+    `figure` draws its figure under a title; None where nothing can be drawn. `notes` are
+    what the user should know about the numbers. `shown` has labels of columns of tables
+    that are for the terminal too, none if all are; `remark` stands below them.
     """
 
     tables: Tables
@@ -74,7 +77,9 @@ class Found:
             if len({len([*column.values]) for column in columns}) != 1:
                 raise ValueError(f"tables: columns of {suffix!r} must be equally long")
         if not {*self.shown} <= {*self.tables}:
-            raise ValueError(f"shown: {[*self.shown]} must be among the tables {[*self.tables]}")
+            raise ValueError(
+                f"shown: {[*self.shown]} must be among the tables {[*self.tables]}"
+            )
 
     def parts(self) -> Iterator[Part]:
         """Tables and remark for a terminal or a page."""
@@ -85,7 +90,10 @@ class Found:
 
     def document(self) -> dict[str, Any]:
         """Tables and remark in JSON, with all columns."""
-        rows = {suffix.lstrip("_") or "rows": records(self.tables[suffix]) for suffix in self.shown}
+        rows = {
+            suffix.lstrip("_") or "rows": records(self.tables[suffix])
+            for suffix in self.shown
+        }
         return {**rows, "remark": self.remark} if rows else {}
 
     def drawn(self, title: str, target: Target | Axes | None = None) -> Target:
@@ -112,11 +120,16 @@ def with_band(value: float, low: float, high: float) -> str:
     if not math.isfinite(value):
         return "-"
     known = math.isfinite(low) and math.isfinite(high)
-    return f"{shown(value, 3)} ({f'{shown(low, 2)} to {shown(high, 2)}' if known else 'no band'})"
+    return (
+        f"{shown(value, 3)}"
+        f" ({f'{shown(low, 2)} to {shown(high, 2)}' if known else 'no band'})"
+    )
 
 
 def _readable(columns: Sequence[Column], labels: Mapping[str, str]) -> Table:
-    """The columns that have labels, or all; a value and the ends of its band are one cell."""
+    """The columns that have labels, or all; a value and the ends
+    of its band are one cell.
+    """
     known = {column.name: list(column.values) for column in columns}
     heads = []
     cells = []
@@ -128,7 +141,10 @@ def _readable(columns: Sequence[Column], labels: Mapping[str, str]) -> Table:
         if name.endswith(ENDS) or (labels and name not in labels):
             continue
         own = labels.get(name) or symbol(name).replace("_", " ")
-        if any(isinstance(value, str | list | Written) for value in values) or "." in name:
+        if (
+            any(isinstance(value, str | list | Written) for value in values)
+            or "." in name
+        ):
             head, texts = key_cells(column, own)
             heads.append(head)
             cells.append(texts)
@@ -141,7 +157,9 @@ def _readable(columns: Sequence[Column], labels: Mapping[str, str]) -> Table:
             rows = zip(values, *(known[stem + end] for end in ENDS), strict=True)
             cells.append([with_band(*row) for row in rows])
         elif name.startswith("share_"):
-            cells.append(["-" if math.isnan(value) else percent(value, 1.0) for value in values])
+            cells.append(
+                ["-" if math.isnan(value) else percent(value, 1.0) for value in values]
+            )
         else:
             cells.append([shown(value, 3) for value in values])
     return Table.of_texts(heads, zip(*cells, strict=True), words=words, keys=words)
@@ -151,8 +169,9 @@ def _readable(columns: Sequence[Column], labels: Mapping[str, str]) -> Table:
 class Report(ReportKind[Options]):
     """One kind of report: what a study may say about it, and how it is made.
 
-    `results` names results that every system must have, and `requires` tells what is wrong with the
-    points of a study that it cannot show; both are seen before anything is computed.
+    `results` names results that every system must have, and `requires` tells
+    what is wrong with the points of a study that it cannot show; both are seen
+    before anything is computed.
     """
 
     make: Callable[[StoredPoints, Options], Found]
@@ -167,7 +186,9 @@ def without_uplift(layout: StudyPoints, _: object) -> Iterable[str]:
 
 
 def add_notes(notes: list[str], name: str, found: Iterable[str]) -> None:
-    """Notes under the name of their report; what another report has said is not said again."""
+    """Notes under the name of their report; what another report
+    has said is not said again.
+    """
     told = {note.partition(": ")[2] for note in notes}
     notes += [f"{name}: {note}" for note in found if note not in told]
 
@@ -185,8 +206,8 @@ SYMBOLS = {
     "podium.cap_beam_mass_ratio": "γ",
     "podium.superstructure_mass_ratio": "η",
 }
-"""The paper's letters; other keys go by their last word. Plain text: matplotlib takes ten times as
-long over formulae, and there is a title on every panel."""
+"""The paper's letters; other keys go by their last word. Plain text: matplotlib takes ten
+times as long over formulae, and there is a title on every panel."""
 
 CURVATURES = {"critical": "critical ρ", 0: "flat ends"}
 
@@ -219,12 +240,16 @@ def labels(keys: Iterable[str], values: Values) -> str:
 
 
 def plain(value: object) -> str:
-    """A value as text: numbers short, devices and contacts by their kinds, lists as written."""
+    """A value as text: numbers short, devices and contacts by their
+    kinds, lists as written.
+    """
     if isinstance(value, float):
         return as_written(value, "-")
     if value is None:
         return NONE
-    if isinstance(value, list) and all(isinstance(item, dict) and "kind" in item for item in value):
+    if isinstance(value, list) and all(
+        isinstance(item, dict) and "kind" in item for item in value
+    ):
         return ", ".join(_device(item) for item in value) or NONE
     if isinstance(value, dict) and "kind" in value:
         return _device(value)
@@ -234,7 +259,9 @@ def plain(value: object) -> str:
 def _device(device: dict[str, object]) -> str:
     """The kind of a device or a contact and the first of its values, with its unit."""
     values = [
-        _with_unit(f"podium.devices.{key}", value) for key, value in device.items() if key != "kind"
+        _with_unit(f"podium.devices.{key}", value)
+        for key, value in device.items()
+        if key != "kind"
     ]
     return " ".join([str(device["kind"]).replace("_", " "), *values[:1]])
 
@@ -266,14 +293,18 @@ def key_cells(column: Column, name: str) -> tuple[str, list[str]]:
 
 
 def keyed(keys: Sequence[str], heads: str, rows: Iterable[Sequence[Any]]) -> list[Column]:
-    """Columns of some keys, and of heads as `columns_of`; a row begins with values of the keys."""
+    """Columns of some keys, and of heads as `columns_of`; a row begins
+    with values of the keys.
+    """
     known = list(rows)
     further = columns_of(heads, (row[1:] for row in known))
     return [*key_columns(keys, [row[0] for row in known]), *further]
 
 
 def reached(value: float) -> float | str:
-    """A demand for a cell of a CSV file: ``inf`` or ``-inf`` for that of an overturned history."""
+    """A demand for a cell of a CSV file: ``inf`` or ``-inf`` for that
+    of an overturned history.
+    """
     return str(value) if math.isinf(value) else value
 
 

@@ -1,4 +1,6 @@
-"""Risk: how often in its life a structure exceeds its limit states, from fragility and hazard."""
+"""Risk: how often in its life a structure exceeds its limit states,
+from fragility and hazard.
+"""
 
 from __future__ import annotations
 
@@ -27,7 +29,9 @@ from rpscli.sweep.statistics.verdicts import component_notes
 from rpscli.sweep.table import Array, StoredPoints
 
 BINS = 24  # of intensities, for what contributes
-CLEARLY = 0.05  # share of the rate beyond which the ends of the hazard curve are worth a note
+CLEARLY = (
+    0.05  # share of the rate beyond which the ends of the hazard curve are worth a note
+)
 
 
 class RiskOptions(fragile.FragilityOptions):
@@ -53,7 +57,9 @@ class Risk:
     of_records: float  # without other uncertainties
     of_shares: float  # straight from the observed shares
     of_hazard: tuple[float, ...]  # of the further hazard curves (fractiles,)
-    beyond_computed: float  # share of the rate beyond the largest intensity that was computed
+    beyond_computed: (
+        float  # share of the rate beyond the largest intensity that was computed
+    )
     notes: tuple[str, ...]
 
     @property
@@ -67,7 +73,9 @@ class Risk:
         return float(self.rates[-1] / self.rate)
 
     def probabilities(self, years: float) -> tuple[float, ...]:
-        """Of an excess within so many years (a Poisson process), and of both ends of the band."""
+        """Of an excess within so many years (a Poisson process), and
+        of both ends of the band.
+        """
         return tuple(-math.expm1(-rate * years) for rate in (self.rate, *self.band))
 
 
@@ -82,7 +90,9 @@ def risk_faults(layout: StudyPoints, options: RiskOptions) -> Iterator[str]:
         yield f"measure: {options.measure} is not hazard.measure: {measure}; remove the first"
     if needs_period(measure) and options.period is None:
         yield f"a hazard curve of {measure} is for one period; give the report a `period`"
-    yield from fragile.fragility_faults(layout, options.model_copy(update={"measure": measure}))
+    yield from fragile.fragility_faults(
+        layout, options.model_copy(update={"measure": measure})
+    )
     try:
         rates.read_hazard(layout.study.folder / section.file, section.measure)
     except CaseError as error:
@@ -135,16 +145,27 @@ def risk(study: StoredPoints, options: RiskOptions) -> Found:
         ("share_beyond_hazard", "-", "from beyond hazard", lambda r: r.beyond_hazard),
         ("note", "-", None, lambda r: r.note),
     ]  # fmt: skip
-    rows = [(each.fragility.values, *(value(each) for *_, value in columns)) for each in risks]
+    rows = [
+        (each.fragility.values, *(value(each) for *_, value in columns)) for each in risks
+    ]
     ends = f"{measured}_from [{unit}], {measured}_to [{unit}]"
     parts = [
-        (each.fragility.values, each.fragility.limit.label, low, high, rate, rate / each.rate)
+        (
+            each.fragility.values,
+            each.fragility.limit.label,
+            low,
+            high,
+            rate,
+            rate / each.rate,
+        )
         for each in known
         for low, high, rate in zip(each.edges, each.edges[1:], each.rates, strict=False)
     ]
     tables = {
         "": keyed(keys, ", ".join(f"{name} [{of}]" for name, of, *_ in columns), rows),
-        "_contributions": keyed(keys, f"limit, {ends}, annual_rate [1/year], share", parts),
+        "_contributions": keyed(
+            keys, f"limit, {ends}, annual_rate [1/year], share", parts
+        ),
         **({"_at": fragile.margins(study, options, found)} if options.at else {}),
     }
     readers = {name: label for name, _, label, _ in columns if label}
@@ -152,9 +173,12 @@ def risk(study: StoredPoints, options: RiskOptions) -> Found:
         tables,
         risk_figure(found, known, years) if known else None,
         [*_report_notes(found, known, section.component), *found.notes],
-        shown={"": dict.fromkeys(keys, "") | readers} | ({"_at": {}} if options.at else {}),
-        remark=f"{fragile.what_bands_hold(layout, options)}; rate of shares: from observed shares,"
-        " no lognormal",
+        shown={"": dict.fromkeys(keys, "") | readers}
+        | ({"_at": {}} if options.at else {}),
+        remark=(
+            f"{fragile.what_bands_hold(layout, options)}; rate of shares: from observed"
+            " shares, no lognormal"
+        ),
     )
 
 
@@ -196,22 +220,27 @@ def risk_of(fragility: Fragility, hazard: Hazard, options: RiskOptions) -> Risk:
     )
 
 
-def _notes(fragility: Fragility, hazard: Hazard, rate: float, of_shares: float) -> Iterator[str]:
+def _notes(
+    fragility: Fragility, hazard: Hazard, rate: float, of_shares: float
+) -> Iterator[str]:
     """Doubts about one rate, and about that of the shares."""
     fit = fragility.fit
     weakest = fragility.observed.intensity[:1]
-    unseen = fragility.observed.share[0] * (hazard.rate[0] - rates.exceeded(hazard, weakest)[0])
+    unseen = fragility.observed.share[0] * (
+        hazard.rate[0] - rates.exceeded(hazard, weakest)[0]
+    )
     if unseen > CLEARLY * of_shares:
         yield (
-            f"{100.0 * unseen / of_shares:.0f} % of the rate of shares come from below the weakest"
-            " intensity computed, where its share is assumed to hold too; add weaker ones"
+            f"{100.0 * unseen / of_shares:.0f} % of the rate of shares come from below"
+            " the weakest intensity computed, where its share is assumed to hold too;"
+            " add weaker ones"
         )
     first = math.log(hazard.intensity[0] / fit.median)
     probable = 0.5 * math.erfc(-first / fragility.total / math.sqrt(2.0))
     if hazard.rate[0] * probable / rate > CLEARLY:
         yield (
-            "the fragility is not negligible at the first intensity of the hazard curve, below"
-            " which nothing is counted; begin the curve with weaker motions"
+            "the fragility is not negligible at the first intensity of the hazard curve,"
+            " below which nothing is counted; begin the curve with weaker motions"
         )
     if fit.method == "penalised":
         below, above = fit.between
@@ -220,12 +249,18 @@ def _notes(fragility: Fragility, hazard: Hazard, rate: float, of_shares: float) 
         yield f"separated data show only that the rate is between {least:.2g} and {most:.2g}"
 
 
-def _report_notes(found: Fragilities, risks: Sequence[Risk], of: Of | None) -> Iterator[str]:
-    """Shares of rates from beyond what is known, and the component that the hazard is of."""
+def _report_notes(
+    found: Fragilities, risks: Sequence[Risk], of: Of | None
+) -> Iterator[str]:
+    """Shares of rates from beyond what is known, and the
+    component that the hazard is of.
+    """
     places = {
         "beyond_computed": "the largest intensity computed, by the fitted curve; add intensities",
-        "beyond_hazard": "the last intensity of the hazard curve, which is continued with its last"
-        " slope; extend the curve",
+        "beyond_hazard": (
+            "the last intensity of the hazard curve, which is continued with its last"
+            " slope; extend the curve"
+        ),
     }
     for name, place in places.items():
         shares = [(float(getattr(each, name)), each) for each in risks]
@@ -233,7 +268,10 @@ def _report_notes(found: Fragilities, risks: Sequence[Risk], of: Of | None) -> I
         if far:
             most, worst = max(far, key=lambda pair: pair[0])
             share = f"{'up to ' * (len(far) > 1)}{100.0 * most:.0f} %"
-            which = f"({found.named(worst.fragility)}; above 5 % in {len(far)} of {len(risks)})"
+            which = (
+                f"({found.named(worst.fragility)}; above 5 % in {len(far)} of"
+                f" {len(risks)})"
+            )
             yield f"{share} of the annual rate {which} come from beyond {place}"
     yield from component_notes(of, found.intensity.of)
     yield from found.told((each.fragility, "; ".join(each.notes)) for each in risks)
@@ -257,7 +295,9 @@ def risk_figure(
             _, name, place, count = found.placed(each.fragility)
             shade = panels.colour(place, count)
             shares = 100.0 * each.rates / each.rate
-            axes.stairs(shares[:-1], each.edges[:-1], color=shade, lw=1.4, label=name or None)
+            axes.stairs(
+                shares[:-1], each.edges[:-1], color=shade, lw=1.4, label=name or None
+            )
             if high > last:
                 axes.stairs(shares[-1:], [last, high], color=shade, lw=1.4, ls=":")
             if len(panel) <= MOST_BANDS and not style.tight(axes.figure):
@@ -270,13 +310,16 @@ def risk_figure(
         fragile.beyond_computed(axes, max(each.fragility.largest for each in panel), high)
 
     def limit_axes(axes: style.Axes) -> None:
-        axes.set_xscale("log")  # of all panels at the end: ticks of logarithms are of another kind
+        axes.set_xscale(
+            "log"
+        )  # of all panels at the end: ticks of logarithms are of another kind
         panels.log_ticks(axes.xaxis)
         axes.set_xlim(low, high)
         axes.set_ylim(0.0, axes.get_ylim()[1] / (0.97 - line(axes) * rows))
 
     note = panels.remarks(
-        f"P in {years:g} years, {style.percent(found.confidence)} bands of the choice of records",
+        f"P in {years:g} years, {style.percent(found.confidence)} bands of the choice of"
+        " records",
         "dotted: all from beyond the hazard curve" * (high > last),
         fragile.BEYOND_COMPUTED,
         panels.over(found.systems.pooled),
@@ -293,4 +336,6 @@ def _shown(risks: Sequence[Risk]) -> tuple[float, float]:
     return 0.9 * float(edges[min(of[0] for of in counting)]), 1.1 * float(high)
 
 
-REPORT = Report(RiskOptions, risk, requires=risk_faults, results=lambda options: options.results)
+REPORT = Report(
+    RiskOptions, risk, requires=risk_faults, results=lambda options: options.results
+)

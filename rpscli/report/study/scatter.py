@@ -1,4 +1,6 @@
-"""Points of a study as scatter: one demand against another, systems against one, pulses."""
+"""Points of a study as scatter: one demand against another,
+systems against one, pulses.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +25,11 @@ from rpscli.records.measures import MEASURES
 from rpscli.records.source import Source
 from rpscli.report.figures import style
 from rpscli.report.study import panels
-from rpscli.report.study.fragility import MeasureOptions, measure_name, measure_without_period
+from rpscli.report.study.fragility import (
+    MeasureOptions,
+    measure_name,
+    measure_without_period,
+)
 from rpscli.report.study.report import (
     Found,
     Report,
@@ -48,14 +54,22 @@ from rpscli.units import in_si
 class DemandOptions(ReportOptions):
     """Base shear against rotation with its bilinear summary."""
 
-    panels: VariedKeys | None = Field(None, description="varied keys, one panel for each value")
-    series: VariedKeys | None = Field(None, description="varied keys, one colour for each value")
+    panels: VariedKeys | None = Field(
+        None, description="varied keys, one panel for each value"
+    )
+    series: VariedKeys | None = Field(
+        None, description="varied keys, one colour for each value"
+    )
 
 
 class ScatterOptions(DemandOptions):
-    """Demands, measures of the motion or varied keys, a marker for each history that stood."""
+    """Demands, measures of the motion or varied keys, a marker for
+    each history that stood.
+    """
 
-    x: Text = Field(description="to the right: a demand, a measure as PGV, or a varied key")
+    x: Text = Field(
+        description="to the right: a demand, a measure as PGV, or a varied key"
+    )
     y: Text = Field(description="upwards: likewise")
 
 
@@ -85,21 +99,31 @@ class Ordinate(NamedTuple):
 
 
 def ordinate(table: Table, name: str) -> Ordinate:
-    """A demand, a measure of the scaled motion (at T1), or a varied key, NaN where no number."""
+    """A demand, a measure of the scaled motion (at T1), or a varied
+    key, NaN where no number.
+    """
     if (quantity := SCALARS["timehistory"].get(name)) is not None:
-        return Ordinate(name, table.columns[name], quantity.unit, panels.large_label(quantity))
+        return Ordinate(
+            name, table.columns[name], quantity.unit, panels.large_label(quantity)
+        )
     if name in MEASURES.names():
         found = table.intensity(name)
-        return Ordinate(name, found.values, found.unit, f"{measure_name(found)} [{found.unit}]")
+        return Ordinate(
+            name, found.values, found.unit, f"{measure_name(found)} [{found.unit}]"
+        )
     values = np.full(len(table), np.nan)
     for group in groups(table.layout, [name]):
         value = in_si(group.values[0], unit_of(name))
         values[group.points] = value if is_number(value) else np.nan
-    return Ordinate(name, values, unit_of(name), axis_label(*shown_keys(table.layout, [name])))
+    return Ordinate(
+        name, values, unit_of(name), axis_label(*shown_keys(table.layout, [name]))
+    )
 
 
 class Cloud(NamedTuple):
-    """A panel: its histories, those of them that are drawn, and the curve through these."""
+    """A panel: its histories, those of them that are drawn, and
+    the curve through these.
+    """
 
     values: tuple[object, ...]
     histories: Histories
@@ -116,7 +140,12 @@ def scatter(study: StoredPoints, options: ScatterOptions) -> Found:
     found = grouping(table, options.panels, series)
     clouds = _clouds(found, both, ~table.overturned)
     rows = [
-        ((*cloud.values, *part.values), n + 1, table.outcomes[n], *(of.values[n] for of in both))
+        (
+            (*cloud.values, *part.values),
+            n + 1,
+            table.outcomes[n],
+            *(of.values[n] for of in both),
+        )
         for cloud in clouds
         for part in cloud.shown.parts(series)
         for n in part.points.tolist()
@@ -124,7 +153,9 @@ def scatter(study: StoredPoints, options: ScatterOptions) -> Found:
     keys = (*found.keys, *shown_keys(table.layout, series))
     heads = f"point, outcome, {both[0].head}, {both[1].head}"
     return Found(
-        {"": keyed(keys, heads, rows)}, _figure(table, found, clouds, both, series), found.notes
+        {"": keyed(keys, heads, rows)},
+        _figure(table, found, clouds, both, series),
+        found.notes,
     )
 
 
@@ -133,7 +164,9 @@ def demand(study: StoredPoints, options: DemandOptions) -> Found:
     table = study.table
     leading = leading_keys(study.table.layout)
     series = options.series if options.series is not None else leading[1:-1]
-    x, y = both = [ordinate(table, name) for name in ("rotation_ratio", "base_shear_ratio")]
+    x, y = both = [
+        ordinate(table, name) for name in ("rotation_ratio", "base_shear_ratio")
+    ]
     found = grouping(table, options.panels, series)
     clouds = []
     for cloud in _clouds(found, both, np.isin(table.outcomes, STOOD)):
@@ -158,12 +191,16 @@ def demand(study: StoredPoints, options: DemandOptions) -> Found:
     notes = list(found.notes)
     without = [cloud.note for cloud in clouds if cloud.note]
     if without:
-        notes.append(f"{len(without)} of {len(clouds)} panels have no curve: {without[0]}")
+        notes.append(
+            f"{len(without)} of {len(clouds)} panels have no curve: {without[0]}"
+        )
     figure = _figure(table, found, clouds, both, series, curves=True)
     return Found({"": keyed(found.keys, heads, rows)}, figure, notes)
 
 
-def _clouds(found: Grouping, both: Sequence[Ordinate], kept: NDArray[np.bool_]) -> list[Cloud]:
+def _clouds(
+    found: Grouping, both: Sequence[Ordinate], kept: NDArray[np.bool_]
+) -> list[Cloud]:
     """The points of each group that did not fail and have both values."""
     table = found.groups[0].table
     kept = kept & ~table.failed & np.isfinite([of.values for of in both]).all(axis=0)
@@ -194,7 +231,13 @@ def _figure(
         for place, part in enumerate(cloud.shown.parts(series)):
             at = part.points
             name = labels(series_keys, part.values) or None
-            look: dict[str, Any] = {"ls": "", "ms": 3.0, "mew": 0.0, "alpha": 0.7, "label": name}
+            look: dict[str, Any] = {
+                "ls": "",
+                "ms": 3.0,
+                "mew": 0.0,
+                "alpha": 0.7,
+                "label": name,
+            }
             axes.plot(x.values[at], y.values[at], **panels.look(place, most), **look)
         if curves:
             _draw_curve(axes, cloud.fit, x.values[cloud.shown.points], highest, top)
@@ -218,7 +261,9 @@ def _figure(
 def _draw_curve(
     axes: style.Axes, fit: Bilinear | None, x: Array, highest: float, top: float
 ) -> None:
-    """The curve as far as its points (m,) go, with its numbers where it leaves room for them."""
+    """The curve as far as its points (m,) go, with its numbers where
+    it leaves room for them.
+    """
     apart = panels.break_if_narrow(axes)
     text = "no curve: too few points"
     place = ("right", "bottom")
@@ -241,7 +286,9 @@ def unknown_axes(
     _document: Document, axes: Sequence[Axis], request: ReportRequest
 ) -> Iterator[Fault]:
     """Axes of what is no demand, no measure, and does not vary as a number."""
-    assert isinstance(request.options, ScatterOptions), "requests have the options of their kind"
+    assert isinstance(request.options, ScatterOptions), (
+        "requests have the options of their kind"
+    )
     varied = {
         key
         for axis in axes
@@ -254,19 +301,26 @@ def unknown_axes(
             path: Path = (*request.path, request.kind, option)
             otherwise = "`rps explain results` and `rps explain measures` list them"
             meant = hint(name, known, otherwise, 0.6)
-            text = f"{dotted(path)} = {name} is no demand, no measure and no varied number; {meant}"
+            text = (
+                f"{dotted(path)} = {name} is no demand, no measure and no varied number;"
+                f" {meant}"
+            )
             yield Fault(path, text)
 
 
-def measures_without_period(layout: StudyPoints, options: ScatterOptions) -> Iterator[str]:
+def measures_without_period(
+    layout: StudyPoints, options: ScatterOptions
+) -> Iterator[str]:
     """Measures at T1 where systems have none."""
     for name in {options.x, options.y} & {*MEASURES.names()}:
-        yield from measure_without_period(layout, MeasureOptions.model_construct(measure=name))
+        yield from measure_without_period(
+            layout, MeasureOptions.model_construct(measure=name)
+        )
 
 
 NEGLIGIBLE = 1e-6
-"""Rotation over the critical one below which a figure shows no uplift: at an amplitude of exactly
-g tan(alpha) rounding decides about the outcome."""
+"""Rotation over the critical one below which a figure shows no uplift: at an amplitude of
+exactly g tan(alpha) rounding decides about the outcome."""
 
 
 class PulseSection(Section):
@@ -278,10 +332,13 @@ class PulseSection(Section):
 
 
 class SpectrumOptions(DemandOptions):
-    """Overturning spectrum of pulses: amplitude over g tan(alpha) against frequency over p."""
+    """Overturning spectrum of pulses: amplitude over g tan(alpha)
+    against frequency over p.
+    """
 
     pulses: dict[str, PulseSection] = Field(
-        {}, description="period and amplitude of records that are files, by source or name"
+        {},
+        description="period and amplitude of records that are files, by source or name",
     )
 
 
@@ -305,14 +362,17 @@ def overturning_spectrum(study: StoredPoints, options: SpectrumOptions) -> Found
     several = (most := max(map(len, clouds.values()))) > 1
     rotation = table.columns["rotation_ratio"]
     shown = np.where(
-        (table.outcomes == "survived") & (rotation < NEGLIGIBLE), "at_rest", table.outcomes
+        (table.outcomes == "survived") & (rotation < NEGLIGIBLE),
+        "at_rest",
+        table.outcomes,
     )
 
     def draw(axes: style.Axes, group: Histories) -> None:
         for place, part in enumerate(clouds[group]):
             boundary = _boundary(part, frequency, amplitude)
             if several:
-                # What overturned and the least that did; survivors would hide the other series.
+                # What overturned and the least that did; survivors would hide the other
+                # series.
                 fell = part.points[part.fallen]
                 name = labels(series_keys, part.values)
                 look = panels.look(place, most)
@@ -323,12 +383,21 @@ def overturning_spectrum(study: StoredPoints, options: SpectrumOptions) -> Found
             for word, name, shade, mark, size in LOOKS:
                 chosen = part.every[np.char.startswith(shown[part.every], word)]
                 if len(chosen):
-                    look = {"ls": "", "color": shade, "marker": mark, "ms": size, "mew": 0.0}
+                    look = {
+                        "ls": "",
+                        "color": shade,
+                        "marker": mark,
+                        "ms": size,
+                        "mew": 0.0,
+                    }
                     axes.plot(frequency[chosen], amplitude[chosen], label=name, **look)
             axes.plot(*boundary, color=style.BLACK, lw=1.2, label="least that overturns")
 
     rows = [
-        ((*group.values, *part.values), *(of[n] for of in (*both, rotation, table.outcomes)))
+        (
+            (*group.values, *part.values),
+            *(of[n] for of in (*both, rotation, table.outcomes)),
+        )
         for group, parts in clouds.items()
         for part in parts
         for n in part.every.tolist()
@@ -366,15 +435,20 @@ def _pulses_of(study: StoredPoints, options: SpectrumOptions) -> tuple[Array, Ar
 
 
 def _boundary(part: Histories, frequency: Array, amplitude: Array) -> tuple[Array, Array]:
-    """Frequency ratios, and the least amplitude ratios that overturned; NaN where none did."""
+    """Frequency ratios, and the least amplitude ratios that
+    overturned; NaN where none did.
+    """
     fallen = part.points[part.fallen]
     ratios = np.unique(frequency[part.every])
-    least = [amplitude[fallen[frequency[fallen] == r]].min(initial=np.inf) for r in ratios]
+    least = [
+        amplitude[fallen[frequency[fallen] == r]].min(initial=np.inf) for r in ratios
+    ]
     return ratios, np.where(np.isfinite(least), least, np.nan)
 
 
 def pulse_of(source: str, options: SpectrumOptions) -> PulseSection:
-    """The pulse of a record; a CaseError if it is none, and the options do not say what it is.
+    """The pulse of a record; a CaseError if it is none, and the
+    options do not say what it is.
 
     >>> pulse_of("pulse:sine?amplitude=0.4g&period=1.2&factor=2", SpectrumOptions())
     PulseSection(period=1.2, amplitude=None)
@@ -384,13 +458,16 @@ def pulse_of(source: str, options: SpectrumOptions) -> PulseSection:
         return given
     if (of := Source.parse(source)).scheme != "pulse":
         raise CaseError(
-            f"{source} is not a pulse with a period such as pulse:sine?amplitude=1g&period=1; give"
-            f" that of a file: pulses: {{{PurePath(source).name}: {{period: 0.8, amplitude: 3.9}}}}"
+            f"{source} is not a pulse with a period such as"
+            " pulse:sine?amplitude=1g&period=1; give that of a file: pulses:"
+            " {{PurePath(source).name}: {period: 0.8, amplitude: 3.9}}"
         )
     return PulseSection.model_construct(period=of.quantity("period", "time"))
 
 
-def records_without_period(layout: StudyPoints, options: SpectrumOptions) -> Iterator[str]:
+def records_without_period(
+    layout: StudyPoints, options: SpectrumOptions
+) -> Iterator[str]:
     """Records of a study that have no place in a spectrum."""
     yield from without_uplift(layout, options)
     requests = {properties.record for properties in layout.properties}
@@ -431,10 +508,10 @@ class Bilinear:
 def bilinear_fit(x: Array, y: Array) -> Bilinear | None:
     """The bilinear curve of least squares; None where there are too few points.
 
-    For every split of the sorted points two independent lines are fitted; if they cross between
-    the neighbours of the split that is the best curve with its break there. Otherwise the best
-    break of the interval is one of its ends, where the fit is linear. The least sum of squares of
-    all counts (D. J. Hudson, J. Am. Stat. Assoc. 61, 1966).
+    For every split of the sorted points two independent lines are fitted; if they cross
+    between the neighbours of the split that is the best curve with its break there.
+    Otherwise the best break of the interval is one of its ends, where the fit is linear.
+    The least sum of squares of all counts (D. J. Hudson, J. Am. Stat. Assoc. 61, 1966).
     """
     order = np.argsort(x, kind="stable")
     x = np.asarray(x)[order]
@@ -463,8 +540,12 @@ def bilinear_fit(x: Array, y: Array) -> Bilinear | None:
         crossing = middle + (c - a) / (b - d)
     crossing = np.where((left <= crossing) & (crossing <= right), crossing, left)
     breaks = np.concatenate([crossing, inner])
-    best_first = breaks[np.argsort(_squares(breaks - middle, *sums(breaks)), kind="stable")]
-    curves = [_curve(x, y, at) for at in [*dict.fromkeys(best_first.tolist())][:FINALISTS]]
+    best_first = breaks[
+        np.argsort(_squares(breaks - middle, *sums(breaks)), kind="stable")
+    ]
+    curves = [
+        _curve(x, y, at) for at in [*dict.fromkeys(best_first.tolist())][:FINALISTS]
+    ]
     return min(curves, key=lambda curve: curve.residual)
 
 
@@ -482,7 +563,11 @@ def _squares(k: Array, before: Array, after: Array) -> Array:
     low = x + m * k
     beyond = u - m * k
     both = k * (u - m * k)
-    rows = (n + m, low, beyond), (low, xx + m * k * k, both), (beyond, both, uu - k * (u + beyond))
+    rows = (
+        (n + m, low, beyond),
+        (low, xx + m * k * k, both),
+        (beyond, both, uu - k * (u + beyond)),
+    )
     matrix = np.moveaxis(np.array(rows), 2, 0)
     load = np.stack([y + v, xy + k * v, uv - k * v], axis=1)
     found = np.linalg.solve(matrix, load[:, :, None])[:, :, 0]
@@ -491,7 +576,9 @@ def _squares(k: Array, before: Array, after: Array) -> Array:
 
 def _curve(x: Array, y: Array, knee: float) -> Bilinear:
     """The best curve with its break at a given place."""
-    columns = np.column_stack([np.ones_like(x), np.minimum(x, knee), np.maximum(x - knee, 0.0)])
+    columns = np.column_stack(
+        [np.ones_like(x), np.minimum(x, knee), np.maximum(x - knee, 0.0)]
+    )
     coefficients = np.linalg.lstsq(columns, y, rcond=None)[0]
     residual = np.sqrt(np.sum((y - columns @ coefficients) ** 2) / max(len(x) - 4, 1))
     start, slope, after = coefficients.tolist()

@@ -1,4 +1,6 @@
-"""Statistics of a study and verdicts on them: CSV columns, documents, and tables for readers."""
+"""Statistics of a study and verdicts on them: CSV columns,
+documents, and tables for readers.
+"""
 
 from __future__ import annotations
 
@@ -47,17 +49,23 @@ FROM_BELOW = {"84": "16", "fractile_84": "fractile_16", "largest": "least"}
 def counted_columns(shares: Sequence[Share]) -> list[Column]:
     """Histories, and the recordings or events that they come from."""
     by = shares[0].by if shares else "recordings"
-    return columns_of(f"counted, {by}", [(share.of, share.recordings) for share in shares])
+    return columns_of(
+        f"counted, {by}", [(share.of, share.recordings) for share in shares]
+    )
 
 
 def share_columns(name: str, shares: Sequence[Share]) -> list[Column]:
     """Count, share and interval; `name` is what is counted."""
     heads = f"{name}, {name}_share, {name}_low, {name}_high"
-    return columns_of(heads, [(each.number, each.fraction, *each[2:4]) for each in shares])
+    return columns_of(
+        heads, [(each.number, each.fraction, *each[2:4]) for each in shares]
+    )
 
 
 def summary_columns(summary: Summary) -> list[Column]:
-    """`statistics.csv`: one row a system and intensity; ``inf`` where so many overturned."""
+    """`statistics.csv`: one row a system and intensity; ``inf``
+    where so many overturned.
+    """
     rows = summary.rows
     overturned = [row.overturned for row in summary.rows]
     columns = key_columns(summary.keys, [row.values for row in rows])
@@ -72,7 +80,9 @@ def summary_columns(summary: Summary) -> list[Column]:
     return columns
 
 
-def records_columns(labels: Sequence[str], histories: Sequence[Mapping[str, Any]]) -> list[Column]:
+def records_columns(
+    labels: Sequence[str], histories: Sequence[Mapping[str, Any]]
+) -> list[Column]:
     """`records.csv`: one row a record."""
     known = [q for q in (*HISTORY, *YIELDING, *SAMPLED) if q.name in histories[0]]
     rows = [
@@ -84,14 +94,22 @@ def records_columns(labels: Sequence[str], histories: Sequence[Mapping[str, Any]
 
 
 def demand_columns(summary: Summary) -> list[Column]:
-    """`statistics.csv` of one structure: one row a demand; ``inf`` where so many overturned."""
+    """`statistics.csv` of one structure: one row a demand; ``inf``
+    where so many overturned.
+    """
     (row,) = summary.rows
     rows = [
-        (of.name, of.unit, *(reached(getattr(spread, name)) for name in OF_RECORDS.values()))
+        (
+            of.name,
+            of.unit,
+            *(reached(getattr(spread, name)) for name in OF_RECORDS.values()),
+        )
         for of, spread in zip(summary.quantities, row.spreads, strict=True)
         if not of.from_below
     ]
-    return columns_of(f"quantity, unit, {', '.join(f'{name} [SI]' for name in OF_RECORDS)}", rows)
+    return columns_of(
+        f"quantity, unit, {', '.join(f'{name} [SI]' for name in OF_RECORDS)}", rows
+    )
 
 
 def verdict_columns(keys: Sequence[str], verdicts: Sequence[Verdict]) -> list[Column]:
@@ -114,7 +132,9 @@ def verdict_columns(keys: Sequence[str], verdicts: Sequence[Verdict]) -> list[Co
         *keyed(keys, f"{heads}, value_at_fractile [SI]", limits),
         *counted_columns(beyond),
         *share_columns("beyond", beyond),
-        *columns_of("overturned_among_them, exceeded, shown, shown_by_recordings, source", results),
+        *columns_of(
+            "overturned_among_them, exceeded, shown, shown_by_recordings, source", results
+        ),
     ]
 
 
@@ -143,7 +163,12 @@ def summary_document(summary: Summary) -> list[dict[str, Any]]:
 
 def share_document(share: Share) -> dict[str, Any]:
     """A share in JSON."""
-    return {"count": share.number, "share": share.fraction, "low": share.low, "high": share.high}
+    return {
+        "count": share.number,
+        "share": share.fraction,
+        "low": share.low,
+        "high": share.high,
+    }
 
 
 def verdict_document(keys: Sequence[str], verdict: Verdict) -> dict[str, Any]:
@@ -165,7 +190,9 @@ def verdict_document(keys: Sequence[str], verdict: Verdict) -> dict[str, Any]:
     }
 
 
-def verdict_lines(keys: Sequence[str], verdicts: Sequence[Verdict], of: str = "") -> list[str]:
+def verdict_lines(
+    keys: Sequence[str], verdicts: Sequence[Verdict], of: str = ""
+) -> list[str]:
     """Each limit that fails in a line."""
     lines = []
     for verdict in filter(lambda verdict: verdict.fails, verdicts):
@@ -178,8 +205,12 @@ def verdict_lines(keys: Sequence[str], verdicts: Sequence[Verdict], of: str = ""
     return lines
 
 
-def summary_tables(summary: Summary | None, wanted: set[str] | None = None) -> Iterator[Part]:
-    """Outcomes; then median, 84 % fractile and largest value of demands: the main or some."""
+def summary_tables(
+    summary: Summary | None, wanted: set[str] | None = None
+) -> Iterator[Part]:
+    """Outcomes; then median, 84 % fractile and largest value of
+    demands: the main or some.
+    """
     if summary is None:
         return
     rows = summary.rows
@@ -201,12 +232,14 @@ def summary_tables(summary: Summary | None, wanted: set[str] | None = None) -> I
     kinds = ([each for each in shown if each[1].demand is main] for main in (True, False))
     for some in (of[n : n + A_TABLE] for of in kinds for n in range(0, len(of), A_TABLE)):
         named = [headed(quantity.label, quantity.unit) for _, quantity in some]
-        spreads = [[_spread(row.spreads[place], of.unit) for place, of in some] for row in rows]
+        spreads = [
+            [_spread(row.spreads[place], of.unit) for place, of in some] for row in rows
+        ]
         yield _of_systems(summary, systems, named, spreads)
     if shown:
         yield (
-            "demands: median / 84 % fractile / largest; - where so many overturned, and in brackets"
-            " the least and the largest of those that stand"
+            "demands: median / 84 % fractile / largest; - where so many overturned, and"
+            " in brackets the least and the largest of those that stand"
         )
     if summary.pooled:
         yield f"each row is over all records and {' and '.join(summary.pooled)}"
@@ -222,7 +255,9 @@ def verdict_table(summary: Summary, verdicts: Sequence[Verdict]) -> Table:
     """Every limit of each system and intensity; those that are exceeded first."""
     ordered = sorted(verdicts, key=lambda verdict: (not verdict.exceeded, verdict.shown))
     systems = [verdict.values for verdict in ordered]
-    return _of_systems(summary, systems, VERDICT, map(verdict_texts, ordered), words=4, keys=1)
+    return _of_systems(
+        summary, systems, VERDICT, map(verdict_texts, ordered), words=4, keys=1
+    )
 
 
 def _of_systems(
@@ -237,13 +272,20 @@ def _of_systems(
     """A table whose rows begin with a system and an intensity."""
     columns = key_columns(summary.keys, systems)
     named = [key_cells(column, symbol(column.name)) for column in columns]
-    rows = [[*(texts[place] for _, texts in named), *others] for place, others in enumerate(cells)]
+    rows = [
+        [*(texts[place] for _, texts in named), *others]
+        for place, others in enumerate(cells)
+    ]
     own = [head for head, _ in named]
-    return Table.of_texts([*own, *heads], rows, words=len(own) + words, keys=len(own) + keys)
+    return Table.of_texts(
+        [*own, *heads], rows, words=len(own) + words, keys=len(own) + keys
+    )
 
 
 def of_first_system(layout: StudyPoints) -> str:
-    """Overturning and restitution of the first system, others differ; limits that do not count."""
+    """Overturning and restitution of the first system, others differ;
+    limits that do not count.
+    """
     first = layout.system(0)
     text = overturned_text(first.structure, first.settings)
     text = f"{text}; {restitution_text(first.structure)}"
@@ -254,12 +296,16 @@ def of_first_system(layout: StudyPoints) -> str:
 
 
 def note_of_directions(layout: StudyPoints) -> str:
-    """That histories have one direction only; by the first system, whether they could have both."""
+    """That histories have one direction only; by the first system,
+    whether they could have both.
+    """
     return direction_note(layout.pairs, layout.system(0).structure.planar_only)
 
 
 def cut(parts: Iterable[Part], rows: int = MOST_ROWS, others: str = "") -> Iterator[Part]:
-    """The parts with so many rows of each table, but listings, and a remark on what is left out."""
+    """The parts with so many rows of each table, but listings, and a
+    remark on what is left out.
+    """
     longest = 0
     for part in parts:
         if isinstance(part, Table) and any(part.heads) and len(part) > rows:

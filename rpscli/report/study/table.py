@@ -1,4 +1,6 @@
-"""Tables of a statistic: the share that overturns (paper, Table 3), or that of any demand."""
+"""Tables of a statistic: the share that overturns (paper, Table
+3), or that of any demand.
+"""
 
 from __future__ import annotations
 
@@ -26,7 +28,12 @@ from rpscli.report.study.report import (
 )
 from rpscli.report.table import Column
 from rpscli.sweep.evaluation import SCALARS
-from rpscli.sweep.statistics.grouping import Histories, grouping, shown_keys, statistic_words
+from rpscli.sweep.statistics.grouping import (
+    Histories,
+    grouping,
+    shown_keys,
+    statistic_words,
+)
 from rpscli.sweep.table import Array, StoredPoints, groups, leading_keys
 
 MOST_ROWS = 60
@@ -48,18 +55,25 @@ class OverturningOptions(ReportOptions):
 class TableOptions(OverturningOptions):
     """A statistic of a demand, or the share that overturns, as a table."""
 
-    result: DemandName = Field("rotation_ratio", description="of which the statistic is taken")
+    result: DemandName = Field(
+        "rotation_ratio", description="of which the statistic is taken"
+    )
     statistic: StatisticOrShare = Field(
         "median",
-        description="of the histories of a cell; an overturned one is larger than any demand, but"
-        " for the mean, which is that of survivors; overturned: the share of them, of any result",
+        description=(
+            "of the histories of a cell; an overturned one is larger than any demand,"
+            " but for the mean, which is that of survivors; overturned: the share of"
+            " them, of any result"
+        ),
     )
 
 
 class Cell(NamedTuple):
     """What a table has of some histories."""
 
-    numbers: Mapping[str, float | int | str | None]  # by what follows the name of their column
+    numbers: Mapping[
+        str, float | int | str | None
+    ]  # by what follows the name of their column
     texts: tuple[str, str]  # lines in the picture
     shade: float  # from 0 to 1
 
@@ -68,7 +82,11 @@ def _share(histories: Histories) -> Cell:
     """How many overturned."""
     share = histories.overturned
     ends = {";low": share.low, ";high": share.high}
-    counts = {";number": share.number, ";counted": share.of, f";{share.by}": share.recordings}
+    counts = {
+        ";number": share.number,
+        ";counted": share.of,
+        f";{share.by}": share.recordings,
+    }
     texts = (
         "-" if share.fraction is None else f"{share.fraction:.2f}",
         f"{share.number} of {share.of}, {share.interval}",
@@ -76,7 +94,9 @@ def _share(histories: Histories) -> Cell:
     return Cell({"": share.fraction, **ends, **counts}, texts, share.fraction or 0.0)
 
 
-def _statistic(histories: Histories, values: Array, wanted: float | str, largest: float) -> Cell:
+def _statistic(
+    histories: Histories, values: Array, wanted: float | str, largest: float
+) -> Cell:
     """A statistic of a demand, whose largest value of what stood is known."""
     found = histories.statistic(values, wanted)
     fallen = histories.overturned.number
@@ -102,12 +122,16 @@ def table_report(study: StoredPoints, options: TableOptions) -> Found:
         result = options.result
         unit = quantity.unit
         words = f"{quantity.in_unit(unit)}: {statistic_words(options.statistic)}"
-        make = partial(_statistic, values=values, wanted=options.statistic, largest=largest)
+        make = partial(
+            _statistic, values=values, wanted=options.statistic, largest=largest
+        )
     elif behind := Histories(table, (), np.arange(len(table))).overturned.behind:
         words += f", which counts{behind.removeprefix(' from')}"
     across = options.columns
     if across is None:
-        across = tuple(key for key in leading_keys(layout)[-1:] if key not in (options.rows or ()))
+        across = tuple(
+            key for key in leading_keys(layout)[-1:] if key not in (options.rows or ())
+        )
     rows = grouping(table, options.rows, across)
     column_keys = shown_keys(layout, across)
     columns = [group.values for group in groups(layout, across)]
@@ -160,7 +184,9 @@ def _picture(
     title: str,
     figure: style.Figure,
 ) -> None:
-    """The first rows and columns, on cells that are the darker the larger their numbers."""
+    """The first rows and columns, on cells that are the darker
+    the larger their numbers.
+    """
     own = min(style.WIDTH, 3.4 + 1.25 * len(heads))
     width = style.room(figure, own)
     size = SMALL * FONT_SIZE
@@ -171,15 +197,21 @@ def _picture(
     def lines(texts: Iterable[str]) -> int:
         return 1 + max(text.count("\n") for text in texts)
 
-    # Names may be as wide as the figure; what would run into the next column goes on below.
-    names = [style.folded(style.typeset(name), 0.4 * width, size) for name in names[:MOST_ROWS]]
+    # Names may be as wide as the figure; what would run into the next column goes on
+    # below.
+    names = [
+        style.folded(style.typeset(name), 0.4 * width, size) for name in names[:MOST_ROWS]
+    ]
     beside = 0.4 + wide(names)
     columns = max(1, min(MOST_COLUMNS, len(heads), int((width - beside) / LEAST_WIDTH)))
     room = max((width - beside) / columns, 0.2)
     drawn = [row[:columns] for row in cells[: len(names)]]
-    few = [style.folded(style.typeset(head), 0.95 * room, size) for head in heads[:columns]]
+    few = [
+        style.folded(style.typeset(head), 0.95 * room, size) for head in heads[:columns]
+    ]
     below = [
-        [style.folded(cell.texts[1], 0.95 * room / SMALLER, size) for cell in row] for row in drawn
+        [style.folded(cell.texts[1], 0.95 * room / SMALLER, size) for cell in row]
+        for row in drawn
     ]
     height = max(0.19 + 0.11 * max(map(lines, below)), 0.1 + LINE * lines(names))
     other = 0.6 + LINE * lines(few)
@@ -199,7 +231,14 @@ def _picture(
         up = 0.055 * lines([further]) * bool(further)
         fits = size * min(1.0 / SMALL, 0.95 * room / wide([first]))
         at = y + 0.5
-        axes.text(x + 0.5, at - (up - 0.07) / height, first, va="bottom", fontsize=fits, **inside)
+        axes.text(
+            x + 0.5,
+            at - (up - 0.07) / height,
+            first,
+            va="bottom",
+            fontsize=fits,
+            **inside,
+        )
         axes.text(
             x + 0.5, at - (up - 0.08) / height, further, va="top", fontsize=SMALLER * size,
             **inside,

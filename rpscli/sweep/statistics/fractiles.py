@@ -1,4 +1,6 @@
-"""Shares of histories with their intervals; fractiles in which an overturned one is the worst."""
+"""Shares of histories with their intervals; fractiles in which an
+overturned one is the worst.
+"""
 
 from __future__ import annotations
 
@@ -26,11 +28,12 @@ ROUNDING = 1e-9
 
 
 class Share(NamedTuple):
-    """A count out of a number of histories, and the interval of the probability; NaN without any.
+    """A count out of a number of histories, and the interval of the
+    probability; NaN without any.
 
-    The interval is that of Clopper and Pearson, exact for independent histories, see `clustered`
-    for others: `recordings` are behind them, or events if `by` says so. Where none or all are
-    counted it has one end only, which then has the whole confidence.
+    The interval is that of Clopper and Pearson, exact for independent histories, see
+    `clustered` for others: `recordings` are behind them, or events if `by` says so. Where
+    none or all are counted it has one end only, which then has the whole confidence.
     """
 
     number: int
@@ -60,7 +63,8 @@ class Share(NamedTuple):
     def __str__(self) -> str:
         """Counts and interval."""
         return (
-            f"{self.number} of {self.of}{self.behind} ({100.0 * CONFIDENCE:g} %: {self.interval})"
+            f"{self.number} of {self.of}{self.behind} ({100.0 * CONFIDENCE:g} %:"
+            f" {self.interval})"
         )
 
     @property
@@ -68,7 +72,9 @@ class Share(NamedTuple):
         """Number of recordings or events behind the histories, where these are fewer."""
         if self.recordings == self.of:
             return ""
-        return f" from {self.recordings} {self.by[:-1] if self.recordings == 1 else self.by}"
+        return (
+            f" from {self.recordings} {self.by[:-1] if self.recordings == 1 else self.by}"
+        )
 
 
 def share(number: int, of: int) -> Share:
@@ -76,15 +82,19 @@ def share(number: int, of: int) -> Share:
     return Share(number, of, *_interval(number, of), of)
 
 
-def clustered(happened: NDArray[np.bool_], cluster: Indices, by: By = "recordings") -> Share:
-    """The share of histories (m,) of clusters (m,), whose histories need not be independent.
+def clustered(
+    happened: NDArray[np.bool_], cluster: Indices, by: By = "recordings"
+) -> Share:
+    """The share of histories (m,) of clusters (m,), whose histories
+    need not be independent.
 
-    The interval is that of fewer, independent ones: their number is divided by how much more the
-    counts of clusters scatter than those of independent histories would (the effective sample size
-    of E. L. Korn and B. I. Graubard, Survey Methodology 24, 1998), but by no more than if all
-    histories of a cluster ended alike. What few clusters show of their scatter is little, and
-    nothing where none or all are counted; so two more are taken in for it, one in which it happened
-    in all histories, and one in which it happened in none.
+    The interval is that of fewer, independent ones: their number is divided by how much
+    more the counts of clusters scatter than those of independent histories would (the
+    effective sample size of E. L. Korn and B. I. Graubard, Survey Methodology 24,
+    1998), but by no more than if all histories of a cluster ended alike. What few
+    clusters show of their scatter is little, and nothing where none or all are counted;
+    so two more are taken in for it, one in which it happened in all histories, and one
+    in which it happened in none.
     """
     number = int(happened.sum())
     of = len(happened)
@@ -99,7 +109,9 @@ def clustered(happened: NDArray[np.bool_], cluster: Indices, by: By = "recording
     total = sizes.sum()
     several = len(sizes)
     p = counts.sum() / total
-    scatter = several / (several - 1.0) * float(np.sum((counts - p * sizes) ** 2)) / total**2
+    scatter = (
+        several / (several - 1.0) * float(np.sum((counts - p * sizes) ** 2)) / total**2
+    )
     effective = min(max(of * p * (1.0 - p) / total / scatter, alike), of)
     low, high = _interval(number * effective / of, effective)
     return Share(number, of, low, high, len(names), by, effective)
@@ -127,9 +139,13 @@ def _interval(number: float, of: float) -> tuple[float, float]:
 
 @lru_cache(maxsize=4096)
 def shown_by(found: Share, admissible: float) -> int:
-    """Number of recordings that would end the interval at an admissible share, no more beyond."""
+    """Number of recordings that would end the interval at an
+    admissible share, no more beyond.
+    """
     effective = found.of if math.isnan(found.effective) else found.effective
-    number = found.number if effective == found.of else found.number * effective / found.of
+    number = (
+        found.number if effective == found.of else found.number * effective / found.of
+    )
     each = found.recordings / effective
     most = math.ceil(number) + 1
     while _interval(number, most)[1] > admissible:
@@ -142,8 +158,9 @@ def shown_by(found: Share, admissible: float) -> int:
 class Spread(NamedTuple):
     """Median, 84 % fractile, largest value and mean; infinite where so many overturned.
 
-    Of a result of which small values are bad: median, 16 % fractile, least value and mean.
-    `low_stands` and `high_stands` are the least and the largest that did not overturn.
+    Of a result of which small values are bad: median, 16 % fractile, least
+    value and mean. `low_stands` and `high_stands` are the least and the
+    largest that did not overturn.
     """
 
     median: float
@@ -170,12 +187,16 @@ def fractiles(demands: Array, shares: Sequence[float]) -> Array:
 
 @lru_cache(maxsize=4096)
 def _places(shares: tuple[float, ...], total: int) -> list[int]:
-    """Places of the least of so many ordered values that so large shares do not exceed."""
+    """Places of the least of so many ordered values that so
+    large shares do not exceed.
+    """
     return [max(math.ceil(share * total - ROUNDING), 1) - 1 for share in shares]
 
 
 def spread(demands: Array, *, from_below: bool = False) -> Spread:
-    """Median, fractile, worst and mean of demands; NaN where a history that stood has none."""
+    """Median, fractile, worst and mean of demands; NaN where a
+    history that stood has none.
+    """
     if np.isnan(demands).any() or not len(demands):
         return Spread(*[np.nan] * len(Spread._fields))
     shares = (0.5, LOW, 0.0) if from_below else (0.5, HIGH, 1.0)

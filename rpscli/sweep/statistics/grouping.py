@@ -1,7 +1,7 @@
 """Groups of histories, as every statistic of a study counts them.
 
-What is kept apart, what is pooled, which points failed, shares with their intervals and fractiles
-are decided here once: a report names keys, and takes what it gets.
+What is kept apart, what is pooled, which points failed, shares with their intervals and
+fractiles are decided here once: a report names keys, and takes what it gets.
 """
 
 from __future__ import annotations
@@ -65,7 +65,9 @@ class Histories(Frozen):
         return demand(self.table, values)[self.points]
 
     def statistic(self, values: Array, wanted: float | str) -> float:
-        """The mean of survivors, or a fractile in which what overturned is the largest; or NaN."""
+        """The mean of survivors, or a fractile in which what
+        overturned is the largest; or NaN.
+        """
         if wanted == "mean":
             known = values[self.survivors]
             known = known[~np.isnan(known)]
@@ -89,7 +91,9 @@ def statistic_words(wanted: float | str) -> str:
 
 @dataclass(frozen=True, eq=False)
 class Grouping:
-    """All groups under the keys of tables; `pooled` differs within them, `notes` warn of it."""
+    """All groups under the keys of tables; `pooled` differs within
+    them, `notes` warn of it.
+    """
 
     keys: tuple[str, ...]
     groups: tuple[Histories, ...]

@@ -1,16 +1,16 @@
-"""Seismic hazard against a lognormal fragility: how often a year a limit state is exceeded.
+"""Seismic hazard against a lognormal fragility: how often a year a
+limit state is exceeded.
 
-Between its points a hazard curve is a power law, H = H_a (im/im_a)^-k, and so it goes on beyond the
-last of them. With P = Phi(ln(im/median)/beta) every such piece of the annual rate
+Between its points a hazard curve is a power law, H = H_a (im/im_a)^-k, and so it
+goes on beyond the last of them. With P = Phi(ln(im/median)/beta) every such
+piece of the annual rate
 
     rate = integral of P |dH| = P(im_0) H(im_0) + integral of H dP
 
 has a closed form, by completing the square: no step of integration has to be chosen.
 
-References
-----------
-C. A. Cornell, F. Jalayer, R. O. Hamburger and D. A. Foutch, J. Struct. Eng. 128, 2002: a power law
-throughout gives rate = H(median) exp(k^2 beta^2/2).
+References ---------- C. A. Cornell, F. Jalayer, R. O. Hamburger and D. A. Foutch, J.
+Struct. Eng. 128, 2002: a power law throughout gives rate = H(median) exp(k^2 beta^2/2).
 """
 
 from __future__ import annotations
@@ -37,10 +37,11 @@ USUAL: dict[Measure, str] = {"PGA": "g", "Sa": "g", "PGV": "cm/s"}
 
 @dataclass(frozen=True, eq=False)
 class Hazard:
-    """Ascending intensities (points,) in SI, and how often a year they are exceeded [1/year].
+    """Ascending intensities (points,) in SI, and how often a year
+    they are exceeded [1/year].
 
-    `fractiles` are further curves (points,), by the share of the site's models that they are above;
-    `left_out` rows at the end of the table had rates of zero.
+    `fractiles` are further curves (points,), by the share of the site's models that they
+    are above; `left_out` rows at the end of the table had rates of zero.
     """
 
     intensity: Array
@@ -54,7 +55,9 @@ class Hazard:
 
 
 def read_hazard(path: Path, measure: Measure) -> Hazard:
-    """A hazard curve from a CSV file headed ``PGV [cm/s],rate [1/year]``, then fractiles."""
+    """A hazard curve from a CSV file headed ``PGV [cm/s],rate
+    [1/year]``, then fractiles.
+    """
     every = csv_rows(read_text(path), path)
     rows = [(line, row) for line, row in every if not row[0].lstrip().startswith("#")]
     whole = len(rows)
@@ -63,18 +66,23 @@ def read_hazard(path: Path, measure: Measure) -> Hazard:
         rows.pop()
     if len(rows) < 3:
         raise CaseError(
-            f"{path}: a hazard curve has a header, {_header(measure)}, and at least two rows"
+            f"{path}: a hazard curve has a header, {_header(measure)}, and at least two"
+            " rows"
         )
     factor, shares = _head(path, *rows[0], measure)
-    points = np.array([_numbers(path, line, row, len(shares) + 2) for line, row in rows[1:]])
+    points = np.array(
+        [_numbers(path, line, row, len(shares) + 2) for line, row in rows[1:]]
+    )
     for (line, row), steps in zip(rows[2:], np.diff(points, axis=0), strict=True):
         if steps[0] <= 0.0:
-            raise CaseError(f"{path}:{line}: {shown(row[0])} must be above the row before")
+            raise CaseError(
+                f"{path}:{line}: {shown(row[0])} must be above the row before"
+            )
         if (steps[1:] > 0.0).any():
             rate = row[1 + int(np.argmax(steps[1:] > 0.0))]
             raise CaseError(
-                f"{path}:{line}: the rate {shown(rate)} is above that of the row before; stronger"
-                " motions are not more frequent"
+                f"{path}:{line}: the rate {shown(rate)} is above that of the row before;"
+                " stronger motions are not more frequent"
             )
     fractiles = dict(zip(shares, points.T[2:], strict=True))
     return Hazard(points[:, 0] * factor, points[:, 1], fractiles, whole - len(rows))
@@ -94,22 +102,31 @@ def _head(
     wrong = f"{path}:{line}: the header {shown(','.join(row))}"
     if names[:2] not in ([measure.lower(), "rate"], [measure.lower(), "mean"]):
         raise CaseError(
-            f"{wrong} must be {_header(measure)}, and fractiles behind it, `0.16 [1/year]`"
+            f"{wrong} must be {_header(measure)}, and fractiles behind it, `0.16"
+            " [1/year]`"
         )
     if missing := [shown(row[place]) for place, unit in enumerate(units) if not unit]:
-        raise CaseError(f"{wrong} lacks the unit of {', '.join(missing)}: write {_header(measure)}")
+        raise CaseError(
+            f"{wrong} lacks the unit of {', '.join(missing)}: write {_header(measure)}"
+        )
     shares = []
     for name, unit in zip(names[1:], units[1:], strict=True):
         if unit not in RATE_UNITS:
-            raise CaseError(f"{wrong}: the unit of {name} must be one of {', '.join(RATE_UNITS)}")
+            raise CaseError(
+                f"{wrong}: the unit of {name} must be one of {', '.join(RATE_UNITS)}"
+            )
     for name in names[2:]:
         shares.append(_number(name))
         if not 0.0 < shares[-1] < 1.0:
-            raise CaseError(f"{wrong}: {shown(name)} must be a fractile, as in `0.84 [1/year]`")
+            raise CaseError(
+                f"{wrong}: {shown(name)} must be a fractile, as in `0.84 [1/year]`"
+            )
     try:
         return si_value(f"1 {units[0]}", MEASURES[measure].unit), tuple(shares)
     except ValueError as error:
-        raise CaseError(f"{path}:{line}: the unit of {measure}: 1 {units[0]} {error}") from None
+        raise CaseError(
+            f"{path}:{line}: the unit of {measure}: 1 {units[0]} {error}"
+        ) from None
 
 
 def _numbers(path: Path, line: int, row: Sequence[str], count: int) -> tuple[float, ...]:
@@ -141,8 +158,9 @@ def exceeded(hazard: Hazard, intensities: Array) -> Array:
 
 def rate_of_shares(hazard: Hazard, intensities: Array, shares: Array) -> float:
     """The annual rate straight from shares (levels,) that exceed the limit [1/year]."""
-    # By parts: P(im_0) H(im_0) + integral of H dP. Shares are linear in ln im and constant outside;
-    # the mean of a power law over a step of the logarithm is the logarithmic mean of its ends.
+    # By parts: P(im_0) H(im_0) + integral of H dP. Shares are linear in ln im and
+    # constant outside; the mean of a power law over a step of the logarithm is the
+    # logarithmic mean of its ends.
     levels = intensities[intensities > hazard.intensity[0]]
     grid = np.unique(np.concatenate([hazard.intensity, levels]))
     rates = exceeded(hazard, grid)
@@ -154,13 +172,17 @@ def rate_of_shares(hazard: Hazard, intensities: Array, shares: Array) -> float:
 
 
 def annual_rate(hazard: Hazard, median: float, beta: float) -> float:
-    """Annual rate at which motions above the curve's first point exceed the limit [1/year]."""
+    """Annual rate at which motions above the curve's first point
+    exceed the limit [1/year].
+    """
     low = hazard.intensity[:1]
     return float(rates_above(hazard, median, beta, low)[0])
 
 
 def rates_above(hazard: Hazard, median: float, beta: float, intensities: Array) -> Array:
-    """(n,) how often a year motions above intensities of the curve exceed the limit [1/year]."""
+    """(n,) how often a year motions above intensities of the curve
+    exceed the limit [1/year].
+    """
     from scipy.special import ndtr
 
     x = np.log(hazard.intensity)
@@ -169,18 +191,23 @@ def rates_above(hazard: Hazard, median: float, beta: float, intensities: Array) 
     at = np.log(intensities)
     first = np.minimum(np.searchsorted(x, at, side="right") - 1, len(slopes) - 1)
     here = np.log(exceeded(hazard, intensities))
-    # Whole pieces, then the one without end, and of each the part above an intensity in it.
+    # Whole pieces, then the one without end, and of each the part above an intensity in
+    # it.
     ends = np.append(x[1:-1], math.inf)
     pieces = _pieces(height[:-1], slopes, x[:-1], ends, math.log(median), beta)
     later = np.append(np.cumsum(pieces[::-1])[::-1][1:], 0.0)
     part = _pieces(here, slopes[first], at, ends[first], math.log(median), beta)
-    return np.asarray(ndtr((at - math.log(median)) / beta) * np.exp(here) + part + later[first])
+    return np.asarray(
+        ndtr((at - math.log(median)) / beta) * np.exp(here) + part + later[first]
+    )
 
 
 def _pieces(
     height: Array, slope: Array, start: Array, end: Array, middle: float, beta: float
 ) -> Array:
-    """Integrals of H dP over power laws that have the logarithm `height` at their start."""
+    """Integrals of H dP over power laws that have the logarithm
+    `height` at their start.
+    """
     from scipy.special import log_ndtr
 
     constant = height + slope * (start - middle) + 0.5 * (slope * beta) ** 2

@@ -1,17 +1,16 @@
 """A lognormal fragility through yes-or-no data, with bands by bootstrap.
 
-It is a probit regression on the logarithm of the intensity, P(y = 1) = Phi(a + b x), for many
-weightings of the data at once. With data that some x separates the likelihood has no maximum: b
-grows without end. Jeffreys' prior as a penalty, the log of the root of the information's
-determinant, keeps the estimates finite, and takes away most of their bias in small samples. But
-beta is then the prior's, and would be in every bootstrap sample: such data have no bands. Where
-samples of other data are separated, or fall with the intensity, they determine nothing, and count
-as beyond both ends of a band; if they are more than its tails there is none.
+It is a probit regression on the logarithm of the intensity, P(y = 1) = Phi(a + b x), for
+many weightings of the data at once. With data that some x separates the likelihood has no
+maximum: b grows without end. Jeffreys' prior as a penalty, the log of the root of the
+information's determinant, keeps the estimates finite, and takes away most of their bias
+in small samples. But beta is then the prior's, and would be in every bootstrap sample:
+such data have no bands. Where samples of other data are separated, or fall with the
+intensity, they determine nothing, and count as beyond both ends of a band; if they are
+more than its tails there is none.
 
-References
-----------
-D. Firth, Biometrika 80, 1993; I. Kosmidis and D. Firth, Biometrika 108, 2021 (the penalty for any
-link, and that its estimates are always finite).
+References ---------- D. Firth, Biometrika 80, 1993; I. Kosmidis and D. Firth, Biometrika
+108, 2021 (the penalty for any link, and that its estimates are always finite).
 """
 
 from __future__ import annotations
@@ -31,13 +30,16 @@ Band = tuple[float, float]
 LEAST_SLOPE = 0.01
 """Of a sample of the records that determines a fragility; beta is above 100 below it."""
 LARGEST_ARRAY = 1_000_000
-"""Resamples times points that are fitted at once: a dozen arrays of this size are held."""
+"""Resamples times points that are fitted at once: a dozen
+arrays of this size are held."""
 
 NOTHING: Band = (math.nan, math.nan)
 
 
 class Bootstrap(NamedTuple):
-    """Number of the samples that bands come from, the probability inside them, and the seed."""
+    """Number of the samples that bands come from, the probability
+    inside them, and the seed.
+    """
 
     resamples: int
     confidence: float
@@ -48,11 +50,12 @@ class Bootstrap(NamedTuple):
 class Lognormal:
     """Phi(ln(im/median)/beta); NaN where there is no fit.
 
-    `note` tells what keeps the fit from being an ordinary one. `curve` and `band` are at the
-    intensities asked for; the bands enclose the confidence asked for, and are NaN where they are
-    not determined. `resampled` are median and beta, each (samples,), of the bootstrap samples, NaN
-    of those that determine neither. Separated data say no more than that the median lies `between`
-    an intensity up to which no point exceeds the limit and one from which all do.
+    `note` tells what keeps the fit from being an ordinary one. `curve` and `band` are at
+    the intensities asked for; the bands enclose the confidence asked for, and are NaN
+    where they are not determined. `resampled` are median and beta, each (samples,), of
+    the bootstrap samples, NaN of those that determine neither. Separated data say no more
+    than that the median lies `between` an intensity up to which no point exceeds the
+    limit and one from which all do.
     """
 
     method: Method
@@ -81,10 +84,13 @@ def lognormal_fit(
     bootstrap: Bootstrap,
     level: Array | None = None,
 ) -> Lognormal:
-    """A lognormal distribution function through data (points,), at the intensities of a grid."""
-    # The bootstrap draws whole clusters. A weight below 1 is that of variations that share a
-    # motion; the penalty is the stronger for it. A `level` (points,) is the intensity without small
-    # perturbations, which cannot tell what intensities do: by it data are called separated.
+    """A lognormal distribution function through data (points,), at
+    the intensities of a grid.
+    """
+    # The bootstrap draws whole clusters. A weight below 1 is that of variations that
+    # share a motion; the penalty is the stronger for it. A `level` (points,) is the
+    # intensity without small perturbations, which cannot tell what intensities do: by it
+    # data are called separated.
     x = np.log(intensity)
     level = intensity if level is None else level
     note = _hopeless(level, exceeded)
@@ -127,7 +133,9 @@ def _hopeless(level: Array, y: NDArray[np.bool_]) -> str | None:
 
 
 def _separation(level: Array, y: NDArray[np.bool_]) -> tuple[Band, str]:
-    """Between which intensities separated data change from none to all, and what to say of it."""
+    """Between which intensities separated data change from none to
+    all, and what to say of it.
+    """
     top = float(level[~y].max())
     bottom = float(level[y].min())
     none = level[level < bottom]
@@ -142,8 +150,8 @@ def _separation(level: Array, y: NDArray[np.bool_]) -> tuple[Band, str]:
         counts = f"{int(y[here].sum())} of {int(here.sum())} points exceed the limit"
         where = f"at the intensity {top:.4g} alone {counts}, {below}, {above}"
     return between, (
-        f"the data are separated: {where}; beta comes from a penalty (Firth), not from the data, so"
-        " that there are no bands. Add records, or intensities around these"
+        f"the data are separated: {where}; beta comes from a penalty (Firth), not from"
+        " the data, so that there are no bands. Add records, or intensities around these"
     )
 
 
@@ -151,7 +159,9 @@ def _no_fit(note: str, grid: Array) -> Lognormal:
     nothing = np.full(len(grid), math.nan)
     band = (nothing, nothing)
     none = (np.empty(0), np.empty(0))
-    return Lognormal("none", note, math.nan, math.nan, NOTHING, NOTHING, nothing, band, none)
+    return Lognormal(
+        "none", note, math.nan, math.nan, NOTHING, NOTHING, nothing, band, none
+    )
 
 
 def _resampled(
@@ -164,7 +174,9 @@ def _resampled(
     *,
     apart: bool,
 ) -> tuple[Probit, str | None]:
-    """Fits to bootstrap samples of the records, NaN of those without, and how many these are."""
+    """Fits to bootstrap samples of the records, NaN of those
+    without, and how many these are.
+    """
     count = 0 if apart else bootstrap.resamples
     generator = np.random.default_rng(bootstrap.seed)
     names, place = np.unique(cluster, return_inverse=True)
@@ -183,19 +195,29 @@ def _resampled(
     intercept, slope = (np.where(kept, values, math.nan) for values in found[:2])
     note = None
     if lost := int((~kept).sum()):
-        none = "" if lost <= 0.5 * (1.0 - bootstrap.confidence) * count else ": too many for bands"
-        note = f"{lost} of {count} bootstrap samples of the records give no fragility{none}"
+        none = (
+            ""
+            if lost <= 0.5 * (1.0 - bootstrap.confidence) * count
+            else ": too many for bands"
+        )
+        note = (
+            f"{lost} of {count} bootstrap samples of the records give no fragility{none}"
+        )
     return Probit(intercept, slope, kept), note
 
 
 def bands(values: Array, confidence: float) -> tuple[Array, Array]:
-    """Ends (n,) that enclose the confidence of values (samples, n); NaN counts beyond both."""
+    """Ends (n,) that enclose the confidence of values (samples,
+    n); NaN counts beyond both.
+    """
     if not len(values):
         return (np.full(values.shape[1:], math.nan),) * 2
     tail = 50.0 * (1.0 - confidence)
     unknown = np.isnan(values)
     low = np.percentile(np.where(unknown, -np.inf, values), tail, axis=0, method="lower")
-    high = np.percentile(np.where(unknown, np.inf, values), 100.0 - tail, axis=0, method="higher")
+    high = np.percentile(
+        np.where(unknown, np.inf, values), 100.0 - tail, axis=0, method="higher"
+    )
     known = np.isfinite(low) & np.isfinite(high)
     return np.where(known, low, math.nan), np.where(known, high, math.nan)
 
@@ -221,15 +243,19 @@ def _probability(fit: Probit, grid: Array) -> Array:
 MOST_STEPS = 200
 MOST_HALVINGS = 30
 LARGEST = 25.0
-"""Linear predictor beyond which probabilities are 0 or 1 to rounding, and densities vanish."""
+"""Linear predictor beyond which probabilities are 0 or 1 to
+rounding, and densities vanish."""
 CLOSE_ENOUGH = 1e-10
-"""Change of both coefficients, in units of the standardised variable, at which a fit is over."""
+"""Change of both coefficients, in units of the standardised
+variable, at which a fit is over."""
 CLOSE_ENOUGH_RESAMPLED = 1e-4
 """Such a change for fits to bootstrap samples, whose percentiles are rough anyway."""
 
 
 class Probit(NamedTuple):
-    """Coefficients, each (fits,), in P = Phi(intercept + slope x); no fit unless converged."""
+    """Coefficients, each (fits,), in P = Phi(intercept + slope x);
+    no fit unless converged.
+    """
 
     intercept: Array
     slope: Array
@@ -237,7 +263,9 @@ class Probit(NamedTuple):
 
 
 def separated(x: Array, y: NDArray[np.bool_], weights: Array) -> NDArray[np.bool_]:
-    """(fits,) whether some x tells all zeros of y from all ones, or one kind is missing."""
+    """(fits,) whether some x tells all zeros of y from all
+    ones, or one kind is missing.
+    """
     counts = weights > 0.0
     ones = counts & y
     zeros = counts & ~y
@@ -262,8 +290,9 @@ def probit_fit(
     close_enough: float = CLOSE_ENOUGH,
 ) -> Probit:
     """Fit every row of weights by Fisher scoring, with or without the penalty."""
-    # The penalty adjusts the score by h/2 times the logarithmic derivative of the working weight, h
-    # being the leverage. Data with a single x have no slope even so: they do not converge.
+    # The penalty adjusts the score by h/2 times the logarithmic derivative of the working
+    # weight, h being the leverage. Data with a single x have no slope even so: they do
+    # not converge.
     middle = float(x.mean())
     spread = float(x.std()) or 1.0
     z = (x - middle) / spread

@@ -30,7 +30,9 @@ class SummaryRow(Histories):
 
 @dataclass(frozen=True, eq=False)
 class Summary:
-    """All rows; `pooled` says what differs within a row besides the record, `notes` warn of it."""
+    """All rows; `pooled` says what differs within a row besides the
+    record, `notes` warn of it.
+    """
 
     keys: tuple[str, ...]
     pooled: tuple[str, ...]
@@ -40,14 +42,21 @@ class Summary:
 
 
 class Records(Outcomes):
-    """Histories of one structure, a point each; what is independent are their recordings."""
+    """Histories of one structure, a point each; what is
+    independent are their recordings.
+    """
 
     @classmethod
     def of(
-        cls, outcomes: Sequence[str], demands: Sequence[Mapping[str, float]], sources: Sequence[str]
+        cls,
+        outcomes: Sequence[str],
+        demands: Sequence[Mapping[str, float]],
+        sources: Sequence[str],
     ) -> Records:
         """From the outcome, the demands and the record of each history."""
-        columns = {name: np.array([each[name] for each in demands]) for name in demands[0]}
+        columns = {
+            name: np.array([each[name] for each in demands]) for name in demands[0]
+        }
         return cls(np.array(outcomes), columns, np.array(clusters(sources)), "recordings")
 
 
@@ -59,7 +68,9 @@ def summary(table: Table, fixed: FixedBaseReferences) -> Summary:
         # What overturned exceeds any demand, but not one that its system cannot have.
         lacks = np.array(
             [
-                system.storeys == 0 if quantity is REDUCTION else quantity.name in system.lacking
+                system.storeys == 0
+                if quantity is REDUCTION
+                else quantity.name in system.lacking
                 for system in table.layout.properties
             ]
         )
@@ -70,7 +81,9 @@ def summary(table: Table, fixed: FixedBaseReferences) -> Summary:
     if any(table.layout.pairs) and not all(table.layout.pairs):
         notes.append("histories of one component and of pairs are counted together")
     if any("ductility" not in system.lacking for system in table.layout.properties):
-        notes.append("on the fixed base every building is elastic, also where its storeys yield")
+        notes.append(
+            "on the fixed base every building is elastic, also where its storeys yield"
+        )
     return Summary(found.keys, found.pooled, tuple(notes), tuple(known), tuple(rows))
 
 
@@ -81,7 +94,9 @@ def summary_of_records(records: Records) -> Summary:
     return Summary((), (), (), tuple(known), (row,))
 
 
-def _demands(table: Outcomes, others: dict[ResultQuantity, Array]) -> dict[ResultQuantity, Array]:
+def _demands(
+    table: Outcomes, others: dict[ResultQuantity, Array]
+) -> dict[ResultQuantity, Array]:
     """(points,) demands of all quantities that there are, some of them from elsewhere."""
     columns = {quantity: table.columns[quantity.name] for quantity in LIMITED} | others
     return {
@@ -92,13 +107,17 @@ def _demands(table: Outcomes, others: dict[ResultQuantity, Array]) -> dict[Resul
 
 
 def _row(demands: dict[ResultQuantity, Array], of: Histories) -> SummaryRow:
-    known = ((column[of.points], quantity.from_below) for quantity, column in demands.items())
+    known = (
+        (column[of.points], quantity.from_below) for quantity, column in demands.items()
+    )
     spreads = tuple(spread(values, from_below=below) for values, below in known)
     return SummaryRow(of.table, of.values, of.every, spreads)
 
 
 def shear_over_fixed_base(table: Table, fixed: FixedBaseReferences) -> Array:
-    """(points,) base shear over that of the same building on a fixed base; NaN without one."""
+    """(points,) base shear over that of the same building on a
+    fixed base; NaN without one.
+    """
     layout = table.layout
     within = layout.points_of_system // len(layout.records)
     reference = np.full(len(layout), np.nan)
@@ -109,7 +128,9 @@ def shear_over_fixed_base(table: Table, fixed: FixedBaseReferences) -> Array:
                 first = system * layout.points_of_system + place * within
                 reference[first : first + within] = fixed[system, request][0]
     with np.errstate(divide="ignore", invalid="ignore"):
-        return np.asarray(table.columns["max_base_shear"] / (np.abs(table.scale) * reference))
+        return np.asarray(
+            table.columns["max_base_shear"] / (np.abs(table.scale) * reference)
+        )
 
 
 MOVING = 0.01
@@ -123,24 +144,29 @@ def _still_moving(table: Table) -> Iterator[str]:
     survived = table.outcomes == "survived"
     if number := np.count_nonzero(survived & (at_end > MOVING * largest)):
         yield (
-            f"{number} of {np.count_nonzero(survived)} histories that survived still move at their"
-            " end: their residual rotations and displacements are those of that instant; a longer"
-            " `analysis.free_vibration` or something that dissipates brings them to rest"
+            f"{number} of {np.count_nonzero(survived)} histories that survived still move"
+            " at their end: their residual rotations and displacements are those of that"
+            " instant; a longer `analysis.free_vibration` or something that dissipates"
+            " brings them to rest"
         )
 
 
 def scale_notes(table: Table) -> Iterator[str]:
-    """Remarks on single records that are scaled like pairs, and on factors that are unusual."""
+    """Remarks on single records that are scaled like pairs, and on
+    factors that are unusual.
+    """
     layout = table.layout
     alone = [record.source for record in layout.records if record and record.pair is None]
     if layout.plan.measure is not None and layout.of is not None and alone:
         name = measure_label(layout.plan.measure.measure, layout.of)
         yield (
-            f"{name} is that of pairs; {len(alone)} of {len(layout.records)} records stand alone,"
-            f" {alone[0]} for one, and are scaled to it by themselves"
+            f"{name} is that of pairs; {len(alone)} of {len(layout.records)} records"
+            f" stand alone, {alone[0]} for one, and are scaled to it by themselves"
         )
     of, sources = layout.identifying["record"]
-    pulses = np.array([source.startswith("pulse:") for source in sources])[layout.places[of]]
+    pulses = np.array([source.startswith("pulse:") for source in sources])[
+        layout.places[of]
+    ]
     scale = np.abs(table.scale if table.factors is None else table.factors)
     unusual = ((scale < LEAST) | (scale > MOST)) & ~pulses
     if unusual.any():
@@ -149,8 +175,9 @@ def scale_notes(table: Table) -> Iterator[str]:
         record = table.layout[farthest].record
         assert record is not None, "points of histories have a record"
         yield (
-            f"{np.count_nonzero(unusual)} of {len(table)} points scale their record beyond the"
-            f" usual {LEAST:g} to {MOST:g}, {record.source} by {scale[farthest]:.4g}"
+            f"{np.count_nonzero(unusual)} of {len(table)} points scale their record"
+            f" beyond the usual {LEAST:g} to {MOST:g}, {record.source} by"
+            f" {scale[farthest]:.4g}"
         )
 
 
@@ -164,7 +191,9 @@ NAMED = 5
 
 
 def step_notes(table: Table) -> Iterator[str]:
-    """Remarks on points that change with steps of half the length; nothing if none does."""
+    """Remarks on points that change with steps of half the
+    length; nothing if none does.
+    """
     layout = table.layout
     known = np.flatnonzero(~table.failed)
     some = known[:: max(-(-len(known) // COMPUTED_AGAIN), 1)].tolist()
@@ -174,18 +203,23 @@ def step_notes(table: Table) -> Iterator[str]:
         for of in requests
     ]
     after = zip(some, demands(finer), strict=True)
-    changes = sorted((_change(table, *each) for each in after), key=lambda change: -change[0])
+    changes = sorted(
+        (_change(table, *each) for each in after), key=lambda change: -change[0]
+    )
     if names := [text for change, text in changes if change > 0.0]:
         more = f" and {len(names) - NAMED} more" * (len(names) > NAMED)
         yield (
-            f"steps: of {len(some)} points (of {len(known)}) computed again with steps of half the"
-            f" length {len(names)} changed: point {', '.join(names[:NAMED])}{more}. There a"
-            " change smaller than the error of a step decides: judge by many records"
+            f"steps: of {len(some)} points (of {len(known)}) computed again with steps of"
+            f" half the length {len(names)} changed: point"
+            f" {', '.join(names[:NAMED])}{more}. There a change smaller than the error of"
+            " a step decides: judge by many records"
         )
 
 
 def _change(table: Table, number: int, after: Demand) -> tuple[float, str]:
-    """Largest relative change of a point with shorter steps, 0 if none, and all in words."""
+    """Largest relative change of a point with shorter steps, 0
+    if none, and all in words.
+    """
     if (outcome := table.outcomes[number]) != after.outcome:
         return math.inf, f"{number + 1} ({outcome} or {after.outcome})".replace("_", " ")
     changes = {}

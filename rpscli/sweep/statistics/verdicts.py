@@ -23,17 +23,19 @@ from rpscli.sweep.table import Array, Indices, Outcomes, Table
 class Verdict:
     """Verdict on a condition on some histories.
 
-    `values` are those of the keys of a summary. `beyond` are histories that exceed the limit: every
-    overturned one does, `overturned` of them where the condition is on a result. `value` is the
-    worst demand, infinite where it overturned, and `record` had it. `fractile` is the demand at the
-    fractile of the condition, if it has one. Without any history nothing is exceeded.
+    `values` are those of the keys of a summary. `beyond` are histories that exceed the
+    limit: every overturned one does, `overturned` of them where the condition is on a
+    result. `value` is the worst demand, infinite where it overturned, and `record` had
+    it. `fractile` is the demand at the fractile of the condition, if it has one. Without
+    any history nothing is exceeded.
 
-    A limit that a share of the records may exceed is *shown* to be kept if the interval of the
-    probability ends below that share. One for every record says something of these records alone.
-    It `fails` where it is exceeded or, if judged so `strictly`, not shown to be kept.
+    A limit that a share of the records may exceed is *shown* to be kept if the
+    interval of the probability ends below that share. One for every record says
+    something of these records alone. It `fails` where it is exceeded or, if judged so
+    `strictly`, not shown to be kept.
 
-    On an annual rate `interval` is that of the rate [1/year], from those of the shares at all
-    intensities at once, which is too wide; `beyond` is the share at the last one.
+    On an annual rate `interval` is that of the rate [1/year], from those of the shares at
+    all intensities at once, which is too wide; `beyond` is the share at the last one.
     """
 
     condition: Condition
@@ -69,14 +71,17 @@ class Verdict:
 
     @property
     def shown_by(self) -> int | None:
-        """Number of recordings that would show it, with no more beyond; None where it is shown."""
+        """Number of recordings that would show it, with no more
+        beyond; None where it is shown.
+        """
         if self.exceeded or self.shown or self.interval is not None:
             return None
         return shown_by(self.beyond, self.condition.admissible)
 
 
 def rates_of_levels(layout: StudyPoints) -> tuple[Array, float]:
-    """(levels,) annual rate of what happens at one intensity alone; that of stronger motions.
+    """(levels,) annual rate of what happens at one intensity alone;
+    that of stronger motions.
 
     The rate of any shares (levels,) is their product with these: it is linear in them.
     """
@@ -84,7 +89,10 @@ def rates_of_levels(layout: StudyPoints) -> tuple[Array, float]:
     measure = layout.plan.measure
     assert section is not None, "a limit on a rate has a hazard"
     if measure is None or measure.measure != section.measure or len(layout.scales) < 2:
-        text = f"hazard: shares at two and more values of {section.measure} are needed; write"
+        text = (
+            f"hazard: shares at two and more values of {section.measure} are needed;"
+            " write"
+        )
         text += f" `scale: {{measure: {section.measure}, values: [...]}}`"
         layout.study.document.refuse([Fault(("hazard",), text)])
     hazard = read_hazard(layout.study.folder / section.file, section.measure)
@@ -100,10 +108,13 @@ def component_notes(of: Of | None, own: Of | None) -> Iterator[str]:
     """Remarks on a hazard curve that is of another measure of a pair than the study."""
     own = own or "component"
     if of != own:
-        known = f"is of {SHOWN.get(of, of)}" if of else "does not say what of a pair it is of"
+        known = (
+            f"is of {SHOWN.get(of, of)}" if of else "does not say what of a pair it is of"
+        )
         yield (
-            f"the hazard curve {known} (hazard: component), while intensities of the study are of"
-            f" {SHOWN.get(own, own)}: both must be of one definition (scale: of)"
+            f"the hazard curve {known} (hazard: component), while intensities of the"
+            f" study are of {SHOWN.get(own, own)}: both must be of one definition (scale:"
+            " of)"
         )
 
 
@@ -113,17 +124,21 @@ def rate_notes(layout: StudyPoints) -> Iterator[str]:
     if section and any(limit.name == RATE for limit in layout.properties[0].limits):
         _, beyond = rates_of_levels(layout)
         yield from component_notes(section.component, layout.of)
-        if rows := read_hazard(layout.study.folder / section.file, section.measure).left_out:
+        if rows := read_hazard(
+            layout.study.folder / section.file, section.measure
+        ).left_out:
             yield f"{section.file}: {rows} row(s) at its end have rates of zero and are left out"
         yield (
-            f"{RATE}: motions beyond the largest intensity come {beyond:.2g} times a year; they are"
-            " taken to overturn the share that the largest does, and those below the least the"
-            " share that the least does"
+            f"{RATE}: motions beyond the largest intensity come {beyond:.2g} times a"
+            " year; they are taken to overturn the share that the largest does, and"
+            " those below the least the share that the least does"
         )
 
 
 class Judgement(NamedTuple):
-    """(weightings, rows) histories that are counted, that exceed a limit, and that may."""
+    """(weightings, rows) histories that are counted, that
+    exceed a limit, and that may.
+    """
 
     total: Array
     beyond: Array
@@ -131,7 +146,9 @@ class Judgement(NamedTuple):
 
     @property
     def met(self) -> NDArray[np.bool_]:
-        """(weightings, rows) whether no more exceed it than may; never without any history."""
+        """(weightings, rows) whether no more exceed it than may;
+        never without any history.
+        """
         return (self.total > 0.0) & (self.beyond <= self.admissible)
 
     @property
@@ -143,14 +160,18 @@ class Judgement(NamedTuple):
 
 
 def judge(demands: Array, weights: Array, condition: Condition) -> Judgement:
-    """Demands (rows, histories), larger the worse, in weights (weightings, histories) of each."""
+    """Demands (rows, histories), larger the worse, in weights
+    (weightings, histories) of each.
+    """
     total = weights @ (~np.isnan(demands)).T
     beyond = weights @ (demands > condition.sign * condition.limit).T
     return Judgement(total, beyond, _admissible(condition, total))
 
 
 def decisive(demands: Array, weights: Array, condition: Condition) -> Array:
-    """(weightings, rows) least demands that no more than the admissible histories exceed."""
+    """(weightings, rows) least demands that no more than the
+    admissible histories exceed.
+    """
     found = np.full((len(weights), len(demands)), np.nan)
     for place, row in enumerate(demands):
         order = np.argsort(row, kind="stable")[: int((~np.isnan(row)).sum())]
@@ -168,7 +189,9 @@ def _admissible(condition: Condition, total: Array) -> Array:
     """Number of histories, which may be parts of one, that may be beyond the limit."""
     # The fractile from below is itself one of those that keep the limit.
     below = condition.fractile is not None and condition.from_below
-    return np.asarray(condition.admissible * total + (-2.0 * ROUNDING if below else ROUNDING))
+    return np.asarray(
+        condition.admissible * total + (-2.0 * ROUNDING if below else ROUNDING)
+    )
 
 
 def worse(table: Outcomes, name: str) -> Array:
@@ -186,7 +209,9 @@ def worse(table: Outcomes, name: str) -> Array:
 
 
 def exceeds(table: Outcomes, name: str, limit: float) -> NDArray[np.bool_]:
-    """(points,) in which a result is beyond a limit [SI]; overturned ones exceed every limit."""
+    """(points,) in which a result is beyond a limit [SI]; overturned
+    ones exceed every limit.
+    """
     return np.asarray(worse(table, name) > Condition(name, 0.0, "").sign * limit)
 
 
@@ -197,7 +222,9 @@ def verdicts(
     record_of: Callable[[int], str],
     values: tuple[object, ...] = (),
 ) -> list[Verdict]:
-    """On histories that did not fail, by their points; `record_of` names the record of a point."""
+    """On histories that did not fail, by their points; `record_of`
+    names the record of a point.
+    """
     found = []
     asked = tuple(conditions)
     strictly = any(condition.name == NOT_SHOWN for condition in asked)
@@ -214,7 +241,9 @@ def verdicts(
             Verdict(
                 condition=condition,
                 values=values,
-                beyond=share_of(table, points, demands > condition.sign * condition.limit),
+                beyond=share_of(
+                    table, points, demands > condition.sign * condition.limit
+                ),
                 overturned=int(table.overturned[points].sum()) if of_result else 0,
                 value=condition.sign * float(demands[worst]),
                 record=record_of(int(points[worst])),
@@ -231,11 +260,16 @@ def judged_records(
 ) -> list[Verdict]:
     """Of one structure under records of these names."""
     points = np.nonzero(~records.failed)[0]
-    return verdicts(records, points, conditions, labels.__getitem__) if len(points) else []
+    return (
+        verdicts(records, points, conditions, labels.__getitem__) if len(points) else []
+    )
 
 
-def judged(table: Table, summary: Summary, conditions: Iterable[Condition] = ()) -> list[Verdict]:
-    """Of each row of a summary, on the limits of study and cases and on further conditions.
+def judged(
+    table: Table, summary: Summary, conditions: Iterable[Condition] = ()
+) -> list[Verdict]:
+    """Of each row of a summary, on the limits of study and cases
+    and on further conditions.
 
     Systems that cannot have a result are not judged by it; `not_judged` tells of them.
     """
@@ -243,7 +277,9 @@ def judged(table: Table, summary: Summary, conditions: Iterable[Condition] = ())
     further = tuple(conditions)
     found = list[Verdict]()
     strictly = any(condition.name == NOT_SHOWN for condition in further)
-    on_rates = [limit for limit in layout.properties[0].limits if limit.name == RATE]  # the study's
+    on_rates = [
+        limit for limit in layout.properties[0].limits if limit.name == RATE
+    ]  # the study's
 
     def record_of(number: int) -> str:
         record = layout[number].record
@@ -259,18 +295,35 @@ def judged(table: Table, summary: Summary, conditions: Iterable[Condition] = ())
         known = [
             each
             for each in limits
-            if each.name not in lacking or np.isfinite(table.columns[each.name][row.points]).any()
+            if each.name not in lacking
+            or np.isfinite(table.columns[each.name][row.points]).any()
         ]
         found += verdicts(table, row.points, known, record_of, row.values)
     for condition in on_rates:
         rates, _ = rates_of_levels(layout)
-        for first in range(0, len(summary.rows), len(rates)):  # intensities follow each other
+        for first in range(
+            0, len(summary.rows), len(rates)
+        ):  # intensities follow each other
             values = (*summary.rows[first].values[:-1], "all")
             shares = [row.overturned for row in summary.rows[first : first + len(rates)]]
-            ends = [(np.nan if s.fraction is None else s.fraction, s.low, s.high) for s in shares]
+            ends = [
+                (np.nan if s.fraction is None else s.fraction, s.low, s.high)
+                for s in shares
+            ]
             rate, low, high = (rates @ np.array(ends)).tolist()
             over = not rate <= condition.limit
             interval = (low, high)
-            what = condition, values, shares[-1], 0, rate, "", None, over, strictly, interval
+            what = (
+                condition,
+                values,
+                shares[-1],
+                0,
+                rate,
+                "",
+                None,
+                over,
+                strictly,
+                interval,
+            )
             found.append(Verdict(*what))
     return found
