@@ -10,38 +10,14 @@ from typing import Any, NoReturn
 
 import click
 
+from rpscli.commands.registry import HOMES, KIND, OURS, SECTIONS, of_package, others
 from rpscli.commands.shell import Group
+from rpscli.registry import loaded, of_tools, summary_of, tools
 from rpscli.version import VERSION
 
-SECTIONS = {
-    "Commands": {
-        "init": "write a commented case or study to start from",
-        "check": "derived quantities of a case, and mistakes in it",
-        "modal": "modes in full contact, rolling and rocking",
-        "pushover": "restoring force and capacity curves",
-        "timehistory": "response to a ground motion",
-        "sweep": "compute the points of a study and draw its reports",
-        "design": "values of a case that meet limits and minimise an objective",
-        "report": "one page for a checking engineer, from all of these",
-        "record": "read, draw, select, convert, make ground motions",
-        "explain": "what a key, a result, a report or a word means",
-    },
-    "Other commands": {
-        "budget": "sensitivity of limited results and verdicts",
-        "export": "write a case as a model for mujoco or OpenSees",
-        "identify": "properties of a case from measured motion",
-        "schema": "JSON schemas of cases, studies and designs",
-        "completion": "complete commands, files and keys in your shell",
-        "verify": "compare this installation with known numbers",
-        "doctor": "what is installed, what is missing",
-    },
-}
-"""Lines of the help."""
-COMMANDS = {
-    name: summary for lines in SECTIONS.values() for name, summary in lines.items()
-}
-HOMES = {"schema": "init", "completion": "init", "design": "sweep"}
-"""Modules of `rpscli.commands` that hold a command besides their own."""
+
+def _lowered(sentence: str) -> str:
+    return f"{sentence[:1].lower()}{sentence[1:].rstrip('.')}"
 
 
 class Program(Group):
@@ -52,24 +28,37 @@ class Program(Group):
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Names in the order of the help."""
         del ctx
-        return list(COMMANDS)
+        return [*OURS, *of_tools(KIND), *others().names()]
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         """The command of a name, imported now."""
         del ctx
-        if cmd_name not in COMMANDS:
-            return None
-        home = HOMES.get(cmd_name)
-        module = import_module(f"rpscli.commands.{home or cmd_name}")
-        command: click.Command = getattr(module, cmd_name if home else "command")
-        return command
+        if cmd_name in OURS:
+            home = HOMES.get(cmd_name)
+            module = import_module(f"rpscli.commands.{home or cmd_name}")
+            ours: click.Command = getattr(module, cmd_name if home else "command")
+            return ours
+        if (target := of_tools(KIND).get(cmd_name)) is not None:
+            of_tool: click.Command = loaded(target)
+            return of_tool
+        return of_package(cmd_name) if cmd_name in others().names() else None
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """The list of commands in the help."""
         del ctx
-        for section, lines in SECTIONS.items():
-            with formatter.section(section):
-                formatter.write_dl([*lines.items()])
+        of = {
+            name: _lowered(summary_of(tool))
+            for tool in tools()
+            for name in tool.OFFERS.get(KIND, {})
+        }
+        theirs = {
+            name: command.get_short_help_str() for name, command in others().theirs()
+        }
+        ends = {"Tools": of, "Commands of other packages": theirs}
+        for section, lines in (SECTIONS | ends).items():
+            if lines:
+                with formatter.section(section):
+                    formatter.write_dl([*lines.items()])
 
     def main(
         self, args: Sequence[str] | None = None, *rest: Any, **options: Any

@@ -14,7 +14,8 @@ Each entry point has a name, which users write, and belongs to one of these grou
 - `rpscli.dampers`: a `DamperLaw`, a kind of `podium.devices` whose force is compiled;
 - `rpscli.impact_laws`: a `RestitutionLaw`, a law of `podium.impact`, likewise;
 - `rpscli.figures`: a function that draws a result into axes, as those of `rpscli.figures`
-  do; ``--figures png,NAME`` makes files of it.
+  do; ``--figures png,NAME`` makes files of it;
+- `rpscli.commands`: a `click.Command`, which is then `rps NAME`.
 
 Names are letters, digits, _ and -; names of ours cannot be taken. What a function gives
 must be of the kind that its annotation in rps says, and numbers finite: what is not, and

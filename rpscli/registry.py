@@ -1,5 +1,9 @@
-"""Things by name: ours, and those that other packages add by
+"""Things by name: ours, those of our tools, and those that other packages add by
 entry points `rpscli.<kind>`.
+
+A tool is a folder of `rpscli.tools`, whose `OFFERS` name by kind what it adds, as entry
+points do: "module:attribute". No tool is imported before one of its names is wanted, and
+one whose folder is not there adds nothing.
 
 Other packages are looked for when a name is none of ours, and where all are listed. One
 that is broken is named where it is asked for, and left out where others are.
@@ -11,6 +15,8 @@ from collections.abc import Callable, Collection, Iterable, Iterator
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import is_dataclass, replace
 from functools import cache, wraps
+from pathlib import Path
+from types import ModuleType
 from typing import (
     TYPE_CHECKING,
     Any,
@@ -28,6 +34,39 @@ if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
 
 Item = TypeVar("Item")
+
+
+TOOLS = "rpscli.tools"
+
+
+@cache
+def tools() -> list[ModuleType]:
+    """The packages of all tools, which say what they offer: kind, name, target."""
+    from importlib import import_module
+    from pkgutil import iter_modules
+
+    folder = str(Path(__file__).parent / "tools")
+    names = sorted(each.name for each in iter_modules([folder]))
+    return [import_module(f"{TOOLS}.{name}") for name in names]
+
+
+def of_tools(kind: str) -> dict[str, str]:
+    """Targets by name of what tools offer of a kind."""
+    offered = [tool.OFFERS.get(kind, {}) for tool in tools()]
+    return {name: target for each in offered for name, target in each.items()}
+
+
+def loaded(target: str) -> Any:
+    """What a target names, imported now."""
+    from importlib import import_module
+
+    module, _, attribute = target.partition(":")
+    return getattr(import_module(module), attribute)
+
+
+def all_of_tools(kind: str) -> dict[str, Any]:
+    """By name what tools offer of a kind, imported now."""
+    return {name: loaded(target) for name, target in of_tools(kind).items()}
 
 
 class Offer(NamedTuple):
@@ -206,6 +245,8 @@ def _guarded(function: Callable[..., Any], kind: Any, what: str) -> Callable[...
 
 
 def _meaning(item: Any) -> str:
+    if text := getattr(item, "help", None):  # of a command
+        return " ".join(text.split("\n\n")[0].split())
     functions = (
         filter(callable, vars(item).values()) if is_dataclass(item) else iter([item])
     )

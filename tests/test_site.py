@@ -13,8 +13,9 @@ import pytest
 
 import rpscli
 from rpscli.analyses.result_quantities import EVERY
-from rpscli.cli import COMMANDS
 from rpscli.commands.explain import _formats
+from rpscli.commands.registry import OURS
+from rpscli.registry import of_tools
 
 DOCS = Path(__file__).parents[1] / ".ci" / "docs"
 
@@ -102,7 +103,7 @@ def test_code_that_is_no_formula_stays_code(modules: Any) -> None:
 def test_the_reference_has_every_command_key_result_and_name(modules: Any) -> None:
     reference = modules["reference"]
     commands = reference.commands()
-    for name in COMMANDS:
+    for name in [*OURS, *of_tools("commands")]:
         assert f"# rps {name}\n" in commands[f"reference/commands/rps-{name}"]
     keys = "\n".join(reference.keys({})[0].values())
     for key in _formats():

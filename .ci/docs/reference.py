@@ -13,13 +13,13 @@ import formulas
 
 import rpscli
 from rpscli.analyses.result_quantities import EVERY
-from rpscli.case.design import DesignFile
 from rpscli.case.schema.case_file import CaseFile
 from rpscli.case.schema.keys import KeyReference, key_references
 from rpscli.case.study.schema import StudyFile
 from rpscli.cli import program
 from rpscli.commands.init import schema_of
 from rpscli.report.study.registry import REPORTS
+from rpscli.tools.design.keys import DesignFile
 
 FORMATS = {
     "case": ("Keys of cases", CaseFile),

@@ -33,7 +33,16 @@ EXTRAS = {
 }
 """Uses of packages that users may do without."""
 
-KINDS = ("formats", "measures", "targets", "reports", "figures", "dampers", "impact_laws")
+KINDS = (
+    "formats",
+    "measures",
+    "targets",
+    "reports",
+    "figures",
+    "dampers",
+    "impact_laws",
+    "commands",
+)
 """Groups of entry points."""
 
 

@@ -15,7 +15,7 @@ from rpscli.analyses.result_quantities import EVERY, ResultQuantity
 from rpscli.commands.shell.options import completing, terminal_options
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.errors import UsageError, hint
-from rpscli.registry import summary_of
+from rpscli.registry import Registry, summary_of
 from rpscli.report.files import heading
 from rpscli.report.table import Heading, Part, Table
 
@@ -134,14 +134,15 @@ def _result(quantity: ResultQuantity) -> Entry:
 
 
 def _formats() -> list[KeyReference]:
-    """Every key of the three formats, once."""
+    """Every key of all kinds of files, once."""
     # pydantic is slow.
-    from rpscli.case.design import DesignFile
     from rpscli.case.schema.case_file import CaseFile
     from rpscli.case.schema.keys import key_references
     from rpscli.case.study.schema import StudyFile
+    from rpscli.case.text.file_kinds import FILE_KINDS
 
-    models = (CaseFile, StudyFile, DesignFile)
+    others = (kind.model for kind in FILE_KINDS.values())
+    models = (CaseFile, StudyFile, *others)
     keys = [key for model in models for key in key_references(model)]
     return list({key.key: key for key in reversed(keys)}.values())[::-1]
 
@@ -230,6 +231,7 @@ def _reports(word: str, *, everything: bool, options: bool) -> Iterator[Entry]:
 
 def _offers(word: str) -> Iterator[Offer]:
     """Items of other packages: all for the word plugins, else those of that name."""
+    from rpscli.commands.registry import others
     from rpscli.model.devices import DAMPERS
     from rpscli.model.impact import IMPACT_LAWS
     from rpscli.records.formats import FORMATS
@@ -238,7 +240,10 @@ def _offers(word: str) -> Iterator[Offer]:
     from rpscli.report.figures.look import FIGURES
     from rpscli.report.study.registry import REPORTS
 
-    for registry in (FORMATS, MEASURES, CODES, REPORTS, FIGURES, DAMPERS, IMPACT_LAWS):
+    kinds: tuple[Registry[Any], ...] = (
+        FORMATS, MEASURES, CODES, REPORTS, FIGURES, DAMPERS, IMPACT_LAWS, others()
+    )  # fmt: skip
+    for registry in kinds:
         if word == PLUGINS or (word not in registry and word in registry.names()):
             yield from (
                 each for each in registry.offers() if word in {PLUGINS, each.name}

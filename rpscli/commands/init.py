@@ -13,6 +13,7 @@ from typing import Any
 import click
 from click.shell_completion import BashComplete, FishComplete, ZshComplete
 
+from rpscli.case.text.file_kinds import FILE_KINDS
 from rpscli.commands.shell.options import completing, terminal_options
 from rpscli.commands.shell.terminal import Terminal, emit
 from rpscli.errors import Refused, UsageError, hint, listed
@@ -163,8 +164,10 @@ def _write(files: Mapping[Path, bytes], terminal: Terminal, *, force: bool) -> N
             )
     write_whole(files)
     first, *others = files
-    # What names a base is a study, or a design.
-    verb = "design" if b"\nminimise:" in files[first] else "sweep"
+    # What names a base is a study, or a file of a tool.
+    keys = {*re.findall(r"^(\w+):", files[first].decode(), re.MULTILINE)}
+    others_kind = (name for name, kind in FILE_KINDS.items() if kind.marks & keys)
+    verb = next(others_kind, "sweep")
     check = (
         f"{verb} {first} --dry-run" if b"\nbase:" in files[first] else f"check {first}"
     )
@@ -174,7 +177,7 @@ def _write(files: Mapping[Path, bytes], terminal: Terminal, *, force: bool) -> N
         terminal.result({**heading("init"), "files": [str(each) for each in files]})
 
 
-FORMATS = ("case", "study", "design")
+FORMATS = ("case", "study", *FILE_KINDS)
 
 
 @click.command("schema")
@@ -198,21 +201,20 @@ def schema(*, what: str, terminal: Terminal) -> None:
 
 
 def schema_of(what: str) -> dict[str, Any]:
-    """The schema of cases, of studies or of designs."""
+    """The schema of cases, of studies or of the files of a tool."""
     # pydantic is slow.
     if what == "case":
         from rpscli.case.schema.case_file import CaseFile
         from rpscli.case.schema.keys import json_schema_of
 
         return json_schema_of(CaseFile)
-    from rpscli.case.design import DesignFile
     from rpscli.case.schema.keys import study_json_schema
     from rpscli.case.study.reports import format_with
     from rpscli.report.study.registry import REPORTS
 
-    return study_json_schema(
-        DesignFile if what == "design" else format_with(REPORTS.everything())
-    )
+    if what in FILE_KINDS:
+        return study_json_schema(FILE_KINDS[what].model)
+    return study_json_schema(format_with(REPORTS.everything()))
 
 
 SHELLS = {"bash": BashComplete, "zsh": ZshComplete, "fish": FishComplete}

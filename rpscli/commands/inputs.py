@@ -14,6 +14,7 @@ import click
 from rpscli.commands.shell import options
 from rpscli.commands.shell.terminal import Terminal, counted, passing_time
 from rpscli.errors import CaseError, RpsError, UsageError, all_made
+from rpscli.registry import loaded, of_tools
 from rpscli.report.figures.look import FilmRequest
 from rpscli.report.files import Drawing, OutputFolder, Run, heading
 from rpscli.report.table import Part
@@ -85,10 +86,23 @@ def write(folder: OutputFolder, terminal: Terminal) -> None:
         terminal.note(f"removed, of an earlier run: {', '.join(sorted(folder.removed))}")
 
 
+Draw = Callable[[Callable[[int, int], None]], bytes]
+"""Draws an animation, and tells how many of its frames are done, of how many."""
+
+
+def film_of(subject: str) -> Callable[..., Draw]:
+    """What makes the animation of a subject from a result, a title, a request and a look.
+
+    What cannot be drawn is refused then, before anything is written.
+    """
+    made: Callable[..., Draw] = loaded(of_tools("films")[subject])
+    return made
+
+
 def add_film(
     folder: OutputFolder,
     film: FilmRequest,
-    draw: Callable[[Callable[[int, int], None]], bytes],
+    draw: Draw,
     out: options.Output,
 ) -> None:
     """Collect an animation, which is told how many of its frames are drawn."""

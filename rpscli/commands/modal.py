@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator
-from functools import partial
 from typing import TYPE_CHECKING
 
 import click
 
-from rpscli.commands.inputs import add_film, case_folder, conclude, read_case
+from rpscli.commands.inputs import add_film, case_folder, conclude, film_of, read_case
 from rpscli.commands.shell import options
 from rpscli.errors import listed
 from rpscli.report.figures.look import FilmRequest
@@ -45,9 +44,7 @@ def command(
     result = modal(given.case.structure)
     folder.add_all(modal_files(result, given.case.title, out.look))
     if film is not None:
-        from rpscli.report.figures.animation import modes_film
-
-        draw = partial(modes_film, result, given.case.title, film, out.look)
+        draw = film_of("modes")(result, given.case.title, film, out.look)
         add_film(folder, film, draw, out)
     tables = _tables(result, given.case.title, () if paper else (FIRST_ORDER,))
     conclude(given, folder, result.results(), tables, out.terminal)

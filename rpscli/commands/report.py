@@ -13,9 +13,11 @@ import click
 
 from rpscli.case.conditions import Condition
 from rpscli.commands import inputs
+from rpscli.commands.page_section import section_options
 from rpscli.commands.shell import options
 from rpscli.commands.shell.terminal import Terminal, leave
 from rpscli.errors import Refused, UsageError
+from rpscli.registry import loaded
 from rpscli.report.figures.look import Look
 from rpscli.report.figures.style import drawable_style
 from rpscli.report.files import require_writable, undrawn, write_whole
@@ -46,12 +48,7 @@ PEOPLE = {"project": "project", "author": "made by", "checker": "checked by"}
 )
 @click.option("--author", metavar="NAME", help="Who made the page and signs it.")
 @click.option("--checker", metavar="NAME", help="Who checks the page and signs it.")
-@click.option(
-    "--budget",
-    "with_budget",
-    is_flag=True,
-    help="Add the sensitivity of each limited result of a CASE, as in `rps budget`.",
-)
+@section_options
 @options.style_option
 @click.option("--force", is_flag=True, help="Overwrite a file that is not a report.")
 @options.terminal_options
@@ -65,7 +62,7 @@ def command(
     terminal: Terminal,
     motion: inputs.MotionRequest,
     *,
-    with_budget: bool,
+    extra: tuple[str, ...],
     force: bool,
     **people: str | None,
 ) -> None:
@@ -95,23 +92,25 @@ def command(
     elif (kind != pages.HISTORY or earlier) and (
         records or motion != inputs.MotionRequest()
     ):
-        of = {pages.SWEEP: "a study has records", pages.DESIGN: "a design has records"}
+        of = {pages.SWEEP: "study", **{name: name for name in pages.PAGES}}
         owner = (
-            f"{of[kind]} of its own" if kind in of else "a stored history has its record"
+            f"a {of[kind]} has records of its own"
+            if kind in of
+            else "a stored history has its record"
         )
         why = f"{owner}; leave --record, --vertical and --scale out"
-    elif with_budget and kind != pages.HISTORY:
-        why = "--budget is about one history; name a case"
-    elif conditions and kind == pages.DESIGN:
-        why = "a design has limits of its own; leave --fail-on out"
+    elif extra and kind != pages.HISTORY:
+        why = f"--{extra[0]} is about one history; name a case"
+    elif conditions and kind in pages.PAGES:
+        why = f"a {kind} has limits of its own; leave --fail-on out"
     if why:
         raise UsageError(f"{subject}: {why}")
     folder = None if earlier is None else earlier.folder
     out = options.Output(terminal, folder, look=Look(FORMATS, style=style))
     make: Callable[[], PageDone]
-    if kind == pages.DESIGN:
+    if kind in pages.PAGES:
         name = Path(subject).stem if earlier is None else earlier.run["name"]
-        make = partial(pages.design_page, request, earlier, out)
+        make = partial(loaded(pages.PAGES[kind]), request, earlier, out)
     elif kind == pages.SWEEP:
         study = read(earlier.subject if earlier else request, conditions, terminal)
         name = study.layout.study.name
@@ -126,7 +125,7 @@ def command(
             asked = pages.typed_together(given.case, motions)
         name = given.case.name
         told = (given, motions, asked, conditions, earlier, out)
-        make = partial(pages.history_page, *told, with_budget=with_budget)
+        make = partial(pages.history_page, *told, extra=extra)
     file = place or inputs.RESULTS / name / "report.html"
     _require_free(file, name, force=force)
     done = make()

@@ -20,15 +20,15 @@ from rpscli.case.text.document import format_of
 from rpscli.case.text.files import read_text
 from rpscli.case.text.yaml_text import read_yaml
 from rpscli.commands import timehistory_run as run
-from rpscli.commands.budget import case_budget
-from rpscli.commands.design import designed
 from rpscli.commands.inputs import RESULTS, CaseInput, MotionRequest, case_heading
+from rpscli.commands.page_section import PAGE_SECTIONS
 from rpscli.commands.shell.options import CaseRequest, Output, RunChoices
 from rpscli.commands.shell.terminal import announce_compilation, concluded
 from rpscli.commands.study import swept
 from rpscli.errors import RecordError, RpsError, UsageError
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.source import Source
+from rpscli.registry import of_tools
 from rpscli.report import case_page as parts
 from rpscli.report.figures.history import record_name
 from rpscli.report.files import (
@@ -49,7 +49,7 @@ from rpscli.report.study.statistics import (
     summary_tables,
     verdict_table,
 )
-from rpscli.report.table import Heading, Table
+from rpscli.report.table import Table
 from rpscli.studies import Study, StudyResult
 from rpscli.sweep.evaluation import resolved
 
@@ -57,7 +57,8 @@ SUMMARY = "summary.json"
 STORE = "study.sqlite"
 HISTORY = "timehistory"
 SWEEP = "sweep"
-DESIGN = "design"
+PAGES = of_tools("pages")
+"""Commands of tools that have pages, and what makes them."""
 _COMPONENT = {"source": str, "sha256": str}
 _MOTION = {
     "scale": float,
@@ -148,7 +149,7 @@ def earlier_results(folder: Path) -> Earlier:
     what = f"has no {RUN_FILE} of rps"
     try:
         command = read_json(place, RUN_KINDS)["command"]
-        if command in {HISTORY, SWEEP, DESIGN}:
+        if command in {HISTORY, SWEEP, *PAGES}:
             inputs = HISTORY_INPUTS if command == HISTORY else {"overrides": [str]}
             return Earlier(folder, read_json(place, RUN_KINDS | {"inputs": inputs}))
         what = f"holds results of `rps {command}`"
@@ -173,8 +174,8 @@ def kind_of(source: str) -> str:
     if source == "-":
         return HISTORY
     document = read_yaml(read_text(source), source)
-    if format_of(document) == "design":
-        return DESIGN
+    if (kind := format_of(document)) in PAGES:
+        return kind
     return SWEEP if "base" in document.content else HISTORY
 
 
@@ -223,7 +224,7 @@ def history_page(
     earlier: Earlier | None,
     out: Output,
     *,
-    with_budget: bool = False,
+    extra: Sequence[str] = (),
 ) -> PageDone:
     """Compute what belongs to a case, and put it in order."""
     case = given.case
@@ -240,13 +241,18 @@ def history_page(
         terminal.warn(made.document["warnings"])
         if earlier is not None:
             stored = [*_compared(earlier, histories, made.document)]
-        if with_budget:
-            worst = histories[made.worst]
-            first = sorted(histories, key=lambda each: each is not worst)
-            budget = case_budget(given, [each.motion for each in first], terminal)
-            made.results.append(budget.section(out.look, worst.label))
-    elif with_budget:
-        raise UsageError(f"{case.source}: --budget needs a ground motion; add --record")
+        worst = histories[made.worst]
+        first = sorted(histories, key=lambda each: each is not worst)
+        for name in extra:
+            motions_of = [each.motion for each in first]
+            section = PAGE_SECTIONS[name].made(
+                given, motions_of, terminal, out.look, worst.label
+            )
+            made.results.append(section)
+    elif extra:
+        raise UsageError(
+            f"{case.source}: --{extra[0]} needs a ground motion; add --record"
+        )
     else:
         document = {
             **heading(),
@@ -265,7 +271,7 @@ def history_page(
             case, given.request.overrides, [each.ground for each in histories]
         ),
         results=made.results,
-        commands=_commands(given, asked, earlier, with_budget=with_budget),
+        commands=_commands(given, asked, earlier, extra=extra),
         stored=stored,
         both=any(history.ground.y is not None for history in histories),
     )
@@ -348,7 +354,7 @@ def _commands(
     asked: Sequence[Asked],
     earlier: Earlier | None,
     *,
-    with_budget: bool,
+    extra: Sequence[str],
 ) -> list[list[str]]:
     """Commands that make the histories and the page again, which
     may be that of a folder.
@@ -362,7 +368,9 @@ def _commands(
         for records, motion in asked
     ]
     subjects = histories if earlier is None else [[str(earlier.folder)]]
-    pages = [["rps", "report", *each, *["--budget"] * with_budget] for each in subjects]
+    pages = [
+        ["rps", "report", *each, *(f"--{name}" for name in extra)] for each in subjects
+    ]
     without = given.case.record is None and not any(records for records, _ in asked)
     return (
         pages if without else [*(["rps", HISTORY, *each] for each in histories), *pages]
@@ -433,14 +441,14 @@ def study_page(study: Study, out: Output) -> PageDone:
     varied = any(key.startswith("podium.contact") for key in layout.plan.keys)
     first = resolved(layout.plan, layout[0].values)
     contact = ", contact varied" if varied else ends(first)
-    results = [_figures(found.files, study)]
+    results = [figures(found.files, study)]
     if result.summary:
         statistics = [
             *summary_tables(result.summary),
             of_first_system(layout),
             *found.parts,
         ]
-        motions = parts.motions_section(*_motions_of(study), study.title, out.look)
+        motions = parts.motions_section(*motions_of(study), study.title, out.look)
         results = [motions, Section("Statistics", [*cut(statistics)]), *results]
     which = []
     if (systems := len(layout.properties)) > 1:
@@ -463,7 +471,7 @@ def study_page(study: Study, out: Output) -> PageDone:
         out.look,
         short=_in_short(result),
         warnings=warnings,
-        inputs=_study_input(
+        inputs=study_input(
             study, first, "The case" if systems == 1 else "Its first system"
         ),
         results=results,
@@ -490,7 +498,7 @@ def _in_short(run: StudyResult) -> Iterator[Block]:
             yield from cut([verdict_table(run.summary, run.judgements)])
 
 
-def _motions_of(study: Study) -> tuple[list[GroundMotion], list[str]]:
+def motions_of(study: Study) -> tuple[list[GroundMotion], list[str]]:
     """The records before they are scaled, and why some cannot be read."""
     layout = study.layout
     motions = []
@@ -506,7 +514,7 @@ def _motions_of(study: Study) -> tuple[list[GroundMotion], list[str]]:
     return motions, reasons
 
 
-def _figures(files: Mapping[str, object], study: Study) -> Section:
+def figures(files: Mapping[str, object], study: Study) -> Section:
     """All of them, with the kind and the title of the report that each is of."""
     drawn = []
     for stem, each in pictures(files.items()).items():
@@ -517,7 +525,7 @@ def _figures(files: Mapping[str, object], study: Study) -> Section:
     return Section("Figures", drawn)
 
 
-def _study_input(study: Study, first: Case, which: str) -> Iterator[Block]:
+def study_input(study: Study, first: Case, which: str) -> Iterator[Block]:
     """The file as it is written, and a case of it."""
     checked = study.layout.study
     plan = study.layout.plan
@@ -536,34 +544,3 @@ def _study_input(study: Study, first: Case, which: str) -> Iterator[Block]:
     yield parts.input_table(checked.document.content)
     yield f"{which}, as it is written and in SI units, with all defaults:"
     yield parts.input_table(first.document, first.written)
-
-
-def design_page(asked: CaseRequest, earlier: Earlier | None, out: Output) -> PageDone:
-    """Search, or go on from the points that are stored, and put all in order."""
-    request = asked if earlier is None else earlier.subject
-    done = designed(request, RunChoices(), replace(out, force=earlier is not None))
-    assert done is not None, "it is no dry run"
-    document = done.document
-    study = done.run.study
-    at = done.judged.layout
-    out.terminal.warn(notes := document["warnings"])
-    case = resolved(at.plan, at[0].values)
-    named = {path.name: content for path, content in done.folder.contents.items()}
-    motions = parts.motions_section(*_motions_of(study), study.title, out.look)
-    title = "the best design" if document["best"] else "the least violated design"
-    sections = parts.page_sections(
-        case,
-        study.title,
-        out.look,
-        short=[part for part in done.tables if part != Heading(study.title)],
-        warnings=notes,
-        inputs=_study_input(study, case, f"The case of {title}"),
-        results=[motions, _figures(named, study)],
-        commands=[["rps", command, *asked.words] for command in ("design", "report")],
-        stored=[f"Every point is stored in {done.folder.folder}."],
-        both=all(study.layout.pairs),
-        which=[f"Of {title}."],
-    )
-    subtitle = f"Design: {len(done.answer.places)} examined{ends(case)}"
-    signed = done.search.task.file.document
-    return PageDone(study.title, subtitle, sections, document, done.error, signed)

@@ -6,7 +6,6 @@ import hashlib
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from functools import partial
 from itertools import groupby
 from typing import Any, NamedTuple
 
@@ -29,7 +28,6 @@ from rpscli.errors import (
 )
 from rpscli.records.ground_motion import MotionComponents
 from rpscli.report.bundles import floor_spectra_files, timehistory_files
-from rpscli.report.figures.animation import frame_plan, history_film
 from rpscli.report.figures.look import FilmRequest
 from rpscli.report.files import OutputFolder, heading, json_text
 from rpscli.report.limits import VERDICT, excess_text, verdict_texts, worst_text
@@ -245,8 +243,7 @@ def run_one(
     beside = look_beside(history, result)
     document = history.document
     if film is not None:
-        plan = frame_plan(result, film)  # refused before anything is written
-        draw = partial(history_film, result, title, film, plan, out.look)
+        draw = inputs.film_of("history")(result, title, film, out.look)
         inputs.add_film(history.folder, film, draw, out)
     inputs.write(_add_summary(history), terminal)
     document["warnings"] += history.folder.undrawn

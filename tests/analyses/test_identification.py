@@ -21,20 +21,20 @@ from scipy.integrate import solve_ivp
 from scipy.signal import lsim
 from shown_commands import VERIFICATION, told
 
-from rpscli.analyses import identification
-from rpscli.analyses.identification import (
-    Estimate,
-    Identified,
-    Vibration,
-    rocking,
-    vibration,
-)
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.errors import AnalysisError
 from rpscli.model.devices import RollingResistance
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import PodiumStructure
+from rpscli.tools.identify import identification
+from rpscli.tools.identify.identification import (
+    Estimate,
+    Identified,
+    Vibration,
+    rocking,
+    vibration,
+)
 
 
 def held(truth: float, found: Estimate) -> bool:

@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 
 from rpscli.case.schema.fields import ValueRange
 from rpscli.case.schema.scale_to import scale_to_of
-from rpscli.case.study.observed import comparable
 from rpscli.constants import STANDARD_GRAVITY
+from rpscli.tools.comparison.observed import comparable
 from rpscli.units import FOOT, INCH, KINDS, POUND, POUND_FORCE, si_factor, si_value
 
 # A factor of a unit is exact but for the rounding of one product.

@@ -12,14 +12,14 @@ import pytest
 
 from rpscli.analyses.verification import answers_of_file
 from rpscli.case.case import load_case
-from rpscli.case.study.observed import read_observed
 from rpscli.case.text import files
 from rpscli.case.text.document import Document
-from rpscli.commands.identify import measured
 from rpscli.errors import CaseError, RecordError, RpsError
 from rpscli.records.loading import expand_sources, load_record
 from rpscli.records.target import load_target
 from rpscli.sweep.statistics.hazard import read_hazard
+from rpscli.tools.comparison.observed import read_observed
+from rpscli.tools.identify.command import measured
 
 from .conftest import BUILDING, refusal
 

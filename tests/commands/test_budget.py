@@ -13,8 +13,8 @@ import pytest
 from paper_structures import needs_compiled_kernels
 
 from rpscli.case.case import load_case
-from rpscli.commands.budget import _values
 from rpscli.records.loading import load_components
+from rpscli.tools.budget.command import _values
 
 from .conftest import SMALL_CASE, Invoke, write_case
 
@@ -135,7 +135,7 @@ def test_the_other_component_that_a_case_names(
 ) -> None:
     """As many words as it takes to leave it out, which do so by hand too."""
     for others in ("_values", "_records"):
-        monkeypatch.setattr(f"rpscli.commands.budget.{others}", lambda *_: ())
+        monkeypatch.setattr(f"rpscli.tools.budget.command.{others}", lambda *_: ())
     x, y = (f"pulse:sine?amplitude={peak}g&period=0.8" for peak in ("0.3", "0.2"))
     written = SMALL_CASE.partition("record:")[0] + "analysis: {free_vibration: 1.0}\n"
     motion = f'record: {{x: "{x}", y: "{y}", rotation: 30, scale: 1.25}}\n'

@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib
 import importlib.metadata
 import os
+import re
 import shlex
 import shutil
 import sys
@@ -22,12 +23,13 @@ import rpscli
 from rpscli import registry
 from rpscli.case.schema.scale_to import scale_to_of
 from rpscli.commands.init import schema_of
-from rpscli.commands.record import select
+from rpscli.commands.registry import others
 from rpscli.errors import CaseError, PluginError, RecordError
 from rpscli.records.formats import FORMATS
 from rpscli.records.measures import MEASURES
 from rpscli.records.target import CODES, load_target
 from rpscli.sweep.evaluation import System
+from rpscli.tools.selection.command import command as select
 
 from .conftest import Invoke, InvokeJson, write_case
 
@@ -70,6 +72,7 @@ def forgotten() -> Iterator[None]:
         importlib.invalidate_caches()
         registry._points.cache_clear()
         registry._loaded.cache_clear()
+        others.cache_clear()
 
     forget()
     yield
@@ -144,6 +147,41 @@ def test_a_figure_of_a_history(example: None, rps: Invoke, workplace: Path) -> N
     assert rpscli.figures.phase_plane.__doc__ == "The rate of rotation over the rotation."
 
 
+def test_a_command(example: None, rps: Invoke, workplace: Path) -> None:
+    slenderness = rpscli.load_case("small.yaml").structure.bearing.slenderness
+    assert float(rps("widths", "small.yaml").stdout) == pytest.approx(
+        1.0 / slenderness, rel=1e-3
+    )
+    help_text = rps("--help").stdout
+    assert re.search(r"Commands of other packages:\n  widths +Print how many", help_text)
+    usage = rps("widths", exit_code=2).stderr
+    assert "Missing argument" in usage
+
+
+def test_a_command_that_fails_is_told_as_its_package(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, forgotten: None, rps: Invoke
+) -> None:
+    code = """import click
+@click.command("stumbles")
+def stumbles(): raise KeyError("gone")
+modal = no_command = 3
+"""
+    (tmp_path / "site").mkdir()
+    (tmp_path / "site" / "stumbling.py").write_text(code, encoding="utf-8")
+    points = ("stumbles = stumbling:stumbles", "modal = stumbling:modal",
+              "budget = stumbling:modal", "three = stumbling:no_command")  # fmt: skip
+    as_installed(
+        tmp_path / "site", "stumbling", "\n".join(["[rpscli.commands]", *points])
+    )
+    monkeypatch.syspath_prepend(tmp_path / "site")
+    failed = rps("stumbles", exit_code=1).stderr
+    assert "rpscli.commands: stumbles of stumbling 1.0" in failed
+    assert "KeyError: 'gone'" in failed
+    assert "must be Command" in rps("three", exit_code=1).stderr
+    told = rps("explain", "plugins").stdout
+    assert told.count("rps has one of this name, which is taken") == 2
+
+
 def test_a_study(example: None, rps_json: InvokeJson, workplace: Path) -> None:
     (workplace / "study.yaml").write_text(STUDY, encoding="utf-8")
     document = rps_json("sweep", "study.yaml", "-o", "here")
@@ -159,7 +197,16 @@ def test_a_study(example: None, rps_json: InvokeJson, workplace: Path) -> None:
 
 def test_what_is_installed_is_listed(example: None, rps_json: InvokeJson) -> None:
     found = {each["name"]: each for each in rps_json("explain", "plugins")["plugins"]}
-    names = ["tidy", "ASI", "plateau", "worst", "phase_plane", "oil", "crushing"]
+    names = [
+        "tidy",
+        "ASI",
+        "plateau",
+        "worst",
+        "phase_plane",
+        "oil",
+        "crushing",
+        "widths",
+    ]
     assert [*found] == names
     assert {each["package"] for each in found.values()} == {"rps-example 1.0"}
     assert found["ASI"]["meaning"].startswith("ASI [m/s]: the integral of Sa")

@@ -321,7 +321,7 @@ def test_what_moves_the_worst_history_stands_on_its_page(
     assert "What moves" not in text_of("plain.html")
 
     # A folder is asked like the case that it came from.
-    monkeypatch.setattr("rpscli.commands.budget._records", lambda *_: ())
+    monkeypatch.setattr("rpscli.tools.budget.command._records", lambda *_: ())
     rps(
         "timehistory",
         "small.yaml",

@@ -9,7 +9,8 @@ from pathlib import Path
 import pytest
 from paper_structures import printed_by, python
 
-from rpscli.cli import COMMANDS
+from rpscli.commands.registry import OURS
+from rpscli.registry import of_tools
 
 HEAVY = {"llvmlite", "scipy", "matplotlib", "pydantic", "yaml", "rich", "numpy"}
 SCRIPT = """
@@ -39,7 +40,7 @@ UNITS = (
     ("line", "without"),
     [
         *((line, HEAVY) for line in ("--help", "--version")),
-        *((f"{command} --help", HEAVY) for command in COMMANDS),
+        *((f"{command} --help", HEAVY) for command in [*OURS, *of_tools("commands")]),
         ("check small.yaml --json", {*PICTURES_AND_KERNELS, "rich"}),
         (f"check small.yaml {UNITS}", {*PICTURES_AND_KERNELS, "rpscli.records.formats"}),
         ("modal small.yaml", {"llvmlite", "scipy"}),

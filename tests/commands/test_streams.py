@@ -11,9 +11,10 @@ from pathlib import Path
 import pytest
 from sweep.small_studies import ROOT
 
-from rpscli.cli import COMMANDS
 from rpscli.commands.record import command as record
+from rpscli.commands.registry import OURS
 from rpscli.commands.shell.terminal import MANY, Terminal, counted, rendered, watched
+from rpscli.registry import of_tools
 from rpscli.report.table import Table
 
 from .conftest import SMALL_CASE, Invoke, InvokeJson, Shell
@@ -261,7 +262,7 @@ def test_ascii_output_is_no_obstacle(shell: Shell) -> None:
 
 
 def test_every_command_has_a_help(rps: Invoke) -> None:
-    for path in [(name,) for name in COMMANDS] + [
+    for path in [(name,) for name in [*OURS, *of_tools("commands")]] + [
         ("record", name) for name in record.commands
     ]:
         result = rps(*path, "--help")

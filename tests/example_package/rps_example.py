@@ -7,6 +7,7 @@ import re
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Annotated
 
+import click
 import numpy as np
 from numpy.typing import NDArray
 
@@ -187,3 +188,14 @@ CRUSHING = RestitutionLaw(
     },
     restitution,
 )
+
+
+# A command of the program: `rps widths CASE`.
+
+
+@click.command("widths")
+@click.argument("case", type=click.Path(exists=True, dir_okay=False))
+def widths(case: str) -> None:
+    """Print how many widths of its flat part a column of CASE is high."""
+    bearing = rpscli.load_case(case).structure.bearing
+    click.echo(f"{1.0 / bearing.slenderness:.4g}")

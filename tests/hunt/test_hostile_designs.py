@@ -16,12 +16,12 @@ from click.testing import CliRunner
 from hunt.test_hostile_files import CASE_KEYS, CASES, VALUES
 from hunt.trials import LONGEST_LINE, PROMISED, hunt, hunted, judged, mutated, shares
 from rpscli import load_case, load_record, load_study
-from rpscli.case.design import DesignFile, parse_design
 from rpscli.case.schema.keys import key_references, known_paths
 from rpscli.cli import program
 from rpscli.errors import CaseError, RpsError, UsageError
 from rpscli.report.figures.look import read_style
 from rpscli.report.study.registry import REPORTS
+from rpscli.tools.design.keys import DesignFile, parse_design
 
 pytestmark = pytest.mark.posix  # trials are timed by its signals
 

@@ -21,7 +21,7 @@ from xml.etree.ElementTree import Element, SubElement, tostring
 import numpy as np
 from numpy.typing import NDArray
 
-from rpscli.report.export.multibody import (
+from rpscli.tools.export.multibody import (
     SPACING,
     THICKNESS,
     TIME_STEP,

@@ -14,9 +14,9 @@ from rpscli.errors import RecordError, UsageError
 from rpscli.records.ground_motion import GroundMotion, Recording
 from rpscli.records.loading import load_record
 from rpscli.records.measures import response_spectrum
-from rpscli.records.selection import parse_filter
 from rpscli.records.target import RULES, Component, Periods, load_target
 from rpscli.report.motions import record_files
+from rpscli.tools.selection.search import parse_filter
 
 
 class Have(NamedTuple):

@@ -12,11 +12,13 @@ import pytest
 from paper_structures import known
 
 from rpscli.errors import RecordError
-from rpscli.records import selection as module
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.loading import expand_sources, load_record
 from rpscli.records.measures import intensity_measures, response_spectrum
-from rpscli.records.selection import (
+from rpscli.records.target import Periods, load_target
+from rpscli.tools.selection import search as module
+from rpscli.tools.selection.report import selection_list
+from rpscli.tools.selection.search import (
     PERIODS,
     Goal,
     Pool,
@@ -25,8 +27,6 @@ from rpscli.records.selection import (
     misfit,
     select,
 )
-from rpscli.records.target import Periods, load_target
-from rpscli.report.motions import selection_list
 
 TARGET = "en1998:?ag=0.3g&soil=C"
 

@@ -20,9 +20,9 @@ from report.small_results import CURVED, FLAT, KINDS, drawn, structure
 from rpscli.analyses.modal import modal
 from rpscli.errors import OutputError, UsageError
 from rpscli.report.figures import style
-from rpscli.report.figures.animation import frame_plan, modes_film
 from rpscli.report.figures.history import rotation_figure, shown_floors
 from rpscli.report.figures.look import USUAL, FilmRequest, Look, read_style
+from rpscli.tools.animation.film import frame_plan, modes_film
 
 
 def test_a_figure_depends_on_its_result_alone() -> None:

@@ -43,7 +43,6 @@ from rpscli.records import measures
 from rpscli.records.loading import load_record
 from rpscli.records.measures import response_spectrum
 from rpscli.report.figures import style
-from rpscli.report.figures.animation import Scene, frame_plan, history_film, modes_film
 from rpscli.report.figures.bearing import devices_figure
 from rpscli.report.figures.floors import (
     MOST_STOREYS,
@@ -62,6 +61,7 @@ from rpscli.report.figures.structure import (
     modes_figure,
     storey_curve_figure,
 )
+from rpscli.tools.animation.film import Scene, frame_plan, history_film, modes_film
 
 
 @pytest.fixture(params=KINDS)

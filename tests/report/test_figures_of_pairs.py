@@ -26,9 +26,9 @@ from rpscli import figures
 from rpscli.analyses.trace import Direction
 from rpscli.errors import UsageError
 from rpscli.report.figures import history
-from rpscli.report.figures.animation import PlanView, Scene, frame_plan, history_film
 from rpscli.report.figures.floors import draw_accelerations
 from rpscli.report.figures.look import FilmRequest
+from rpscli.tools.animation.film import PlanView, Scene, frame_plan, history_film
 
 
 @pytest.fixture(params=["rolls", "overturns", "frame", "at rest"])

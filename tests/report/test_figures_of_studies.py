@@ -23,15 +23,15 @@ from sweep.small_studies import BASE, STUDY
 from report.small_results import curve, drawn, legend
 from rpscli.analyses.floor_spectra import PERIODS
 from rpscli.case.conditions import Condition
-from rpscli.case.design import Term
 from rpscli.cli import program
 from rpscli.records.ground_motion import GroundMotion
-from rpscli.records.selection import Candidate, Selection
 from rpscli.records.target import RULES, TargetSpectrum
-from rpscli.report.design import region_figure, requirements_figure
-from rpscli.report.figures.motions import selection_figure
 from rpscli.report.study.heights import Floors, floor_spectra_figure
-from rpscli.sweep.design import Answer, Requirement
+from rpscli.tools.design.keys import Term
+from rpscli.tools.design.report import region_figure, requirements_figure
+from rpscli.tools.design.search import Answer, Requirement
+from rpscli.tools.selection.figure import selection_figure
+from rpscli.tools.selection.search import Candidate, Selection
 
 Array = NDArray[np.float64]
 Open = Callable[[str], tuple[Figure, list[Row]]]

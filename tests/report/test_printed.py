@@ -31,15 +31,15 @@ from rpscli.analyses.result_quantities import LIMITED
 from rpscli.model.devices import FrictionDamper, Stop, Tendon, ViscousDamper
 from rpscli.records.measures import drawn_spectrum
 from rpscli.report import bundles
-from rpscli.report.budget import Budget, Row
-from rpscli.report.design import region_figure, requirements_figure
 from rpscli.report.figures import style
 from rpscli.report.figures.look import Look
-from rpscli.report.figures.motions import selection_figure
 from rpscli.report.figures.structure import draw_structure
 from rpscli.report.files import Drawing
 from rpscli.report.motions import record_files
 from rpscli.report.study.heights import Floors, floor_spectra_figure
+from rpscli.tools.budget.report import Budget, Row
+from rpscli.tools.design.report import region_figure, requirements_figure
+from rpscli.tools.selection.figure import selection_figure
 
 TITLE = (
     "Eighteen hospitals at the river, of which each is compared with all of the others"

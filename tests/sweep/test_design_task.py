@@ -13,15 +13,15 @@ import pytest
 from click.testing import CliRunner, Result
 from paper_structures import needs_compiled_kernels, python
 
-from rpscli.case.design import parse_design
 from rpscli.case.text.files import read_text
 from rpscli.case.text.yaml_text import read_yaml
 from rpscli.cli import program
-from rpscli.report.design import neighbours_note
-from rpscli.sweep.design import Search, weights_of
 from rpscli.sweep.evaluation import run_batch
 from rpscli.sweep.points import lay_out
 from rpscli.sweep.run import LARGEST_BATCH
+from rpscli.tools.design.keys import parse_design
+from rpscli.tools.design.report import neighbours_note
+from rpscli.tools.design.search import Search, weights_of
 from sweep.small_studies import BASE, ROOT, Sweep, SweepJson, csv_rows, document_of
 
 SLENDERNESS = "podium.bearing.slenderness"

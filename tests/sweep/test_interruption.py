@@ -462,7 +462,8 @@ def test_every_module_behind_a_stored_number_counts() -> None:
     counted = {name for name in modules if name.startswith(tuple(SOLVING))}
     assert "analyses/demand.py" in counted
     others = {"errors.py", "machine.py", "shown.py", "sweep/__init__.py", "version.py"}
-    assert modules - counted == others
+    # What tools offer is looked up; no number of a point depends on it.
+    assert {n for n in modules - counted if not n.startswith("tools/")} == others
 
 
 RECORDS = ("seed: [1, 2, 3]", "seed: {low: 1, high: 16, count: 16}")

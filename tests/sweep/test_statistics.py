@@ -12,16 +12,10 @@ from report.small_results import curve, legend
 from report.test_figures_of_studies import panels, same
 
 from rpscli.errors import CaseError
-from rpscli.report.study.comparison import (
-    ComparisonOptions,
-    RotationOptions,
-    comparison,
-    rotation,
-    uncomparable,
-)
 from rpscli.report.study.heights import StoreyShearOptions, storey_shear, unlike_buildings
 from rpscli.report.study.lines import IdaOptions, LinesOptions, ida, lines
 from rpscli.report.study.report import Found
+from rpscli.report.study.rotation import RotationOptions, rotation
 from rpscli.report.study.scatter import (
     DemandOptions,
     ScatterOptions,
@@ -32,6 +26,7 @@ from rpscli.report.study.scatter import (
 from rpscli.report.study.table import OVERTURNING, TABLE, OverturningOptions, TableOptions
 from rpscli.report.table import Table, records
 from rpscli.sweep.points import lay_out
+from rpscli.tools.comparison.report import ComparisonOptions, comparison, uncomparable
 from sweep.small_studies import (
     ALPHA,
     BROKEN,

@@ -15,12 +15,10 @@ from scipy.stats import beta, binom
 
 from rpscli import load_study
 from rpscli.case.conditions import Condition
-from rpscli.case.design import parse_design
 from rpscli.errors import CaseError
 from rpscli.report.study.registry import not_judged
 from rpscli.report.study.report import key_columns, label
 from rpscli.report.study.statistics import summary_columns, summary_document
-from rpscli.sweep.design import weights_of
 from rpscli.sweep.points import lay_out
 from rpscli.sweep.statistics.fractiles import Share, clustered, fractiles, share
 from rpscli.sweep.statistics.grouping import grouping
@@ -33,6 +31,8 @@ from rpscli.sweep.statistics.verdicts import (
     judged_records,
 )
 from rpscli.sweep.table import Table, points_csv
+from rpscli.tools.design.keys import parse_design
+from rpscli.tools.design.search import weights_of
 from sweep.small_studies import (
     ALPHA,
     BASE,

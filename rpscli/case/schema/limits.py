@@ -21,7 +21,7 @@ Admissible = Annotated[float, Quantity(at_least=0, below=1, remedy="10 % is 0.1"
 Fractile = Annotated[float, Quantity(above=0, below=1, remedy="84 % is 0.84")]
 
 
-_WITHOUT_SOURCE = {"use_attribute_docstrings": False}
+WITHOUT_SOURCE = {"use_attribute_docstrings": False}
 """Option of models that no class statement defines: looking for
 their source takes long."""
 
@@ -59,7 +59,7 @@ def _limit_of(unit: str, zero: bool, key: str) -> Any:  # noqa: FBT001 -- whethe
     rule = create_model(
         f"Limit_{unit}_{key}{zero:d}",
         __base__=LimitRule,
-        __cls_kwargs__=_WITHOUT_SOURCE,
+        __cls_kwargs__=WITHOUT_SOURCE,
         **fields,
     )
     form = Discriminator(
@@ -81,7 +81,7 @@ _FIELDS: Any = {
     for quantity in LIMITED
 }
 _LIMITS = create_model(
-    "Limits", __base__=Section, __cls_kwargs__=_WITHOUT_SOURCE, **_FIELDS
+    "Limits", __base__=Section, __cls_kwargs__=WITHOUT_SOURCE, **_FIELDS
 )
 
 

@@ -19,6 +19,7 @@ from pydantic import (
     Tag,
     ValidationInfo,
     WithJsonSchema,
+    create_model,
     model_validator,
 )
 from pydantic_core import CoreSchema
@@ -37,13 +38,14 @@ from rpscli.case.schema.fields import (
     refuse,
 )
 from rpscli.case.schema.keys import unit
-from rpscli.case.schema.limits import StudyLimits
+from rpscli.case.schema.limits import WITHOUT_SOURCE, StudyLimits
 from rpscli.case.schema.scale_to import (
     MeasuredValue,
     MeasureName,
     at_period,
     measured_value,
 )
+from rpscli.case.study.tool_key import TOOL_KEYS
 from rpscli.case.text.document import Place, shown
 from rpscli.errors import LARGEST, is_number
 from rpscli.records.measures import Of
@@ -391,7 +393,16 @@ class StudyParts(TitledFile):
     """who answers for the page of `rps report`"""
 
 
-class StudyFile(StudyParts):
+_KEYS: Any = {
+    name: (key.kind, Field(None, description=key.meaning))
+    for name, key in TOOL_KEYS.items()
+}
+_WITH_TOOLS = create_model(
+    "WithTools", __base__=StudyParts, __cls_kwargs__=WITHOUT_SOURCE, **_KEYS
+)
+
+
+class StudyFile(_WITH_TOOLS, use_attribute_docstrings=True):
     """A study of rps: many points from one case."""
 
     analysis: Analysis = "timehistory"
@@ -404,7 +415,5 @@ class StudyFile(StudyParts):
     )
     sample: SampleSection | None = None
     """uncertain parameters; one more axis"""
-    observed: Text | None = None
-    """CSV file of what was observed under records; for the report comparison"""
     reports: Annotated[tuple[Any, ...], A_LIST] = ()
     """names of reports, or `name: {option: value}`"""

@@ -18,7 +18,6 @@ from rpscli.case.schema.case_file import CaseFile
 from rpscli.case.schema.check import checked
 from rpscli.case.schema.keys import field_at, fields_of, is_whole, unit, unknown_key
 from rpscli.case.schema.scale_to import ScaleToSection
-from rpscli.case.study.observed import Observed, read_observed
 from rpscli.case.study.reports import (
     ReportKinds,
     ReportRequest,
@@ -36,7 +35,9 @@ from rpscli.case.study.schema import (
     StudyParts,
     Values,
 )
+from rpscli.case.study.tool_key import TOOL_KEYS
 from rpscli.case.text.document import Document, Fault, Path, dotted, format_of, shown
+from rpscli.case.text.file_kinds import FILE_KINDS
 from rpscli.case.text.files import read_text
 from rpscli.case.text.yaml_text import read_yaml
 from rpscli.errors import CaseError, RecordError, RpsError, is_number, listed, stem_of
@@ -44,7 +45,7 @@ from rpscli.records.loading import expanded, repeated
 from rpscli.registry import Registry
 from rpscli.units import in_si
 
-OF_HISTORIES = ("records", "scale", "perturb", "observed", "hazard")
+OF_HISTORIES = ("records", "scale", "perturb", *TOOL_KEYS, "hazard")
 """Keys of a study that only time histories have."""
 
 OF_POINTS = ("record", "scale")
@@ -78,7 +79,7 @@ class Study:
     base_overrides: tuple[str, ...]
     axes: tuple[Axis, ...]
     sources: tuple[str, ...]
-    observed: Observed | None
+    of_tools: Mapping[str, Any]  # what they read of their keys
     reports: tuple[ReportRequest, ...]
     digest: str
     notes: tuple[str, ...] = ()
@@ -120,9 +121,9 @@ def parse_study(
             f"{name}: this is a case, but a study is needed here; `rps timehistory"
             f" {name}` computes it, `rps init --study` writes a study"
         )
-    if kind == "design":
+    if kind in FILE_KINDS:
         raise CaseError(
-            f"{name}: this is a design, but a study is needed here; use `rps design"
+            f"{name}: this is a {kind}, but a study is needed here; use `rps {kind}"
             f" {name}`"
         )
     document, of_base = overridden(document, overrides, StudyFile)
@@ -165,7 +166,10 @@ def study_of(
     faults += [*_unequal(document, file), *key_faults(document, base_overrides, folder)]
     document.refuse([*faults, *_analysis_faults(document, file, reports, asked)])
     axes = _with_linked(_axes(document, file), file.linked, document)
-    observed = read_observed(file.observed, folder, axes, document)
+    of_tools = {
+        name: key.read(getattr(file, name, None), folder, axes, document)
+        for name, key in TOOL_KEYS.items()
+    }
     document.refuse(_report_faults(document, file, axes, reports, asked))
     document.refuse(_size_faults(file, axes, sources))
     base, base_file = _base(document, folder)
@@ -180,7 +184,7 @@ def study_of(
         base_overrides=tuple(base_overrides),
         axes=axes,
         sources=sources,
-        observed=observed,
+        of_tools=of_tools,
         reports=reports,
         digest=digest,
         notes=tuple(notes),

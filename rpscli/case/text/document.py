@@ -10,6 +10,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import PurePath
 from typing import Any
 
+from rpscli.case.text.file_kinds import FILE_KINDS
 from rpscli.errors import CaseError
 
 Path = tuple[str | int, ...]
@@ -180,12 +181,13 @@ class Document:
 
 
 def format_of(document: Document) -> str:
-    """The kind of file that a document is: case, study or design; empty if neither."""
+    """The kind of file that a document is: case, study or that of a tool; or empty."""
     keys = document.content.keys()
     if "base" not in keys:
         return "case" if "superstructure" in keys else ""
-    if {"variables", "find"} & keys:
-        return "design"
+    for name, kind in FILE_KINDS.items():
+        if kind.marks & keys:
+            return name
     return "" if "superstructure" in keys else "study"
 
 

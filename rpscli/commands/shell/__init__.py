@@ -23,8 +23,9 @@ class Group(click.Group):
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
         """The command that is called, or a refusal."""
-        known = self.list_commands(ctx)
-        if args and args[0] not in known and not args[0].startswith("-"):
-            meant = hint(args[0], known, f"there are {', '.join(known)}", 0.6)
-            ctx.fail(f"no such command: {args[0]}; {meant}")
+        word = args[0] if args else ""
+        if word and not word.startswith("-") and self.get_command(ctx, word) is None:
+            known = self.list_commands(ctx)
+            meant = hint(word, known, f"there are {', '.join(known)}", 0.6)
+            ctx.fail(f"no such command: {word}; {meant}")
         return super().resolve_command(ctx, args)

@@ -17,6 +17,7 @@ from rpscli.case.conditions import parse_condition
 from rpscli.commands.shell.terminal import Terminal
 from rpscli.constants import MOST_JOBS
 from rpscli.errors import UsageError, hint, listed
+from rpscli.registry import of_tools
 from rpscli.report.figures.look import (
     FIGURES,
     FORMATS,
@@ -332,8 +333,8 @@ result_options = gathered(
 
 
 def _film(
-    file: Path | None,
-    size: int | None,
+    file: Path | None = None,
+    size: int | None = None,
     speed: float | None = None,
     first: float | None = None,
     last: float | None = None,
@@ -381,9 +382,10 @@ _PART = (
     ),
     click.option("--animate-to", "last", type=_SECOND, metavar="S", help="Its end [s]."),
 )
-film_options = gathered("film", _film, *_FILM)
+_FILMED = bool(of_tools("films"))
+film_options = gathered("film", _film, *(_FILM if _FILMED else ()))
 """--animate and --animate-size, as `film`."""
-history_film_options = gathered("film", _film, *_PART, *_FILM)
+history_film_options = gathered("film", _film, *((*_PART, *_FILM) if _FILMED else ()))
 """--animate and its options, with speed and part of a history, as `film`."""
 
 

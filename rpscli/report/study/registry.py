@@ -10,13 +10,13 @@ from typing import Any
 from rpscli.analyses.result_quantities import LIMITED
 from rpscli.case.conditions import FRICTION, Condition
 from rpscli.case.text.document import Fault
-from rpscli.registry import Registry
+from rpscli.registry import Registry, all_of_tools
 from rpscli.report.study import (
-    comparison,
     fragility,
     heights,
     lines,
     risk,
+    rotation,
     scatter,
     table,
 )
@@ -28,7 +28,7 @@ REPORTS: Registry[Report[Any]] = Registry(
     "reports",
     {
         "overturning": table.OVERTURNING,
-        "rotation": comparison.ROTATION,
+        "rotation": rotation.REPORT,
         "demand": scatter.DEMAND,
         "storey_shear": heights.STOREY_SHEAR,
         "floor_spectra": heights.FLOOR_SPECTRA,
@@ -36,10 +36,10 @@ REPORTS: Registry[Report[Any]] = Registry(
         "risk": risk.REPORT,
         "ida": lines.IDA,
         "overturning_spectrum": scatter.OVERTURNING_SPECTRUM,
-        "comparison": comparison.REPORT,
         "lines": lines.REPORT,
         "table": table.TABLE,
         "scatter": scatter.SCATTER,
+        **all_of_tools("reports"),
     },
     Report,
 )

@@ -9,6 +9,7 @@ import shutil
 import subprocess
 from collections.abc import Callable, Iterator
 from contextlib import suppress
+from functools import partial
 from itertools import chain
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -312,6 +313,20 @@ def history_film(
         return len(samples), show
 
     return film(draw, wanted, look, progress)
+
+
+def of_history(
+    result: TimeHistoryResult, title: str, wanted: FilmRequest, look: Look
+) -> Callable[[Callable[[int, int], None]], bytes]:
+    """What draws a history; refuses a part that it does not have."""
+    return partial(history_film, result, title, wanted, frame_plan(result, wanted), look)
+
+
+def of_modes(
+    result: ModalResult, title: str, wanted: FilmRequest, look: Look
+) -> Callable[[Callable[[int, int], None]], bytes]:
+    """What draws the modes."""
+    return partial(modes_film, result, title, wanted, look)
 
 
 def modes_film(

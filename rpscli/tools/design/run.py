@@ -5,21 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any, NamedTuple
 
-from rpscli.case.design import parse_design
 from rpscli.case.text.files import opened
 from rpscli.commands.inputs import RESULTS, write
 from rpscli.commands.shell.options import CaseRequest, Output, RunChoices
 from rpscli.commands.shell.terminal import Terminal, concluded, leave
 from rpscli.commands.study import computed, show_dry_run, study_heading
 from rpscli.errors import LimitExceeded, RpsError, StudyIncomplete
-from rpscli.report.design import (
-    answer_document,
-    answer_notes,
-    answer_tables,
-    design_columns,
-    figures,
-    nothing_passes,
-)
 from rpscli.report.figures.style import figure_files
 from rpscli.report.files import OutputFolder, heading
 from rpscli.report.limits import VERDICT, verdict_texts
@@ -32,10 +23,19 @@ from rpscli.report.study.statistics import (
 )
 from rpscli.report.table import Heading, Part, Table, csv_text
 from rpscli.studies import Collected, Study, StudyResult, collected, error_of
-from rpscli.sweep.design import Answer, Search
 from rpscli.sweep.points import StudyPoints, lay_out
 from rpscli.sweep.store import Store
 from rpscli.sweep.table import Table as Points
+from rpscli.tools.design.keys import parse_design
+from rpscli.tools.design.report import (
+    answer_document,
+    answer_notes,
+    answer_tables,
+    design_columns,
+    figures,
+    nothing_passes,
+)
+from rpscli.tools.design.search import Answer, Search
 
 
 class Design(NamedTuple):

@@ -14,7 +14,6 @@ from typing import Any
 import numpy as np
 
 from rpscli.case.conditions import LIMITS, RATE
-from rpscli.case.design import Objective
 from rpscli.report.figures import style
 from rpscli.report.limits import (
     VERDICT,
@@ -27,10 +26,11 @@ from rpscli.report.study.panels import MOST_TICKS
 from rpscli.report.study.report import axis_label, key_columns, label, reached, symbol
 from rpscli.report.study.statistics import verdict_document
 from rpscli.report.table import Column, Part, Table, large, shown
-from rpscli.sweep.design import ROBUST, Answer, Requirement
 from rpscli.sweep.statistics.fractiles import CONFIDENCE
 from rpscli.sweep.statistics.verdicts import Verdict
 from rpscli.sweep.table import Array, unit_of
+from rpscli.tools.design.keys import Objective
+from rpscli.tools.design.search import ROBUST, Answer, Requirement
 
 DIGITS = 4
 
@@ -46,7 +46,7 @@ def requirement_label(requirement: Requirement) -> str:
 def objective_label(objective: Objective) -> str:
     """A sum in words.
 
-    >>> from rpscli.case.design import Term
+    >>> from rpscli.tools.design.keys import Term
     >>> objective_label({"podium.bearing.semi_diagonal": Term(times=2.0), "max_base_shear": Term()})
     '2 R + base shear, median'
     """

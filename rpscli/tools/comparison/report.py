@@ -1,4 +1,4 @@
-"""Endings and maxima beside those observed; rotations of systems beside those of one."""
+"""The report comparison: endings and maxima beside those that were observed."""
 
 from __future__ import annotations
 
@@ -10,14 +10,9 @@ from pathlib import PurePath
 from typing import Any, NamedTuple
 
 import numpy as np
-from pydantic import Field
 
 from rpscli.analyses.result_quantities import LIMITED
-from rpscli.case.study.observed import OVERTURNED, Observed, comparable
-from rpscli.case.study.reports import ReportOptions, ReportRequest, VariedKey, VariedKeys
-from rpscli.case.study.schema import Axis
-from rpscli.case.text.document import Document, Fault, Path, dotted, shown
-from rpscli.errors import beginning, listed
+from rpscli.errors import beginning
 from rpscli.report.figures import style
 from rpscli.report.study import fragility, panels
 from rpscli.report.study.fragility import Binned, binned
@@ -25,23 +20,21 @@ from rpscli.report.study.report import (
     Found,
     Report,
     keyed,
-    label,
     labels,
     reached,
-    without_uplift,
 )
 from rpscli.report.table import Column
 from rpscli.sweep.points import StudyPoints
 from rpscli.sweep.statistics.fractiles import Share, clustered, demand, fractiles
-from rpscli.sweep.statistics.grouping import INTENSITY, Histories, grouping, own_keys
+from rpscli.sweep.statistics.grouping import INTENSITY, Histories, grouping
 from rpscli.sweep.table import (
     Array,
     Indices,
     Intensity,
     StoredPoints,
     groups,
-    leading_keys,
 )
+from rpscli.tools.comparison.observed import OVERTURNED, Observed, comparable
 
 MOST_ROWS = 8  # of panels in the figure; the CSV files have all
 SHOWN = {
@@ -114,7 +107,7 @@ def comparison(study: StoredPoints, options: ComparisonOptions) -> Found:
     """Compare every system with its observations."""
     layout = study.table.layout
     intensity = study.table.intensity(options.measure, options.period, options.damping)
-    observed = layout.study.observed
+    observed = layout.study.of_tools.get("observed")
     assert observed is not None, "`unpaired` was asked before"
     pairs = observed_pairs(layout, observed)
     systems = grouping(study.table)
@@ -351,7 +344,7 @@ def _record_numbers(layout: StudyPoints) -> dict[str, int]:
 
 def unpaired(layout: StudyPoints) -> Iterator[str]:
     """Reasons that keep a study from being compared with its observations."""
-    observed = layout.study.observed
+    observed = layout.study.of_tools.get("observed")
     if observed is None:
         yield "the study names no observations; add `observed: FILE.csv`"
     elif None in layout.records:
@@ -394,148 +387,4 @@ def maxima(computed: Array, observed: Array) -> Maxima:
     )
 
 
-class RotationOptions(ReportOptions):
-    """Largest rotations of several systems against those of one, record by record."""
-
-    key: VariedKey | None = None
-    """varied key in which they differ; the last axis"""
-    reference: Any = Field(
-        None, description="its value on the horizontal axis; the last one"
-    )
-    panels: VariedKeys | None = None
-    """varied keys, one panel for each value; each intensity by default"""
-
-
-class Paired(NamedTuple):
-    """Points (pairs,) of a system and of the reference that differ
-    in one key, all computed.
-    """
-
-    value: object
-    points: Indices
-    references: Indices
-    failed: int
-
-
-def rotation(study: StoredPoints, options: RotationOptions) -> Found:
-    """Largest rotations over alpha of each system and of the
-    reference (paper, Figure 7).
-    """
-    table = study.table
-    layout = study.table.layout
-    leading = leading_keys(layout)
-    key = options.key or leading[-1]
-    systems = groups(layout, [key])
-    wanted = [group for group in systems if group.values[0] == options.reference]
-    reference = (wanted or systems[-1:])[0]
-    # Each intensity has a panel, unless the study says otherwise.
-    keys = own_keys(layout, leading) if options.panels is None else options.panels
-    found = grouping(table, keys, leading)
-    shown: dict[Histories, list[Paired]] = {}
-    for within in found.groups:
-        shown[within] = []
-        for system in (each for each in systems if each is not reference):
-            kept = np.isin(system.points, within.every)
-            mine = system.points[kept]
-            theirs = reference.points[kept]
-            bad = table.failed[mine] | table.failed[theirs]
-            pair = Paired(system.values[0], mine[~bad], theirs[~bad], int(bad.sum()))
-            shown[within].append(pair)
-    pairs = [each for group in shown.values() for each in group]
-    count = len(systems) - 1
-    alpha = np.array([properties.alpha for properties in layout.properties])
-    ratio = (
-        table.columns["max_rotation"]
-        / alpha[np.arange(len(table)) // layout.points_of_system]
-    )
-    ratio = np.where(table.overturned, np.inf, ratio)
-    every = [[each.references for each in pairs], [each.points for each in pairs]]
-    ends = [
-        1.08 * float(drawn[np.isfinite(drawn)].max(initial=0.0)) or 1.0
-        for drawn in (ratio[np.concatenate(points)] for points in every)
-    ]
-
-    def draw(axes: style.Axes, group: Histories) -> None:
-        for place, each in enumerate(shown[group]):
-            x, y = both = ratio[each.references], ratio[each.points]
-            stood = np.isfinite(x) & np.isfinite(y)
-            look = panels.look(place, count) | {"ls": "", "ms": 3.2}
-            axes.plot(
-                x[stood], y[stood], **look, alpha=0.75, label=label(key, each.value)
-            )
-            at_frame = [
-                np.minimum(of[~stood], end) for of, end in zip(both, ends, strict=True)
-            ]
-            (fell,) = axes.plot(
-                *at_frame, **look, mfc="none", mew=0.9, clip_on=False, zorder=3
-            )
-            fell.set_in_layout(False)
-        axes.plot([0.0, min(ends)], [0.0, min(ends)], "k--", lw=0.8)
-
-    # One row a pair; a rotation is empty where the structure overturned.
-    factors = len(layout.scales) > 1 and layout.plan.measure is None
-    rows = []
-    names = list[str]()
-    for each in pairs:
-        for mine, theirs in zip(
-            each.points.tolist(), each.references.tolist(), strict=True
-        ):
-            named = layout.described(mine) | (
-                {INTENSITY: layout[mine].scale} if factors else {}
-            )
-            names = list(named)
-            ours, other = ((table.outcomes[n], float(ratio[n])) for n in (mine, theirs))
-            rows.append((tuple(named.values()), *ours, reference.values[0], *other))
-    heads = f"outcome, rotation_over_alpha, reference {key}, reference_outcome"
-    name = r"$|\theta_{max}|/\alpha$ [-]"
-    figure = panels.in_panels(
-        found.keys,
-        found.groups,
-        draw,
-        x_label=f"{name}, {label(key, reference.values[0])}",
-        y_label=f"{name}, the others",
-        limits=lambda axes: axes.set(xlim=(0.0, ends[0]), ylim=(0.0, ends[1])),
-        note=panels.noted(
-            found,
-            "open markers: overturned",
-            panels.shaded(count),
-            failed=sum(each.failed for each in pairs),
-        ),
-    )
-    return Found(
-        {"": keyed(names, f"{heads}, reference_rotation_over_alpha", rows)}, figure
-    )
-
-
-def unknown_reference(
-    _document: Document, axes: Sequence[Axis], request: ReportRequest
-) -> Iterator[Fault]:
-    """A reference that its key does not take, or no key at all."""
-    options = request.options
-    report = f"the report {request.kind}"
-    assert isinstance(options, RotationOptions), "requests have the options of their kind"
-    of_key = [axis for axis in axes if options.key is None or options.key in axis.keys][
-        -1:
-    ]
-    if not of_key:
-        yield Fault(request.path, f"{report} needs a varied key: systems to compare")
-        return
-    place = of_key[0].keys.index(options.key) if options.key else 0
-    key = of_key[0].keys[place]
-    values = [row[place] for row in of_key[0].rows]
-    if len({repr(value) for value in values}) < 2:
-        yield Fault(
-            request.path,
-            f"{report} compares systems, but {key} has one value;"
-            " give it another one, or the report another `key`",
-        )
-    if options.reference is not None and options.reference not in values:
-        path: Path = (*request.path, request.kind, "reference")
-        text = f"{dotted(path)} = {shown(options.reference)} is not a value of {key}"
-        yield Fault(path, f"{text}, which takes {listed(map(shown, values), 'and')}")
-
-
 REPORT = Report(ComparisonOptions, comparison, requires=uncomparable)
-ROTATION = Report(
-    RotationOptions, rotation, check=unknown_reference, requires=without_uplift
-)

@@ -18,7 +18,7 @@ from rpscli.report.table import Heading, Part, Table, shown
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from rpscli.analyses.identification import Identified
+    from rpscli.tools.identify.identification import Identified
 
     Columns = dict[str, NDArray[Any]]
 
@@ -71,7 +71,7 @@ def command(
     release of a pull, or an earthquake with `ground_acceleration` as well.
     """
     given = read_case(request, terminal)
-    from rpscli.analyses.identification import LEVEL, identified
+    from rpscli.tools.identify.identification import LEVEL, identified
 
     columns = measured(data, test, first, last)
     announce_compilation(terminal)
@@ -130,9 +130,9 @@ def measured(source: str, test: str, first: float | None, last: float | None) ->
     """What a test needs, in SI units, in the time that is looked at."""
     import numpy as np
 
-    from rpscli.analyses.identification import TESTS
     from rpscli.case.text.files import read_text
     from rpscli.csv_text import csv_rows
+    from rpscli.tools.identify.identification import TESTS
     from rpscli.units import si_factor
 
     (_, heads), *rows = csv_rows(read_text(source), source) or [(1, [])]

@@ -20,7 +20,7 @@ from rpscli.errors import AnalysisError, RpsError
 if TYPE_CHECKING:
     from rpscli.case.case import Case
     from rpscli.records.ground_motion import MotionComponents
-    from rpscli.report.budget import Budget, Row
+    from rpscli.tools.budget.report import Budget, Row
 
 PERIOD_RATIO = 1.2
 LOSSES = (0.3, 0.6, 0.9, 1.2)
@@ -67,7 +67,7 @@ def case_budget(
     given: inputs.CaseInput, motions: Sequence[inputs.Motion], terminal: Terminal
 ) -> Budget:
     """All rows of a case under the first of its motions."""
-    from rpscli.report.budget import Budget
+    from rpscli.tools.budget.report import Budget
 
     wishes = [("as it is", (), motions[0].request), *_wishes(given.case, motions)]
     rows = []
@@ -90,7 +90,7 @@ def _row(
     from rpscli.analyses.timehistory import time_history
     from rpscli.case.case import case_from_mapping
     from rpscli.commands.timehistory_run import limited
-    from rpscli.report.budget import Row
+    from rpscli.tools.budget.report import Row
 
     if isinstance(motion, str):
         return Row(cause, "", "", "", {}, "", motion)

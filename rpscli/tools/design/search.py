@@ -19,7 +19,6 @@ from numpy.typing import NDArray
 
 from rpscli.case.case import case_from_mapping
 from rpscli.case.conditions import EVENTS, RATE, Condition
-from rpscli.case.design import DesignTask
 from rpscli.case.study.schema import SampleSection
 from rpscli.case.text.document import Fault
 from rpscli.errors import CaseError
@@ -29,6 +28,7 @@ from rpscli.sweep.statistics.grouping import INTENSITY, shown_keys
 from rpscli.sweep.statistics.verdicts import decisive, judge, rates_of_levels, worse
 from rpscli.sweep.systems import needs_of, unit_cube
 from rpscli.sweep.table import Array, Indices, Table
+from rpscli.tools.design.keys import DesignTask
 
 Flags = NDArray[np.bool_]
 Interval = tuple[float, float]

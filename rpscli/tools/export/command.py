@@ -96,7 +96,7 @@ def _model(
     program: str, result: TimeHistoryResult, title: str, until: float
 ) -> tuple[str, str]:
     """The text of the model, and its limits in words."""
-    from rpscli.report.export import multibody, opensees
+    from rpscli.tools.export import multibody, opensees
 
     note = (
         "Under 0.9999 and 1.0001 times the motion, displacements of rps stay within 1 %"
@@ -123,7 +123,7 @@ def _script(result: TimeHistoryResult, until: float) -> str:
     structure = result.structure
     rotation = result.settings.overturning_limit * structure.critical_rotation
     farthest = float(structure.path(np.array([rotation]))[1][0])
-    text = resources.files("rpscli.report.export").joinpath(RERUN).read_text("utf-8")
+    text = resources.files("rpscli.tools.export").joinpath(RERUN).read_text("utf-8")
     for name, value in (("COMPARABLE", until), ("OVERTURNED", farthest)):
         text = text.replace(f"{name} = inf", f"{name} = {value!r}")
     return text

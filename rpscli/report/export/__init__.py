@@ -1,1 +1,0 @@
-"""Structures as files that other programs run."""

@@ -1,0 +1,5 @@
+"""Properties of a case from measured motion."""
+
+OFFERS = {
+    "commands": {"identify": "rpscli.tools.identify.command:command"},
+}

@@ -1,0 +1,5 @@
+"""Motions and factors that fit a spectrum."""
+
+OFFERS = {
+    "record_commands": {"select": "rpscli.tools.selection.command:command"},
+}
