@@ -105,8 +105,10 @@ def demand(
         Vertical ground acceleration with the same time step, positive
         upwards, of a single record.
 
-    Returns ------- The demands, or a list of them in the order of the motions. No
-    history depends on the others.
+    Returns
+    -------
+    The demands, or a list of them in the order of the motions. No history depends on the
+    others.
 
     Raises
     ------

@@ -55,12 +55,13 @@ def isolated_floor_spectra(
     damping : float
         Share of critical damping.
 
-    Notes ----- From the absolute floor accelerations every `STEP` or less, linear
-    between them, and for ten first periods of the building after the history. Where
-    floors keep their own velocities impacts make the forces of dampers jump: between
-    two instants that is told by a ramp with the impulse of the jump. The same motion
-    written ten times denser moves pseudo-accelerations by less than 0.5 % at 0.1 s, and
-    by less than 1 % at 0.05 s.
+    Notes
+    -----
+    From the absolute floor accelerations every `STEP` or less, linear between them, and
+    for ten first periods of the building after the history. Where floors keep their own
+    velocities impacts make the forces of dampers jump: between two instants that is told
+    by a ramp with the impulse of the jump. The same motion written ten times denser moves
+    pseudo-accelerations by less than 0.5 % at 0.1 s, and by less than 1 % at 0.05 s.
     """
     if result.both_components:
         raise CaseError(

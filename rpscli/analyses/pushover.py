@@ -170,9 +170,11 @@ def pushover(
     ValueError
         If a given pattern has the wrong length or does not push.
 
-    Notes ----- F(theta) = W B/C, to which devices add; after uplift lambda sum(p) =
-    F(theta) and the floors stand at 1 u_b + lambda K^-1 p (Theory (5.5); paper, Figure
-    1c). Storeys that yield add their plastic drifts (Theory, section 15).
+    Notes
+    -----
+    F(theta) = W B/C, to which devices add; after uplift lambda sum(p) = F(theta) and the
+    floors stand at 1 u_b + lambda K^-1 p (Theory (5.5); paper, Figure 1c). Storeys that
+    yield add their plastic drifts (Theory, section 15).
     """
     require_structure(structure)
     end = structure.critical_rotation

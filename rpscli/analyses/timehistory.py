@@ -43,8 +43,10 @@ def time_history(
     with_fixed_base
         Also run the same building on a fixed base.
 
-    Returns ------- TimeHistoryResult. A step that could not be taken gives the outcome
-    ``failed`` with a reason, not an exception; overturning is a result like any other.
+    Returns
+    -------
+    TimeHistoryResult. A step that could not be taken gives the outcome ``failed`` with a
+    reason, not an exception; overturning is a result like any other.
 
     Raises
     ------

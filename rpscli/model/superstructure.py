@@ -111,8 +111,10 @@ def profile_stiffnesses(
     -------
     (n,) stiffnesses from the bottom [N/m].
 
-    Notes ----- k_i (Phi_i - Phi_{i-1}) = w1^2 sum_{j>=i} m_j Phi_j: the storey shear of
-    free vibration in the mode Phi (Theory (7.1)).
+    Notes
+    -----
+    k_i (Phi_i - Phi_{i-1}) = w1^2 sum_{j>=i} m_j Phi_j: the storey shear of free
+    vibration in the mode Phi (Theory (7.1)).
 
     Examples
     --------

@@ -9,14 +9,15 @@ cut at low frequencies by the filter of Clough and Penzien; the envelope of Sara
 Hart grows and decays it; a correction of the baseline brings the ground back to rest. A
 long velocity pulse may be added, as near a fault.
 
-References ---------- G. P. Mavroeidis and A. S. Papageorgiou, Bull. Seism. Soc. Am.
-93(3), 2003, equation 3 (pulse). N. Ricker, 1943 (wavelets: the second and the third
-derivative of a Gaussian). K. Kanai, Bull. Earthq. Res. Inst. 35, 1957; H. Tajimi,
-Proc. 2nd WCEE, 1960 (spectrum). R. W. Clough and J. Penzien, Dynamics of Structures,
-1975, section 28-4 (second filter). G. R. Saragoni and G. C. Hart, Earthq. Eng.
-Struct. Dyn. 2, 1974, in the form of D. M. Boore, Pure Appl. Geophys. 160, 2003,
-equations 9 to 12 (envelope). A. Der Kiureghian and A. Neuenhofer, Earthq. Eng.
-Struct. Dyn. 21, 1992 (values for firm soil).
+References
+----------
+G. P. Mavroeidis and A. S. Papageorgiou, Bull. Seism. Soc. Am. 93(3), 2003, equation 3
+(pulse). N. Ricker, 1943 (wavelets: the second and the third derivative of a Gaussian). K.
+Kanai, Bull. Earthq. Res. Inst. 35, 1957; H. Tajimi, Proc. 2nd WCEE, 1960 (spectrum). R.
+W. Clough and J. Penzien, Dynamics of Structures, 1975, section 28-4 (second filter). G.
+R. Saragoni and G. C. Hart, Earthq. Eng. Struct. Dyn. 2, 1974, in the form of D. M. Boore,
+Pure Appl. Geophys. 160, 2003, equations 9 to 12 (envelope). A. Der Kiureghian and A.
+Neuenhofer, Earthq. Eng. Struct. Dyn. 21, 1992 (values for firm soil).
 """
 
 from __future__ import annotations

@@ -9,8 +9,10 @@ piece of the annual rate
 
 has a closed form, by completing the square: no step of integration has to be chosen.
 
-References ---------- C. A. Cornell, F. Jalayer, R. O. Hamburger and D. A. Foutch, J.
-Struct. Eng. 128, 2002: a power law throughout gives rate = H(median) exp(k^2 beta^2/2).
+References
+----------
+C. A. Cornell, F. Jalayer, R. O. Hamburger and D. A. Foutch, J. Struct. Eng. 128, 2002: a
+power law throughout gives rate = H(median) exp(k^2 beta^2/2).
 """
 
 from __future__ import annotations

@@ -9,8 +9,10 @@ such data have no bands. Where samples of other data are separated, or fall with
 intensity, they determine nothing, and count as beyond both ends of a band; if they are
 more than its tails there is none.
 
-References ---------- D. Firth, Biometrika 80, 1993; I. Kosmidis and D. Firth, Biometrika
-108, 2021 (the penalty for any link, and that its estimates are always finite).
+References
+----------
+D. Firth, Biometrika 80, 1993; I. Kosmidis and D. Firth, Biometrika 108, 2021 (the penalty
+for any link, and that its estimates are always finite).
 """
 
 from __future__ import annotations

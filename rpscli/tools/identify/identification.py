@@ -101,10 +101,11 @@ def vibration(
     else a free decay if `free`, else the spectrum. `expected` is the first
     period on a fixed base [s].
 
-    Notes ----- Ambient: Whittle's likelihood of the periodogram, S = a f^c/((f^2 -
-    f1^2)^2 + (2 zeta f1 f)^2) + b, P. Whittle, Ark. Mat. 2, 1953; intervals from
-    Fisher's information. Else least squares of the transform in the band, linear in
-    all but period and damping.
+    Notes
+    -----
+    Ambient: Whittle's likelihood of the periodogram, S = a f^c/((f^2 - f1^2)^2 + (2 zeta
+    f1 f)^2) + b, P. Whittle, Ark. Mat. 2, 1953; intervals from Fisher's information. Else
+    least squares of the transform in the band, linear in all but period and damping.
     """
     _require_samples(expected, dt, floor, ground)
     n = len(floor)
