@@ -23,10 +23,10 @@ from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.analyses.timehistory import time_history
 from rpscli.analyses.trace import Trace
-from rpscli.csv_text import csv_rows
 from rpscli.errors import CaseError, hint
 from rpscli.model.podium import Array, PodiumStructure
 from rpscli.records.ground_motion import MotionComponents
+from rpscli.titled_table import titled_table
 
 FOLDER = Path(__file__).with_name("certified")
 ANSWERS = "answers.csv"
@@ -91,13 +91,14 @@ class Comparison:
 
 def _rows(text: str, source: str) -> Iterator[tuple[int, Key, dict[str, str]]]:
     """Line, problem and quantity, and cells."""
-    (_, heads), *rows = csv_rows(text, source) or [(1, [])]
+    table = titled_table(text, source, CaseError)
+    heads = table.names
     if lacking := {"problem", "quantity", "value"} - {*heads}:
         raise CaseError(
             f"{source}: line 1 names no column {min(lacking)}; begin with"
             f" `{','.join(COLUMNS)}`"
         )
-    for line, cells in rows:
+    for line, cells in table.rows:
         row = dict.fromkeys(heads, "") | dict(zip(heads, cells, strict=False))
         yield line, (row["problem"].strip(), row["quantity"].strip()), row
 

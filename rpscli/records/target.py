@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal, NamedTuple, cast, get_args
@@ -18,12 +18,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.constants import STANDARD_GRAVITY
-from rpscli.csv_text import csv_rows
 from rpscli.errors import RecordError, beginning, stem_of
 from rpscli.records.measures import Of
 from rpscli.records.quantities import ACCELERATIONS, KNOWN_UNITS, canonical_unit
 from rpscli.records.source import hint, parse_query
 from rpscli.registry import Registry
+from rpscli.titled_table import Row, TitledTable, number_of, text_of, titled_table
 
 Array = NDArray[np.float64]
 Shape = Callable[[Array], Array]  # periods (n,) [s] to pseudo-accelerations (n,) [m/s2]
@@ -350,35 +350,18 @@ def load_target(source: str) -> TargetSpectrum:
     raise RecordError(f"{source}: {fault}")
 
 
-_HEAD = re.compile(r"\s*(.*?)\s*[\[(]([^\])]*)[\])]\s*")
-_DEVIATION = re.compile(r"\s*sigma_ln\s*(?:\[-\])?\s*", re.IGNORECASE)
-
-
 def _table(path: Path, options: str, source: str) -> TargetSpectrum:
     """Columns period and acceleration, linear between logarithms,
     and perhaps `sigma_ln [-]`.
     """
     # With the third one, the standard deviation of ln Sa, the acceleration is the median.
-    try:
-        text = path.read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
-        raise RecordError(f"{source}: cannot be read: {error}; name a CSV file") from None
-    (_, head), *rows = csv_rows(text, path, RecordError) or [(1, [])]
-    units = [
-        match[2].strip() if (match := _HEAD.fullmatch(cell)) else "" for cell in head[:2]
-    ]
-    unit = canonical_unit(units[1]) if len(units) == 2 and units[0] == "s" else None
-    if unit is None:
-        raise RecordError(
-            f"{path}:1: {beginning(','.join(head))} should name two columns with units,"
-            f" as in 'period [s],acceleration [g]'; accelerations are in {KNOWN_UNITS}"
-        )
-    factor = ACCELERATIONS[unit]
-    scatters = len(head) > 2 and _DEVIATION.fullmatch(head[2]) is not None
+    table = _columns_of(path, source)
+    factor = ACCELERATIONS[canonical_unit(table.titles[1].unit) or "m/s2"]
+    scatters = _place_of_deviation(table)
     width = 3 if scatters else 2
-    cells = np.array([_cells(row, width, f"{path}:{n}") for n, row in rows]).reshape(
-        -1, width
-    )
+    places = (0, 1, scatters)[:width]
+    cells = np.array([_cells(row, places, path) for row in table.rows]).reshape(-1, width)
+    unused = [n for place, n in enumerate(table.names) if place not in places]
     rigid = cells[cells[:, 0] == 0.0]  # 0 has no logarithm
     cells = cells[cells[:, 0] > 0.0]
     if len(cells) < 2 or (np.diff(cells[:, 0]) <= 0.0).any():
@@ -396,7 +379,7 @@ def _table(path: Path, options: str, source: str) -> TargetSpectrum:
     of = query.choice("component", "", get_args(Of))
     first = float(cells[0, 0])
     last = float(cells[-1, 0])
-    pinned = scatters and not cells[:, 2].all()
+    pinned = bool(scatters) and not cells[:, 2].all()
     return TargetSpectrum(
         stem_of(path),
         source,
@@ -405,6 +388,7 @@ def _table(path: Path, options: str, source: str) -> TargetSpectrum:
         damping=damping,
         span=(first, last),
         of=cast("Of", of) if of else None,
+        parameters=f"columns not used: {', '.join(unused)}" if unused else "",
         level=query.values.get("level") or "",
         deviation=deviation if scatters else None,
         pga=factor * float(rigid[0, 1]) if len(rigid) else None,
@@ -412,17 +396,46 @@ def _table(path: Path, options: str, source: str) -> TargetSpectrum:
     )
 
 
-def _cells(row: list[str], width: int, place: str) -> list[float]:
+_DEVIATION = re.compile(r"(?:sigma|beta|std|dispersion)(?:_?ln)?(?:_?sa)?", re.IGNORECASE)
+"""Names of the standard deviation of ln Sa, a plain number."""
+
+
+def _place_of_deviation(table: TitledTable) -> int:
+    """The column of the standard deviation of ln Sa; 0 without one."""
+    places = range(2, len(table.titles))
+    of = (
+        place
+        for place in places
+        if not table.titles[place].unit and _DEVIATION.fullmatch(table.titles[place].name)
+    )
+    return next(of, 0)
+
+
+def _columns_of(path: Path, source: str) -> TitledTable:
+    """The columns of a target, each understood by its title."""
     try:
-        found = [float(cell) for cell in row[:width]]
-    except ValueError:
-        found = []
-    wrong = len(found) < width or not np.isfinite(found).all()
+        text = text_of(path.read_bytes())
+    except (OSError, UnicodeDecodeError) as error:
+        raise RecordError(f"{source}: cannot be read: {error}; name a CSV file") from None
+    table = titled_table(text, path, RecordError)
+    titles = table.titles
+    if len(titles) < 2 or titles[0].unit != "s" or canonical_unit(titles[1].unit) is None:
+        raise RecordError(
+            f"{path}:{table.line}: {table.written} should name two columns with units,"
+            f" as in 'period [s],acceleration [g]'; accelerations are in {KNOWN_UNITS}"
+        )
+    return table
+
+
+def _cells(row: Row, places: Sequence[int], path: Path) -> list[float]:
+    found = [number_of(row.cells[place]) for place in places]
+    width = len(places)
+    wrong = not np.isfinite(found).all()
     if wrong or not (min(found) >= 0.0 and found[1] > 0.0):
         also = ", and a sigma_ln >= 0" if width > 2 else ""
         raise RecordError(
-            f"{place}: {beginning(','.join(row[:width]))} must be a period >= 0 and an"
-            f" acceleration > 0{also}"
+            f"{path}:{row.line}: {beginning(','.join(row.cells[:width]))} must be a"
+            f" period >= 0 and an acceleration > 0{also}"
         )
     return found
 

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any, BinaryIO
 
 from rpscli.errors import CaseError, nearest, require_visible
+from rpscli.titled_table import text_of
 
 STDIN = "-"
 LARGEST = 2_000_000
@@ -19,8 +20,11 @@ _PATIENCE = 10.0
 """Seconds that a named pipe may stay without a writer."""
 
 
-def read_text(source: str | Path) -> str:
-    """Text of a case or study file; ``-`` reads the standard input."""
+def read_text(source: str | Path, *, wide: bool = False) -> str:
+    """Text of a case or study file, or of a table, which may be UTF-16: `wide`.
+
+    ``-`` reads the standard input.
+    """
     if str(source) == STDIN:
         if sys.stdin is None:
             raise CaseError(
@@ -41,7 +45,7 @@ def read_text(source: str | Path) -> str:
                 f"{source}: is a device; name a file, or `-` for the standard input"
             )
         with _opened(path, kind) as file:
-            return decoded(_bounded(file, str(source)), str(source))
+            return decoded(_bounded(file, str(source)), str(source), wide=wide)
     except FileNotFoundError:
         raise CaseError(f"{source}: there is no such file{_similar(path)}") from None
     except (OSError, ValueError) as error:
@@ -87,10 +91,10 @@ def _bounded(file: BinaryIO, name: str) -> bytes:
     return data
 
 
-def decoded(data: bytes, name: str) -> str:
-    """UTF-8 bytes as text, with or without a byte order mark."""
+def decoded(data: bytes, name: str, *, wide: bool = False) -> str:
+    """UTF-8 bytes as text, with or without a byte order mark; if `wide` UTF-16 too."""
     try:
-        return data.decode("utf-8-sig")
+        return text_of(data) if wide else data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         before = data[: error.start]
         line = before.count(b"\n") + 1

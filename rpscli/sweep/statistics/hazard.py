@@ -18,7 +18,7 @@ power law throughout gives rate = H(median) exp(k^2 beta^2/2).
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -26,10 +26,10 @@ import numpy as np
 
 from rpscli.case.text.document import shown
 from rpscli.case.text.files import read_text
-from rpscli.csv_text import csv_rows
 from rpscli.errors import CaseError
 from rpscli.model.podium import Array
 from rpscli.records.measures import MEASURES, Measure
+from rpscli.titled_table import Row, TitledTable, number_of, titled_table
 from rpscli.units import si_value
 
 RATE_UNITS = ("1/year", "1/yr", "1/a")
@@ -60,92 +60,96 @@ def read_hazard(path: Path, measure: Measure) -> Hazard:
     """A hazard curve from a CSV file headed ``PGV [cm/s],rate
     [1/year]``, then fractiles.
     """
-    every = csv_rows(read_text(path), path)
-    rows = [(line, row) for line, row in every if not row[0].lstrip().startswith("#")]
-    whole = len(rows)
+    table = titled_table(read_text(path, wide=True), path, CaseError)
+    rows = list(table.rows)
     # Tables go on with rates that print as zero.
-    while len(rows) > 1 and rows[-1][1][1:] and {*map(_number, rows[-1][1][1:])} == {0.0}:
+    while rows and rows[-1].cells[1:] and {*map(number_of, rows[-1].cells[1:])} == {0.0}:
         rows.pop()
-    if len(rows) < 3:
+    if len(rows) < 2 and not _of_probabilities(table):
         raise CaseError(
             f"{path}: a hazard curve has a header, {_header(measure)}, and at least two"
             " rows"
         )
-    factor, shares = _head(path, *rows[0], measure)
-    points = np.array(
-        [_numbers(path, line, row, len(shares) + 2) for line, row in rows[1:]]
-    )
-    for (line, row), steps in zip(rows[2:], np.diff(points, axis=0), strict=True):
+    factor, shares = _head(table, measure)
+    points = np.array([_numbers(path, row, len(shares) + 2) for row in rows])
+    for (line, cells), steps in zip(rows[1:], np.diff(points, axis=0), strict=True):
         if steps[0] <= 0.0:
             raise CaseError(
-                f"{path}:{line}: {shown(row[0])} must be above the row before"
+                f"{path}:{line}: {shown(cells[0])} must be above the row before"
             )
         if (steps[1:] > 0.0).any():
-            rate = row[1 + int(np.argmax(steps[1:] > 0.0))]
+            rate = cells[1 + int(np.argmax(steps[1:] > 0.0))]
             raise CaseError(
                 f"{path}:{line}: the rate {shown(rate)} is above that of the row before;"
                 " stronger motions are not more frequent"
             )
     fractiles = dict(zip(shares, points.T[2:], strict=True))
-    return Hazard(points[:, 0] * factor, points[:, 1], fractiles, whole - len(rows))
+    return Hazard(
+        points[:, 0] * factor, points[:, 1], fractiles, len(table.rows) - len(rows)
+    )
 
 
 def _header(measure: Measure) -> str:
     return f"`{measure} [{USUAL.get(measure, MEASURES[measure].unit)}],rate [1/year]`"
 
 
-def _head(
-    path: Path, line: int, row: Sequence[str], measure: Measure
-) -> tuple[float, tuple[float, ...]]:
+RATES = ("rate", "mean", "afe", "annual rate", "annual frequency of exceedance")
+"""Names of the column of rates."""
+
+POE = (
+    " probabilities of exceedance become rates by -ln(1 - poe)/t, with the investigation"
+    " time t: write these into a table of a row an intensity"
+)
+
+
+def _of_probabilities(table: TitledTable) -> bool:
+    """True of curves as OpenQuake writes them, a column an intensity."""
+    return any(name.lower().startswith("poe") for name in table.names)
+
+
+def _head(table: TitledTable, measure: Measure) -> tuple[float, tuple[float, ...]]:
     """Factor to SI, and the fractiles of further columns."""
-    heads = [cell.strip().removesuffix("]").partition("[") for cell in row]
-    names = [name.strip().lower() for name, _, _ in heads]
-    units = [unit.strip() for _, _, unit in heads]
-    wrong = f"{path}:{line}: the header {shown(','.join(row))}"
-    if names[:2] not in ([measure.lower(), "rate"], [measure.lower(), "mean"]):
+    names = [name.lower() for name in table.names]
+    wrong = f"{table.source}:{table.line}: the header {shown(table.written)}"
+    if _of_probabilities(table):
+        raise CaseError(f"{wrong} is of OpenQuake; {_header(measure)} is needed:{POE}")
+    if names[:1] != [measure.lower()] or not {*names[1:2]} & {*RATES}:
         raise CaseError(
             f"{wrong} must be {_header(measure)}, and fractiles behind it, `0.16"
             " [1/year]`"
         )
-    if missing := [shown(row[place]) for place, unit in enumerate(units) if not unit]:
+    if missing := [shown(title.name) for title in table.titles if not title.unit]:
         raise CaseError(
             f"{wrong} lacks the unit of {', '.join(missing)}: write {_header(measure)}"
         )
     shares = []
-    for name, unit in zip(names[1:], units[1:], strict=True):
+    for name, unit in table.titles[1:]:
         if unit not in RATE_UNITS:
             raise CaseError(
                 f"{wrong}: the unit of {name} must be one of {', '.join(RATE_UNITS)}"
             )
     for name in names[2:]:
-        shares.append(_number(name))
+        shares.append(number_of(name))
         if not 0.0 < shares[-1] < 1.0:
             raise CaseError(
                 f"{wrong}: {shown(name)} must be a fractile, as in `0.84 [1/year]`"
             )
+    unit = table.titles[0].unit
     try:
-        return si_value(f"1 {units[0]}", MEASURES[measure].unit), tuple(shares)
+        return si_value(f"1 {unit}", MEASURES[measure].unit), tuple(shares)
     except ValueError as error:
         raise CaseError(
-            f"{path}:{line}: the unit of {measure}: 1 {units[0]} {error}"
+            f"{table.source}:{table.line}: the unit of {measure}: 1 {unit} {error}"
         ) from None
 
 
-def _numbers(path: Path, line: int, row: Sequence[str], count: int) -> tuple[float, ...]:
-    found = tuple(map(_number, row))
+def _numbers(path: Path, row: Row, count: int) -> tuple[float, ...]:
+    found = tuple(map(number_of, row.cells))
     if len(found) != count or not all(0.0 < value < math.inf for value in found):
         number = "two" if count == 2 else str(count)
         text = f"must be {number} numbers > 0, an intensity and its annual rate"
-        raise CaseError(f"{path}:{line}: {shown(','.join(row))} {text}")
+        raise CaseError(f"{path}:{row.line}: {shown(','.join(row.cells))} {text}")
     return found
-
-
-def _number(cell: str) -> float:
-    """NaN of what is none."""
-    try:
-        return float(cell)
-    except ValueError:
-        return math.nan
 
 
 def exceeded(hazard: Hazard, intensities: Array) -> Array:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path as Folder
@@ -14,8 +13,8 @@ from rpscli.case.schema.keys import unit as key_unit
 from rpscli.case.study.schema import Axis
 from rpscli.case.text.document import Document, Fault, Path, Place, shown
 from rpscli.case.text.files import read_text
-from rpscli.csv_text import csv_rows
 from rpscli.errors import CaseError, hint, listed
+from rpscli.titled_table import titled_table
 from rpscli.units import KINDS, in_si, si_value
 
 RECORD = "record"
@@ -25,7 +24,6 @@ PATH: Path = ("observed",)
 _UNITS = {OVERTURNED: "-"} | {quantity.name: quantity.unit for quantity in LIMITED}
 """SI units of what may be observed."""
 _YES = {"1": 1.0, "true": 1.0, "yes": 1.0, "0": 0.0, "false": 0.0, "no": 0.0}
-_TITLE = re.compile(r"\s*([^\s\[]+)\s*(?:\[\s*([^\]]*?)\s*\])?\s*")
 
 
 class Observation(NamedTuple):
@@ -99,22 +97,20 @@ def read_observed(
     if name is None:
         return None
     try:
-        (first, heads), *rest = csv_rows(read_text(folder / name), name) or [(0, [])]
+        table = titled_table(read_text(folder / name, wide=True), name, CaseError)
     except CaseError as error:
         raise document.refusal([Fault(PATH, f"observed: {error}")]) from None
-    if not rest:
+    if not table.rows:
         text = f"observed: {name} must have a line of titles and more lines"
         raise document.refusal([Fault(PATH, text)])
-    columns = []
-    for head in heads:
-        match = _TITLE.fullmatch(head)
-        title, unit = (match[1], match[2] or "") if match else (head.strip(), "")
-        columns.append(_Column(title, "" if unit in ("-", "1") else unit))
+    columns = [_Column(*title) for title in table.titles]
     known = [RECORD, "scale", *(key for axis in axes for key in axis.keys)]
-    document.refuse(_fault(name, first, text) for text in _title_faults(columns, known))
+    document.refuse(
+        _fault(name, table.line, text) for text in _title_faults(columns, known)
+    )
     faults = []
     seen = dict[tuple[object, ...], Observation]()
-    for line, row in rest:
+    for line, row in table.rows:
         try:
             new = _observation(line, columns, row)
             before = seen.setdefault((new.record, new.system), new)

@@ -131,12 +131,12 @@ def measured(source: str, test: str, first: float | None, last: float | None) ->
     import numpy as np
 
     from rpscli.case.text.files import read_text
-    from rpscli.csv_text import csv_rows
+    from rpscli.titled_table import titled_table
     from rpscli.tools.identify.identification import TESTS
     from rpscli.units import si_factor
 
-    (_, heads), *rows = csv_rows(read_text(source), source) or [(1, [])]
-    names = [head.strip().partition(" [")[0] for head in heads]
+    table = titled_table(read_text(source, wide=True), source, RecordError)
+    names = table.names
     columns: Columns = {}
     for wanted in ((("time", "s"),), *TESTS[test]):
         column = next((each for each in wanted if each[0] in names), None)
@@ -149,17 +149,14 @@ def measured(source: str, test: str, first: float | None, last: float | None) ->
         (name, unit) = column
         rule = f"write numbers, in {unit} or another such unit"
         try:
-            written = heads[place].partition("[")[2].strip(" ]")
-            factor = si_factor(written or unit, unit)
-            values = np.array([float(row[place]) for _, row in rows])
+            factor = si_factor(table.titles[place].unit or unit, unit)
+            values = np.array([float(row.cells[place]) for row in table.rows])
         except (ValueError, IndexError) as error:
             raise RecordError(f"{source}: column {name}: {error}; {rule}") from None
         columns[name] = values * factor
         if (bad := np.flatnonzero(~(np.abs(columns[name]) < LARGEST))).size:
-            line, row = rows[bad[0]]
-            raise RecordError(
-                f"{source}:{line}: column {name}: {row[place].strip()}; {rule}"
-            )
+            line, cells = table.rows[bad[0]]
+            raise RecordError(f"{source}:{line}: column {name}: {cells[place]}; {rule}")
     time = columns["time"]
     steps = np.diff(time)
     even = len(time) >= FEWEST and steps.mean() > 0.0
