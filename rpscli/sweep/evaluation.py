@@ -23,8 +23,9 @@ from numpy.typing import NDArray
 
 from rpscli.analyses import result_quantities as rq
 from rpscli.analyses.demand import Request, histories
-from rpscli.analyses.largest_demands import Demands, failure_text, outcomes_of
+from rpscli.analyses.largest_demands import Demands
 from rpscli.analyses.modal import modal
+from rpscli.analyses.outcomes import failure_text, outcomes_of
 from rpscli.analyses.pushover import pushover
 from rpscli.analyses.result_quantities import LIMITED, ResultQuantity
 from rpscli.analyses.settings import TimeHistorySettings
