@@ -38,7 +38,8 @@ from rpscli.report.study.report import (
     labels,
     without_uplift,
 )
-from rpscli.sweep.evaluation import SCALARS, RecordRequest
+from rpscli.sweep.evaluation import SCALARS
+from rpscli.sweep.motions import RecordRequest
 from rpscli.sweep.points import StudyPoints
 from rpscli.sweep.statistics.grouping import (
     INTENSITY,
