@@ -119,7 +119,7 @@ def _loads(
 
 @dataclass(frozen=True, eq=False)
 class _Ends:
-    """Both ends of the most loaded column at the times of a trace, and what bears them."""
+    """Both ends of the most loaded column at the times of a trace: loads and bearing."""
 
     structure: PodiumStructure
     design: ColumnDesign
@@ -153,7 +153,7 @@ class _Ends:
         )
 
     def pressures(self) -> Array:
-        """Pressures on arcs (2, samples) [Pa], where they may be the largest; 0 elsewhere."""
+        """Pressures on arcs (2, samples) [Pa] that may be the largest; 0 elsewhere."""
         # It grows with N and with the tilt: the others lie below one that has more of
         # both.
         x = self.rotation

@@ -371,7 +371,7 @@ class TimeHistoryResult(Demand):
         )
 
     def _lost_contact(self) -> Iterator[str]:
-        """Ends, or single columns, that nothing would press on the ground and the beam."""
+        """Ends, or single columns, that nothing presses on ground and beam."""
         least = min(self.history["normal_top"], self.history["normal_bottom"])
         if least <= 0.0:
             yield (

@@ -78,7 +78,7 @@ def _on_fixed_base(
 
 
 def _with_columns(result: TimeHistoryResult) -> TimeHistoryResult:
-    """The result with axial forces of single columns, and the demand on a designed one."""
+    """The result with forces of single columns, and the demand on a designed one."""
     structure = result.structure
     design = structure.column
     even = structure.superstructure is None or len(result.left_out_of_columns) > 1

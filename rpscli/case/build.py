@@ -146,7 +146,7 @@ def built(bearing: Bearing, file: CaseFile) -> PodiumStructure:
 
 
 def rows_of(plan: RowsSection | None) -> tuple[float, ...]:
-    """Places of the rows of columns in one direction [m]; none where they are not known."""
+    """Places of the rows of columns in one direction [m]; none where not known."""
     return () if plan is None else plan.rows or (0.0, plan.length or 0.0)
 
 

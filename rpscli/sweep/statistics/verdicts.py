@@ -299,7 +299,7 @@ def judged(
 def _limits_known(
     table: Table, points: Indices, further: Iterable[Condition]
 ) -> list[Condition]:
-    """Limits of the systems of some points, and further ones, on results that they have."""
+    """Limits of the systems of some points, and further ones, on results they have."""
     layout = table.layout
     systems = np.unique(points // layout.points_of_system)
     own = [layout.properties[system] for system in systems]
