@@ -225,7 +225,7 @@ def load_synthetic(of: Source) -> GroundMotion:
 
 
 class _Noise(NamedTuple):
-    """Filtered white noise: peak, length, and frequency [Hz] and damping of both filters."""
+    """Filtered white noise: peak, length, frequency [Hz] and damping of both filters."""
 
     seed: int
     pga: float  # [m/s2]
