@@ -20,13 +20,13 @@ import warnings
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from hashlib import sha256
 from pathlib import Path
 from shutil import rmtree
 from tempfile import mkdtemp
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 from weakref import finalize
 
 from rpscli.case.conditions import Condition
@@ -48,19 +48,20 @@ from rpscli.errors import (
 from rpscli.machine import available_cores
 from rpscli.report.figures.look import Look
 from rpscli.report.figures.style import drawable_style
-from rpscli.report.files import Content, OutputFolder, Run, require_writable
-from rpscli.report.study.registry import REPORTS, lacking, not_judged, requirement_faults
-from rpscli.report.study.report import Found, add_notes
+from rpscli.report.files import OutputFolder, Run, require_writable
+from rpscli.report.study.collected import Collected
+from rpscli.report.study.registry import REPORTS, lacking, requirement_faults
+from rpscli.report.study.report import Found
 from rpscli.report.study.statistics import (
     summary_columns,
     verdict_columns,
     verdict_lines,
 )
-from rpscli.report.table import Column, Heading, Part, columns_of, csv_text
+from rpscli.report.table import Column
 from rpscli.shown import Shown, data_frame, frozen
-from rpscli.sweep.points import StudyPoints, lay_out, reproduction
+from rpscli.sweep.points import StudyPoints, lay_out
 from rpscli.sweep.run import Engine, Progress, Start, run, start
-from rpscli.sweep.statistics.summary import Summary, scale_notes, step_notes, summary
+from rpscli.sweep.statistics.summary import Summary, summary
 from rpscli.sweep.statistics.verdicts import Verdict, judged, rate_notes
 from rpscli.sweep.store import Store
 from rpscli.sweep.systems import Watched, needs_of
@@ -78,7 +79,6 @@ if TYPE_CHECKING:
     from rpscli.case.study.reports import ReportRequest
     from rpscli.report.figures.style import Target
 
-BASE = "base.yaml"
 FAILURES_SHOWN = 10
 
 
@@ -320,30 +320,6 @@ def run_in(
         )
 
 
-class Failure(NamedTuple):
-    """A point that failed: its line in `points.csv`, why, and how to compute it alone."""
-
-    point: int
-    message: str
-    command: str
-
-
-@dataclass
-class Collected:
-    """The files of a study by name, and what its reports say.
-
-    `notes` warn of the numbers, `parts` and `documents` are tables of reports for readers
-    and for JSON, `broken` are the reports that could not be made.
-    """
-
-    files: dict[str, str | Content] = field(default_factory=dict)
-    failures: list[Failure] = field(default_factory=list)
-    notes: list[str] = field(default_factory=list)
-    parts: list[Part] = field(default_factory=list)
-    documents: dict[str, Any] = field(default_factory=dict)
-    broken: list[RpsError] = field(default_factory=list)
-
-
 @dataclass(frozen=True, eq=False, repr=False)
 class StudyResult(Shown):
     """All points of a study that was run, statistics and reports; SI units.
@@ -564,44 +540,13 @@ def collected(result: StudyResult, look: Look, place: Path | None = None) -> Col
     that fails takes no other.
     """
     found = Collected({"points.csv": points_csv(result.table)})
-    base = result.layout.study.base_file
-    if base is None and result.failures:
-        # JSON is YAML too.
-        found.files[BASE] = json.dumps(result.layout.plan.base, indent=2) + "\n"
-        base = (place or result.folder) / BASE
-    for number, message in result.failures.items():
-        command = reproduction(result.layout, result.layout[number], base or Path())
-        found.failures.append(Failure(number + 1, message, command))
-    if found.failures:
-        heads = ", ".join(Failure._fields)
-        found.files["failed.csv"] = csv_text(columns_of(heads, found.failures))
+    found.add_failures(result.layout, result.failures, place or result.folder)
     with result.results.store:
-        if result.summary is not None:
-            found.files["statistics.csv"] = csv_text(summary_columns(result.summary))
-            if result.judgements:
-                columns = verdict_columns(result.summary.keys, result.judgements)
-                found.files["verdicts.csv"] = csv_text(columns)
-            unjudged = not_judged(result.layout, result.study.conditions)
-            notes = [*result.summary.notes, *scale_notes(result.table), *unjudged]
-            notes += rate_notes(result.layout)
-            found.notes += [f"statistics: {note}" for note in notes]
-            found.notes += step_notes(result.table)
+        if (statistics := result.summary) is not None:
+            conditions = result.study.conditions
+            found.add_statistics(result.table, statistics, result.judgements, conditions)
         for stem, request in result.study.reports.items():
-            try:
-                made = REPORTS[request.kind].make(result.results, request.options)
-                title = request.options.title or result.study.title
-                found.files |= dict(made.files(stem, title, look))
-                add_notes(found.notes, stem, made.notes)
-                if document := made.document():
-                    found.documents[stem] = document
-                    found.parts += [Heading(stem), *made.parts()]
-            except RpsError as error:
-                found.broken.append(error)
-            except Exception as error:  # noqa: BLE001 -- the others must not be lost
-                text = f"the report {stem}: {type(error).__name__}: {error}"
-                own = request.kind in REPORTS
-                whose = "rps: please report it" if own else "the package that adds it"
-                found.broken.append(RpsError(f"{text}; this is a fault of {whose}"))
+            found.add_report(stem, request, result.results, result.study.title, look)
     return found
 
 

@@ -7,7 +7,7 @@ import re
 import pytest
 
 from rpscli.analyses import result_quantities
-from rpscli.analyses.largest_demands import OUTCOMES
+from rpscli.analyses.outcomes import OUTCOMES
 from rpscli.commands.explain import glossary
 from rpscli.report.derived import DYNAMICS, FIRST_PERIOD, GEOMETRY
 from rpscli.report.timehistory import OUTCOMES as SENTENCES

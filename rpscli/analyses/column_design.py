@@ -117,6 +117,64 @@ def _loads(
     return _Loads(down, side, lever, rise, F, N, lever * P - rise * Q)
 
 
+@dataclass(frozen=True, eq=False)
+class _Ends:
+    """Both ends of the most loaded column at the times of a trace: loads and bearing."""
+
+    structure: PodiumStructure
+    design: ColumnDesign
+    trace: Trace
+    loads: _Loads
+    rotation: Array  # |theta| [rad]
+    rolls: NDArray[np.bool_]  # (samples,) on arcs; nowhere if no line of contact is known
+    edges: NDArray[np.bool_]  # (samples,) on edges; the same
+
+    def instant(self, largest: str, values: Array) -> ColumnInstant:
+        """End and time of the largest of values (2, samples)."""
+        design = self.design
+        b = self.structure.bearing
+        end, i = np.unravel_index(int(np.argmax(values)), values.shape)
+        x = self.rotation[i]
+        N = self.loads.N[end, i]
+        force = float(N)
+        moment = float(self.loads.M[end, i])
+        return ColumnInstant(
+            largest,
+            ENDS[end],
+            float(self.trace.time[i]),
+            float(self.trace.rotation[i]),
+            force,
+            float(self.loads.F[end, i]),
+            moment / force if force else 0.0,
+            moment,
+            float(design.pressed(b, x, N)[0]) if self.rolls[i] else None,
+            design.crushed(b, force)[0] if self.edges[i] else None,
+            design.doubt(b, float(x), force) if self.rolls[i] else "",
+        )
+
+    def pressures(self) -> Array:
+        """Pressures on arcs (2, samples) [Pa] that may be the largest; 0 elsewhere."""
+        # It grows with N and with the tilt: the others lie below one that has more of
+        # both.
+        x = self.rotation
+        N = self.loads.N
+        order = np.argsort(-x)
+        most = np.where(self.rolls, N.max(axis=0), 0.0)[order]
+        rows = order[(most >= np.maximum.accumulate(most)) & self.rolls[order]]
+        values = np.zeros_like(N)
+        values[:, rows] = self.design.pressed(
+            self.structure.bearing, np.broadcast_to(x[rows], (2, len(rows))), N[:, rows]
+        )[0]
+        return values
+
+    def column_state(self, i: int) -> ColumnState:
+        """Tilt, levers and forces of the column at a sample."""
+        of = self.loads
+        forces = of.F[0, i], of.N[0, i], of.F[1, i], of.N[1, i]
+        tilt = of.side[i], self.rotation[i], self.trace.rotation_rate[i]
+        return ColumnState(*map(float, (*tilt, of.lever[i], of.rise[i], *forces)))
+
+
 def column_demand(
     structure: PodiumStructure,
     design: ColumnDesign,
@@ -128,59 +186,32 @@ def column_demand(
     at the times of a trace.
     """
     b = structure.bearing
-    t = trace
     x = np.abs(trace.rotation)
     of = _loads(structure, trace, heaviest)
-    known = not no_line(structure, both=t.y is not None)
-    N = of.N
+    known = not no_line(structure, both=trace.y is not None)
     up = ~of.down & known
     rolls = up & (x > 0.0) & (x < b.beta)
-    edges = up & (x >= b.beta)
+    ends = _Ends(structure, design, trace, of, x, rolls, edges=up & (x >= b.beta))
 
-    def worst(largest: str, values: Array) -> ColumnInstant:
-        end, i = np.unravel_index(int(np.argmax(values)), values.shape)
-        force = float(N[end, i])
-        moment = float(of.M[end, i])
-        return ColumnInstant(
-            largest,
-            ENDS[end],
-            float(t.time[i]),
-            float(t.rotation[i]),
-            force,
-            float(of.F[end, i]),
-            moment / force if force else 0.0,
-            moment,
-            float(design.pressed(b, x[i], N[end, i])[0]) if rolls[i] else None,
-            design.crushed(b, force)[0] if edges[i] else None,
-            design.doubt(b, float(x[i]), force) if rolls[i] else "",
-        )
-
-    found = [worst("column_moment", np.abs(of.M)), worst("max_column_force", N)]
+    size = np.abs(of.M)
+    found = [ends.instant("column_moment", size), ends.instant("max_column_force", of.N)]
     ratio = 0.0 if known and not b.is_flat else None
     crushed = 0.0 if known else None
-    if rolls.any():
-        # It grows with N and with the tilt: the others lie below one that has more of
-        # both.
-        order = np.argsort(-x)
-        most = np.where(rolls, N.max(axis=0), 0.0)[order]
-        rows = order[(most >= np.maximum.accumulate(most)) & rolls[order]]
-        values = np.zeros_like(N)
-        values[:, rows] = design.pressed(
-            b, np.broadcast_to(x[rows], (2, len(rows))), N[:, rows]
-        )[0]
-        found.append(worst("contact_pressure_ratio", values))
+    if ends.rolls.any():
+        found.append(ends.instant("contact_pressure_ratio", ends.pressures()))
         ratio = (found[-1].contact_pressure or 0.0) / design.contact_strength
-    if edges.any():
-        found.append(worst("crushed_width_ratio", np.where(edges, N, -np.inf)))
+    if ends.edges.any():
+        on_edges = np.where(ends.edges, of.N, -np.inf)
+        found.append(ends.instant("crushed_width_ratio", on_edges))
         crushed = (found[-1].crushed_depth or 0.0) / (2.0 * b.end_half_width)
-    i = int(np.argmax(np.abs(of.M).max(axis=0)))
-    forces = of.F[0, i], N[0, i], of.F[1, i], N[1, i]
-    at = of.side[i], x[i], t.rotation_rate[i], of.lever[i], of.rise[i], *forces
-    state = ColumnState(*map(float, at))
+
+    i = int(np.argmax(size.max(axis=0)))
     shares = tuple((float(moment[i]), lever) for moment, lever in moments)
     mean = float(getattr(trace, f"normal_{found[0].end}")[i]) / structure.columns
     shear = float(np.abs(of.F).max())
-    return ColumnDemand(tuple(found), state, ratio, crushed, shear, mean, shares)
+    return ColumnDemand(
+        tuple(found), ends.column_state(i), ratio, crushed, shear, mean, shares
+    )
 
 
 def _along_tilt(trace: Trace, down: NDArray[np.bool_]) -> Array:

@@ -45,7 +45,10 @@ class CapacityCurve(Shown):
     """Whole structure under floor forces lambda p: elastic to the
     uplift, rigid storey above.
 
-    Where storeys yield without hardening it ends with the first of them, a mechanism.
+    After uplift lambda sum(p) = F(theta), and the floors stand at 1 u_b + lambda K^-1 p
+    (Theory (5.5); paper, Figure 1c); storeys that yield add their plastic drifts (Theory,
+    section 15). Where they yield without hardening it ends with the first of them, a
+    mechanism.
     """
 
     pattern: str  # Name of the pattern, or ``given``
@@ -169,47 +172,55 @@ def pushover(
     ------
     ValueError
         If a given pattern has the wrong length or does not push.
-
-    Notes
-    -----
-    F(theta) = W B/C, to which devices add; after uplift lambda sum(p) = F(theta) and the
-    floors stand at 1 u_b + lambda K^-1 p (Theory (5.5); paper, Figure 1c). Storeys that
-    yield add their plastic drifts (Theory, section 15).
     """
     require_structure(structure)
-    end = structure.critical_rotation
-    beta = structure.bearing.beta
-    rotation = np.linspace(0.0, end, points)
-    if 0.0 < beta < end:
-        rotation = np.sort(np.append(rotation, beta))
-    uplift = 0.0
-    stiffness = structure.initial_stiffness
-    if (bed := structure.bed) is not None:
-        uplift = bed.uplift_rotation
-        stiffness = bed.stiffness
-        gradual = np.geomspace(uplift, min(100.0 * uplift, end), 40)
-        rotation = np.unique(np.concatenate([rotation, gradual]))
-    _, displacement, lift = structure.path(rotation)
-    held = friction_force(structure, rotation)
-    curve = StoreyCurve(
-        rotation=rotation,
-        displacement=displacement,
-        force=restoring_force(structure, rotation) + held,
-        lift=lift,
-        unloading_force=restoring_force(structure, rotation, farthest=end) - held,
-    )
-    building = structure.superstructure
+    bed = structure.bed
+    uplift = 0.0 if bed is None else bed.uplift_rotation
+    stiffness = structure.initial_stiffness if bed is None else bed.stiffness
     added = sum(device.stiffness_after_uplift(structure) for device in structure.devices)
+
+    curve = _storey_curve(structure, _rotations(structure, points))
+    building = structure.superstructure
     return PushoverResult(
         structure=structure,
-        uplift_force=float(np.interp(uplift, rotation, curve.force)),
-        critical_rotation=end,
-        critical_displacement=float(displacement[-1]),
+        uplift_force=float(np.interp(uplift, curve.rotation, curve.force)),
+        critical_rotation=structure.critical_rotation,
+        critical_displacement=float(curve.displacement[-1]),
         initial_stiffness=stiffness + added,
         curve=curve,
         capacity=tuple(_capacity(building, curve, p, uplift) for p in patterns)
         if building
         else (),
+    )
+
+
+def _rotations(structure: PodiumStructure, points: int) -> Array:
+    """Rotations from 0 to theta_cr [rad], with beta, and dense where
+    compliant ends begin to lift.
+    """
+    end = structure.critical_rotation
+    beta = structure.bearing.beta
+    rotation = np.linspace(0.0, end, points)
+    if 0.0 < beta < end:
+        rotation = np.sort(np.append(rotation, beta))
+    if (bed := structure.bed) is not None:
+        uplift = bed.uplift_rotation
+        gradual = np.geomspace(uplift, min(100.0 * uplift, end), 40)
+        rotation = np.unique(np.concatenate([rotation, gradual]))
+    return rotation
+
+
+def _storey_curve(structure: PodiumStructure, rotation: Array) -> StoreyCurve:
+    """Restoring force of the podium at these rotations, out to theta_cr and back."""
+    _, displacement, lift = structure.path(rotation)
+    held = friction_force(structure, rotation)
+    end = structure.critical_rotation
+    return StoreyCurve(
+        rotation=rotation,
+        displacement=displacement,
+        force=restoring_force(structure, rotation) + held,
+        lift=lift,
+        unloading_force=restoring_force(structure, rotation, farthest=end) - held,
     )
 
 

@@ -21,7 +21,8 @@ from rpscli.analyses.fixed_base import (
     largest_resultants,
     largest_velocities,
 )
-from rpscli.analyses.largest_demands import STOOD, Demand
+from rpscli.analyses.largest_demands import Demand
+from rpscli.analyses.outcomes import STOOD
 from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
 from rpscli.analyses.trace import Event, Trace, sampled
 from rpscli.errors import listed
@@ -359,66 +360,73 @@ class TimeHistoryResult(Demand):
     @property
     def warnings(self) -> tuple[str, ...]:
         """Notes that the user must know before trusting the numbers."""
-        notes = [*self.record.warnings, *self._near_the_limit()]
+        return (
+            *self.record.warnings,
+            *self._near_the_limit(),
+            *self._lost_contact(),
+            *self._beyond(),
+            *self._of_column(),
+            *self._created_energy(),
+            *self._still_moving(),
+        )
+
+    def _lost_contact(self) -> Iterator[str]:
+        """Ends, or single columns, that nothing presses on ground and beam."""
         least = min(self.history["normal_top"], self.history["normal_bottom"])
         if least <= 0.0:
-            notes.append(
+            yield (
                 "contact is lost: the normal force between columns and beam or ground"
                 f" falls to {least:.3g} of the weight; the model assumes contact"
                 " throughout"
             )
         if self.axial and self.axial.lift_off is not None:
-            notes.append(
+            yield (
                 f"an outer column would lift off at t = {self.axial.lift_off:.4g} s: the"
                 " overturning moment takes more than its share of the weight; the model"
                 " assumes that all columns stand"
             )
         elif self.axial and self.min_column_force < 0.0:
-            notes.append(
+            yield (
                 "the shock of impacts or passes (and the overturning moment) exceeds the"
                 " weight on a column, whose axial force would be negative; the model"
                 " assumes that all columns stand"
             )
-        notes += [*self._beyond(), *self._of_column()]
+
+    def _created_energy(self) -> Iterator[str]:
+        """Energy of impacts that nothing supplied."""
         supplied = abs(self.energy.input) + float(self.trace.energy_stored[0])
         if self.energy.created > 0.02 * supplied:
             share = self.energy.created / supplied
-            notes.append(
+            yield (
                 f"the rigid impact law created {share:.1%} of the energy supplied at"
                 " impacts; compare with `impact: {law: flexible}`"
             )
-        if (
-            self.both_components
-            and self.outcome == "survived"
-            and (
-                self.history["phase"] not in RESTING
-                and self.settings.free_vibration is None
-            )
-        ):
+
+    def _still_moving(self) -> Iterator[str]:
+        """Motion at the end of the history, of a structure that survived."""
+        if self.outcome != "survived" or self.history["phase"] in RESTING:
+            return
+        if self.both_components and self.settings.free_vibration is None:
             brake = "but its joints" if self.structure.bed is not None else "at its ends"
-            notes.append(
+            yield (
                 f"at the end the podium still swings or circles, and nothing {brake}"
                 " dissipates: the residual rotation is that of this instant; no larger"
                 " rotation can occur, but forces and plastic drifts may still grow"
                 " (friction dampers or rolling resistance would bring it to rest)"
             )
-        elif self.outcome == "survived" and self.history["phase"] not in RESTING:
-            if self.structure.bearing.is_spherical:
-                notes.append(
-                    "columns without a flat part still roll at the end, as nothing but"
-                    " dampers and friction stops them: the residual rotation is that of"
-                    " this instant"
-                )
-            elif self.settings.free_vibration is not None:
-                notes.append(
-                    "the podium still moves at the end; a longer"
-                    " `analysis.free_vibration` may bring larger maxima"
-                )
-            elif self.duration >= self.record.duration + LONGEST_FREE_VIBRATION:
-                notes.append(
-                    f"not at rest {LONGEST_FREE_VIBRATION:g} s after the record's end"
-                )
-        return tuple(notes)
+        elif self.structure.bearing.is_spherical:
+            yield (
+                "columns without a flat part still roll at the end, as nothing but"
+                " dampers and friction stops them: the residual rotation is that of"
+                " this instant"
+            )
+        elif self.settings.free_vibration is not None:
+            yield (
+                "the podium still moves at the end; a longer"
+                " `analysis.free_vibration` may bring larger maxima"
+            )
+        elif self.duration >= self.record.duration + LONGEST_FREE_VIBRATION:
+            yield f"not at rest {LONGEST_FREE_VIBRATION:g} s after the record's end"
 
     def _beyond(self) -> Iterator[str]:
         """Demands for which compliant ends were not tried, and

@@ -9,8 +9,8 @@ from typing import NamedTuple
 from rpscli.analyses.column_design import column_demand
 from rpscli.analyses.column_forces import axial_forces
 from rpscli.analyses.demand import Request, demands
-from rpscli.analyses.fixed_base import fixed_base_response
-from rpscli.analyses.kernels.history import sampled_history
+from rpscli.analyses.fixed_base import FixedBaseResponse, fixed_base_response
+from rpscli.analyses.kernels.history import SampledHistory, sampled_history
 from rpscli.analyses.result_quantities import values_of
 from rpscli.analyses.results import TimeHistoryResult
 from rpscli.analyses.settings import TimeHistorySettings, require_inputs
@@ -29,6 +29,8 @@ def time_history(
 ) -> TimeHistoryResult:
     """Response of the structure to a record, with free vibration after its end.
 
+    Overturning is an outcome, as is a step that fails (``failed``, with a reason).
+
     Parameters
     ----------
     structure
@@ -43,11 +45,6 @@ def time_history(
     with_fixed_base
         Also run the same building on a fixed base.
 
-    Returns
-    -------
-    TimeHistoryResult. A step that could not be taken gives the outcome ``failed`` with a
-    reason, not an exception; overturning is a result like any other.
-
     Raises
     ------
     RecordError
@@ -55,13 +52,7 @@ def time_history(
     """
     settings, motion = require_inputs(structure, record, settings, vertical)
     run = sampled_history(structure, motion, settings)
-    fixed = None
-    if with_fixed_base and structure.superstructure is not None:
-        horizontal = [
-            each.npts for name, each in motion.named.items() if name != "vertical"
-        ]
-        intervals = max(int(run.history.intervals), max(horizontal) - 1)
-        fixed = fixed_base_response(structure, motion, intervals)
+    fixed = _on_fixed_base(structure, run, motion) if with_fixed_base else None
     result = TimeHistoryResult(
         structure=structure,
         history=run.history,
@@ -72,6 +63,23 @@ def time_history(
         fixed_base=fixed,
         motion=motion,
     )
+    return _with_columns(result)
+
+
+def _on_fixed_base(
+    structure: PodiumStructure, run: SampledHistory, motion: MotionComponents
+) -> FixedBaseResponse | None:
+    """The building on a fixed base, as long as its history and the record; if any."""
+    if structure.superstructure is None:
+        return None
+    horizontal = [each.npts for name, each in motion.named.items() if name != "vertical"]
+    intervals = max(int(run.history.intervals), max(horizontal) - 1)
+    return fixed_base_response(structure, motion, intervals)
+
+
+def _with_columns(result: TimeHistoryResult) -> TimeHistoryResult:
+    """The result with forces of single columns, and the demand on a designed one."""
+    structure = result.structure
     design = structure.column
     even = structure.superstructure is None or len(result.left_out_of_columns) > 1
     if even and design is None:

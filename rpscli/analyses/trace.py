@@ -210,18 +210,42 @@ def sampled(structure: PodiumStructure, t: Trace) -> Iterator[Sampled]:
     # number. Devices' energy is what they dissipated so far, of a damped stop that has
     # let go as the cap beam moves back to the gap. Where both components act, what has a
     # direction stands in x and in y.
+    columns = structure.columns
+    yield "time", "s", t.time
+    yield from _directed(t, "ground_acceleration", "m/s2", "ground_acceleration")
+    yield from _sampled_rotation(t)
+    yield from _directed(t, "cap_beam_displacement", "m", "cap_beam_displacement")
+    yield "lift", "m", t.lift
+    yield from _sampled_storeys(structure, t)
+    yield from _directed(t, "driving_moment", "N m", "driving_moment")
+    yield from _directed(t, "column_shear_top", "N", "shear_top", columns)
+    yield from _directed(t, "column_shear_bottom", "N", "shear_bottom", columns)
+    yield "column_force_top", "N", t.normal_top / columns
+    yield "column_force_bottom", "N", t.normal_bottom / columns
+    yield from _sampled_energies(structure, t)
+    for index, device in enumerate(structure.devices):
+        name = f"device_{index}_{device.kind}"
+        yield f"{name}_force", "N", t.devices.force[:, index]
+        yield f"{name}_displacement", "m", t.devices.displacement[:, index]
+        yield f"{name}_energy", "J", t.devices.energy[:, index]
+    yield "phase", "-", t.phase
+
+
+def _directed(
+    t: Trace, name: str, unit: str, field: str, over: int = 1
+) -> Iterator[Sampled]:
+    """A field of each direction, and of each floor from the bottom, over a number."""
     ways: list[tuple[str, Direction]] = (
         [("", t)] if t.y is None else [("_x", t), ("_y", t.y)]
     )
+    for way, of in ways:
+        values = getattr(of, field)
+        for i, column in enumerate(np.atleast_2d(values.T), start=1):
+            yield name.format(i) + way, unit, column if over == 1 else column / over
 
-    def directed(name: str, unit: str, field: str, over: int = 1) -> Iterator[Sampled]:
-        for way, of in ways:
-            values = getattr(of, field)
-            for i, column in enumerate(np.atleast_2d(values.T), start=1):
-                yield name.format(i) + way, unit, column if over == 1 else column / over
 
-    yield "time", "s", t.time
-    yield from directed("ground_acceleration", "m/s2", "ground_acceleration")
+def _sampled_rotation(t: Trace) -> Iterator[Sampled]:
+    """The tilt of the columns, and where both components act its azimuth and parts."""
     yield "rotation", "rad", t.rotation
     if t.azimuth is not None and t.azimuth_rate is not None:
         yield "azimuth", "rad", t.azimuth
@@ -229,22 +253,23 @@ def sampled(structure: PodiumStructure, t: Trace) -> Iterator[Sampled]:
         yield "rotation_x", "rad", t.rotation * np.cos(t.azimuth)
         yield "rotation_y", "rad", t.rotation * np.sin(t.azimuth)
     yield "rotation_rate", "rad/s", t.rotation_rate
-    yield from directed("cap_beam_displacement", "m", "cap_beam_displacement")
-    yield "lift", "m", t.lift
-    yield from directed("floor_{}_displacement", "m", "floor_displacements")
-    yield from directed("storey_{}_drift", "m", "drifts")
+
+
+def _sampled_storeys(structure: PodiumStructure, t: Trace) -> Iterator[Sampled]:
+    """Displacements, drifts, shears and accelerations of floors and storeys."""
+    yield from _directed(t, "floor_{}_displacement", "m", "floor_displacements")
+    yield from _directed(t, "storey_{}_drift", "m", "drifts")
     if structure.yields:
-        yield from directed("storey_{}_plastic_drift", "m", "plastic_drifts")
-    yield from directed("storey_{}_shear", "N", "storey_shears")
-    yield from directed("floor_{}_acceleration", "m/s2", "floor_accelerations")
+        yield from _directed(t, "storey_{}_plastic_drift", "m", "plastic_drifts")
+    yield from _directed(t, "storey_{}_shear", "N", "storey_shears")
+    yield from _directed(t, "floor_{}_acceleration", "m/s2", "floor_accelerations")
     if (upwards := t.vertical_accelerations) is not None:
         for i, column in enumerate(upwards.T, start=1):
             yield f"floor_{i}_vertical_acceleration", "m/s2", column
-    yield from directed("driving_moment", "N m", "driving_moment")
-    yield from directed("column_shear_top", "N", "shear_top", structure.columns)
-    yield from directed("column_shear_bottom", "N", "shear_bottom", structure.columns)
-    yield "column_force_top", "N", t.normal_top / structure.columns
-    yield "column_force_bottom", "N", t.normal_bottom / structure.columns
+
+
+def _sampled_energies(structure: PodiumStructure, t: Trace) -> Iterator[Sampled]:
+    """Energies of every structure, then those of some."""
     of_some = {
         "energy_damped_vertical": structure.upwards is not None,
         "energy_bed": structure.bed is not None,
@@ -252,12 +277,6 @@ def sampled(structure: PodiumStructure, t: Trace) -> Iterator[Sampled]:
     }
     for name in (*ENERGIES, *(name for name, known in of_some.items() if known)):
         yield name, "J", getattr(t, name)
-    for index, device in enumerate(structure.devices):
-        name = f"device_{index}_{device.kind}"
-        yield f"{name}_force", "N", t.devices.force[:, index]
-        yield f"{name}_displacement", "m", t.devices.displacement[:, index]
-        yield f"{name}_energy", "J", t.devices.energy[:, index]
-    yield "phase", "-", t.phase
 
 
 def trace_of(structure: PodiumStructure, run: SampledHistory) -> Trace:

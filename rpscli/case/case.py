@@ -11,13 +11,14 @@ from pathlib import Path
 from typing import Any
 
 from rpscli.analyses.settings import TimeHistorySettings
-from rpscli.case import build
+from rpscli.case.build import time_history_settings
 from rpscli.case.overrides import Overrides, apply_overrides
 from rpscli.case.plausibility import Doubt, doubts_of_structure, doubts_of_text
 from rpscli.case.schema.case_file import CaseFile, RecordSection
 from rpscli.case.schema.check import checked
 from rpscli.case.schema.fields import Section
 from rpscli.case.schema.limits import LimitsSection
+from rpscli.case.structure import structure_of
 from rpscli.case.text.document import Document, format_of, text_of_values
 from rpscli.case.text.files import opened
 from rpscli.case.text.yaml_text import read_yaml
@@ -105,7 +106,7 @@ class Case(Shown):
     @cached_property
     def analysis(self) -> TimeHistorySettings:
         """Settings of the time history."""
-        return build.time_history_settings(self.file.analysis, self.structure.bearing)
+        return time_history_settings(self.file.analysis, self.structure.bearing)
 
     @cached_property
     def doubts(self) -> tuple[Doubt, ...]:
@@ -200,7 +201,7 @@ def case_from_mapping(
         name,
         folder or Path(),
         file,
-        build.structure_of(file, document),
+        structure_of(file, document),
         tuple(doubts_of_text(file.superstructure)),
         written=document.content,
     )

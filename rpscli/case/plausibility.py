@@ -20,7 +20,9 @@ from rpscli.errors import listed
 from rpscli.model.statics import storey_strengths
 
 if TYPE_CHECKING:
+    from rpscli.model.contact import Bed
     from rpscli.model.podium import PodiumStructure
+    from rpscli.model.superstructure import Superstructure
 
 
 class Doubt(NamedTuple):
@@ -97,18 +99,8 @@ def doubts_of_structure(structure: PodiumStructure) -> Iterator[Doubt]:
             " in any record that lifts them, which the model leaves out",
             structure.friction,
         )
-    if (bed := structure.bed) is not None and (bed.period_ratio or STIFFEST) < STIFFEST:
-        yield Doubt(
-            "podium.contact: the period in full contact is {0} of the fixed base,"
-            f" below {STIFFEST:g}: short steps and no effect; use kind: rigid",
-            bed.period_ratio,
-        )
-    if bed is not None and bed.ratio > SOFTEST:
-        yield Doubt(
-            f"podium.contact: ends lift at {{0}} alpha only, above {SOFTEST:g}: the"
-            " settlement is no longer small compared with the width of the joint",
-            bed.ratio,
-        )
+    if structure.bed is not None:
+        yield from _unusual_bed(structure.bed)
     if building is None:
         return
     if bearing.slenderness > WALKS:
@@ -125,18 +117,40 @@ def doubts_of_structure(structure: PodiumStructure) -> Iterator[Doubt]:
             " it lifts; more slender columns lift earlier",
             bearing.slenderness,
         )
-    if building.storey_heights is not None:
-        above = building.carried * structure.uplift_acceleration
-        drifts = above / building.stiffnesses / building.storey_heights
-        storey = int(drifts.argmax())
-        if drifts[storey] > LARGEST_DRIFT:
-            yield Doubt(
-                "a storey drifts at uplift by {0} of its height{1}; more than"
-                f" {LARGEST_DRIFT:g} is beyond usual buildings; check stiffness, period"
-                " and storey height",
-                float(drifts[storey]),
-                f" (storey {storey + 1}, under a shear of {above[storey]:.4g} N)",
-            )
+    yield from _soft_storey(building, structure.uplift_acceleration)
+
+
+def _unusual_bed(bed: Bed) -> Iterator[Doubt]:
+    """Compliant ends that are nearly rigid, or so soft that they settle."""
+    if (bed.period_ratio or STIFFEST) < STIFFEST:
+        yield Doubt(
+            "podium.contact: the period in full contact is {0} of the fixed base,"
+            f" below {STIFFEST:g}: short steps and no effect; use kind: rigid",
+            bed.period_ratio,
+        )
+    if bed.ratio > SOFTEST:
+        yield Doubt(
+            f"podium.contact: ends lift at {{0}} alpha only, above {SOFTEST:g}: the"
+            " settlement is no longer small compared with the width of the joint",
+            bed.ratio,
+        )
+
+
+def _soft_storey(building: Superstructure, uplift_acceleration: float) -> Iterator[Doubt]:
+    """The storey with the largest drift over its height at uplift."""
+    if building.storey_heights is None:
+        return
+    above = building.carried * uplift_acceleration
+    drifts = above / building.stiffnesses / building.storey_heights
+    storey = int(drifts.argmax())
+    if drifts[storey] > LARGEST_DRIFT:
+        yield Doubt(
+            "a storey drifts at uplift by {0} of its height{1}; more than"
+            f" {LARGEST_DRIFT:g} is beyond usual buildings; check stiffness, period"
+            " and storey height",
+            float(drifts[storey]),
+            f" (storey {storey + 1}, under a shear of {above[storey]:.4g} N)",
+        )
 
 
 def _unusual_sizes(structure: PodiumStructure) -> Iterator[Doubt]:

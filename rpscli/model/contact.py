@@ -259,31 +259,11 @@ def bed_of(structure: Standing) -> Bed | None:
         return None
     _refuse_combinations(structure)
     softest = b.slenderness * SHAPE[contact.kind]
-    bed = None
-    if contact.settlement is not None:
-        bed = _make_bed(structure, contact.settlement / b.half_width)
-    else:
-        from scipy.optimize import brentq
-
-        def misses(u: float) -> float:
-            bed = _make_bed(structure, u)
-            wanted = contact.stiffness
-            if contact.period_ratio is not None:
-                omega = (
-                    float(structure.superstructure.frequencies[0]) / contact.period_ratio
-                )
-                wanted = _storey_stiffness(structure, bed.mass, omega)
-            return float(bed.stiffness / wanted) - 1.0
-
-        ends = 1e-12 * softest, softest * (1.0 - 1e-9)
-        if misses(ends[0]) < 0.0:
-            raise ValueError(
-                "the contact is so stiff that it is rigid; use the kind `rigid`"
-            )
-        if misses(ends[1]) < 0.0:
-            bed = _make_bed(
-                structure, float(brentq(misses, *ends, xtol=1e-18, rtol=1e-15))
-            )
+    bed = (
+        _bed_of_stiffness(structure, softest)
+        if contact.settlement is None
+        else _make_bed(structure, contact.settlement / b.half_width)
+    )
     if bed is None or bed.uplift_rotation >= softest or bed.spring <= 0.0:
         share = "3 phi_u" if contact.kind == "plane" else "phi_u"
         raise ValueError(
@@ -305,6 +285,32 @@ def bed_of(structure: Standing) -> Bed | None:
             " displacement at which they begin to lift"
         )
     return bed
+
+
+def _bed_of_stiffness(structure: Standing, softest: float) -> Bed | None:
+    """The bed with the stiffness or the period of the contact, its edges lifting below
+    `softest` [rad]; None if the contact is softer than that.
+    """
+    from scipy.optimize import brentq
+
+    contact = structure.contact
+
+    def misses(u: float) -> float:
+        """Excess of the stiffness over that which is wanted, as a share of it."""
+        bed = _make_bed(structure, u)
+        wanted = contact.stiffness
+        if contact.period_ratio is not None:
+            omega = float(structure.superstructure.frequencies[0]) / contact.period_ratio
+            wanted = _storey_stiffness(structure, bed.mass, omega)
+        return float(bed.stiffness / wanted) - 1.0
+
+    ends = 1e-12 * softest, softest * (1.0 - 1e-9)
+    if misses(ends[0]) < 0.0:
+        raise ValueError("the contact is so stiff that it is rigid; use the kind `rigid`")
+    if misses(ends[1]) < 0.0:
+        u = float(brentq(misses, *ends, xtol=1e-18, rtol=1e-15))
+        return _make_bed(structure, u)
+    return None
 
 
 def _refuse_combinations(structure: Standing) -> None:

@@ -125,6 +125,11 @@ class PodiumStructure(Shown):
                 f"devices: {len(self.devices)} must be at most {MOST_DEVICES}; write"
                 " equal ones as one, with the sum of their forces and stiffnesses"
             )
+        self._refuse_impacts()
+        object.__setattr__(self, "bed", bed_of(self))  # raises what it does not have
+
+    def _refuse_impacts(self) -> None:
+        """Refuse restitutions outside the model, and tendons without impacts."""
         if self.bearing.is_spherical and self.restitution != 1.0:
             raise ValueError(
                 f"restitution e = {self.restitution:.4g} must be 1: columns without a"
@@ -145,7 +150,6 @@ class PodiumStructure(Shown):
                 " law `flexible` a lighter building over the cap beam, a smaller loss"
                 " (0.5) or factor, or give a measured value"
             )
-        object.__setattr__(self, "bed", bed_of(self))  # raises what it does not have
 
     def _refuse_buildings(self) -> None:
         x = self.superstructure

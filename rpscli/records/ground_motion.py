@@ -261,17 +261,7 @@ class GroundMotion(Shown):
         """
         from rpscli.records import measures  # which measure motions
 
-        known = measures.MEASURES
-        fault = ""
-        if measure not in known and measure not in (names := known.names()):
-            fault = f"{measure} is not a measure; there are {', '.join(names)}"
-        elif measures.needs_period(measure) and period is None:
-            fault = f"{measure} is scaled to at a period; give period=... in s"
-        elif not (is_number(value) and value > 0.0):
-            fault = (
-                f"{measure} = {told(value)} must be a number > 0, in SI, to scale to it"
-            )
-        if fault:
+        if fault := measures.fault_of_aim(measure, value, period):
             raise RecordError(f"{self.source}: {fault}")
         if second is None:
             unscaled = measures.measured(self, measure, period, damping)

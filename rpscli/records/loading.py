@@ -109,8 +109,11 @@ def load_record(
         )
     with _readable(source):
         motion = replace(_unscaled(read.without("factor"), folder), source=of)
-    if "factor" not in of.values:
-        return motion
+    return _multiplied(motion, factor) if "factor" in of.values else motion
+
+
+def _multiplied(motion: GroundMotion, factor: float) -> GroundMotion:
+    """A motion times the factor of its source, named so, with doubts about it."""
     # Results of different factors go to different folders.
     name = f"{motion.name}_x{factor:.4g}"
     warnings = scale_doubts(motion.name, factor)
@@ -341,41 +344,12 @@ def _expand(text: str, folder: Path | None, notes: list[str]) -> list[Source]:
 
 def _files(of: Source, folder: Path | None, notes: list[str]) -> list[Source]:
     """Records of a folder or a glob, or the file itself."""
-    from rpscli.records.formats import contents
-
-    place = of.place
-    path = _located(of.place, folder)
-    if path.is_dir():
-        names = sorted(entry.name for entry in path.iterdir() if entry.is_file())
-        files = {f"{Path(place) / name}": path / name for name in names}
-    elif glob.has_magic(place) and not path.exists():
-        start = folder or Path()
-        pattern = str(Path(place).expanduser())
-        # Path.glob refuses absolute patterns.
-        matches = sorted(glob.glob(pattern, root_dir=start, recursive=True))  # noqa: PTH207
-        # no pipe, no device
-        files = {match: start / match for match in matches if (start / match).is_file()}
-    else:
-        _require_file(path, of)
-        if of.components or "channel" in of.values or len(contents(path)) < 2:
-            of.require_two()
-            return [of]
-        files = {place: path}  # each of its channels
-    held = {name: inside for name, file in files.items() if (inside := contents(file))}
-    refused = {
-        name: inside[0].refusal for name, inside in held.items() if inside[0].refusal
-    }
-    held = {name: inside for name, inside in held.items() if name not in refused}
-    why = [
-        f"left out: {_some([name for name in refused if refused[name] == text])}: {text}"
-        for text in dict.fromkeys(refused.values())
-    ]
-    if not held:
-        raise RecordError(
-            "; ".join([f"{of}: no record file there that can be read", *why[:1]])
-        )
-    notes += [f"{of}: {text}" for text in why]
-    single = [each for name in held for each in channels(of.at(name), folder)]
+    files = _named_files(of, folder)
+    if files is None:
+        of.require_two()
+        return [of]
+    names = _readable_names(of, files, notes)
+    single = [each for name in names for each in channels(of.at(name), folder)]
     if upright := verticals(single, folder):
         left_out = [
             each.place if "channel" in of.values or "channel" not in each.values
@@ -387,6 +361,50 @@ def _files(of: Source, folder: Path | None, notes: list[str]) -> list[Source]:
     return (
         single if of.components else _paired(of, [each.alone for each in single], folder)
     )
+
+
+def _named_files(of: Source, folder: Path | None) -> dict[str, Path] | None:
+    """Files of a folder or a glob by their names in sources, or one with several
+    channels; None if the source is a single record.
+    """
+    from rpscli.records.formats import contents
+
+    place = of.place
+    path = _located(of.place, folder)
+    if path.is_dir():
+        names = sorted(entry.name for entry in path.iterdir() if entry.is_file())
+        return {f"{Path(place) / name}": path / name for name in names}
+    if glob.has_magic(place) and not path.exists():
+        start = folder or Path()
+        pattern = str(Path(place).expanduser())
+        # Path.glob refuses absolute patterns.
+        matches = sorted(glob.glob(pattern, root_dir=start, recursive=True))  # noqa: PTH207
+        # no pipe, no device
+        return {match: start / match for match in matches if (start / match).is_file()}
+    _require_file(path, of)
+    single = of.components or "channel" in of.values or len(contents(path)) < 2
+    return None if single else {place: path}
+
+
+def _readable_names(of: Source, files: dict[str, Path], notes: list[str]) -> list[str]:
+    """Names of the files that are records, and notes on those that cannot be read."""
+    from rpscli.records.formats import contents
+
+    held = {name: inside for name, file in files.items() if (inside := contents(file))}
+    refused = {
+        name: inside[0].refusal for name, inside in held.items() if inside[0].refusal
+    }
+    why = [
+        f"left out: {_some([name for name in refused if refused[name] == text])}: {text}"
+        for text in dict.fromkeys(refused.values())
+    ]
+    names = [name for name in held if name not in refused]
+    if not names:
+        raise RecordError(
+            "; ".join([f"{of}: no record file there that can be read", *why[:1]])
+        )
+    notes += [f"{of}: {text}" for text in why]
+    return names
 
 
 def _some(names: Sequence[str]) -> str:

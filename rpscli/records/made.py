@@ -113,6 +113,27 @@ def load_pulse(of: Source) -> GroundMotion:
     if amplitude == 0.0:
         key = "amplitude" if "amplitude" in of.values else "velocity_amplitude"
         raise RecordError(f"{of}: {key} = 0 makes no pulse")
+    dt, time = _sampled(of, pulse, period)
+    peak = abs(amplitude) / STANDARD_GRAVITY
+    written = of.values.get("amplitude") or "g"
+    bare = written.strip().replace(".", "").isdigit() and peak < DOUBTFUL
+    doubt = (
+        f"{of}: an amplitude of {amplitude:g} m/s2 = {peak:.4g} g; was {amplitude:g}g"
+        " meant?"
+    )
+    return GroundMotion(
+        amplitude * pulse.shape(time),
+        dt,
+        f"{name}_T{period:g}s_a{peak:.4g}g",
+        of,
+        "pulse",
+        f"{name.replace('_', ' ')} pulse, period {period:g} s, peak {peak:.4g} g",
+        (doubt,) * bare,
+    )
+
+
+def _sampled(of: Source, pulse: _Pulse, period: float) -> tuple[float, Array]:
+    """The step of a pulse [s], and the times of its samples in periods."""
     dt = of.quantity("dt", "time", period / _STEPS_PER_PERIOD)
     length = pulse.periods * period
     fault = ""
@@ -124,31 +145,15 @@ def load_pulse(of: Source) -> GroundMotion:
     elif pulse.fits and abs(whole - round(whole)) > 1e-6:
         fault = (
             f"does not divide the pulse of {length:g} s, which has to end on a sample;"
-            " the"
+            f" the nearest that does is dt={length / round(whole):.10g}"
         )
-        fault += f" nearest that does is dt={length / round(whole):.10g}"
     if fault:
         raise RecordError(f"{of}: dt = {dt:g} s {fault}")
     steps = round(whole) if pulse.fits else math.ceil(whole - 1e-6)
     # The last sample of a pulse that fits is its end exactly, whatever the rounding of
     # dt.
     step = pulse.periods / steps if pulse.fits else dt / period
-    peak = abs(amplitude) / STANDARD_GRAVITY
-    written = of.values.get("amplitude") or "g"
-    bare = written.strip().replace(".", "").isdigit() and peak < DOUBTFUL
-    doubt = (
-        f"{of}: an amplitude of {amplitude:g} m/s2 = {peak:.4g} g; was {amplitude:g}g"
-        " meant?"
-    )
-    return GroundMotion(
-        amplitude * pulse.shape(np.arange(steps + 1, dtype=np.float64) * step),
-        dt,
-        f"{name}_T{period:g}s_a{peak:.4g}g",
-        of,
-        "pulse",
-        f"{name.replace('_', ' ')} pulse, period {period:g} s, peak {peak:.4g} g",
-        (doubt,) * bare,
-    )
+    return dt, np.arange(steps + 1, dtype=np.float64) * step
 
 
 def _bell_of_waves(of: Source, period: float) -> tuple[_Pulse, float]:
@@ -194,6 +199,45 @@ def load_synthetic(of: Source) -> GroundMotion:
     `pulse_period` (3 s) and `pulse_cycles` (2).
     """
     of.query(*_OPTIONS)
+    noise = _noise(of)
+    dt = noise.dt
+    pga = noise.pga
+    count = round(noise.duration / dt) + 1
+    grown = _filtered_noise(count, noise) * envelope(np.linspace(0.0, 1.0, count))
+    shaped = _brought_to_rest(grown, dt)
+    pulse, label = _velocity_pulse(of, count, dt)
+    if (own := float(np.max(np.abs(pulse)))) >= pga:
+        raise RecordError(
+            f"{of}: the pulse alone peaks at {own:.4g} m/s2, at or above pga = {pga:.4g}"
+            " m/s2"
+        )
+    # The factor of the noise at which the sum first reaches the peak, at any sample.
+    size = np.abs(shaped)
+    loud = size > 1e-12 * size.max()
+    room = (pga - pulse * np.sign(shaped))[loud]
+    return GroundMotion(
+        shaped * float(np.min(room / size[loud])) + pulse,
+        dt,
+        f"synthetic_seed{noise.seed}_{pga / STANDARD_GRAVITY:.4g}g",
+        of,
+        "synthetic",
+        f"synthetic, not a recording: filtered white noise, seed {noise.seed}{label}",
+    )
+
+
+class _Noise(NamedTuple):
+    """Filtered white noise: peak, length, frequency [Hz] and damping of both filters."""
+
+    seed: int
+    pga: float  # [m/s2]
+    duration: float  # [s]
+    dt: float  # [s]
+    ground: tuple[float, float]
+    cut: tuple[float, float]
+
+
+def _noise(of: Source) -> _Noise:
+    """The noise that the options of a source ask for."""
     seed = of.integer("seed")
     pga = of.acceleration("pga")
     duration = of.quantity("duration", "time", 30.0)
@@ -212,45 +256,31 @@ def load_synthetic(of: Source) -> GroundMotion:
         raise RecordError(
             f"{of}: a filter at or above 1/(2 dt) = {0.5 / dt:g} Hz; lower dt"
         )
-    count = round(duration / dt) + 1
-    noise = _filtered_noise(count, dt, seed, (ground, dampings[0]), (cut, dampings[1]))
-    shaped = _brought_to_rest(noise * envelope(np.linspace(0.0, 1.0, count)), dt)
-    pulse = np.zeros(count)
-    label = ""
-    if "pulse_velocity" in of.values:
-        amplitude = of.quantity("pulse_velocity", "velocity")
-        period = of.quantity("pulse_period", "time", 3.0)
-        cycles = of.quantity("pulse_cycles", "ratio", 2.0)
-        time = np.arange(count, dtype=np.float64) * dt
-        middle = 1.5 * _PEAK_AT * time[-1]  # a little after the envelope's peak
-        start = max(0.0, middle - 0.5 * cycles * period)
-        if period <= 0.0 or cycles <= 1.0 or start + cycles * period > time[-1]:
-            raise RecordError(
-                f"{of}: a pulse of {cycles:g} cycles of {period:g} s does not fit into"
-                f" {time[-1]:g} s, or has no more than one cycle"
-            )
-        shape = _mavroeidis_papageorgiou((time - start) / period, cycles, _PULSE_PHASE)
-        pulse = _brought_to_rest(amplitude / period * shape, dt)
-        label = f" with a velocity pulse of {amplitude:g} m/s, {period:g} s"
-    elif of.values.keys() & {"pulse_period", "pulse_cycles"}:
-        raise RecordError(f"{of}: a pulse needs pulse_velocity=...")
-    if (own := float(np.max(np.abs(pulse)))) >= pga:
+    return _Noise(seed, pga, duration, dt, (ground, dampings[0]), (cut, dampings[1]))
+
+
+def _velocity_pulse(of: Source, count: int, dt: float) -> tuple[Array, str]:
+    """The pulse in a synthetic motion at its samples [m/s2], and words for it; zero, and
+    none, unless it is asked for.
+    """
+    if "pulse_velocity" not in of.values:
+        if of.values.keys() & {"pulse_period", "pulse_cycles"}:
+            raise RecordError(f"{of}: a pulse needs pulse_velocity=...")
+        return np.zeros(count), ""
+    amplitude = of.quantity("pulse_velocity", "velocity")
+    period = of.quantity("pulse_period", "time", 3.0)
+    cycles = of.quantity("pulse_cycles", "ratio", 2.0)
+    time = np.arange(count, dtype=np.float64) * dt
+    middle = 1.5 * _PEAK_AT * time[-1]  # a little after the envelope's peak
+    start = max(0.0, middle - 0.5 * cycles * period)
+    if period <= 0.0 or cycles <= 1.0 or start + cycles * period > time[-1]:
         raise RecordError(
-            f"{of}: the pulse alone peaks at {own:.4g} m/s2, at or above pga = {pga:.4g}"
-            " m/s2"
+            f"{of}: a pulse of {cycles:g} cycles of {period:g} s does not fit into"
+            f" {time[-1]:g} s, or has no more than one cycle"
         )
-    # The factor of the noise at which the sum first reaches the peak, at any sample.
-    size = np.abs(shaped)
-    loud = size > 1e-12 * size.max()
-    room = (pga - pulse * np.sign(shaped))[loud]
-    return GroundMotion(
-        shaped * float(np.min(room / size[loud])) + pulse,
-        dt,
-        f"synthetic_seed{seed}_{pga / STANDARD_GRAVITY:.4g}g",
-        of,
-        "synthetic",
-        f"synthetic, not a recording: filtered white noise, seed {seed}{label}",
-    )
+    shape = _mavroeidis_papageorgiou((time - start) / period, cycles, _PULSE_PHASE)
+    pulse = _brought_to_rest(amplitude / period * shape, dt)
+    return pulse, f" with a velocity pulse of {amplitude:g} m/s, {period:g} s"
 
 
 def envelope(fraction: Array) -> Array:
@@ -260,16 +290,12 @@ def envelope(fraction: Array) -> Array:
     return np.asarray((math.e / _PEAK_AT) ** b * fraction**b * decay, dtype=np.float64)
 
 
-def _filtered_noise(
-    count: int,
-    dt: float,
-    seed: int,
-    ground: tuple[float, float],
-    cut: tuple[float, float],
-) -> Array:
+def _filtered_noise(count: int, noise: _Noise) -> Array:
     # Filtering by FFT gives a stationary (periodic) process: nothing has to settle first.
-    white = np.random.Generator(np.random.PCG64(seed)).standard_normal(count)
-    w = 2.0 * np.pi * np.fft.rfftfreq(count, dt)
+    white = np.random.Generator(np.random.PCG64(noise.seed)).standard_normal(count)
+    ground = noise.ground
+    cut = noise.cut
+    w = 2.0 * np.pi * np.fft.rfftfreq(count, noise.dt)
     wg = 2.0 * np.pi * ground[0]
     wc = 2.0 * np.pi * cut[0]
     soil = (wg**2 + 2j * ground[1] * wg * w) / (wg**2 - w**2 + 2j * ground[1] * wg * w)

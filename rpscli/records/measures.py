@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rpscli.constants import STANDARD_GRAVITY
-from rpscli.errors import RecordError, is_number, listed, require_kind
+from rpscli.errors import RecordError, is_number, listed, require_kind, told
 from rpscli.records.ground_motion import GroundMotion, rotated
 from rpscli.registry import Registry
 from rpscli.shown import Shown
@@ -153,15 +153,7 @@ def response_spectrum(
     2.0
     """
     require_kind(motion, GroundMotion, "the motion", "load_record(...) reads one")
-    try:
-        wanted = np.array(periods, dtype=np.float64)
-    except (TypeError, ValueError):
-        wanted = np.array([np.nan])
-    if not (np.isfinite(wanted) & ((wanted == 0.0) | (wanted >= SHORTEST))).all():
-        raise RecordError(
-            f"periods of a response spectrum must be 0 or from {SHORTEST:g} s on:"
-            f" {str(periods)[:60]}"
-        )
+    wanted = _valid_periods(periods)
     if not 0.0 <= damping < 1.0:
         raise RecordError(
             f"the damping of a response spectrum, {damping}, must be in [0, 1)"
@@ -175,6 +167,20 @@ def response_spectrum(
     pseudo = np.full(wanted.shape, motion.pga)
     np.multiply(stiffness, peaks[:, 0], out=pseudo, where=wanted > 0.0)
     return ResponseSpectrum(wanted, damping, peaks[:, 0], pseudo, peaks[:, 1])
+
+
+def _valid_periods(periods: Sequence[float] | Array) -> Array:
+    """Periods of oscillators [s], which a spectrum can be of: raises RecordError."""
+    try:
+        wanted = np.array(periods, dtype=np.float64)
+    except (TypeError, ValueError):
+        wanted = np.array([np.nan])
+    if not (np.isfinite(wanted) & ((wanted == 0.0) | (wanted >= SHORTEST))).all():
+        raise RecordError(
+            f"periods of a response spectrum must be 0 or from {SHORTEST:g} s on:"
+            f" {str(periods)[:60]}"
+        )
+    return wanted
 
 
 def pseudo_acceleration_history(
@@ -368,6 +374,17 @@ MEASURES = Registry(
 def needs_period(measure: Measure | None) -> bool:
     """True for a measure that is taken at a period."""
     return measure is not None and MEASURES[measure].at_period
+
+
+def fault_of_aim(measure: str, value: float, period: float | None) -> str:
+    """The reason why no motion can be scaled to a measure; empty if one can."""
+    if measure not in MEASURES and measure not in (names := MEASURES.names()):
+        return f"{measure} is not a measure; there are {', '.join(names)}"
+    if needs_period(measure) and period is None:
+        return f"{measure} is scaled to at a period; give period=... in s"
+    if not (is_number(value) and value > 0.0):
+        return f"{measure} = {told(value)} must be a number > 0, in SI, to scale to it"
+    return ""
 
 
 def measured(

@@ -186,6 +186,25 @@ def options_in(text: str, source: str) -> dict[str, str | None]:
     return found
 
 
+def _parts(text: str, folder: Path | None) -> tuple[str, str, str]:
+    """Scheme, place and options of a source, as they are written."""
+    match = _SCHEME.fullmatch(text)
+    place, options = split_options(text)
+    if is_file(text, folder):
+        return FILE, text, ""
+    if match is None or is_file(place, folder):
+        return FILE, place, options
+    scheme, rest = match.groups()
+    if scheme not in SCHEMES:
+        raise RecordError(
+            f"{text}: {scheme!r} is not a kind of record source; {hint(scheme, SCHEMES)}"
+        )
+    if scheme == LIST:
+        return scheme, *split_options(rest)
+    place, _, options = rest.partition("?")
+    return scheme, place, options
+
+
 class Source(Query):
     """A source taken apart; its text reads the same.
 
@@ -225,22 +244,7 @@ class Source(Query):
         """
         if isinstance(text, Source):
             return text
-        match = _SCHEME.fullmatch(text)
-        scheme = FILE
-        (place, options) = split_options(text)
-        if is_file(text, folder):
-            place = text
-            options = ""
-        elif match is not None and not is_file(place, folder):
-            scheme, rest = match.groups()
-            if scheme not in SCHEMES:
-                raise RecordError(
-                    f"{text}: {scheme!r} is not a kind of record source;"
-                    f" {hint(scheme, SCHEMES)}"
-                )
-            place, _, options = rest.partition("?")
-            if scheme == LIST:
-                place, options = split_options(rest)
+        scheme, place, options = _parts(text, folder)
         each = options_in(options, text).items()
         source = cls(
             scheme, place, {SPELLINGS.get(name, name): value for name, value in each}

@@ -26,12 +26,12 @@ from rpscli.sweep.evaluation import (
     Indices,
     Plan,
     Point,
-    RecordRequest,
     StudyContext,
     System,
     resolved,
     solver_version,
 )
+from rpscli.sweep.motions import RecordRequest
 from rpscli.sweep.systems import (
     Change,
     SystemProperties,

@@ -99,13 +99,6 @@ def start(layout: StudyPoints, store: Store, *, retry_failed: bool = False) -> S
     keys = all_keys(layout)
     known = store.outcomes()
     before = store.facts()
-    # The study and its case as they are written, with overrides.
-    written = {**layout.study.document.content, "base": layout.plan.base}
-    now = {
-        "study": json.dumps(written, sort_keys=True),
-        "name": layout.study.name,
-        "solver": layout.plan.solver,
-    }
     wanted = set(keys)
     seen = {
         key
@@ -125,30 +118,45 @@ def start(layout: StudyPoints, store: Store, *, retry_failed: bool = False) -> S
             " folder with -o, or discard them with --fresh"
         )
     unused = len(known.keys() - wanted)
-    notes = list[str]()
-    if before:
-        if (solver := before["solver"]) != now["solver"]:
-            text = (
-                f"the solver changed from {solver} to {now['solver']}: nothing of it"
-                " applies"
-            )
-            notes.append(text)
-        old, new = (dict(_leaves(json.loads(facts["study"]))) for facts in (before, now))
-        both = [key for key in new if key in old and old[key] != new[key]]
-        changed = [f"{key}: {shown(old[key])} -> {shown(new[key])}" for key in both]
-        changed += [f"{key} = {shown(new[key])} added" for key in new if key not in old]
-        changed += [f"{key} dropped" for key in old if key not in new]
-        if changed:
-            more = "; ..." if changed[6:] else ""
-            notes.append(f"the study changed: {'; '.join(changed[:6])}{more}")
-        if changed or unused:
-            notes.append(
-                f"{kept} points still apply, {len(keys) - kept} are to be computed"
-            )
-        if unused:
-            stay = f"they stay in {store.path}"
-            notes.append(f"{unused} stored points are no longer in the study; {stay}")
-    return Start(keys, pending, kept, unused, tuple(notes), now)
+    begin = Start(keys, pending, kept, unused, (), _facts(layout))
+    return replace(begin, notes=tuple(_notes(begin, before, store.path)))
+
+
+def _facts(layout: StudyPoints) -> dict[str, str]:
+    """The study and its case as they are written, with overrides; name and solver."""
+    written = {**layout.study.document.content, "base": layout.plan.base}
+    return {
+        "study": json.dumps(written, sort_keys=True),
+        "name": layout.study.name,
+        "solver": layout.plan.solver,
+    }
+
+
+def _notes(begin: Start, before: dict[str, str], place: Path) -> Iterator[str]:
+    """Changes since the last run in a store, if there was one, and what of it applies."""
+    if not before:
+        return
+    if (solver := before["solver"]) != (now := begin.facts["solver"]):
+        yield f"the solver changed from {solver} to {now}: nothing of it applies"
+    changed = _changed_values(before["study"], begin.facts["study"])
+    if changed:
+        more = "; ..." if changed[6:] else ""
+        yield f"the study changed: {'; '.join(changed[:6])}{more}"
+    if changed or begin.unused:
+        left = len(begin.keys) - begin.kept
+        yield f"{begin.kept} points still apply, {left} are to be computed"
+    if begin.unused:
+        stay = f"they stay in {place}"
+        yield f"{begin.unused} stored points are no longer in the study; {stay}"
+
+
+def _changed_values(before: str, now: str) -> list[str]:
+    """Values that differ between two studies in JSON: changed, added, dropped."""
+    old, new = (dict(_leaves(json.loads(study))) for study in (before, now))
+    both = [key for key in new if key in old and old[key] != new[key]]
+    changed = [f"{key}: {shown(old[key])} -> {shown(new[key])}" for key in both]
+    changed += [f"{key} = {shown(new[key])} added" for key in new if key not in old]
+    return changed + [f"{key} dropped" for key in old if key not in new]
 
 
 def _leaves(value: Any, path: str = "") -> Iterator[tuple[str, Any]]:

@@ -33,11 +33,11 @@ from rpscli.records.source import Source
 from rpscli.sweep.evaluation import (
     SYSTEMS_KEPT,
     Plan,
-    RecordRequest,
     StudyContext,
     System,
     unjudged,
 )
+from rpscli.sweep.motions import RecordRequest
 
 Watched: TypeAlias = Callable[[range], Iterator[int]]
 """Goes through numbers and may show how far it is."""
@@ -171,16 +171,13 @@ def examined(
     complaints: dict[str, None] = {}
     faulty = 0
     pairs = any(Source.parse(source).both for source in study.sources)
-    lengths = (*(len(axis.rows) for axis in study.axes), len(drawn))
-    rows_of = itertools.product(*map(range, lengths))
-    for number, rows in zip(watched(range(math.prod(lengths))), rows_of, strict=True):
-        varied = (axis.rows[row] for axis, row in zip(study.axes, rows, strict=False))
-        values = (*itertools.chain.from_iterable(varied), *drawn[rows[-1]].tolist())
+    numbers = watched(
+        range(math.prod(len(axis.rows) for axis in study.axes) * len(drawn))
+    )
+    every = _combinations(study, drawn)
+    for number, (rows, values) in zip(numbers, every, strict=True):
         try:
-            written = _overrides(study, plan, values, rows)
-            case = case_from_mapping(
-                study.base, plan.base_name, study.base_folder, written
-            )
+            case = _case_of(study, plan, values, rows)
             system = System.of_case(case)
             own = None if study.sources else _own_record(case, of)
             request = own and requests.setdefault(own, own)
@@ -190,14 +187,7 @@ def examined(
             )
             if number < SYSTEMS_KEPT:
                 context.system(number, values, system)
-            _refuse_restitution(study, case, members)
-            _refuse_missing(study, context, case)
-            if (
-                both
-                and plan.analysis == "timehistory"
-                and (why := case.structure.planar_only)
-            ):
-                raise CaseError(f"both components together: {why}")  # noqa: TRY301 -- placed below
+            _refuse_unfit(study, context, case, members, both=both)
         except CaseError as error:
             complaints |= dict.fromkeys(str(error).splitlines())
             faulty += 1
@@ -206,6 +196,23 @@ def examined(
     if complaints:
         raise CaseError("\n".join(complaints))
     return tuple(properties)
+
+
+def _combinations(study: Study, drawn: Array) -> Iterator[tuple[tuple[int, ...], Values]]:
+    """Rows of the axes and of the sample of each system, and the values in them."""
+    lengths = (*(len(axis.rows) for axis in study.axes), len(drawn))
+    for rows in itertools.product(*map(range, lengths)):
+        varied = (axis.rows[row] for axis, row in zip(study.axes, rows, strict=False))
+        yield (
+            rows,
+            (*itertools.chain.from_iterable(varied), *drawn[rows[-1]].tolist()),
+        )
+
+
+def _case_of(study: Study, plan: Plan, values: Values, rows: tuple[int, ...]) -> Case:
+    """The case of a system, whose faults are placed at its values in the study."""
+    written = _overrides(study, plan, values, rows)
+    return case_from_mapping(study.base, plan.base_name, study.base_folder, written)
 
 
 def _own_record(case: Case, of: Of | None) -> RecordRequest | None:
@@ -350,6 +357,24 @@ def _overrides(
     written = [Override(*item) for item in zip(plan.keys, values, places, strict=True)]
     without = unjudged(dict(zip(plan.keys, values, strict=True)))
     return written + [Override(limit, None, places[-1]) for limit in without]
+
+
+def _refuse_unfit(
+    study: Study,
+    context: StudyContext,
+    case: Case,
+    members: Sequence[Change],
+    *,
+    both: bool,
+) -> None:
+    """Refuse a case with which the perturbations, the records or both components of the
+    study do not go.
+    """
+    _refuse_restitution(study, case, members)
+    _refuse_missing(study, context, case)
+    histories = context.plan.analysis == "timehistory"
+    if both and histories and (why := case.structure.planar_only):
+        raise CaseError(f"both components together: {why}")
 
 
 def _refuse_restitution(study: Study, case: Case, members: Sequence[Change]) -> None:

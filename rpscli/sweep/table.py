@@ -31,9 +31,9 @@ from rpscli.sweep.evaluation import (
     MISSING,
     SCALARS,
     PointResults,
-    RecordRequest,
     StudyContext,
 )
+from rpscli.sweep.motions import RecordRequest
 from rpscli.sweep.points import StudyPoints
 from rpscli.sweep.store import Store
 from rpscli.units import in_si

@@ -361,5 +361,5 @@ def test_what_only_the_model_refuses_is_placed(monkeypatch: pytest.MonkeyPatch) 
     def refusing(*_: object) -> None:
         raise ValueError("no such column")
 
-    monkeypatch.setattr("rpscli.case.build._built", refusing)
+    monkeypatch.setattr("rpscli.case.structure.built", refusing)
     assert refusal(BUILDING).startswith("c.yaml:9:1: podium: no such column")

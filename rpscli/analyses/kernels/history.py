@@ -80,24 +80,10 @@ def run_of(
     first = systems.view(np.ndarray)
     n = int(first["n"][0])
     devices = int(first["devices"].max())
-    starts = [0, *accumulate(motion.samples.size for motion in motions)]
-    placed = []
-    for motion, start in zip(motions, starts, strict=False):
-        up = motion.row("vertical")
-        above = NO_RECORD if up is None else start + up * motion.npts
-        second = NO_RECORD if motion.y is None else start + motion.npts
-        placed.append((start, second, above, motion.npts, motion.dt))
-    given = np.zeros(len(requests), record_type(REQUEST))
-    for row, (system, number, scale) in zip(given, requests, strict=True):
-        row["system"] = system
-        row["scale"] = scale
-        place = "record", "record_y", "vertical", "npts", "dt"
-        for name, value in zip(place, placed[number], strict=True):
-            row[name] = value
     samples = [motion.samples.ravel() for motion in motions]
     return Run(
         systems=systems,
-        requests=given.view(np.recarray),
+        requests=_request_records(motions, requests),
         acceleration=np.concatenate(samples),
         results=np.zeros(len(requests), record_type(RESULT)).view(np.recarray),
         output=Output(
@@ -109,6 +95,30 @@ def run_of(
         ),
         ways=2 if pairs else 1,
     )
+
+
+def _request_records(
+    motions: Sequence[MotionComponents], requests: Sequence[Request]
+) -> Record:
+    """Requests as the kernel reads them, with places in the samples
+    of all motions one behind the other.
+    """
+    starts = [0, *accumulate(motion.samples.size for motion in motions)]
+    placed = []
+    for motion, start in zip(motions, starts, strict=False):
+        up = motion.row("vertical")
+        above = NO_RECORD if up is None else start + up * motion.npts
+        second = NO_RECORD if motion.y is None else start + motion.npts
+        placed.append((start, second, above, motion.npts, motion.dt))
+
+    given = np.zeros(len(requests), record_type(REQUEST))
+    for row, (system, number, scale) in zip(given, requests, strict=True):
+        row["system"] = system
+        row["scale"] = scale
+        place = "record", "record_y", "vertical", "npts", "dt"
+        for name, value in zip(place, placed[number], strict=True):
+            row[name] = value
+    return given.view(np.recarray)
 
 
 def follow(run: Run, lanes: int, *, interruptible: bool = False) -> None:

@@ -9,7 +9,9 @@ from functools import lru_cache
 import numpy as np
 
 from rpscli.analyses.settings import LONGEST_FREE_VIBRATION, TimeHistorySettings
+from rpscli.model.contact import Bed
 from rpscli.model.devices import DEVICES, OwnDamper
+from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import Superstructure
 from rpscli.physics.state import SYSTEM, Record, record_type, records
@@ -133,16 +135,29 @@ def fill_podium(record: Record, structure: PodiumStructure) -> None:
     record["contact_time"] = structure.impact_law.contact_time
     record["shock_time"] = structure.shock_time
     record["floors_jump"] = structure.impact_law.floors_jump
-    if (own := (impact := structure.impact_law).own) is not None:
-        from rpscli.physics.own_laws import address_of  # few have such
-
-        numbers = impact.factor * (1.0 - impact.loss), impact.factor * impact.loss
-        record["impact_law"] = address_of(own.restitution, own.taken()[own.restitution])
-        record["impact_constants"][: 2 + len(impact.constants)] = (
-            *numbers,
-            *impact.constants,
-        )
     record["columns"] = structure.columns
+    _fill_own_impact(record, structure.impact_law)
+    _fill_devices(record, structure)
+    if structure.bed is not None:
+        _fill_bed(record, structure.bed)
+
+
+def _fill_own_impact(record: Record, impact: ImpactLaw) -> None:
+    """The impact law of another package, if it is of one."""
+    if (own := impact.own) is None:
+        return
+    from rpscli.physics.own_laws import address_of  # few have such
+
+    numbers = impact.factor * (1.0 - impact.loss), impact.factor * impact.loss
+    record["impact_law"] = address_of(own.restitution, own.taken()[own.restitution])
+    record["impact_constants"][: 2 + len(impact.constants)] = (
+        *numbers,
+        *impact.constants,
+    )
+
+
+def _fill_devices(record: Record, structure: PodiumStructure) -> None:
+    """Kinds and constants of the devices, and the laws of other packages."""
     record["devices"] = len(structure.devices)
     for i, device in enumerate(structure.devices):
         record["device_kind"][i] = DEVICE_KINDS[type(device)]
@@ -158,18 +173,21 @@ def fill_podium(record: Record, structure: PodiumStructure) -> None:
             )
             record["own_law"][i, 0] = address_of(law.force, taken[law.force])
             record["own_law"][i, 1:] = watched, law.linear is None
-    if (bed := structure.bed) is not None:
-        record["compliant"] = 1
-        record["bed_uplift"] = bed.uplift_rotation
-        record["bed_full"] = bed.full_rotation
-        record["bed_height"] = bed.height
-        record["bed_k"] = bed.spring
-        record["bed_c"] = bed.damper
-        record["sink"] = bed.sink
-        record["root"] = bed.root
-        record["lifts"] = bed.kept
-        for phase in ("rolling", "rocking"):  # u_b goes on from there
-            record[phase][3] += bed.shift
+
+
+def _fill_bed(record: Record, bed: Bed) -> None:
+    """Compliant full contact, from which the arms of both phases go on."""
+    record["compliant"] = 1
+    record["bed_uplift"] = bed.uplift_rotation
+    record["bed_full"] = bed.full_rotation
+    record["bed_height"] = bed.height
+    record["bed_k"] = bed.spring
+    record["bed_c"] = bed.damper
+    record["sink"] = bed.sink
+    record["root"] = bed.root
+    record["lifts"] = bed.kept
+    for phase in ("rolling", "rocking"):  # u_b goes on from there
+        record[phase][3] += bed.shift
 
 
 def fill_settings(

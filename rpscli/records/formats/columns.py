@@ -12,8 +12,8 @@ from __future__ import annotations
 
 import re
 from array import array
-from dataclasses import replace
-from typing import NamedTuple
+from dataclasses import dataclass, field, replace
+from typing import NamedTuple, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
@@ -215,53 +215,29 @@ def _title(cell: str, line: int) -> _Title:
     return _Title(match[1].strip(), (match[2] or match[3] or "").strip(), line)
 
 
+@dataclass
+class _Rows:
+    """A table while it is read: of rows and their values there may be millions."""
+
+    header: list[Statement] = field(default_factory=list)
+    values: array[float] = field(default_factory=lambda: array("d"))
+    widths: array[int] = field(default_factory=lambda: array("q"))
+    lines: array[int] = field(default_factory=lambda: array("q"))
+    above: int = -1
+
+
 def _table(text: RecordText) -> _Table:
-    header: list[Statement] = []
-    values = array("d")  # of records there may be millions
-    widths = array("q")
-    lines = array("q")
-    above = -1
-    for index, line in enumerate(text.lines):
-        row = numbers_in(_plain(line))
-        if row:
-            values.extend(row)
-            widths.append(len(row))
-            lines.append(index)
-        elif not widths:
-            words = text.heads[index].strip().lstrip("#%!/*|").strip()
-            header.append(Statement("header", words, index))
-            above = (
-                index if any(map(str.isalpha, words)) else above if line.strip() else -1
-            )
-        elif row is None and not _is_comment(line):
-            raise text.fault(
-                f"{line.strip()[:40]!r} stands among the values and is not a row of"
-                f" finite numbers{why_no_numbers(line)}; begin comments with #",
-                index,
-            )
+    """The rows of numbers of a text, held against what its header announces."""
+    rows = _rows(text)
+    widths = rows.widths
     if len(widths) > 3 and widths[0] == 2 and set(widths[1:]) == {1}:
-        count, step = numerals_in(text.lines[lines[0]])
-        if not (count.isdigit() and int(count) == len(widths) - 1):
-            raise text.fault(
-                f"{count} and {step} look like the number of values and their step, but"
-                f" {len(widths) - 1} values follow; correct them, or begin their line"
-                " with #",
-                lines[0],
-            )
-        header.append(Statement("count and step", f"npts: {count}, dt: {step}", lines[0]))
-        del values[:2], widths[0], lines[0]
+        _move_count_and_step(text, rows)
     if len(widths) < 2:
-        odd = next((i for i, line in enumerate(text.heads) if why_no_numbers(line)), None)
-        if odd is not None:
-            line = text.heads[odd]
-            why = why_no_numbers(line)
-            raise text.fault(f"{line.strip()[:40]!r} is not a row of numbers{why}", odd)
-        raise text.fault(
-            f"no known format of ground motions: {len(widths)} row(s) of numbers; export"
-            " the record as PEER AT2, or as columns of time and acceleration"
-        )
-    kept = tuple(line for line in header if line.value)
+        _refuse_without_rows(text, rows)
+
+    kept = tuple(line for line in rows.header if line.value)
     said = statements("npts", _COUNT, ((of.line, of.value) for of in kept))
+    values = rows.values
     if (announced := text.agreed(said, text.count)) not in (
         None,
         len(values),
@@ -272,7 +248,66 @@ def _table(text: RecordText) -> _Table:
             f" row(s) and {len(values)} number(s); fetch it again, or correct the header"
         )
     return _Table(
-        kept, np.array(values), np.array(widths), np.array(lines), above, announced
+        kept,
+        np.array(values),
+        np.array(widths),
+        np.array(rows.lines),
+        rows.above,
+        announced,
+    )
+
+
+def _rows(text: RecordText) -> _Rows:
+    """Rows of numbers, with the lines above the first of them."""
+    rows = _Rows()
+    for index, line in enumerate(text.lines):
+        row = numbers_in(_plain(line))
+        if row:
+            rows.values.extend(row)
+            rows.widths.append(len(row))
+            rows.lines.append(index)
+        elif not rows.widths:
+            words = text.heads[index].strip().lstrip("#%!/*|").strip()
+            rows.header.append(Statement("header", words, index))
+            if any(map(str.isalpha, words)):
+                rows.above = index
+            elif not line.strip():
+                rows.above = -1
+        elif row is None and not _is_comment(line):
+            raise text.fault(
+                f"{line.strip()[:40]!r} stands among the values and is not a row of"
+                f" finite numbers{why_no_numbers(line)}; begin comments with #",
+                index,
+            )
+    return rows
+
+
+def _move_count_and_step(text: RecordText, rows: _Rows) -> None:
+    """Take a first row, of the count of values and their step, to the header."""
+    line = rows.lines[0]
+    count, step = numerals_in(text.lines[line])
+    following = len(rows.widths) - 1
+    if not (count.isdigit() and int(count) == following):
+        raise text.fault(
+            f"{count} and {step} look like the number of values and their step, but"
+            f" {following} values follow; correct them, or begin their line"
+            " with #",
+            line,
+        )
+    rows.header.append(Statement("count and step", f"npts: {count}, dt: {step}", line))
+    del rows.values[:2], rows.widths[0], rows.lines[0]
+
+
+def _refuse_without_rows(text: RecordText, rows: _Rows) -> NoReturn:
+    """Refuse a text with fewer than two rows of numbers, at what is nearly one."""
+    odd = next((i for i, line in enumerate(text.heads) if why_no_numbers(line)), None)
+    if odd is not None:
+        line = text.heads[odd]
+        why = why_no_numbers(line)
+        raise text.fault(f"{line.strip()[:40]!r} is not a row of numbers{why}", odd)
+    raise text.fault(
+        f"no known format of ground motions: {len(rows.widths)} row(s) of numbers; export"
+        " the record as PEER AT2, or as columns of time and acceleration"
     )
 
 

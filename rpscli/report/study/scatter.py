@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from rpscli.analyses.largest_demands import STOOD
+from rpscli.analyses.outcomes import STOOD
 from rpscli.case.schema.case_file import Time
 from rpscli.case.schema.fields import Quantity, Section, Text
 from rpscli.case.study.reports import ReportOptions, ReportRequest, VariedKeys
@@ -38,7 +38,8 @@ from rpscli.report.study.report import (
     labels,
     without_uplift,
 )
-from rpscli.sweep.evaluation import SCALARS, RecordRequest
+from rpscli.sweep.evaluation import SCALARS
+from rpscli.sweep.motions import RecordRequest
 from rpscli.sweep.points import StudyPoints
 from rpscli.sweep.statistics.grouping import (
     INTENSITY,

@@ -288,42 +288,50 @@ def judged(
     for row in summary.rows:
         if not len(row.points):
             continue
-        systems = np.unique(row.points // layout.points_of_system)
-        own = [layout.properties[system] for system in systems]
-        lacking = frozenset[str]().union(*(properties.lacking for properties in own))
-        limits = [each for each in (*own[0].limits, *further) if each not in on_rates]
-        known = [
-            each
-            for each in limits
-            if each.name not in lacking
-            or np.isfinite(table.columns[each.name][row.points]).any()
-        ]
-        found += verdicts(table, row.points, known, record_of, row.values)
+        limits = _limits_known(table, row.points, further)
+        of_points = [each for each in limits if each not in on_rates]
+        found += verdicts(table, row.points, of_points, record_of, row.values)
     for condition in on_rates:
-        rates, _ = rates_of_levels(layout)
-        for first in range(
-            0, len(summary.rows), len(rates)
-        ):  # intensities follow each other
-            values = (*summary.rows[first].values[:-1], "all")
-            shares = [row.overturned for row in summary.rows[first : first + len(rates)]]
-            ends = [
-                (np.nan if s.fraction is None else s.fraction, s.low, s.high)
-                for s in shares
-            ]
-            rate, low, high = (rates @ np.array(ends)).tolist()
-            over = not rate <= condition.limit
-            interval = (low, high)
-            what = (
-                condition,
-                values,
-                shares[-1],
-                0,
-                rate,
-                "",
-                None,
-                over,
-                strictly,
-                interval,
-            )
-            found.append(Verdict(*what))
+        found += _on_rate(layout, summary, condition, strictly=strictly)
     return found
+
+
+def _limits_known(
+    table: Table, points: Indices, further: Iterable[Condition]
+) -> list[Condition]:
+    """Limits of the systems of some points, and further ones, on results they have."""
+    layout = table.layout
+    systems = np.unique(points // layout.points_of_system)
+    own = [layout.properties[system] for system in systems]
+    lacking = frozenset[str]().union(*(properties.lacking for properties in own))
+    return [
+        each
+        for each in (*own[0].limits, *further)
+        if each.name not in lacking or np.isfinite(table.columns[each.name][points]).any()
+    ]
+
+
+def _on_rate(
+    layout: StudyPoints, summary: Summary, condition: Condition, *, strictly: bool
+) -> Iterator[Verdict]:
+    """Of each system, on a limit on the annual rate at which it overturns."""
+    rates, _ = rates_of_levels(layout)
+    for first in range(0, len(summary.rows), len(rates)):  # intensities follow each other
+        rows = summary.rows[first : first + len(rates)]
+        shares = [row.overturned for row in rows]
+        ends = [
+            (np.nan if s.fraction is None else s.fraction, s.low, s.high) for s in shares
+        ]
+        rate, low, high = (rates @ np.array(ends)).tolist()
+        yield Verdict(
+            condition=condition,
+            values=(*rows[0].values[:-1], "all"),
+            beyond=shares[-1],
+            overturned=0,
+            value=rate,
+            record="",
+            fractile=None,
+            exceeded=not rate <= condition.limit,
+            strictly=strictly,
+            interval=(low, high),
+        )

@@ -14,6 +14,7 @@ from rpscli.errors import LimitExceeded, RpsError, StudyIncomplete
 from rpscli.report.figures.style import figure_files
 from rpscli.report.files import OutputFolder, heading
 from rpscli.report.limits import VERDICT, verdict_texts
+from rpscli.report.study.collected import Collected
 from rpscli.report.study.statistics import (
     note_of_directions,
     of_first_system,
@@ -22,7 +23,7 @@ from rpscli.report.study.statistics import (
     verdict_lines,
 )
 from rpscli.report.table import Heading, Part, Table, csv_text
-from rpscli.studies import Collected, Study, StudyResult, collected, error_of
+from rpscli.studies import Study, StudyResult, collected, error_of
 from rpscli.sweep.points import StudyPoints, lay_out
 from rpscli.sweep.store import Store
 from rpscli.sweep.table import Table as Points
