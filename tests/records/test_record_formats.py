@@ -535,7 +535,7 @@ VALUE = st.floats(-3.0, 3.0, allow_nan=False, allow_subnormal=False)
 
 @settings(deadline=None)
 @given(
-    st.lists(VALUE, min_size=2, max_size=23), st.floats(1e-6, 1.0), st.text(max_size=300)
+    st.lists(VALUE, min_size=2, max_size=23), st.floats(1e-6, 0.5), st.text(max_size=300)
 )
 def test_what_is_written_is_read_back(values: list[float], dt: float, title: str) -> None:
     motion = GroundMotion(

@@ -57,6 +57,12 @@ _UNITS = re.compile(
 )
 
 
+_PEAK = (
+    r"\b(?:PGA|PEAK(?:\s*(?:GROUND\s*)?ACC\w*)?)(?:\s*VALUE)?\s*[=:]\s*"
+    rf"({NUMBER_PATTERN})\s*({UNIT_PATTERN})?"
+)
+
+
 _Header = tuple[
     Statement, Statement, int
 ]  # of NPTS and of DT, and the first line of values
@@ -164,15 +170,19 @@ def _stated(
             units.insert(0, Statement("UNITS", spelling[1], index))
         elif not units and _UNITS_LINE.search(line):
             units.append(Statement("the header", line, index))  # which names none
+    heads = [*enumerate(text.heads[:start])]
+    text.refuse_multiples(heads, _UNITS.pattern)
     unit = text.unit(units)
     text.agreed(counts, text.count)
-    text.agreed(steps, text.step)
+    text.agreed(text.understood_steps(steps), text.step)
     # 1/256 s is printed as .0039 by PEER: a whole rate that prints the same, but is not
     # the same.
     step = text.step(dt)
     numeral = dt.value.partition(" ")[0]
     resolution = last_digit(numeral) * step / text.number(dt._replace(value=numeral))
-    stated = Stated(unit, step, resolution, recording=_recording(_title(text, npts)))
+    peak = next(iter(statements("the peak", _PEAK, heads)), None)
+    recording = _recording(_title(text, npts))
+    stated = Stated(unit, step, resolution, peak=peak, recording=recording)
     agreed = text.agreed_dt(step, 0.51 * resolution / step)
     rate = max(1, round(1.0 / agreed))
     if abs(rate * agreed - 1.0) < 1e-9 or abs(1.0 / rate - agreed) > 0.5 * resolution:

@@ -29,6 +29,15 @@ from rpscli.records.formats.record_text import (
     statements,
     uniform_step,
 )
+from rpscli.records.formats.titles import (
+    ACCELERATION,
+    ANY_UNIT,
+    COUNT,
+    TIME,
+    UNKNOWN,
+    Title,
+    title_of,
+)
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.quantities import (
     NUMBER_PATTERN,
@@ -53,46 +62,6 @@ _PEAK = (
     rf"(?:[\[(]\s*({UNIT_PATTERN})\s*[\])]\s*[=:]\s*({NUMBER_PATTERN})(?=\s*$)"
     rf"|[=:]\s*({NUMBER_PATTERN})\s*({UNIT_PATTERN}))"
 )
-_CELL = re.compile(
-    r"([^\[(]*?)[\s_]*(?:[\[(]([^\])]*)[\])]|\bin\s+(\S.*))?", re.IGNORECASE
-)
-_TIME = re.compile(r"time|t|seconds?|sec", re.IGNORECASE)
-_ACCELERATION = re.compile(
-    r"(?:ground\s*)?(?:acc(?:el(?:eration)?s?)?|a|a_?g)(?:[\s_.-]*\w{1,3})?",
-    re.IGNORECASE,
-)
-_SPECTRUM = re.compile(r"period|freq|spectr|\bp?sa\b", re.IGNORECASE)
-_OTHER = re.compile(r"\b(?:(vel\w*)|disp\w*)\b", re.IGNORECASE)
-_OTHER_UNIT = re.compile(r"(?:[cm]?m|in|ft)\s*(?:/\s*s(?:ec)?)?", re.IGNORECASE)
-_ANY_UNIT = re.compile(
-    rf"{UNIT_PATTERN}|{_OTHER_UNIT.pattern}|m?s(?:ec)?|-", re.IGNORECASE
-)
-_NO_UNIT = re.compile(
-    r"(?:[NSEWUDXYZHV]\W?){1,3}\d?|\d+(?:\s*deg)?|\w*(?:corr|filt|proc|ground)\w*",
-    re.IGNORECASE,
-)
-"""Words in brackets behind a name that are a direction, or a remark."""
-
-
-class _Title(NamedTuple):
-    """The title of a column: its name, the unit in brackets, the line."""
-
-    name: str
-    unit: str
-    line: int
-
-    @property
-    def is_time(self) -> bool:
-        return _TIME.fullmatch(self.name) is not None
-
-    @property
-    def is_acceleration(self) -> bool:
-        """By its name or its unit; a name of another quantity decides."""
-        if self.is_time or _OTHER.search(self.name):
-            return False
-        return bool(
-            _ACCELERATION.fullmatch(self.name) or canonical_unit(self.unit or "-")
-        )
 
 
 class _Table(NamedTuple):
@@ -129,12 +98,10 @@ def read_columns(text: RecordText) -> GroundMotion:
     table = _table(text)
     width = int(table.widths[0])
     even = not np.any(table.widths != width)
-    titles = _titles(table, width)
+    titles = _titles(text, table, width)
     if even and width > 2 and text.channel and not titles:  # by their places
         line = int(table.lines[0])
-        titles = [
-            _Title("time" if i == 0 else f"{i + 1}", "", line) for i in range(width)
-        ]
+        titles = [Title("time" if i == 0 else f"{i + 1}", "", line) for i in range(width)]
     _refuse_other_quantities(text, table, titles)
     if even and width > 1 and (width == 2 or titles):
         return _columns(text, table, titles)
@@ -172,47 +139,84 @@ def _is_comment(line: str) -> bool:
     return line.lstrip().startswith(("#", "%", "!", "//", "*", "|"))
 
 
-def _titles(table: _Table, width: int) -> list[_Title]:
-    """The last line that has a title for each column; empty without one."""
+def _titles(text: RecordText, table: _Table, width: int) -> list[Title]:
+    """What the user says of the columns, else the last line that has a title for each;
+    empty without one.
+    """
+    if text.columns is not None:
+        return _titles_given(text, text.columns, width)
     units: list[str] = []
     for line in reversed(table.header):
         for separator in (r"[,;\t]", r"\s{2,}|\t", r"\s+"):
-            cells = [
-                _plain(cell).strip() for cell in re.split(separator, line.value.strip())
-            ]
-            if (
-                len(cells) != width
-                or not all(cells)
-                or any(":" in cell for cell in cells)
-            ):
+            cells = _cells(line.value, separator)
+            if len(cells) != width or any(":" in cell for cell in cells):
                 continue
             bare = [cell.strip("()[]") for cell in cells]
-            if not units and width > 1 and all(map(_ANY_UNIT.fullmatch, bare)):
+            if not units and width > 1 and all(map(ANY_UNIT.fullmatch, bare)):
                 units = bare  # a row of their own below the names
                 break
-            titles = [_title(cell, line.line) for cell in cells]
+            titles = [title_of(cell, line.line) for cell in cells]
             if units:
                 titles = [
                     t._replace(unit=t.unit or u)
                     for t, u in zip(titles, units, strict=True)
                 ]
-            last = line.line == table.above and width > 2
-            spectrum = width > 1 and any(_SPECTRUM.search(each.name) for each in titles)
-            if last or spectrum or any(each.is_acceleration for each in titles):
+            above = line.line == table.above
+            if _are_titles(titles, above=above, apart=separator != r"\s+"):
                 return titles
+    if named := _titles_behind_a_key(table, width):
+        return named
     names = [
         "time" if re.fullmatch("m?s(?:ec)?", unit) else "acceleration" for unit in units
     ]
     return [
-        _Title(*each, table.header[-1].line) for each in zip(names, units, strict=True)
+        Title(*each, table.header[-1].line) for each in zip(names, units, strict=True)
     ]
 
 
-def _title(cell: str, line: int) -> _Title:
-    match = _CELL.fullmatch(cell)
-    if match is None or not (match[1] or match[2]):
-        return _Title(cell, "", line)
-    return _Title(match[1].strip(), (match[2] or match[3] or "").strip(), line)
+def _titles_behind_a_key(table: _Table, width: int) -> list[Title]:
+    """Titles behind a key, as in `DataSequence: Time U(+); N(+); E(+)`, if all of them
+    are understood.
+    """
+    for line in table.header:
+        _, colon, words = line.value.partition(":")
+        cells = [cell for cell in re.split(r"[,;\s]+", words) if cell]
+        titles = [title_of(cell, line.line) for cell in cells]
+        known = {*(title.kind for title in titles)} <= {TIME, ACCELERATION, COUNT}
+        if colon and width > 1 and len(titles) == width and known:
+            return titles
+    return []
+
+
+def _cells(line: str, separator: str) -> list[str]:
+    """The cells of a line of titles; none where one is empty, but for one at the end."""
+    cells = [_plain(cell).strip() for cell in re.split(separator, line.strip())]
+    if len(cells) > 1 and not cells[-1]:  # as spreadsheets end their lines
+        cells.pop()
+    return cells if all(cells) else []
+
+
+def _are_titles(titles: list[Title], *, above: bool, apart: bool) -> bool:
+    """Whether a line of words is one of titles: by what they say, or where they stand.
+
+    Words right `above` the numbers are titles if something other than a single blank is
+    between them; else one of them has to be understood.
+    """
+    if len(titles) == 1:
+        return titles[0].kind != UNKNOWN and (above or titles[0].kind == ACCELERATION)
+    known = [title.kind for title in titles if title.kind != UNKNOWN]
+    return (above and (apart or len(titles) > 2)) or len(known) > 1 or TIME in known
+
+
+def _titles_given(text: RecordText, columns: str, width: int) -> list[Title]:
+    """Titles that the user gives in place of those of the file."""
+    titles = [title_of(cell, 0) for cell in columns.split(",")]
+    if len(titles) != width:
+        raise text.fault(
+            f"columns = {columns[:60]} names {len(titles)}, and rows have {width} numbers;"
+            " name each, `-` for one that is not used"
+        )
+    return titles
 
 
 @dataclass
@@ -311,18 +315,18 @@ def _refuse_without_rows(text: RecordText, rows: _Rows) -> NoReturn:
     )
 
 
-def _columns(text: RecordText, table: _Table, titles: list[_Title]) -> GroundMotion:
+def _columns(text: RecordText, table: _Table, titles: list[Title]) -> GroundMotion:
     """One of several columns, with the times of another."""
     width = int(table.widths[0])
     values = table.values.reshape(-1, width)
-    series = [i for i, title in enumerate(titles) if title.is_acceleration]
-    series = series or [i for i, title in enumerate(titles) if not title.is_time]
+    series = [i for i, title in enumerate(titles) if title.kind == ACCELERATION]
+    series = series or [i for i, title in enumerate(titles) if title.kind != TIME]
     place = series[0] if titles else 1
     if titles and (text.channel is not None or len(series) != 1):
         named = [Channel(i + 1, titles[i].line, titles[i].name) for i in series]
         place = text.chosen(named).number - 1
     times = next(
-        (i for i, title in enumerate(titles) if title.is_time and i != place), None
+        (i for i, title in enumerate(titles) if title.kind == TIME and i != place), None
     )
     if times is None and width == 2 and not (titles and text.channel):
         times = 1 - place
@@ -342,12 +346,12 @@ def _timed(
     stated: Stated,
     times: Array,
     place: int,
-    titles: list[_Title],
+    titles: list[Title],
 ) -> tuple[Stated, list[str]]:
     """The step of a column of times, and what is to be said of them."""
     numerals = (numerals_in(_plain(text.lines[line]))[place] for line in table.lines)
     resolution = printed_resolution(times, numerals)
-    title = titles[place] if titles and titles[place].is_time else None
+    title = titles[place] if titles and titles[place].kind == TIME else None
     factor = (
         1.0 if title is None else text.time_factor(title.unit, title.line, is_unit=True)
     )
@@ -401,42 +405,67 @@ def _wrapped(text: RecordText, table: _Table) -> str:
     return f"rows of {width} numbers were read one after the other"
 
 
-def _stated(text: RecordText, table: _Table, title: _Title | None) -> Stated:
+def _stated(text: RecordText, table: _Table, title: Title | None) -> Stated:
     """Statements of the header and of the title; two units, or steps, are refused."""
     lines = [(of.line, of.value) for of in table.header]
     units = statements("units", _UNITS_KEY, lines)
-    steps = statements("dt", _STEP, lines)
+    text.refuse_multiples(lines, _UNITS_KEY)
+    steps = text.understood_steps(statements("dt", _STEP, lines))
     peak = next(iter(statements("peak", _PEAK, lines)), None)
-    if (
-        title
-        and title.unit
-        and (canonical_unit(title.unit) or not _NO_UNIT.fullmatch(title.unit))
-    ):
+    if title and title.unit and (canonical_unit(title.unit) or not title.remarks):
         units.append(Statement(f"the title {title.name}", title.unit, title.line))
     return Stated(text.unit(units), text.agreed(steps, text.step), peak=peak)
 
 
+COLUMNS = "?columns=time,acceleration [g]"
+"""What says all of two columns."""
+
+
 def _refuse_other_quantities(
-    text: RecordText, table: _Table, titles: list[_Title]
+    text: RecordText, table: _Table, titles: list[Title]
 ) -> None:
-    """Refuse spectra, and series of velocities or displacements."""
-    for title in titles:
-        if _SPECTRUM.search(title.name):
+    """Refuse columns of other quantities, and titles that are not understood."""
+    kinds = [title.kind for title in titles]
+    for title, kind in zip(titles, kinds, strict=True):
+        if kind == "a spectrum":
             raise text.fault(
                 f"the title {title.name[:40]!r} is that of a spectrum, not of a record"
                 " over time",
                 title.line,
             )
-    if any(title.is_acceleration for title in titles):
-        return
+    if ACCELERATION not in kinds:
+        _refuse_other_series(text, table)
+    if titles and (ACCELERATION not in kinds or _lacks_time(titles, kinds)):
+        _refuse_titles(text, titles, kinds)
+
+
+def _refuse_other_series(text: RecordText, table: _Table) -> None:
+    """Refuse velocities and displacements by a title anywhere in the header."""
     for line in table.header:
         for cell in re.split(r"[,;\t]|\s{2,}", line.value):
-            title = _title(_plain(cell).strip(), line.line)
-            other = _OTHER.fullmatch(title.name)
-            if other and (not title.unit or _OTHER_UNIT.fullmatch(title.unit)):
-                name = "velocity" if other[1] else "displacement"
+            title = title_of(_plain(cell), line.line)
+            if title.kind in ("velocity", "displacement") and title.name:
                 raise text.fault(
-                    f"the header says {line.value[:60]!r}: this is a {name} record; give"
-                    " the acceleration record of the same station",
+                    f"the header says {line.value[:60]!r}: this is a {title.kind} record;"
+                    " give the acceleration record of the same station",
                     line.line,
                 )
+
+
+def _lacks_time(titles: list[Title], kinds: list[str]) -> bool:
+    """True of two columns of which one is no acceleration, no time and no count."""
+    return len(titles) == 2 and not {*kinds} <= {TIME, ACCELERATION, COUNT}
+
+
+def _refuse_titles(text: RecordText, titles: list[Title], kinds: list[str]) -> NoReturn:
+    """Say what was understood of titles, what not, and what to write."""
+    said = [
+        f"{title.name[:30] or title.unit!r} is {kind or 'not understood'}"
+        for title, kind in zip(titles, kinds, strict=True)
+    ]
+    wanted = ",".join(["time", "acceleration [g]", *["-"] * (len(titles) - 2)])
+    raise text.fault(
+        f"the titles are not those of a record over time: {'; '.join(said[:4])}; if it is"
+        f" one, say what the columns are: ?columns={wanted}",
+        titles[0].line,
+    )

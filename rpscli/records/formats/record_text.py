@@ -35,27 +35,51 @@ Meant = TypeVar("Meant")
 STATED_PATTERN = rf"{NUMBER_PATTERN}(?:,[0-9]+)?"
 """A number as a header states it; one with a decimal comma is then refused by name."""
 
+_POWER = r"(?:\s*[x×*·]\s*10\s*(?:\^|\*\*)\s*[({]?[-+−]?[0-9]+[)}]?|\s*/\s*[0-9.]+)"
 STEP_PATTERN = (
     r"\s*(?:[\[(]\s*([A-Za-z]+)\.?\s*[\])])?\s*[=:]?\s*"
-    rf"({STATED_PATTERN}[.0-9]*)\s*((?!(?:dt|npts)\b)[A-Za-z]+)?"
+    rf"({STATED_PATTERN}[.0-9]*{_POWER}?)"
+    r"\s*[\[(]?\s*((?!(?:dt|npts)\b)[A-Za-z]+\b(?!\s*[=:]))?"
 )
-"""The words behind the name of a time step: a unit in brackets, the
-number, a unit behind it."""
+"""The words behind the name of a time step: a unit in brackets, the number, perhaps times
+a power of ten or as a fraction, a unit behind it, also in brackets."""
+
+_BEHIND_A_UNIT = re.compile(
+    r"\s*[\])]?\s*(?:$|[,;.:|#]|[(\[][^)\]0-9]*[)\]]|[A-Za-z_]+[\w\s.]{0,20}[=:]|-\s*[A-Za-z])"
+)
+"""What may stand behind a unit: the end, a bracket without numbers, another key."""
+_MULTIPLE = re.compile(
+    r"(?<![?&])\b(?:scale|scaling|multipl\w*|conversion|calibration|gain|factor)\b"
+    rf"[^=:?&]{{0,24}}[=:]\s*({NUMBER_PATTERN})",
+    re.IGNORECASE,
+)
+"""A factor on the values."""
 
 _TIME_UNITS = {
     **dict.fromkeys(("", "s", "sec", "secs", "second", "seconds"), 1.0),
-    **dict.fromkeys(("ms", "msec", "msecs", "millisecond", "milliseconds"), 1e-3),
+    **dict.fromkeys(("ms", "msec", "msecs", "millisec", "millisecs"), 1e-3),
+    **dict.fromkeys(("millisecond", "milliseconds"), 1e-3),
 }
-_OTHER_TIMES = re.compile(
-    r"(?:us|usec|ns|min|minutes?|hz|h|hours?|days?|years?)", re.IGNORECASE
-)
+_JOINING = {
+    "and",
+    "with",
+    "for",
+    "at",
+    "in",
+    "units",
+    "unit",
+    "format",
+    "points",
+    "apart",
+}
+"""Words that go on with a sentence behind a time step."""
 
 MOST_VALUES = 10_000_000  # of one series: more than a day at a hundred samples a second
 _SHOWN = 40  # letters of a value in a message
 _HEADER_WIDTH = 1000  # letters
 _LARGEST_FILE = 200_000_000  # bytes; a day at a hundred samples a second has a tenth
 _SHORTEST_STEP = 1e-6  # s
-_LONGEST_STEP = 100.0
+_LONGEST_STEP = 0.5
 
 
 class Statement(NamedTuple):
@@ -105,8 +129,8 @@ class RecordText:
     that came with its source.
 
     A stray carriage return counts as part of a line end. `dt` [s], the
-    canonical unit `units` and the `channel`, its number, from 1, or its name,
-    are those that the user gave.
+    canonical unit `units`, the `channel`, its number, from 1, or its name, and titles
+    of the `columns` are those that the user gave.
     """
 
     path: Path
@@ -115,6 +139,8 @@ class RecordText:
     dt: float | None = None
     units: str | None = None
     channel: str | None = None
+    columns: str | None = None
+    multiple: float | None = None
 
     @cached_property
     def heads(self) -> tuple[str, ...]:
@@ -150,7 +176,8 @@ class RecordText:
                 f"units = {self.units} contradicts the file, which says {unit}; leave the"
                 " units out, or correct the file if its header is wrong"
             )
-        return unit, ACCELERATIONS[unit]
+        multiple = 1.0 if self.multiple is None else self.multiple
+        return unit, multiple * ACCELERATIONS[unit]
 
     def agreed_dt(self, stated: float | None, tolerance: float = 1e-9) -> float:
         """The sampling interval [s], from the file or from a user
@@ -255,19 +282,46 @@ class RecordText:
         """The time step that a header states [s]: its number, and
         perhaps a unit behind it.
         """
-        number, _, unit = stated.value.partition(" ")
+        number, _, unit = _whole_number(stated.value).partition(" ")
         value = self.number(stated._replace(value=number), positive=True)
         factor = self.time_factor(unit, stated.line)
         return value if factor == 1.0 else float(f"{factor * value:.15g}")
 
+    def understood_steps(self, said: Sequence[Statement]) -> list[Statement]:
+        """Statements of the step; where the user gives it, only those that are clear."""
+        if self.dt is None:
+            return [*said]
+        return [each for each in said if _unit_behind(each.value) in _TIME_UNITS]
+
+    def refuse_multiples(self, lines: Sequence[tuple[int, str]], key: str) -> None:
+        """Refuse a factor on the values, unless the user says what a value is."""
+        if self.multiple is not None:
+            return
+        for index, line in lines:
+            match = _MULTIPLE.search(line)
+            found = match[1] if match and to_float(match[1]) != 1.0 else ""
+            for unit in re.finditer(key, line, re.IGNORECASE):
+                known = any(canonical_unit(group or "-") for group in unit.groups())
+                if known and not _BEHIND_A_UNIT.match(line[unit.end() :]):
+                    found = line[unit.end() :].strip()
+            if found:
+                raise self.fault(
+                    f"{line.strip()[:60]!r} has {found[:20]!r} beside the unit, a factor on"
+                    " the values perhaps; say what the values are in, as in ?units=0.001 g"
+                    " or ?units=1 g",
+                    index,
+                )
+
     def time_factor(self, unit: str, line: int, *, is_unit: bool = False) -> float:
-        """The size of a unit of time [s]; other words say nothing
-        where none has to stand.
+        """The size of a unit of time [s]; words that join say nothing where none has to
+        stand.
         """
         factor = _TIME_UNITS.get(unit.strip(" .").lower())
-        if factor is None and (is_unit or _OTHER_TIMES.fullmatch(unit.strip(" ."))):
+        if factor is None and (is_unit or unit.strip(" .").lower() not in _JOINING):
             raise self.fault(
-                f"a time in {unit[:_SHOWN]!r} is not known; write s, or ms", line
+                f"a time in {unit[:_SHOWN]!r} is not known; write s, or ms, or say the"
+                " step: ?dt=0.005",
+                line,
             )
         return factor or 1.0
 
@@ -387,6 +441,33 @@ class RecordText:
         )  # fmt: skip
 
 
+def _unit_behind(value: str) -> str:
+    return value.partition(" ")[2].strip(" .").lower()
+
+
+def _whole_number(value: str) -> str:
+    """A stated number with its power of ten or as a fraction as one number, and its unit.
+
+    >>> _whole_number("5 x 10^-3 s"), _whole_number("1/200"), _whole_number("0.01 sec")
+    ('0.005 s', '0.005', '0.01 sec')
+    """
+    match = _WHOLE.fullmatch(value.strip())
+    if match is None:
+        return value
+    number, power, below, unit = match.groups()
+    if power:
+        number = f"{to_float(number) * 10.0 ** int(power.replace('−', '-')):.15g}"
+    if below:
+        number = f"{to_float(number) / to_float(below):.15g}"
+    return f"{number} {unit or ''}".strip()
+
+
+_WHOLE = re.compile(
+    rf"({NUMBER_PATTERN})\s*(?:[x×*·]\s*10\s*(?:\^|\*\*)\s*[({{]?([-+−]?[0-9]+)[)}}]?"
+    rf"|/\s*({NUMBER_PATTERN}))\s*([A-Za-z]*)"
+)
+
+
 def statements(
     name: str, pattern: str, lines: Iterable[tuple[int, str]]
 ) -> list[Statement]:
@@ -437,16 +518,27 @@ _FOREIGN = {
 _PADDING = re.compile(rb"\0{2,}|\0\Z")  # of old systems, to the ends of their blocks
 
 
+def _units_given(of: Source) -> tuple[str | None, float | None]:
+    """The unit that the user gives, and the multiple of it where one is written."""
+    units = of.values.get("units")
+    if units is None:
+        return None, None
+    match = re.fullmatch(rf"\s*({NUMBER_PATTERN})?\s*(\D.*)", units)
+    unit = canonical_unit(match[2]) if match else None
+    multiple = to_float(match[1]) if match and match[1] else None
+    if unit is None or multiple == 0.0:
+        raise RecordError(
+            f"{of}: units = {units!r} is not known; use one of {KNOWN_UNITS}, or a"
+            " multiple, as in 0.001 g"
+        )
+    return unit, multiple
+
+
 def read_text(path: Path, of: Source) -> RecordText:
     """Read a record file as text, with what its source says of it."""
-    of.query("dt", "units", "channel")
+    of.query("dt", "units", "channel", "columns")
     dt = of.quantity("dt", "time") if "dt" in of.values else None
-    units = of.values.get("units")
-    unit = None if units is None else canonical_unit(units)
-    if units is not None and unit is None:
-        raise RecordError(
-            f"{of}: units = {units!r} is not known; use one of {KNOWN_UNITS}"
-        )
+    unit, multiple = _units_given(of)
     try:
         if (size := path.stat().st_size) > _LARGEST_FILE:
             raise RecordError(
@@ -476,7 +568,14 @@ def read_text(path: Path, of: Source) -> RecordText:
             f"{path}: the file is empty; fetch it again, or export the record as text"
         )
     return RecordText(
-        path, of, tuple(text.split("\n")), dt, unit, of.values.get("channel")
+        path,
+        of,
+        tuple(text.split("\n")),
+        dt,
+        unit,
+        of.values.get("channel"),
+        of.values.get("columns"),
+        multiple,
     )
 
 

@@ -1,0 +1,64 @@
+"""What names of components mean: horizontal, with an azimuth where it is told, or up.
+
+The one vocabulary of directions: of headers, titles of columns and names of files.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import NamedTuple
+
+
+class Direction(NamedTuple):
+    """A direction: vertical, or horizontal with its azimuth [deg] where that is known."""
+
+    vertical: bool
+    azimuth: float | None = None
+
+
+UP = Direction(vertical=True)
+HORIZONTAL = Direction(vertical=False)
+
+_VERTICAL = re.compile(
+    r"v|z|u|d|up|ud|du|dn|dwn|down|vrt|vert|vertical|vertic\w*|updown|upward\w*|downward\w*"
+    r"|(?:gm|ch|comp|acc?)\d*z|[a-z]{2}z|hz",
+    re.IGNORECASE,
+)
+_COMPASS = {"n": 0.0, "e": 90.0, "s": 180.0, "w": 270.0}
+_AXIS = re.compile(r"ns|sn|ew|we|nsc|ewc", re.IGNORECASE)
+_BEARING = re.compile(r"([ns])(\d{1,2})([ew])", re.IGNORECASE)
+_NAMED = re.compile(
+    r"x|y|l|t|r|h|h1|h2|h|long\w*|trans\w*|radial|tran|[a-z]{2}[nexy12]"
+    r"|(?:gm|ch|comp|acc?)\d*[xy]|north|south|east|west|northsouth|eastwest",
+    re.IGNORECASE,
+)
+_AZIMUTH = re.compile(r"(?:az|azimuth)?(\d{1,3})(?:deg|°|degrees)?", re.IGNORECASE)
+
+
+def direction_of(text: str) -> Direction | None:
+    """The direction that a word is; None for a word that is none that is known.
+
+    >>> direction_of("U-D").vertical, direction_of("N00E").azimuth, direction_of("Pacoima")
+    (True, 0.0, None)
+    """
+    word = re.sub(r"\([+-]?\)|[\s_.+-]", "", text).removeprefix("component")
+    word = re.sub(r"^comp(?:onent)?(?=[a-z])", "", word, flags=re.IGNORECASE)
+    if _VERTICAL.fullmatch(word):
+        return UP
+    small = word.lower()
+    if small in _COMPASS:
+        return Direction(vertical=False, azimuth=_COMPASS[small])
+    if match := _BEARING.fullmatch(word):
+        return Direction(vertical=False, azimuth=_of_bearing(*match.groups()))
+    if _AXIS.fullmatch(word):
+        return Direction(vertical=False, azimuth=_COMPASS[small[0]] % 180.0)
+    if (match := _AZIMUTH.fullmatch(word)) and float(match[1]) <= 360.0:
+        return Direction(vertical=False, azimuth=float(match[1]))
+    return HORIZONTAL if _NAMED.fullmatch(word) else None
+
+
+def _of_bearing(begin: str, degrees: str, towards: str) -> float:
+    """The azimuth of a bearing such as S60W [deg]."""
+    from_north = begin.lower() == "n"
+    turned = float(degrees) * (1.0 if towards.lower() == "e" else -1.0)
+    return (turned if from_north else 180.0 - turned) % 360.0

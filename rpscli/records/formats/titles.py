@@ -1,0 +1,131 @@
+"""Titles of columns: what a column holds, by its name and its unit.
+
+A column is time or acceleration only where its title is understood so; what is not
+understood is never taken for the one or the other.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import NamedTuple
+
+from rpscli.records.directions import direction_of
+from rpscli.records.quantities import UNIT_PATTERN, canonical_unit
+
+TIME, ACCELERATION, COUNT, UNKNOWN = "time", "acceleration", "count", ""
+"""Kinds of column; others are called by their quantity, as `velocity`."""
+
+_OTHER_UNITS = {
+    "velocity": r"[cmk]?m\s*/\s*s(?:ec)?|in\s*/\s*s(?:ec)?|ft\s*/\s*s(?:ec)?|kine|kph|mph",
+    "displacement": r"[cmk]?m|in|inch|ft|km",
+    "force": r"[kM]?N|kips?|lbs?|tonf?",
+    "counts": r"counts?|cts?|digits?|v|mv|volts?",
+    "an angle": r"deg|rad|°",
+    "a frequency": r"hz|1/s|rad/s",
+}
+_TIME_UNITS = r"s|sec|secs|seconds?|ms|msec|msecs|milliseconds?"
+_SPELT = {
+    "cm_s2": "cm/s2", "m_s2": "m/s2", "mps2": "m/s2", "cmps2": "cm/s2", "m_s_2": "m/s2",
+    "cm_s_2": "cm/s2", "ms-2": "m/s2", "m s-2": "m/s2", "cm s-2": "cm/s2",
+}  # fmt: skip
+"""Units as names of columns spell them."""
+_ANY = "|".join(
+    [UNIT_PATTERN, *map(re.escape, _SPELT), *_OTHER_UNITS.values(), _TIME_UNITS]
+)
+ANY_UNIT = re.compile(rf"(?:{_ANY}|-)", re.IGNORECASE)
+"""A unit, or none, in a row of units."""
+
+_BRACKETED = re.compile(r"([^\[(]*?)[\s_]*[\[(]([^\])]*)[\])]")
+_BEHIND = re.compile(rf"(.+?)(?:\s+in\s+|[\s_]+)({_ANY})", re.IGNORECASE)
+_TIME = re.compile(
+    r"(?:elapsed[\s_]*)?time(?:[\s_]*(?:from|since)[\s_]*\w+)?|t|seconds?|secs?"
+    r"|zeit|temps|tiempo|tempo"
+)
+_GROUND = re.compile(r"a_?g", re.IGNORECASE)
+_ACCELERATION = re.compile(
+    r"(?:ground[\s_]*|corr\w*[\s_]*|filt\w*[\s_]*)?"
+    r"(?:acc(?:n|el(?:eration)?s?)?|a|a_?g|u''|acceler\w*)(?:[\s_.-]*\w{1,3})?",
+    re.IGNORECASE,
+)
+_SPECTRAL = re.compile(
+    r"\bperiods?\b|freq|spectr|(?:^|\b|_)(?:p?s_?[adve]|psa|psv|t_?n|rsa|se|sae)(?:$|\b|_)",
+    re.IGNORECASE,
+)
+_OTHERS = {
+    "velocity": r"\bvel\w*|\bv\b",
+    "displacement": r"\bdispl?\w*|\bdisp\b",
+    "Arias intensity": r"arias|\bia\b",
+    "a force": r"\bforce\b|\bshear\b",
+    "a drift": r"\bdrift",
+    "a distance": r"\bdist\w*|\bdepth\b",
+}
+_COUNT = re.compile(r"(?:sample|index|no\.?|n|i|number|#|row|point)s?", re.IGNORECASE)
+REMARK = re.compile(r"\w*(?:corr|filt|proc|ground|raw)\w*", re.IGNORECASE)
+"""Words in brackets behind a name that are no unit."""
+
+
+class Title(NamedTuple):
+    """The title of a column: its name, its unit, empty without one, and its line."""
+
+    name: str
+    unit: str
+    line: int
+
+    @property
+    def kind(self) -> str:  # noqa: PLR0911 -- a rule a line
+        """What the column holds, `UNKNOWN` where its title is not understood."""
+        if _SPECTRAL.search(self.name):
+            return "a spectrum"
+        timed = re.fullmatch(_TIME_UNITS, self.unit, re.IGNORECASE) is not None
+        accelerates = canonical_unit(self.unit or "-") is not None
+        if self.name != "T" and _TIME.fullmatch(self.name.lower()):
+            return TIME
+        if accelerates:
+            return self._other_by_name or ACCELERATION
+        if self.name == "T" or timed:  # a period, or what changes over time
+            return UNKNOWN
+        if _ACCELERATION.fullmatch(self.name):
+            return ACCELERATION  # a unit that is none of acceleration is refused by name
+        if direction_of(self.name) is not None and (not self.unit or self.remarks):
+            return ACCELERATION
+        return self._other_by_name or self._other_by_unit or self._count
+
+    @property
+    def remarks(self) -> bool:
+        """True if what stands in brackets is a direction or a remark, no unit."""
+        return bool(REMARK.fullmatch(self.unit)) or direction_of(self.unit) is not None
+
+    @property
+    def _other_by_name(self) -> str:
+        words = (q for q, w in _OTHERS.items() if re.search(w, self.name, re.IGNORECASE))
+        return next(words, UNKNOWN)
+
+    @property
+    def _other_by_unit(self) -> str:
+        of = (
+            quantity
+            for quantity, units in _OTHER_UNITS.items()
+            if re.fullmatch(units, self.unit, re.IGNORECASE)
+        )
+        return next(of, UNKNOWN)
+
+    @property
+    def _count(self) -> str:
+        counts = not self.unit and _COUNT.fullmatch(self.name)
+        return COUNT if counts else UNKNOWN
+
+
+def title_of(cell: str, line: int) -> Title:
+    """A title from its cell: a unit in brackets, behind `in`, a blank or `_`."""
+    text = cell.strip()
+    text = re.sub(r"\s*[(\[][+-][)\]]", "", text)  # N(+): the positive direction
+    if match := _BRACKETED.fullmatch(text):
+        return Title(match[1].strip(), _unit(match[2]), line)
+    if not _GROUND.fullmatch(text) and (match := _BEHIND.fullmatch(text)):
+        return Title(match[1].strip(" _"), _unit(match[2]), line)
+    return Title(text, "", line)
+
+
+def _unit(text: str) -> str:
+    unit = text.strip()
+    return _SPELT.get(unit.lower(), unit)
