@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
@@ -18,7 +18,7 @@ from rpscli.report.table import Heading, Part, Table, shown
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from rpscli.tools.identify.identification import Identified
+    from rpscli.tools.identify.estimates import Identified
 
     Columns = dict[str, NDArray[Any]]
 
@@ -71,7 +71,8 @@ def command(
     release of a pull, or an earthquake with `ground_acceleration` as well.
     """
     given = read_case(request, terminal)
-    from rpscli.tools.identify.identification import LEVEL, identified
+    from rpscli.tools.identify.estimates import LEVEL
+    from rpscli.tools.identify.identification import identified
 
     columns = measured(data, test, first, last)
     announce_compilation(terminal)
@@ -128,14 +129,12 @@ def _tables(found: Identified) -> Iterator[Part]:
 
 def measured(source: str, test: str, first: float | None, last: float | None) -> Columns:
     """What a test needs, in SI units, in the time that is looked at."""
-    import numpy as np
-
     from rpscli.case.text.files import read_text
     from rpscli.csv_text import csv_rows
     from rpscli.tools.identify.identification import TESTS
-    from rpscli.units import si_factor
 
     (_, heads), *rows = csv_rows(read_text(source), source) or [(1, [])]
+    table = _Measurement(source, heads, rows)
     names = [head.strip().partition(" [")[0] for head in heads]
     columns: Columns = {}
     for wanted in ((("time", "s"),), *TESTS[test]):
@@ -145,29 +144,11 @@ def measured(source: str, test: str, first: float | None, last: float | None) ->
             raise RecordError(
                 f"{source}:1: no column {missing}; {test} needs one: name it so"
             )
-        place = names.index(column[0])
-        (name, unit) = column
-        rule = f"write numbers, in {unit} or another such unit"
-        try:
-            written = heads[place].partition("[")[2].strip(" ]")
-            factor = si_factor(written or unit, unit)
-            values = np.array([float(row[place]) for _, row in rows])
-        except (ValueError, IndexError) as error:
-            raise RecordError(f"{source}: column {name}: {error}; {rule}") from None
-        columns[name] = values * factor
-        if (bad := np.flatnonzero(~(np.abs(columns[name]) < LARGEST))).size:
-            line, row = rows[bad[0]]
-            raise RecordError(
-                f"{source}:{line}: column {name}: {row[place].strip()}; {rule}"
-            )
+        name, unit = column
+        columns[name] = table.column(names.index(name), name, unit)
     time = columns["time"]
-    steps = np.diff(time)
-    even = len(time) >= FEWEST and steps.mean() > 0.0
-    if not (even and np.allclose(steps, steps.mean(), rtol=1e-2, atol=0.0)):
-        raise RecordError(
-            f"{source}: at least {FEWEST} samples at even times that rise are needed;"
-            " resample it"
-        )
+    _require_even_times(time, source)
+
     ends = (time[0] if first is None else first), (time[-1] if last is None else last)
     kept = (time >= ends[0]) & (time <= ends[1])
     if kept.sum() < FEWEST:
@@ -176,3 +157,45 @@ def measured(source: str, test: str, first: float | None, last: float | None) ->
             " needed"
         )
     return {name: values[kept] for name, values in columns.items()}
+
+
+class _Measurement(NamedTuple):
+    """A CSV file: the heads of its columns, and its rows by line."""
+
+    source: str
+    heads: list[str]
+    rows: list[tuple[int, list[str]]]
+
+    def column(self, place: int, name: str, unit: str) -> NDArray[Any]:
+        """Numbers of a column in an SI unit; refuse what is none, or far too large."""
+        import numpy as np
+
+        from rpscli.units import si_factor
+
+        rule = f"write numbers, in {unit} or another such unit"
+        try:
+            written = self.heads[place].partition("[")[2].strip(" ]")
+            factor = si_factor(written or unit, unit)
+            values = np.array([float(row[place]) for _, row in self.rows])
+        except (ValueError, IndexError) as error:
+            raise RecordError(f"{self.source}: column {name}: {error}; {rule}") from None
+        values = values * factor
+        if (bad := np.flatnonzero(~(np.abs(values) < LARGEST))).size:
+            line, row = self.rows[bad[0]]
+            raise RecordError(
+                f"{self.source}:{line}: column {name}: {row[place].strip()}; {rule}"
+            )
+        return values
+
+
+def _require_even_times(time: NDArray[Any], source: str) -> None:
+    """Refuse samples that are few, or not at even times."""
+    import numpy as np
+
+    steps = np.diff(time)
+    even = len(time) >= FEWEST and steps.mean() > 0.0
+    if not (even and np.allclose(steps, steps.mean(), rtol=1e-2, atol=0.0)):
+        raise RecordError(
+            f"{source}: at least {FEWEST} samples at even times that rise are needed;"
+            " resample it"
+        )
