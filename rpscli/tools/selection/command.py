@@ -27,8 +27,9 @@ from rpscli.report.files import OutputFolder, Run, heading
 
 if TYPE_CHECKING:
     from rpscli.records.ground_motion import GroundMotion
-    from rpscli.records.target import Component, Periods, Requirements, TargetSpectrum
+    from rpscli.records.target import Component, TargetSpectrum
     from rpscli.tools.selection.request import SelectionRequest
+    from rpscli.tools.selection.requirements import Periods, Requirements
     from rpscli.tools.selection.selection import Selection
 
 USUAL_PERIODS = 0.2, 3.0
@@ -196,8 +197,8 @@ class Comparison(NamedTuple):
 
 def _comparison(asked: SelectionOptions, terminal: Terminal) -> Comparison:
     """The target that was asked for, with the range of periods of a case."""
-    from rpscli.records.target import RULES as KNOWN
     from rpscli.records.target import load_target
+    from rpscli.tools.selection.requirements import RULES as KNOWN
 
     spectrum = load_target(asked.target)
     pgv = _pgv(asked.scale_by, asked.pgv, spectrum)
@@ -337,7 +338,7 @@ def _structure(request: CaseRequest, terminal: Terminal) -> tuple[Periods, str]:
     """Periods of a case, and where the second one is."""
     from rpscli.case.conditions import conditions_of
     from rpscli.model.statics import secant_period
-    from rpscli.records.target import Periods
+    from rpscli.tools.selection.requirements import Periods
 
     case = read_case(request, terminal).case
     structure = case.structure

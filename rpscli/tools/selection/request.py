@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from rpscli.errors import RecordError
-from rpscli.records.target import Component, Periods
+from rpscli.records.target import Component
+from rpscli.tools.selection.requirements import Periods
 
 
 @dataclass(frozen=True)

@@ -13,13 +13,7 @@ from numpy.typing import NDArray
 from rpscli.errors import RecordError
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.recordings import clusters
-from rpscli.records.target import (
-    RULES,
-    Component,
-    Requirements,
-    Rule,
-    TargetSpectrum,
-)
+from rpscli.records.target import Component, TargetSpectrum
 from rpscli.tools.selection.candidates import (
     Candidate,
     measured,
@@ -29,6 +23,7 @@ from rpscli.tools.selection.candidates import (
     under_own_factors,
 )
 from rpscli.tools.selection.request import SelectionRequest
+from rpscli.tools.selection.requirements import RULES, Requirements, Rule
 from rpscli.tools.selection.search import Goal, Pool, best_choice
 
 Array = NDArray[np.float64]
