@@ -21,7 +21,7 @@ from rpscli.constants import STANDARD_GRAVITY
 from rpscli.errors import RecordError, beginning, stem_of
 from rpscli.records.measures import Of
 from rpscli.records.quantities import ACCELERATIONS, KNOWN_UNITS, canonical_unit
-from rpscli.records.source import hint, parse_query
+from rpscli.records.source import Query, hint, parse_query
 from rpscli.registry import Registry
 from rpscli.titled_table import Row, TitledTable, number_of, text_of, titled_table
 
@@ -57,7 +57,7 @@ class TargetSpectrum:
     PGA that of a spectrum that does not begin with it, and `pgv_by` the origin of the
     PGV. `edition`, `parameters` (with units) and `level` (of shaking) are those of a
     code, `checked` says against what its formulae were compared, `rules` are its name
-    in `RULES`. `damping` is a share of critical damping, `of` the kind of the
+    after `--rules`. `damping` is a share of critical damping, `of` the kind of the
     ordinates, None if it is not said. `deviation` is the standard deviation of ln Sa
     over the period, None if motions need not scatter, and `pinned` [s] the conditioning
     period, at which that is zero.
@@ -159,6 +159,9 @@ _EN1998_SOILS = {
 _NATIONAL = {"s": "ratio", "tb": "time", "tc": "time", "td": "time"}
 """Parameters that a national annex may set."""
 
+_EN1998_LONGEST = 4.0
+"""Period at which the clause ends [s]."""
+
 
 def _en1998(rest: str, source: str) -> TargetSpectrum:
     """Elastic spectrum of clause 3.2.2.2, expressions (3.2) to (3.6),
@@ -173,13 +176,7 @@ def _en1998(rest: str, source: str) -> TargetSpectrum:
     )
     kind = query.choice("type", "1", [*_EN1998_SOILS])
     soil = query.choice("soil", "A", [*_EN1998_SOILS[kind]])
-    usual = zip(_NATIONAL.items(), _EN1998_SOILS[kind][soil], strict=True)
-    S, T_B, T_C, T_D = (query.quantity(key, unit, value) for (key, unit), value in usual)
-    longest = 4.0  # where the clause ends [s]
-    if not (S > 0.0 and 0.0 < T_B < T_C < T_D <= longest):
-        raise RecordError(
-            f"{source}: must have s > 0 and 0 < tb < tc < td <= {longest:g} s"
-        )
+    S, T_B, T_C, T_D = _en1998_soil(query, _EN1998_SOILS[kind][soil], source)
     a_g = query.acceleration("ag", bare=False)
     damping = query.quantity("damping", "ratio", 0.05)
     if a_g <= 0.0 or not 0.0 <= damping < 1.0:
@@ -198,7 +195,7 @@ def _en1998(rest: str, source: str) -> TargetSpectrum:
         _velocity_of(_cornered(start, 2.5 * start, corners)),
         0.025 * start * T_C * T_D,
         damping,
-        (0.0, longest),
+        (0.0, _EN1998_LONGEST),
         edition=f"EN 1998-1:2004, 3.2.2.2, without amendment A1:2013, {by}",
         checked=(
             "tables and expressions compared with public implementations and with"
@@ -207,6 +204,21 @@ def _en1998(rest: str, source: str) -> TargetSpectrum:
         rules="en1998",
         parameters=f"S = {S:.3g}, {_in_words({'T_B': T_B, 'T_C': T_C, 'T_D': T_D}, a_g=a_g)}",
     )
+
+
+def _en1998_soil(
+    query: Query, usual: tuple[float, float, float, float], source: str
+) -> tuple[float, float, float, float]:
+    """S, T_B, T_C and T_D, of which a national annex may set each."""
+    S, T_B, T_C, T_D = (
+        query.quantity(key, unit, value)
+        for (key, unit), value in zip(_NATIONAL.items(), usual, strict=True)
+    )
+    if not (S > 0.0 and 0.0 < T_B < T_C < T_D <= _EN1998_LONGEST):
+        raise RecordError(
+            f"{source}: must have s > 0 and 0 < tb < tc < td <= {_EN1998_LONGEST:g} s"
+        )
+    return S, T_B, T_C, T_D
 
 
 def _en1998_2024(rest: str, source: str) -> TargetSpectrum:
@@ -355,6 +367,53 @@ def _table(path: Path, options: str, source: str) -> TargetSpectrum:
     and perhaps `sigma_ln [-]`.
     """
     # With the third one, the standard deviation of ln Sa, the acceleration is the median.
+    table = _read_ordinates(path, source)
+    cells = table.cells
+    known = np.log(cells[:, :2])
+
+    def shape(T: Array) -> Array:
+        return np.asarray(table.factor * np.exp(np.interp(np.log(T), *known.T)))
+
+    def deviation(T: Array) -> Array:
+        return np.asarray(np.interp(np.log(T), known[:, 0], cells[:, 2]))
+
+    query = parse_query(options, source, ("damping", "component", "level"))
+    damping = query.quantity("damping", "ratio", 0.05)
+    of = query.choice("component", "", get_args(Of))
+    first = float(cells[0, 0])
+    last = float(cells[-1, 0])
+    pinned = table.scatters and not cells[:, 2].all()
+    return TargetSpectrum(
+        stem_of(path),
+        source,
+        shape,
+        _velocity_of(shape) if damping == 0.05 and first <= 1.0 <= last else None,
+        damping=damping,
+        span=(first, last),
+        of=cast("Of", of) if of else None,
+        parameters=table.note,
+        level=query.values.get("level") or "",
+        deviation=deviation if table.scatters else None,
+        pga=table.pga,
+        pinned=float(cells[np.argmin(cells[:, 2]), 0]) if pinned else None,
+    )
+
+
+class _Ordinates(NamedTuple):
+    """Rows of a file: growing periods > 0 [s], accelerations in units of `factor`
+    [m/s2], and sigma_ln if it `scatters`. The `pga` [m/s2] is that at the period 0, the
+    `note` names columns that are not used.
+    """
+
+    cells: Array
+    factor: float
+    scatters: bool
+    pga: float | None
+    note: str
+
+
+def _read_ordinates(path: Path, source: str) -> _Ordinates:
+    """Read and check the rows of a CSV file."""
     table = _columns_of(path, source)
     factor = ACCELERATIONS[canonical_unit(table.titles[1].unit) or "m/s2"]
     scatters = _place_of_deviation(table)
@@ -366,34 +425,9 @@ def _table(path: Path, options: str, source: str) -> TargetSpectrum:
     cells = cells[cells[:, 0] > 0.0]
     if len(cells) < 2 or (np.diff(cells[:, 0]) <= 0.0).any():
         raise RecordError(f"{path}: needs two rows at least, with periods that grow")
-    known = np.log(cells[:, :2])
-
-    def shape(T: Array) -> Array:
-        return np.asarray(factor * np.exp(np.interp(np.log(T), *known.T)))
-
-    def deviation(T: Array) -> Array:
-        return np.asarray(np.interp(np.log(T), known[:, 0], cells[:, 2]))
-
-    query = parse_query(options, source, ("damping", "component", "level"))
-    damping = query.quantity("damping", "ratio", 0.05)
-    of = query.choice("component", "", get_args(Of))
-    first = float(cells[0, 0])
-    last = float(cells[-1, 0])
-    pinned = bool(scatters) and not cells[:, 2].all()
-    return TargetSpectrum(
-        stem_of(path),
-        source,
-        shape,
-        _velocity_of(shape) if damping == 0.05 and first <= 1.0 <= last else None,
-        damping=damping,
-        span=(first, last),
-        of=cast("Of", of) if of else None,
-        parameters=f"columns not used: {', '.join(unused)}" if unused else "",
-        level=query.values.get("level") or "",
-        deviation=deviation if scatters else None,
-        pga=factor * float(rigid[0, 1]) if len(rigid) else None,
-        pinned=float(cells[np.argmin(cells[:, 2]), 0]) if pinned else None,
-    )
+    pga = factor * float(rigid[0, 1]) if len(rigid) else None
+    note = f"columns not used: {', '.join(unused)}" if unused else ""
+    return _Ordinates(cells, factor, bool(scatters), pga, note)
 
 
 _DEVIATION = re.compile(r"(?:sigma|beta|std|dispersion)(?:_?ln)?(?:_?sa)?", re.IGNORECASE)
@@ -438,134 +472,3 @@ def _cells(row: Row, places: Sequence[int], path: Path) -> list[float]:
             f" period >= 0 and an acceleration > 0{also}"
         )
     return found
-
-
-class Periods(NamedTuple):
-    """Periods of a structure [s]: the first one on a fixed base, and
-    the secant one on bearings.
-    """
-
-    fixed: float | None
-    secant: float
-
-
-class Rule(NamedTuple):
-    """One requirement beside what a set has; met is None where it cannot be told."""
-
-    rule: str
-    required: str
-    found: str
-    met: bool | None
-
-    @property
-    def word(self) -> str:
-        """As tables say it."""
-        return "not checked" if self.met is None else ("met" if self.met else "NOT MET")
-
-
-@dataclass(frozen=True)
-class Requirements:
-    """The demands of a code on a set: at least `count` motions or
-    pairs, `least` of the target.
-
-    `span` are multiples of T1, or of T_M where it is `isolated`, between which that is.
-    """
-
-    clause: str
-    checked: str
-    count: int = 1
-    least: float = 0.9
-    mean_pga: bool = False
-    of: Component | None = None
-    level: str = ""
-    span: tuple[float, float] | None = None
-    isolated: bool = False
-
-    def judged(
-        self,
-        number: int,
-        of: Component,
-        level: str,
-        pga_ratio: float,
-        least_ratio: float,
-        looked_at: tuple[float, float],
-        structure: Periods | None,
-    ) -> tuple[Rule, ...]:
-        """Every requirement; ratios are the mean over the target,
-        within the periods looked at.
-        """
-        noun = "motions" if of == "component" else "pairs"
-        (low, high) = looked_at
-        span = f"{low:.3g} to {high:.3g} s"
-        # 1e-6 of the ratios are for factors of six digits.
-        found = [
-            Rule(
-                f"number of {noun}", f">= {self.count}", f"{number}", number >= self.count
-            )
-        ]
-        if self.of is not None:
-            texts = COMPONENTS[self.of], COMPONENTS[of]
-            found.append(Rule("component", *texts, of == self.of))
-        if self.level:
-            same = level.lower() == self.level.lower() if level else None
-            found.append(
-                Rule("level", self.level, level or "not said by the target", same)
-            )
-        if self.mean_pga:
-            known = not math.isnan(pga_ratio)
-            text = f"{pga_ratio:.3f}" if known else "the target has no value at T = 0"
-            met = pga_ratio >= 1.0 - 1e-6 if known else None
-            found.append(Rule("mean PGA over the target's", ">= 1", text, met))
-        met = least_ratio >= self.least - 1e-6
-        found.append(
-            Rule(f"mean/target, {span}", f">= {self.least:g}", f"{least_ratio:.3f}", met)
-        )
-        if self.span is not None:
-            name = "T_M" if self.isolated else "T1"
-            text = " to ".join(f"{factor:g} {name}" for factor in self.span)
-            period = structure and (
-                structure.secant if self.isolated else structure.fixed
-            )
-            if period is None:
-                unknown = f"{span}; {name} is not known: give --case"
-                return (*found, Rule("range of periods", text, unknown, None))
-            ends = self.span[0] * period, self.span[1] * period
-            covers = low <= ends[0] * (1.0 + 1e-6) and ends[1] * (1.0 - 1e-6) <= high
-            text = f"{text} = {ends[0]:.3g} to {ends[1]:.3g} s"
-            found.append(Rule("range of periods", text, span, covers))
-        return tuple(found)
-
-
-RULES = {
-    "en1998": Requirements(
-        "EN 1998-1:2004, 3.2.3.1.2(4)",
-        "compared with a public implementation (PEUSP-beta), not with the text",
-        3,
-        mean_pga=True,
-        span=(0.2, 2.0),
-    ),
-    "asce7-ch16": Requirements(
-        "ASCE/SEI 7-16, chapter 16",
-        "number, direction, level and 0.9 compared with the manual of QuakeManager, not"
-        f" with the text; the range of periods {NOT_VERIFIED}",
-        11,
-        of="rotd100",
-        level="MCE_R",
-        span=(0.2, 2.0),
-    ),
-    "asce7-ch17": Requirements(
-        "ASCE/SEI 7-16, 17.3.3 (isolated structures)",
-        f"{NOT_VERIFIED}: from memory",
-        7,
-        1.0,
-        of="srss",
-        level="MCE_R",
-        span=(0.75, 1.25),
-        isolated=True,
-    ),
-    "mean90": Requirements(
-        "the 0.9 that EN 1998-1:2004 and ASCE/SEI 7-16 share",
-        "compared with public implementations of both",
-    ),
-}
-"""By the names of `--rules`."""

@@ -28,13 +28,10 @@ from rpscli.model.devices import RollingResistance
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import PodiumStructure
 from rpscli.tools.identify import identification
-from rpscli.tools.identify.identification import (
-    Estimate,
-    Identified,
-    Vibration,
-    rocking,
-    vibration,
-)
+from rpscli.tools.identify import vibration as module
+from rpscli.tools.identify.estimates import Estimate, Identified
+from rpscli.tools.identify.rocking import rocking
+from rpscli.tools.identify.vibration import Vibration, vibration
 
 
 def held(truth: float, found: Estimate) -> bool:
@@ -144,10 +141,8 @@ def test_what_determines_no_period_is_refused() -> None:
 def test_searches_that_go_astray_print_nothing(capfd: pytest.CaptureFixture[str]) -> None:
     """LAPACK would write about numbers that are not finite, which it does not take."""
     for worst in (math.nan, math.inf):
-        assert np.isinf(
-            identification._unexplained(np.full((4, 2), worst), np.ones(4))
-        ).all()
-        assert np.isinf(identification._inverse(np.full((2, 2), worst))).all()
+        assert np.isinf(module._unexplained(np.full((4, 2), worst), np.ones(4))).all()
+        assert np.isinf(module._inverse(np.full((2, 2), worst))).all()
     assert capfd.readouterr() == ("", "")
 
 

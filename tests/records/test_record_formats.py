@@ -396,7 +396,7 @@ def test_options_against_the_file(
     ("text", "warning"),
     [
         (csmip(peak=31.0), "peak at 30.125 and the header says 31"),
-        (COLUMN.replace("0.02", "5"), "is unusual for an accelerograph"),
+        (COLUMN.replace("0.02", "0.4"), "is unusual for an accelerograph"),
         (COLUMN.replace("0.02", "0.25"), "is unusual for an accelerograph"),
         (COLUMN.replace("0.02", "0.00001"), "is unusual for an accelerograph"),
         (peer(values=ROWS + "\nEND OF RECORD, checked by X.Y.\n"), "END OF RECORD"),

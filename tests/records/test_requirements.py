@@ -14,9 +14,10 @@ from rpscli.errors import RecordError, UsageError
 from rpscli.records.ground_motion import GroundMotion, Recording
 from rpscli.records.loading import load_record
 from rpscli.records.measures import response_spectrum
-from rpscli.records.target import RULES, Component, Periods, load_target
+from rpscli.records.target import Component, load_target
 from rpscli.report.motions import record_files
-from rpscli.tools.selection.search import parse_filter
+from rpscli.tools.selection.filters import parse_filter
+from rpscli.tools.selection.requirements import RULES, Periods
 
 
 class Have(NamedTuple):

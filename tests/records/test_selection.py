@@ -15,18 +15,13 @@ from rpscli.errors import RecordError
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.loading import expand_sources, load_record
 from rpscli.records.measures import intensity_measures, response_spectrum
-from rpscli.records.target import Periods, load_target
+from rpscli.records.target import load_target
 from rpscli.tools.selection import search as module
 from rpscli.tools.selection.report import selection_list
-from rpscli.tools.selection.search import (
-    PERIODS,
-    Goal,
-    Pool,
-    SelectionRequest,
-    best_choice,
-    misfit,
-    select,
-)
+from rpscli.tools.selection.request import SelectionRequest
+from rpscli.tools.selection.requirements import Periods
+from rpscli.tools.selection.search import Goal, Pool, best_choice
+from rpscli.tools.selection.selection import PERIODS, misfit, select
 
 TARGET = "en1998:?ag=0.3g&soil=C"
 

@@ -25,13 +25,15 @@ from rpscli.analyses.floor_spectra import PERIODS
 from rpscli.case.conditions import Condition
 from rpscli.cli import program
 from rpscli.records.ground_motion import GroundMotion
-from rpscli.records.target import RULES, TargetSpectrum
+from rpscli.records.target import TargetSpectrum
 from rpscli.report.study.heights import Floors, floor_spectra_figure
 from rpscli.tools.design.keys import Term
 from rpscli.tools.design.report import region_figure, requirements_figure
 from rpscli.tools.design.search import Answer, Requirement
+from rpscli.tools.selection.candidates import Candidate
 from rpscli.tools.selection.figure import selection_figure
-from rpscli.tools.selection.search import Candidate, Selection
+from rpscli.tools.selection.requirements import RULES
+from rpscli.tools.selection.selection import Selection
 
 Array = NDArray[np.float64]
 Open = Callable[[str], tuple[Figure, list[Row]]]

@@ -34,6 +34,7 @@ from rpscli.report.figures.look import ENCODER, MOST_FRAMES, USUAL, FilmRequest,
 from rpscli.report.figures.structure import COLUMNS, level_heights, modes_figure
 
 if TYPE_CHECKING:
+    from matplotlib.lines import Line2D
     from PIL.Image import Image
 
 Array = NDArray[np.float64]
@@ -69,6 +70,16 @@ class Scene:
             np.linspace(-0.4, 0.4, count) * self.width if count > 1 else np.zeros(1)
         )
         self.thickness = 0.12 * height
+        self._draw_bodies(axes)
+        base = float(self.levels[0])
+        self.devices = SceneDevices(
+            axes, structure.devices, self.feet, 0.5 * self.width, base
+        )
+        self._write_texts(axes, title, speed, of_pair=of_pair)
+        self._set_limits(axes)
+
+    def _draw_bodies(self, axes: style.Axes) -> None:
+        """Columns, cap beam and floors, without a place yet."""
         self.columns = [
             axes.fill([], [], fc="#C9C9C9", ec=style.BLACK, lw=0.8)[0] for _ in self.feet
         ]
@@ -79,10 +90,11 @@ class Scene:
         self.sides = (
             [axes.plot([], [], "k", lw=1.0)[0] for _ in (-1, 1)] if self.floors else []
         )
-        base = float(self.levels[0])
-        self.devices = SceneDevices(
-            axes, structure.devices, self.feet, 0.5 * self.width, base
-        )
+
+    def _write_texts(
+        self, axes: style.Axes, title: str, speed: float, *, of_pair: bool
+    ) -> None:
+        """Clock, titles and scales, and the line of the ground."""
         clock: dict[str, Any] = {
             "xycoords": "axes fraction",
             "textcoords": "offset points",
@@ -98,16 +110,17 @@ class Scene:
         axes.set_xlabel(
             f"bearings to scale{drifts}; {_pace(speed)}", fontsize=style.small()
         )
-        trace = result.trace
+
+    def _set_limits(self, axes: style.Axes) -> None:
+        """Room for all of the motion, with a metre as high as it is wide."""
+        trace = self.result.trace
         shift = float(np.nanmax(np.abs(trace.cap_beam_displacement)))
         reach = 0.5 * self.width + shift + 0.12 * float(self.levels[-1])
         top = float(self.levels[-1] + np.nanmax(trace.lift)) + 2.0 * self.thickness
         height = max(1.1 * top, 2.0 * reach * BOX_ASPECT)
         axes.set_xlim(-0.5 * height / BOX_ASPECT, 0.5 * height / BOX_ASPECT)
         axes.set_ylim(-0.06 * top, height - 0.06 * top)
-        axes.set_box_aspect(
-            BOX_ASPECT
-        )  # with these limits, a metre is as high as it is wide
+        axes.set_box_aspect(BOX_ASPECT)
         axes.set(yticks=[], xticks=[])
         axes.grid(visible=False)
 
@@ -279,40 +292,48 @@ def history_film(
             height_ratios=[4.2, 1.0],
         )  # fmt: skip
         scene = Scene(panels["scene"], result, title, speed)
-        trace = result.trace
-        record = panels["record"]
-        detail: PlanView | BearingView
-        shown: Any
-        if trace.y is not None:
-            detail = PlanView(panels["detail"], result)
-            shown = samples
-        else:
-            detail = BearingView(panels["detail"], result.structure)
-            shown = trace.rotation[samples]
-            frame_end(panels["detail"], result.structure.bearing)
-            panels["detail"].set_title(
-                "lower end of a column, enlarged", fontsize=style.small()
-            )
-        for name, of, colour in (("y", trace.y, style.RED), ("x", trace, style.BLACK)):
-            if of is not None:
-                record.plot(
-                    trace.time, of.ground_acceleration, color=colour, lw=0.6, label=name
-                )
-        if trace.y is not None:
-            record.legend(loc="upper right", ncols=2, borderaxespad=0.1)
-        first, last = trace.time[samples[[0, -1]]]
-        record.set(xlim=(first, last), ylabel="$a_g$ [m/s²]", xlabel="time [s]")
-        cursor = record.axvline(first, color=style.RED, lw=1.2)
+        detail, shown = _detail(panels["detail"], result, samples)
+        cursor = _draw_record(panels["record"], result, samples)
+        time = result.trace.time
 
         def show(frame: int) -> None:
             sample = int(samples[frame])
             scene.show(sample)
             detail.show(shown[frame])
-            cursor.set_xdata([trace.time[sample]] * 2)
+            cursor.set_xdata([time[sample]] * 2)
 
         return len(samples), show
 
     return film(draw, wanted, look, progress)
+
+
+def _detail(
+    axes: style.Axes, result: TimeHistoryResult, samples: NDArray[np.int64]
+) -> tuple[PlanView | BearingView, NDArray[Any]]:
+    """A column from above for pairs, else an end of it; and what each frame shows of it."""
+    if result.trace.y is not None:
+        return PlanView(axes, result), samples
+    detail = BearingView(axes, result.structure)
+    frame_end(axes, result.structure.bearing)
+    axes.set_title("lower end of a column, enlarged", fontsize=style.small())
+    return detail, result.trace.rotation[samples]
+
+
+def _draw_record(
+    axes: style.Axes, result: TimeHistoryResult, samples: NDArray[np.int64]
+) -> Line2D:
+    """The ground acceleration of the part that is shown; returns its cursor."""
+    trace = result.trace
+    for name, of, colour in (("y", trace.y, style.RED), ("x", trace, style.BLACK)):
+        if of is not None:
+            axes.plot(
+                trace.time, of.ground_acceleration, color=colour, lw=0.6, label=name
+            )
+    if trace.y is not None:
+        axes.legend(loc="upper right", ncols=2, borderaxespad=0.1)
+    first, last = trace.time[samples[[0, -1]]]
+    axes.set(xlim=(first, last), ylabel="$a_g$ [m/s²]", xlabel="time [s]")
+    return axes.axvline(first, color=style.RED, lw=1.2)
 
 
 def of_history(

@@ -9,7 +9,7 @@ import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -31,6 +31,9 @@ from rpscli.sweep.statistics.verdicts import Verdict
 from rpscli.sweep.table import Array, unit_of
 from rpscli.tools.design.keys import Objective
 from rpscli.tools.design.search import ROBUST, Answer, Requirement
+
+if TYPE_CHECKING:
+    from matplotlib.cm import ScalarMappable
 
 DIGITS = 4
 
@@ -131,12 +134,35 @@ def answer_document(answer: Answer, verdicts: Sequence[Verdict]) -> dict[str, An
 def answer_tables(answer: Answer, verdicts: Sequence[Verdict]) -> Iterator[Part]:
     """The best design, its requirements, and how it hangs on the choice of records."""
     place = answer.closest
+    title = ("best", "least violated")[answer.best is None]
+    heads = ("", "", title, "95 % of resamples")
+    yield Table.of_texts(heads, _design_rows(answer), words=2)
+    judged = []
+    for row, requirement, verdict in requirement_rows(answer, verdicts):
+        _, word, asked, result = verdict_texts(verdict)
+        if verdict.condition.name in LIMITS and verdict.fractile is None:
+            demand = float(answer.results[row, 0, place])
+            result = f"{reached_text(verdict.condition, demand)}; {result}"
+        met_by = f"{answer.met[row, 0].sum()}{'; governs' * bool(answer.governs[row])}"
+        judged.append((requirement_label(requirement), word, asked, result, met_by))
+    yield Table.of_texts((*VERDICT, "designs that meet it"), judged, words=5)
+    if answer.best is not None and answer.resamples:
+        share = (
+            f"{100.0 * answer.passing_share[place]:.0f} % of {answer.resamples} resamples"
+        )
+        listing = [("the best design passes in", share)]
+        if without := answer.resamples - len(answer.best_of_resamples[0]):
+            listing.append(("no design passes in", f"{without} of them"))
+        yield Table.listing(listing)
+
+
+def _design_rows(answer: Answer) -> list[tuple[str, str, str, str]]:
+    """Keys of the best or least violated design, and what it minimises, with intervals."""
+    place = answer.closest
     objective = answer.task.file.minimise
     minimised = {
         name for name, term in objective.items() if len(objective) == term.times == 1
     }
-    title = ("best", "least violated")[answer.best is None]
-    interval = _interval(answer.interval())
     rows = []
     for column, key in enumerate(answer.task.keys):
         # As it was judged: no digit less.
@@ -156,24 +182,7 @@ def answer_tables(answer: Answer, verdicts: Sequence[Verdict]) -> Iterator[Part]
         value = shown(large(float(answer.objectives[0, place]), unit)[0], DIGITS)
         interval = _interval(end * (factor or 1.0) for end in answer.interval())
         rows.append((head, "minimised", value, interval))
-    yield Table.of_texts(("", "", title, "95 % of resamples"), rows, words=2)
-    judged = []
-    for row, requirement, verdict in requirement_rows(answer, verdicts):
-        _, word, asked, result = verdict_texts(verdict)
-        if verdict.condition.name in LIMITS and verdict.fractile is None:
-            demand = float(answer.results[row, 0, place])
-            result = f"{reached_text(verdict.condition, demand)}; {result}"
-        met_by = f"{answer.met[row, 0].sum()}{'; governs' * bool(answer.governs[row])}"
-        judged.append((requirement_label(requirement), word, asked, result, met_by))
-    yield Table.of_texts((*VERDICT, "designs that meet it"), judged, words=5)
-    if answer.best is not None and answer.resamples:
-        share = (
-            f"{100.0 * answer.passing_share[place]:.0f} % of {answer.resamples} resamples"
-        )
-        listing = [("the best design passes in", share)]
-        if without := answer.resamples - len(answer.best_of_resamples[0]):
-            listing.append(("no design passes in", f"{without} of them"))
-        yield Table.listing(listing)
+    return rows
 
 
 def _interval(interval: Iterable[float]) -> str:
@@ -343,8 +352,6 @@ def region_figure(answer: Answer, title: str, figure: style.Figure) -> None:
     shown = pairs[:MOST_PAIRS]
     columns = 1 if style.narrow(figure) else min(3, len(shown))
     rows = math.ceil(len(shown) / columns)
-    of = {"passes": answer.passes[0], "fails": answer.valid & ~answer.passes[0]}
-    of["no valid case"] = ~answer.valid
     from matplotlib import colormaps, rcParams
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import BoundaryNorm
@@ -354,35 +361,43 @@ def region_figure(answer: Answer, title: str, figure: style.Figure) -> None:
     style.begin(figure, (title, _counts(answer), more), height)
     grid = figure.subplots(rows, columns, squeeze=False)
     colours = colormaps[rcParams["image.cmap"]]
-    norm = BoundaryNorm(SHARES, colours.N)
-    look: dict[str, Any] = {"s": 18.0, "linewidths": 0.5, "clip_on": False}
+    shares = ScalarMappable(BoundaryNorm(SHARES, colours.N), colours)
     style.blank(grid.flat[len(shown) :])
-    for axes, (x, y) in zip(grid.flat, shown, strict=False):
-        axes.locator_params(nbins=MOST_TICKS)
-        for name, marker, colour in MARKS:
-            at = answer.values[of[name]].T
-            share = answer.passing_share[of[name]]
-            kind: dict[str, Any] = {"color": colour}
-            if answer.resamples and name != "no valid case":
-                kind = {
-                    "c": share,
-                    "cmap": colours,
-                    "norm": norm,
-                    "edgecolors": style.BLACK,
-                }
-            if len(share):
-                axes.scatter(at[x], at[y], marker=marker, label=name, **look, **kind)
-        if answer.best is not None:
-            axes.plot(
-                answer.values[answer.best, x], answer.values[answer.best, y], **BEST
-            )
-        axes.set(
-            xlabel=axis_label(answer.task.keys[x]), ylabel=axis_label(answer.task.keys[y])
-        )
+    for axes, pair in zip(grid.flat, shown, strict=False):
+        _draw_region(axes, answer, pair, shares)
     if answer.resamples:
         words = "share of resamples of the records that pass"
-        figure.colorbar(ScalarMappable(norm, colours), ax=grid, label=words)
+        figure.colorbar(shares, ax=grid, label=words)
     style.legend_below(figure, [grid[0, 0]])
+
+
+def _draw_region(
+    axes: style.Axes, answer: Answer, pair: tuple[int, int], shares: ScalarMappable
+) -> None:
+    """Designs over two unknowns, and the best one, coloured by shares of resamples."""
+    x, y = pair
+    of = {"passes": answer.passes[0], "fails": answer.valid & ~answer.passes[0]}
+    of["no valid case"] = ~answer.valid
+    look: dict[str, Any] = {"s": 18.0, "linewidths": 0.5, "clip_on": False}
+    axes.locator_params(nbins=MOST_TICKS)
+    for name, marker, colour in MARKS:
+        at = answer.values[of[name]].T
+        share = answer.passing_share[of[name]]
+        kind: dict[str, Any] = {"color": colour}
+        if answer.resamples and name != "no valid case":
+            kind = {
+                "c": share,
+                "cmap": shares.cmap,
+                "norm": shares.norm,
+                "edgecolors": style.BLACK,
+            }
+        if len(share):
+            axes.scatter(at[x], at[y], marker=marker, label=name, **look, **kind)
+    if answer.best is not None:
+        axes.plot(answer.values[answer.best, x], answer.values[answer.best, y], **BEST)
+    axes.set(
+        xlabel=axis_label(answer.task.keys[x]), ylabel=axis_label(answer.task.keys[y])
+    )
 
 
 def _counts(answer: Answer) -> str:

@@ -11,6 +11,7 @@ from rpscli.commands.shell.options import CaseRequest, Output, RunChoices
 from rpscli.commands.shell.terminal import Terminal, concluded, leave
 from rpscli.commands.study import computed, show_dry_run, study_heading
 from rpscli.errors import LimitExceeded, RpsError, StudyIncomplete
+from rpscli.report.figures.look import Look
 from rpscli.report.figures.style import figure_files
 from rpscli.report.files import OutputFolder, heading
 from rpscli.report.limits import VERDICT, verdict_texts
@@ -174,11 +175,21 @@ def designed(request: CaseRequest, choices: RunChoices, out: Output) -> Design |
         judged = run(lay_out(task.study_of(best)))
         every = run(lay_out(task.study_of(answer.values[answer.valid])))
         found = collected(every, out.look)
-        folder.add_all(found.files.items())
-        folder.add("designs.csv", csv_text(design_columns(answer)))
-        if validated is not None:
-            columns = verdict_columns(validated.keys, validated.judgements)
-            folder.add("validation.csv", csv_text(columns))
-        folder.add_all(figure_files(figures(answer, task.study.title), out.look).items())
+        design = Design(search, answer, every, found, judged, validated, folder)
+        _add_files(design, out.look)
         store.require()
-    return Design(search, answer, every, found, judged, validated, folder)
+    return design
+
+
+def _add_files(design: Design, look: Look) -> None:
+    """Tables and figures of the study, the designs, and the validation."""
+    folder = design.folder
+    answer = design.answer
+    validated = design.validated
+    folder.add_all(design.found.files.items())
+    folder.add("designs.csv", csv_text(design_columns(answer)))
+    if validated is not None:
+        columns = verdict_columns(validated.keys, validated.judgements)
+        folder.add("validation.csv", csv_text(columns))
+    title = answer.task.study.title
+    folder.add_all(figure_files(figures(answer, title), look).items())

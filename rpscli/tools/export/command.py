@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -10,11 +11,12 @@ import click
 
 from rpscli.commands import inputs
 from rpscli.commands.shell import options
-from rpscli.commands.shell.terminal import announce_compilation
+from rpscli.commands.shell.terminal import Terminal, announce_compilation
 from rpscli.errors import AnalysisError, UsageError, visible
 
 if TYPE_CHECKING:
     from rpscli.analyses.results import TimeHistoryResult
+    from rpscli.records.ground_motion import MotionComponents
 
 RERUN = "rerun.py"
 PROGRAMS = {"mujoco": "model.xml", "opensees": "model.py"}
@@ -40,20 +42,45 @@ def command(
     """
     from rpscli.analyses.result_quantities import plain
     from rpscli.analyses.timehistory import time_history
-    from rpscli.analyses.trace import prolonged
-    from rpscli.report.bundles import history_columns
-    from rpscli.report.table import Column, csv_lines
 
     given = inputs.read_case(request, out.terminal)
-    motions = list(
-        inputs.single_motions(records, inputs.MotionRequest(), out.terminal.warn)
+    motion = _motion(given, records, out.terminal)
+    _require_exportable(given, motion.ground, program)
+    own = replace(
+        out, place=out.place or inputs.RESULTS / given.case.name / "export" / program
     )
+    folder = inputs.case_folder(given, own, "export", motion=motion, program=program)
+    announce_compilation(out.terminal)
+    result = time_history(given.case.structure, motion.ground, given.case.analysis)
+    if result.failure:
+        raise AnalysisError(result.failure)
+
+    until = _comparable(result)
+    text, limits = _model(program, result, visible(given.case.title), until)
+    folder.add(PROGRAMS[program], text)
+    folder.add("timehistory.csv", _history(result, motion.ground))
+    folder.add(RERUN, _script(result, until))
+    document = {"program": program, "limits": limits, "comparable_until": plain(until)}
+    lines = [limits, f"next: python {folder.folder / RERUN}"]
+    inputs.conclude(given, folder, document, lines, out.terminal)
+
+
+def _motion(
+    given: inputs.CaseInput, records: tuple[str, ...], terminal: Terminal
+) -> inputs.Motion:
+    """The one motion of the model."""
+    motions = list(inputs.single_motions(records, inputs.MotionRequest(), terminal.warn))
     if len(motions) > 1:
         raise UsageError(
             f"--record: a model has one motion, not {len(motions)}; name one of them"
         )
-    motion = inputs.Motion(motions[0], inputs.load_motion(given.case, motions[0]))
-    ground = motion.ground
+    return inputs.Motion(motions[0], inputs.load_motion(given.case, motions[0]))
+
+
+def _require_exportable(
+    given: inputs.CaseInput, ground: MotionComponents, program: str
+) -> None:
+    """Refuse what the other program would leave out."""
     structure = given.case.structure
     vertical = ground.vertical if program == "opensees" else None
     left = {"podium.devices": structure.devices, "record.vertical": vertical,
@@ -70,26 +97,19 @@ def command(
     if why:
         text = f"{given.case.source}: {why[0]}, so that both programs compute the same"
         raise UsageError(text)
-    own = replace(
-        out, place=out.place or inputs.RESULTS / given.case.name / "export" / program
-    )
-    folder = inputs.case_folder(given, own, "export", motion=motion, program=program)
-    announce_compilation(out.terminal)
-    result = time_history(structure, ground, given.case.analysis)
-    if result.failure:
-        raise AnalysisError(result.failure)
-    until = _comparable(result)
-    text, limits = _model(program, result, visible(given.case.title), until)
-    folder.add(PROGRAMS[program], text)
+
+
+def _history(result: TimeHistoryResult, ground: MotionComponents) -> Iterator[str]:
+    """The history of rps as CSV, beside the record with its vertical component."""
+    from rpscli.analyses.trace import prolonged
+    from rpscli.report.bundles import history_columns
+    from rpscli.report.table import Column, csv_lines
+
     columns = history_columns(result)
     if ground.vertical is not None:
         up = prolonged(ground.vertical.acceleration, len([*columns[0].values]))
         columns.append(Column("ground_acceleration_up", "m/s2", up))
-    folder.add("timehistory.csv", csv_lines(columns))
-    folder.add(RERUN, _script(result, until))
-    document = {"program": program, "limits": limits, "comparable_until": plain(until)}
-    lines = [limits, f"next: python {folder.folder / RERUN}"]
-    inputs.conclude(given, folder, document, lines, out.terminal)
+    return csv_lines(columns)
 
 
 def _model(

