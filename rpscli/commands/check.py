@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from itertools import chain
 from typing import TYPE_CHECKING, Any
 
@@ -21,6 +21,7 @@ from rpscli.report.derived import (
     FIRST_PERIOD,
     GEOMETRY,
     UPWARDS,
+    Derived,
     derived_quantities,
     strength_tables,
 )
@@ -70,13 +71,7 @@ def command(
             "only --draw writes something; options of files and figures go with it"
         )
     given = inputs.read_case(request, out.terminal)
-    from rpscli.model.statics import device_consequences, storey_strengths
-
     structure = given.case.structure
-    derived = derived_quantities(structure) | device_consequences(structure)
-    for way, seen in structure.ways.items():
-        if strengths := storey_strengths(seen):
-            derived[f"storey_strengths{way}"] = [each._asdict() for each in strengths]
     doubts: list[str] = []
     if structure.yields:
         from rpscli.analyses.pushover import pushover  # one that most cases do without
@@ -87,7 +82,7 @@ def command(
     document = {
         **heading("check"),
         "case": inputs.case_heading(given),
-        **derived,
+        **_derived(structure),
         "record": record,
         "limits": given.case.limits.model_dump(exclude_none=True),
         "warnings": [*given.case.warnings, *doubts],
@@ -104,6 +99,17 @@ def command(
     others = device_tables(structure), strength_tables(structure)
     tables = chain(check_tables(document, limits, _unknown(structure, record)), *others)
     out.terminal.finish(document, tables, error)
+
+
+def _derived(structure: PodiumStructure) -> dict[str, Any]:
+    """Derived quantities, those of devices and the strengths of storeys, for JSON."""
+    from rpscli.model.statics import device_consequences, storey_strengths
+
+    derived = derived_quantities(structure) | device_consequences(structure)
+    for way, seen in structure.ways.items():
+        if strengths := storey_strengths(seen):
+            derived[f"storey_strengths{way}"] = [each._asdict() for each in strengths]
+    return derived
 
 
 def _record(case: Case) -> tuple[dict[str, Any] | None, RpsError | None]:
@@ -154,54 +160,65 @@ def check_tables(
     unknown: Collection[str] = (),
 ) -> Iterator[Part]:
     """What leads; geometry; masses, statics and periods; the record; the limits."""
-    heads = ("", "symbol", "value", "unit")
     yield Heading(document["case"]["title"])
     pair = document["record"] and document["record"]["y"]
     dynamics = (*DYNAMICS, FIRST_PERIOD, *UPWARDS, *CONTACT)
     for rows in (LEADING, GEOMETRY, dynamics, COLUMN, BOTH if pair else ()):
-        texts = []
-        for row in (
-            each for each in rows if each.name in document and each.name not in unknown
-        ):
-            if row.name.endswith("_paper") or (row in LEADING and rows is not LEADING):
-                continue
-            of_some = row in (*CONTACT, *COLUMN, *BOTH) or row.name == "rolling_period"
-            if document[row.name] is None and of_some:
-                continue  # columns with a flat part, edges, or curved ends have none
-            value, unit = large(document[row.name], row.unit)
-            texts.append((row.label, row.symbol, shown(value), unit))
+        known = [each for each in rows if each.name not in unknown]
         if rows is LEADING:
-            given = document["stiffnesses"]
-            roof = "roof (see profile)" if given[-1:] > given[:1] else "roof"
-            ends = zip(("bottom", roof), (*given[:1], *given[1:][-1:]), strict=False)
-            texts += [
-                (f"storey stiffness, {n}", "", shown(1e-3 * k), "kN/m") for n, k in ends
-            ]
+            texts = [*_quantity_rows(document, known), *_stiffness_rows(document)]
+        else:
+            further = [each for each in known if each not in LEADING]
+            texts = [*_quantity_rows(document, further)]
         if texts:
-            yield Table.of_texts(heads, texts, words=2)
-    if record := document["record"]:
-        lines = [
-            ("record", record["name"]),
-            ("", record["description"]),
-            ("format", record["format"]),
-            (
-                "samples",
-                f"{record['npts']} at {record['dt']:g} s, {shown(record['duration'])} s",
-            ),
-            ("peak acceleration", f"{shown(record['pga'])} m/s2"),
-            *(
-                [("in y", f"{y['name']}, {shown(y['pga'])} m/s2")]
-                if (y := record["y"])
-                else []
-            ),
-            ("scale", f"{record['scale']:g}"),
-        ]
-        yield Table.listing(lines)
+            yield Table.of_texts(("", "symbol", "value", "unit"), texts, words=2)
+    if document["record"]:
+        yield _record_table(document["record"])
     if limits:
         from rpscli.report.limits import requirement_text
 
         asked = [(each.name, requirement_text(each)) for each in limits]
         yield Table.of_texts(("limit", ""), asked, words=2)
+
+
+def _quantity_rows(
+    document: Mapping[str, Any], quantities: Iterable[Derived]
+) -> Iterator[tuple[str, str, str, str]]:
+    """Label, symbol, value and unit of the quantities that the document has."""
+    for row in quantities:
+        if row.name not in document or row.name.endswith("_paper"):
+            continue
+        of_some = row in (*CONTACT, *COLUMN, *BOTH) or row.name == "rolling_period"
+        if document[row.name] is None and of_some:
+            continue  # columns with a flat part, edges, or curved ends have none
+        value, unit = large(document[row.name], row.unit)
+        yield row.label, row.symbol, shown(value), unit
+
+
+def _stiffness_rows(
+    document: Mapping[str, Any],
+) -> Iterator[tuple[str, str, str, str]]:
+    """Stiffnesses of the lowest and of the highest storey."""
+    given = document["stiffnesses"]
+    roof = "roof (see profile)" if given[-1:] > given[:1] else "roof"
+    ends = zip(("bottom", roof), (*given[:1], *given[1:][-1:]), strict=False)
+    for name, stiffness in ends:
+        yield f"storey stiffness, {name}", "", shown(1e-3 * stiffness), "kN/m"
+
+
+def _record_table(record: Mapping[str, Any]) -> Table:
+    """The record of the case: its name, samples and peaks."""
+    y = record["y"]
+    samples = f"{record['npts']} at {record['dt']:g} s, {shown(record['duration'])} s"
+    return Table.listing([
+        ("record", record["name"]),
+        ("", record["description"]),
+        ("format", record["format"]),
+        ("samples", samples),
+        ("peak acceleration", f"{shown(record['pga'])} m/s2"),
+        *([("in y", f"{y['name']}, {shown(y['pga'])} m/s2")] if y else []),
+        ("scale", f"{record['scale']:g}"),
+    ])  # fmt: skip
 
 
 def device_tables(structure: PodiumStructure) -> Iterator[Part]:
