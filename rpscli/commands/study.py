@@ -67,18 +67,7 @@ def computed(
         for note in begin.notes if command != "design" else ():  # which is many studies
             terminal.note(note)
         pending = len(begin.pending)
-        total = len(begin.keys)
-        if choices.report_only and pending:
-            raise Refused(
-                f"{store.path} lacks {pending} of {total} points, which `rps sweep`"
-                " computes"
-            )
-        if pending and begin.kept:
-            terminal.note(
-                f"continuing: {begin.kept} of {total} points are stored already"
-            )
-        if pending and layout.plan.analysis == "timehistory" and not choices.scheduler:
-            shell.announce_compilation(terminal)
+        _begin(begin, layout, store, choices, terminal)
         with shell.progress_report(terminal, begin.kept, begin.kept + pending) as report:
             yield report
 
@@ -107,6 +96,26 @@ def computed(
             f"computed {count} points in {duration(seconds)}, {rate:.3g} points/s"
         )
     return result
+
+
+def _begin(
+    begin: Start,
+    layout: StudyPoints,
+    store: Store,
+    choices: RunChoices,
+    terminal: Terminal,
+) -> None:
+    """Say what is stored already and what comes first, or refuse to compute anything."""
+    pending = len(begin.pending)
+    total = len(begin.keys)
+    if choices.report_only and pending:
+        raise Refused(
+            f"{store.path} lacks {pending} of {total} points, which `rps sweep` computes"
+        )
+    if pending and begin.kept:
+        terminal.note(f"continuing: {begin.kept} of {total} points are stored already")
+    if pending and layout.plan.analysis == "timehistory" and not choices.scheduler:
+        shell.announce_compilation(terminal)
 
 
 def study_heading(layout: StudyPoints) -> dict[str, str]:
@@ -260,6 +269,19 @@ def sweep(
     shell.leave(error)
 
 
+def _points_at_the_ends(layout: StudyPoints, count: int) -> dict[int, dict[str, Any]]:
+    """The first and the last of so many points by their numbers."""
+    # Where a measure decides about the factor, it is not known yet.
+    factor_known = layout.plan.analysis == "timehistory" and layout.plan.measure is None
+    points: dict[int, dict[str, Any]] = {}
+    for number in sorted({*range(count)[:POINTS_SHOWN], *range(count)[-POINTS_SHOWN:]}):
+        point = layout[number]
+        points[number + 1] = layout.described(number)
+        if factor_known:
+            points[number + 1]["scale"] = point.scale * point.scale_change
+    return points
+
+
 def show_dry_run(
     command: str, study: Study, choices: RunChoices, terminal: Terminal
 ) -> None:
@@ -270,15 +292,7 @@ def show_dry_run(
     layout = study.layout
     count = len(study)
     jobs = choices.jobs or available_cores()
-    histories = layout.plan.analysis == "timehistory"
-    points: dict[int, dict[str, Any]] = {}
-    for number in sorted({*range(count)[:POINTS_SHOWN], *range(count)[-POINTS_SHOWN:]}):
-        point = layout[number]
-        points[number + 1] = layout.described(number)
-        if (
-            histories and layout.plan.measure is None
-        ):  # no measure decides about the factor
-            points[number + 1]["scale"] = point.scale * point.scale_change
+    points = _points_at_the_ends(layout, count)
     listed = [{"point": number, **varied} for number, varied in points.items()]
     with passing_time("trying some of the points", terminal):
         seconds, source = estimated_seconds(layout, jobs)
