@@ -24,6 +24,7 @@ from rpscli.report.derived import (
     Derived,
     derived_quantities,
     strength_tables,
+    strengths_by_way,
 )
 from rpscli.report.files import heading
 from rpscli.report.table import Heading, Part, Table, large, shown
@@ -96,19 +97,18 @@ def command(
         document["files"] = folder.files
     out.terminal.warn(doubts)
     limits = conditions_of(given.case.limits, "limits of the case")
-    others = device_tables(structure), strength_tables(structure)
+    others = device_tables(structure, document), strength_tables(structure)
     tables = chain(check_tables(document, limits, _unknown(structure, record)), *others)
     out.terminal.finish(document, tables, error)
 
 
 def _derived(structure: PodiumStructure) -> dict[str, Any]:
     """Derived quantities, those of devices and the strengths of storeys, for JSON."""
-    from rpscli.model.statics import device_consequences, storey_strengths
+    from rpscli.model.statics import device_consequences
 
     derived = derived_quantities(structure) | device_consequences(structure)
-    for way, seen in structure.ways.items():
-        if strengths := storey_strengths(seen):
-            derived[f"storey_strengths{way}"] = [each._asdict() for each in strengths]
+    for way, strengths in strengths_by_way(structure).items():
+        derived[f"storey_strengths{way}"] = [each._asdict() for each in strengths]
     return derived
 
 
@@ -221,22 +221,23 @@ def _record_table(record: Mapping[str, Any]) -> Table:
     ])  # fmt: skip
 
 
-def device_tables(structure: PodiumStructure) -> Iterator[Part]:
+def device_tables(
+    structure: PodiumStructure, document: Mapping[str, Any]
+) -> Iterator[Part]:
     """Each device's numbers, uplift with all of them, and from
     where the podium re-centres.
     """
     if not structure.devices:
         return
-    from rpscli.model.statics import returns, uplift_acceleration, uplift_force
-
-    acceleration = uplift_acceleration(structure)
+    force = document["uplift_force_with_devices"]
+    acceleration = document["uplift_acceleration_with_devices"]
     found = [
         *(
             (f"{index} {device.kind}", item.label, item.value, item.unit)
             for index, device in enumerate(structure.devices)
             for item in device.consequences(structure)
         ),
-        ("all", "uplift force at the cap beam", uplift_force(structure), "N"),
+        ("all", "uplift force at the cap beam", force, "N"),
         ("all", "uplift acceleration, quasi-static", acceleration, "m/s2"),
     ]
     rows = []
@@ -244,14 +245,15 @@ def device_tables(structure: PodiumStructure) -> Iterator[Part]:
         number, name = large(value, unit)
         rows.append((device, label, "never" if number is None else shown(number), name))
     yield Table.of_texts(("device", "", "value", "unit"), rows, words=2)
-    if not (back := returns(structure)):
+    if not (back := document["recentring"]):
         return
     swings = []
     for row in back:
-        forces = shown(1e-3 * row.friction), shown(1e-3 * row.largest_friction)
-        share = shown(row.rotation / structure.critical_rotation, 2)
-        end = "yes" if row.recentres else "no"
-        swings.append((shown(row.rotation), share, shown(row.displacement), *forces, end))
+        forces = (shown(1e-3 * row[name]) for name in ("friction", "largest_friction"))
+        share = shown(row["rotation"] / structure.critical_rotation, 2)
+        end = "yes" if row["recentres"] else "no"
+        way = shown(row["rotation"]), share, shown(row["displacement"])
+        swings.append((*way, *forces, end))
     heads = (
         "from rest at rad",
         "of theta_cr",

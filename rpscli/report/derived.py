@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from rpscli.analyses.column_design import ColumnDemand, ColumnInstant
     from rpscli.analyses.results import TimeHistoryResult
     from rpscli.model.podium import Array, PodiumStructure
+    from rpscli.model.statics import StoreyStrength
     from rpscli.model.superstructure import Superstructure
 
 
@@ -491,14 +492,22 @@ UPPER = (
 )
 
 
+def strengths_by_way(structure: PodiumStructure) -> dict[str, list[StoreyStrength]]:
+    """Strengths of the storeys from the bottom, in y too if that differs; of those ways
+    in which storeys yield.
+    """
+    from rpscli.model.statics import storey_strengths  # numpy is slow
+
+    found = {way: storey_strengths(seen) for way, seen in structure.ways.items()}
+    return {way: strengths for way, strengths in found.items() if strengths}
+
+
 def strength_tables(structure: PodiumStructure) -> Iterator[Part]:
     """Strength of each storey beside its shear at uplift, the roof on
     top; in y if that differs.
     """
-    from rpscli.model.statics import storey_strengths  # numpy is slow
-
     heads = "strength kN", "of V_st", "shear at uplift kN", "under slow ground motion"
-    for way, seen in structure.ways.items():
+    for way, strengths in strengths_by_way(structure).items():
         rows = [
             (
                 str(storey),
@@ -508,11 +517,10 @@ def strength_tables(structure: PodiumStructure) -> Iterator[Part]:
                 "columns lift first" if each.uplift_first else "yields BEFORE uplift",
                 shown(1e3 * each.yield_drift),
             )
-            for storey, each in enumerate(storey_strengths(seen), 1)
+            for storey, each in enumerate(strengths, 1)
         ]
-        if rows:
-            storey = f"storey{way.replace('_', ', in ')}"
-            yield Table.of_texts((storey, *heads, "drift at yield mm"), rows[::-1])
+        storey = f"storey{way.replace('_', ', in ')}"
+        yield Table.of_texts((storey, *heads, "drift at yield mm"), rows[::-1])
     building = structure.superstructure
     if building is not None and building.yields_by_first_mode:
         yield f"{UPPER} (one history of six storeys: ductility 1.8 of the first, 6.7 of the last)"
