@@ -125,6 +125,11 @@ def study_heading(layout: StudyPoints) -> dict[str, str]:
     return {**own, "scaled_to": layout.scaled_to}
 
 
+def counts_of_points(result: StudyResult) -> dict[str, int]:
+    """All points of a study, and those of each outcome."""
+    return {"points": len(result), **result.outcomes}
+
+
 class Swept(NamedTuple):
     """A study that was computed, and the files and tables of its reports."""
 
@@ -180,7 +185,7 @@ class Swept(NamedTuple):
         result = self.result
         judged = self.result.judgements
         told = list(self._told())
-        counts = {"points": len(result), **result.outcomes}
+        counts = counts_of_points(result)
         listing = [(name, str(count)) for name, count in counts.items()]
         listing.append(("records scaled to", result.layout.scaled_to))
         head: list[Part] = [Heading(result.study.title), Table.listing(listing)]
