@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from itertools import chain
 from typing import TYPE_CHECKING, Any
 
@@ -21,8 +21,10 @@ from rpscli.report.derived import (
     FIRST_PERIOD,
     GEOMETRY,
     UPWARDS,
+    Derived,
     derived_quantities,
     strength_tables,
+    strengths_by_way,
 )
 from rpscli.report.files import heading
 from rpscli.report.table import Heading, Part, Table, large, shown
@@ -70,13 +72,7 @@ def command(
             "only --draw writes something; options of files and figures go with it"
         )
     given = inputs.read_case(request, out.terminal)
-    from rpscli.model.statics import device_consequences, storey_strengths
-
     structure = given.case.structure
-    derived = derived_quantities(structure) | device_consequences(structure)
-    for way, seen in structure.ways.items():
-        if strengths := storey_strengths(seen):
-            derived[f"storey_strengths{way}"] = [each._asdict() for each in strengths]
     doubts: list[str] = []
     if structure.yields:
         from rpscli.analyses.pushover import pushover  # one that most cases do without
@@ -87,7 +83,7 @@ def command(
     document = {
         **heading("check"),
         "case": inputs.case_heading(given),
-        **derived,
+        **_derived(structure),
         "record": record,
         "limits": given.case.limits.model_dump(exclude_none=True),
         "warnings": [*given.case.warnings, *doubts],
@@ -101,9 +97,19 @@ def command(
         document["files"] = folder.files
     out.terminal.warn(doubts)
     limits = conditions_of(given.case.limits, "limits of the case")
-    others = device_tables(structure), strength_tables(structure)
+    others = device_tables(structure, document), strength_tables(structure)
     tables = chain(check_tables(document, limits, _unknown(structure, record)), *others)
     out.terminal.finish(document, tables, error)
+
+
+def _derived(structure: PodiumStructure) -> dict[str, Any]:
+    """Derived quantities, those of devices and the strengths of storeys, for JSON."""
+    from rpscli.model.statics import device_consequences
+
+    derived = derived_quantities(structure) | device_consequences(structure)
+    for way, strengths in strengths_by_way(structure).items():
+        derived[f"storey_strengths{way}"] = [each._asdict() for each in strengths]
+    return derived
 
 
 def _record(case: Case) -> tuple[dict[str, Any] | None, RpsError | None]:
@@ -154,49 +160,20 @@ def check_tables(
     unknown: Collection[str] = (),
 ) -> Iterator[Part]:
     """What leads; geometry; masses, statics and periods; the record; the limits."""
-    heads = ("", "symbol", "value", "unit")
     yield Heading(document["case"]["title"])
     pair = document["record"] and document["record"]["y"]
     dynamics = (*DYNAMICS, FIRST_PERIOD, *UPWARDS, *CONTACT)
     for rows in (LEADING, GEOMETRY, dynamics, COLUMN, BOTH if pair else ()):
-        texts = []
-        for row in (
-            each for each in rows if each.name in document and each.name not in unknown
-        ):
-            if row.name.endswith("_paper") or (row in LEADING and rows is not LEADING):
-                continue
-            of_some = row in (*CONTACT, *COLUMN, *BOTH) or row.name == "rolling_period"
-            if document[row.name] is None and of_some:
-                continue  # columns with a flat part, edges, or curved ends have none
-            value, unit = large(document[row.name], row.unit)
-            texts.append((row.label, row.symbol, shown(value), unit))
+        known = [each for each in rows if each.name not in unknown]
         if rows is LEADING:
-            given = document["stiffnesses"]
-            roof = "roof (see profile)" if given[-1:] > given[:1] else "roof"
-            ends = zip(("bottom", roof), (*given[:1], *given[1:][-1:]), strict=False)
-            texts += [
-                (f"storey stiffness, {n}", "", shown(1e-3 * k), "kN/m") for n, k in ends
-            ]
+            texts = [*_quantity_rows(document, known), *_stiffness_rows(document)]
+        else:
+            further = [each for each in known if each not in LEADING]
+            texts = [*_quantity_rows(document, further)]
         if texts:
-            yield Table.of_texts(heads, texts, words=2)
-    if record := document["record"]:
-        lines = [
-            ("record", record["name"]),
-            ("", record["description"]),
-            ("format", record["format"]),
-            (
-                "samples",
-                f"{record['npts']} at {record['dt']:g} s, {shown(record['duration'])} s",
-            ),
-            ("peak acceleration", f"{shown(record['pga'])} m/s2"),
-            *(
-                [("in y", f"{y['name']}, {shown(y['pga'])} m/s2")]
-                if (y := record["y"])
-                else []
-            ),
-            ("scale", f"{record['scale']:g}"),
-        ]
-        yield Table.listing(lines)
+            yield Table.of_texts(("", "symbol", "value", "unit"), texts, words=2)
+    if document["record"]:
+        yield _record_table(document["record"])
     if limits:
         from rpscli.report.limits import requirement_text
 
@@ -204,22 +181,63 @@ def check_tables(
         yield Table.of_texts(("limit", ""), asked, words=2)
 
 
-def device_tables(structure: PodiumStructure) -> Iterator[Part]:
+def _quantity_rows(
+    document: Mapping[str, Any], quantities: Iterable[Derived]
+) -> Iterator[tuple[str, str, str, str]]:
+    """Label, symbol, value and unit of the quantities that the document has."""
+    for row in quantities:
+        if row.name not in document or row.name.endswith("_paper"):
+            continue
+        of_some = row in (*CONTACT, *COLUMN, *BOTH) or row.name == "rolling_period"
+        if document[row.name] is None and of_some:
+            continue  # columns with a flat part, edges, or curved ends have none
+        value, unit = large(document[row.name], row.unit)
+        yield row.label, row.symbol, shown(value), unit
+
+
+def _stiffness_rows(
+    document: Mapping[str, Any],
+) -> Iterator[tuple[str, str, str, str]]:
+    """Stiffnesses of the lowest and of the highest storey."""
+    given = document["stiffnesses"]
+    roof = "roof (see profile)" if given[-1:] > given[:1] else "roof"
+    ends = zip(("bottom", roof), (*given[:1], *given[1:][-1:]), strict=False)
+    for name, stiffness in ends:
+        yield f"storey stiffness, {name}", "", shown(1e-3 * stiffness), "kN/m"
+
+
+def _record_table(record: Mapping[str, Any]) -> Table:
+    """The record of the case: its name, samples and peaks."""
+    y = record["y"]
+    samples = f"{record['npts']} at {record['dt']:g} s, {shown(record['duration'])} s"
+    return Table.listing([
+        ("record", record["name"]),
+        ("", record["description"]),
+        ("format", record["format"]),
+        ("samples", samples),
+        ("peak acceleration", f"{shown(record['pga'])} m/s2"),
+        *([("in y", f"{y['name']}, {shown(y['pga'])} m/s2")] if y else []),
+        ("scale", f"{record['scale']:g}"),
+    ])  # fmt: skip
+
+
+def device_tables(
+    structure: PodiumStructure, document: Mapping[str, Any]
+) -> Iterator[Part]:
     """Each device's numbers, uplift with all of them, and from
     where the podium re-centres.
     """
     if not structure.devices:
         return
-    from rpscli.model.statics import returns, uplift_acceleration, uplift_force
-
-    acceleration = uplift_acceleration(structure)
+    force = document["uplift_force_with_devices"]
+    acceleration = document["uplift_acceleration_with_devices"]
     found = [
         *(
             (f"{index} {device.kind}", item.label, item.value, item.unit)
             for index, device in enumerate(structure.devices)
             for item in device.consequences(structure)
         ),
-        ("all", "uplift force at the cap beam", uplift_force(structure), "N"),
+        ("all", "uplift force at the cap beam", force, "N"),
         ("all", "uplift acceleration, quasi-static", acceleration, "m/s2"),
     ]
     rows = []
@@ -227,14 +245,15 @@ def device_tables(structure: PodiumStructure) -> Iterator[Part]:
         number, name = large(value, unit)
         rows.append((device, label, "never" if number is None else shown(number), name))
     yield Table.of_texts(("device", "", "value", "unit"), rows, words=2)
-    if not (back := returns(structure)):
+    if not (back := document["recentring"]):
         return
     swings = []
     for row in back:
-        forces = shown(1e-3 * row.friction), shown(1e-3 * row.largest_friction)
-        share = shown(row.rotation / structure.critical_rotation, 2)
-        end = "yes" if row.recentres else "no"
-        swings.append((shown(row.rotation), share, shown(row.displacement), *forces, end))
+        forces = (shown(1e-3 * row[name]) for name in ("friction", "largest_friction"))
+        share = shown(row["rotation"] / structure.critical_rotation, 2)
+        end = "yes" if row["recentres"] else "no"
+        way = shown(row["rotation"]), share, shown(row["displacement"])
+        swings.append((*way, *forces, end))
     heads = (
         "from rest at rad",
         "of theta_cr",

@@ -59,46 +59,19 @@ FIRST_ORDER = "first order"
 
 
 def _tables(result: ModalResult, title: str, left_out: Collection[str]) -> Iterator[Part]:
-    storey = []
-    vibrations = []
-    for name, (modes, paper) in result.both_orders.items():
-        numbers = modes.frequency_parameter, paper.frequency_parameter
-        rigid = modes.frequency_parameter_rigid
-        storey.append((name, modes.own_motion, *map(shown, (*numbers, rigid))))
-    for name, uplifted in result.vibrations():
-        for i, (w, xi, ratio, over, *first) in enumerate(uplifted.tolist(), 1):
-            percent = shown(100.0 * xi, 3), shown(100.0 * first[1], 3)
-            cells = shown(w), shown(first[0]), shown(ratio), *percent, shown(over)
-            vibrations.append((name.replace("_", ", "), str(i), *cells))
+    """The podium's own mode, full contact, the fixed base, uplifted, and first yield."""
     yield Heading(title)
-    heads: tuple[str, ...] = (
-        "podium's own mode",
-        "",
-        "p_ext rad/s",
-        FIRST_ORDER,
-        "rigid estimate",
-    )
-    yield Table.of_texts(heads, storey, words=2).without(left_out)
+    yield _own_mode_table(result).without(left_out)
     yield ORDER
     if result.left_out:
         yield f"Not in the modes: {listed(result.left_out, 'and')}."
-    if (full := result.full_contact) is not None:
-        yield _mode_table("full contact", full)
-        if result.fixed_base is not None and (bed := result.structure.bed) is not None:
-            ratio = full.periods[0] / result.fixed_base.periods[0]
-            yield (
-                f"First period {shown(full.periods[0])} s in full contact, {ratio:.3f} of"
-                f" the fixed base, {bed.period_ratio:.3f} without damping. Uplifted"
-                " states are linearised as on rigid ends."
-            )
+    yield from _full_contact(result)
     if (fixed := result.fixed_base) is None:
         return
     yield _mode_table(result.fixed_base_state.replace("_", " "), fixed)
     if result.vertical is not None:
         yield _mode_table("vertical", result.vertical)
-    heads = "rad/s", FIRST_ORDER, "of fixed base", "xi %", FIRST_ORDER, "of fixed base"
-    table = Table.of_texts(("uplifted", "mode", *heads), vibrations, words=1, keys=2)
-    yield table.without(left_out)
+    yield _vibration_table(result).without(left_out)
     at = [
         f"{name.replace('_', ' ')} {measured(first['base_shear'], 'N')} (storey"
         f" {first['storey']})"
@@ -109,6 +82,43 @@ def _tables(result: ModalResult, title: str, left_out: Collection[str]) -> Itera
             "Modes are those of the elastic building, and end where a storey yields: in"
             f" the first mode at a base shear of {', '.join(at)}."
         )
+
+
+def _own_mode_table(result: ModalResult) -> Table:
+    """The podium's own mode in each uplifted state."""
+    rows = []
+    for name, (modes, paper) in result.both_orders.items():
+        numbers = modes.frequency_parameter, paper.frequency_parameter
+        rigid = modes.frequency_parameter_rigid
+        rows.append((name, modes.own_motion, *map(shown, (*numbers, rigid))))
+    heads = ("podium's own mode", "", "p_ext rad/s", FIRST_ORDER, "rigid estimate")
+    return Table.of_texts(heads, rows, words=2)
+
+
+def _full_contact(result: ModalResult) -> Iterator[Part]:
+    """Modes on compliant ends in full contact, and the first period over the fixed one."""
+    if (full := result.full_contact) is None:
+        return
+    yield _mode_table("full contact", full)
+    if result.fixed_base is not None and (bed := result.structure.bed) is not None:
+        ratio = full.periods[0] / result.fixed_base.periods[0]
+        yield (
+            f"First period {shown(full.periods[0])} s in full contact, {ratio:.3f} of"
+            f" the fixed base, {bed.period_ratio:.3f} without damping. Uplifted"
+            " states are linearised as on rigid ends."
+        )
+
+
+def _vibration_table(result: ModalResult) -> Table:
+    """Vibrations of the building on uplifted columns."""
+    rows = []
+    for name, uplifted in result.vibrations():
+        for i, (w, xi, ratio, over, *first) in enumerate(uplifted.tolist(), 1):
+            percent = shown(100.0 * xi, 3), shown(100.0 * first[1], 3)
+            cells = shown(w), shown(first[0]), shown(ratio), *percent, shown(over)
+            rows.append((name.replace("_", ", "), str(i), *cells))
+    heads = "rad/s", FIRST_ORDER, "of fixed base", "xi %", FIRST_ORDER, "of fixed base"
+    return Table.of_texts(("uplifted", "mode", *heads), rows, words=1, keys=2)
 
 
 def _mode_table(state: str, modes: FixedBaseModes) -> Table:

@@ -7,7 +7,7 @@ from datetime import datetime
 from functools import partial
 from itertools import chain
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import click
 
@@ -24,7 +24,7 @@ from rpscli.report.files import require_writable, undrawn, write_whole
 from rpscli.version import VERSION
 
 if TYPE_CHECKING:
-    from rpscli.commands.report_page import PageDone
+    from rpscli.commands.report_page import Earlier, PageDone
 
 PEOPLE = {"project": "project", "author": "made by", "checker": "checked by"}
 """Options with which a page is signed, and their words there."""
@@ -79,61 +79,84 @@ def command(
             f"-o {place}: the page is HTML; name a file that ends with .html"
         )
     from rpscli.commands import report_page as pages
-    from rpscli.commands.study import read
     from rpscli.report.page import FORMATS
 
     style = {} if style_file is None else drawable_style(style_file)
     request = options.CaseRequest(subject, overrides)
+    wanted = _Wanted(request, records, motion, conditions, extra)
     earlier = pages.earlier_results(Path(subject)) if Path(subject).is_dir() else None
     kind = pages.kind_of(subject) if earlier is None else earlier.run["command"]
-    why = ""
-    if earlier is not None and overrides:
-        why = "stored results keep the values they have; leave --set out"
-    elif (kind != pages.HISTORY or earlier) and (
-        records or motion != inputs.MotionRequest()
-    ):
+    if why := _unfit(wanted, kind, stored=earlier is not None):
+        raise UsageError(f"{subject}: {why}")
+    folder = None if earlier is None else earlier.folder
+    out = options.Output(terminal, folder, look=Look(FORMATS, style=style))
+    name, make = _page_of(wanted, kind, earlier, out)
+
+    file = place or inputs.RESULTS / name / "report.html"
+    _require_free(file, name, force=force)
+    done = make()
+    _write(file, name, done, people, terminal)
+    leave(done.error)
+
+
+class _Wanted(NamedTuple):
+    """The subject of a page, and the options that say what stands on it."""
+
+    request: options.CaseRequest
+    records: tuple[str, ...]
+    motion: inputs.MotionRequest
+    conditions: list[Condition]
+    extra: tuple[str, ...]
+
+
+def _unfit(wanted: _Wanted, kind: str, *, stored: bool) -> str:
+    """The reason why an option does not go with the subject; empty if all do."""
+    from rpscli.commands import report_page as pages
+
+    with_motion = wanted.records or wanted.motion != inputs.MotionRequest()
+    if stored and wanted.request.overrides:
+        return "stored results keep the values they have; leave --set out"
+    if (kind != pages.HISTORY or stored) and with_motion:
         of = {pages.SWEEP: "study", **{name: name for name in pages.PAGES}}
         owner = (
             f"a {of[kind]} has records of its own"
             if kind in of
             else "a stored history has its record"
         )
-        why = f"{owner}; leave --record, --vertical and --scale out"
-    elif extra and kind != pages.HISTORY:
-        why = f"--{extra[0]} is about one history; name a case"
-    elif conditions and kind in pages.PAGES:
-        why = f"a {kind} has limits of its own; leave --fail-on out"
-    if why:
-        raise UsageError(f"{subject}: {why}")
-    folder = None if earlier is None else earlier.folder
-    out = options.Output(terminal, folder, look=Look(FORMATS, style=style))
-    make: Callable[[], PageDone]
+        return f"{owner}; leave --record, --vertical and --scale out"
+    if wanted.extra and kind != pages.HISTORY:
+        return f"--{wanted.extra[0]} is about one history; name a case"
+    if wanted.conditions and kind in pages.PAGES:
+        return f"a {kind} has limits of its own; leave --fail-on out"
+    return ""
+
+
+def _page_of(
+    wanted: _Wanted, kind: str, earlier: Earlier | None, out: options.Output
+) -> tuple[str, Callable[[], PageDone]]:
+    """The name of the subject, which is read and checked, and what makes its page."""
+    from rpscli.commands import report_page as pages
+    from rpscli.commands.study import read
+
+    request = wanted.request
     if kind in pages.PAGES:
-        name = Path(subject).stem if earlier is None else earlier.run["name"]
-        make = partial(loaded(pages.PAGES[kind]), request, earlier, out)
-    elif kind == pages.SWEEP:
-        study = read(earlier.subject if earlier else request, conditions, terminal)
-        name = study.layout.study.name
-        make = partial(pages.study_page, study, out)
+        name = Path(request.source).stem if earlier is None else earlier.run["name"]
+        return name, partial(loaded(pages.PAGES[kind]), request, earlier, out)
+    if kind == pages.SWEEP:
+        subject = earlier.subject if earlier else request
+        study = read(subject, wanted.conditions, out.terminal)
+        return study.layout.study.name, partial(pages.study_page, study, out)
+    if earlier is None:
+        given = inputs.read_case(request, out.terminal)
+        records = wanted.records
+        motions = [*inputs.single_motions(records, wanted.motion, out.terminal.warn)]
+        asked: list[pages.Asked] = [(records, wanted.motion)]
     else:
-        if earlier is None:
-            given = inputs.read_case(request, terminal)
-            motions = [*inputs.single_motions(records, motion, terminal.warn)]
-            asked: list[pages.Asked] = [(records, motion)]
-        else:
-            given, motions = earlier.case()
-            asked = pages.typed_together(given.case, motions)
-        name = given.case.name
-        told = (given, motions, asked, conditions, earlier, out)
-        make = partial(pages.history_page, *told, extra=extra)
-    file = place or inputs.RESULTS / name / "report.html"
-    _require_free(file, name, force=force)
-    done = make()
-    signed = {
-        word: people[key] or getattr(done.signed, key) for key, word in PEOPLE.items()
-    }
-    _write(file, name, done, signed, terminal)
-    leave(done.error)
+        given, motions = earlier.case()
+        asked = pages.typed_together(given.case, motions)
+    told = (given, motions, asked, wanted.conditions, earlier, out)
+    make = partial(pages.history_page, *told, extra=wanted.extra)
+    return given.case.name, make
 
 
 def _require_free(file: Path, name: str, *, force: bool) -> None:
@@ -158,11 +181,15 @@ def _write(
     file: Path,
     name: str,
     done: PageDone,
-    signed: Mapping[str, str | None],
+    people: Mapping[str, str | None],
     terminal: Terminal,
 ) -> None:
+    """Write the page, signed by the people of the command line or of the case."""
     from rpscli.report.page import MOST_BYTES, Picture, page
 
+    signed = {
+        word: people[key] or getattr(done.signed, key) for key, word in PEOPLE.items()
+    }
     made = datetime.now().astimezone().strftime("%d %B %Y, %H:%M %Z")
     subtitle = f"{done.subtitle}. Made by rps {VERSION} on {made}."
     content = page(done.title, subtitle, done.sections, name, signed)

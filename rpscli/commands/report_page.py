@@ -24,7 +24,7 @@ from rpscli.commands.inputs import RESULTS, CaseInput, MotionRequest, case_headi
 from rpscli.commands.page_section import PAGE_SECTIONS
 from rpscli.commands.shell.options import CaseRequest, Output, RunChoices
 from rpscli.commands.shell.terminal import announce_compilation, concluded
-from rpscli.commands.study import swept
+from rpscli.commands.study import Swept, counts_of_points, swept
 from rpscli.errors import RecordError, RpsError, UsageError
 from rpscli.records.ground_motion import GroundMotion
 from rpscli.records.source import Source
@@ -228,56 +228,64 @@ def history_page(
 ) -> PageDone:
     """Compute what belongs to a case, and put it in order."""
     case = given.case
-    terminal = out.terminal
-    stored = list[Block]()
     histories = list[run.History]()
     if case.record is not None or motions[0].record is not None:
         # A place for the files, which are not written there.
-        histories = run.histories_of(
-            [given], motions, Output(terminal, Path(), force=True)
-        )
-        announce_compilation(terminal)
+        nowhere = Output(out.terminal, Path(), force=True)
+        histories = run.histories_of([given], motions, nowhere)
+        announce_compilation(out.terminal)
         made = (_several if len(histories) > 1 else _single)(histories, conditions, out)
-        terminal.warn(made.document["warnings"])
-        if earlier is not None:
-            stored = [*_compared(earlier, histories, made.document)]
-        worst = histories[made.worst]
-        first = sorted(histories, key=lambda each: each is not worst)
-        for name in extra:
-            motions_of = [each.motion for each in first]
-            section = PAGE_SECTIONS[name].made(
-                given, motions_of, terminal, out.look, worst.label
-            )
-            made.results.append(section)
     elif extra:
         raise UsageError(
             f"{case.source}: --{extra[0]} needs a ground motion; add --record"
         )
     else:
-        document = {
-            **heading(),
-            "case": case_heading(given),
-            "warnings": list(case.warnings),
-        }
-        made = _Histories("Structure", [NO_MOTION], [], concluded(document, None), None)
-        terminal.warn(case.warnings)
+        made = _without_motion(given)
+    out.terminal.warn(made.document["warnings"])
+    stored = [*_compared(earlier, histories, made.document)]
+    made.results.extend(_extra_sections(given, histories, made, extra, out))
+
+    grounds = [each.ground for each in histories]
     sections = parts.page_sections(
         case,
         case.title,
         out.look,
         short=made.short,
         warnings=made.document["warnings"],
-        inputs=parts.case_input(
-            case, given.request.overrides, [each.ground for each in histories]
-        ),
+        inputs=parts.case_input(case, given.request.overrides, grounds),
         results=made.results,
         commands=_commands(given, asked, earlier, extra=extra),
         stored=stored,
-        both=any(history.ground.y is not None for history in histories),
+        both=any(ground.y is not None for ground in grounds),
     )
     title = f"{made.title}{ends(case)}"
     signed = case.file.document
     return PageDone(case.title, title, sections, made.document, made.error, signed)
+
+
+def _without_motion(given: CaseInput) -> _Histories:
+    """A case that names no motion."""
+    warnings = list(given.case.warnings)
+    document = {**heading(), "case": case_heading(given), "warnings": warnings}
+    return _Histories("Structure", [NO_MOTION], [], concluded(document, None), None)
+
+
+def _extra_sections(
+    given: CaseInput,
+    histories: Sequence[run.History],
+    made: _Histories,
+    extra: Sequence[str],
+    out: Output,
+) -> Iterator[Section]:
+    """Sections of tools that are asked for, under the worst of the motions first."""
+    if not extra:
+        return
+    worst = histories[made.worst]
+    first = sorted(histories, key=lambda each: each is not worst)
+    motions = [each.motion for each in first]
+    for name in extra:
+        made_by = PAGE_SECTIONS[name].made
+        yield made_by(given, motions, out.terminal, out.look, worst.label)
 
 
 def _single(
@@ -378,9 +386,29 @@ def _commands(
 
 
 def _compared(
-    earlier: Earlier, histories: Sequence[run.History], document: Mapping[str, Any]
+    earlier: Earlier | None, histories: Sequence[run.History], document: Mapping[str, Any]
 ) -> Iterator[Block]:
-    """Differences of case, records and results from the stored ones."""
+    """Differences of case, records and results from the stored ones, if there are any."""
+    if earlier is None:
+        return
+    yield from _changed_inputs(earlier, histories)
+    summary = earlier.folder / SUMMARY
+    if not summary.exists():
+        return
+    try:
+        before = results_of(read_json(summary, {}))
+    except (OSError, ValueError) as error:
+        yield Notice(f"{summary} cannot be read, so nothing was compared: {error}")
+        return
+    if len(histories) > 1:  # the summary of a set is that of its only case
+        (document,) = document["sets"]
+    yield from _differing_results(earlier.folder, before, results_of(plain(document)))
+
+
+def _changed_inputs(
+    earlier: Earlier, histories: Sequence[run.History]
+) -> Iterator[Notice]:
+    """Records and a case that are no longer those of the stored results."""
     for history, record in zip(histories, earlier.records, strict=True):
         named = history.ground.named
         if any(
@@ -396,18 +424,12 @@ def _compared(
         if digest != earlier.run["sha256"]:
             state = "has changed since" if digest else "is not there any more"
             yield Notice(f"{file} {state}; this page keeps to the case in run.json.")
-    folder = earlier.folder
-    summary = earlier.folder / SUMMARY
-    if not summary.exists():
-        return
-    try:
-        before = results_of(read_json(summary, {}))
-    except (OSError, ValueError) as error:
-        yield Notice(f"{summary} cannot be read, so nothing was compared: {error}")
-        return
-    if len(histories) > 1:  # the summary of a set is that of its only case
-        (document,) = document["sets"]
-    now = results_of(plain(document))
+
+
+def _differing_results(
+    folder: Path, before: Mapping[str, Any], now: Mapping[str, Any]
+) -> Iterator[Block]:
+    """How many stored results are the same as those of now, and a table of the others."""
     # By what the record was scaled is a result; the aim that asked for it is computed
     # once.
     names = [name for name in before if name in now and name != "record.scaled_to"]
@@ -436,31 +458,14 @@ def study_page(study: Study, out: Output) -> PageDone:
     choices = RunChoices(report_only=out.place is not None)
     done = swept("report", study, folder, choices, out)
     out.terminal.warn(done.notes)
-    result = done.result
-    found = done.found
-    varied = any(key.startswith("podium.contact") for key in layout.plan.keys)
     first = resolved(layout.plan, layout[0].values)
+    varied = any(key.startswith("podium.contact") for key in layout.plan.keys)
     contact = ", contact varied" if varied else ends(first)
-    results = [figures(found.files, study)]
-    if result.summary:
-        statistics = [
-            *summary_tables(result.summary),
-            of_first_system(layout),
-            *found.parts,
-        ]
-        motions = parts.motions_section(*motions_of(study), study.title, out.look)
-        results = [motions, Section("Statistics", [*cut(statistics)]), *results]
     which = []
     if (systems := len(layout.properties)) > 1:
         named = labels(layout.plan.keys, layout[0].values)
         which = [f"The first of {systems} systems: {named}."]
     words = CaseRequest(layout.study.source, study.overrides).words
-    warnings = [*done.notes, *(str(error) for error in found.broken)]
-    warnings += [
-        f"Point {f.point} failed: {f.message}" for f in found.failures[:FAILURES_SHOWN]
-    ]
-    if (failed := len(found.failures)) > FAILURES_SHOWN:
-        warnings.append(f"{failed} points failed; these are the first of them")
     stored = (
         f"Every point is stored in {folder.folder}; points.csv there has them all,"
         " failed.csv the command that computes each failed point alone."
@@ -469,26 +474,51 @@ def study_page(study: Study, out: Output) -> PageDone:
         first,
         study.title,
         out.look,
-        short=_in_short(result),
-        warnings=warnings,
+        short=_in_short(done.result),
+        warnings=_study_warnings(done),
         inputs=study_input(
             study, first, "The case" if systems == 1 else "Its first system"
         ),
-        results=results,
+        results=_study_results(done, out),
         commands=[["rps", "sweep", *words], ["rps", "report", *words]],
         stored=[stored],
         both=all(layout.pairs),
         which=which,
     )
-    subtitle = f"Study of {len(result)} points{contact}"
+    subtitle = f"Study of {len(done.result)} points{contact}"
     signed = layout.study.file.document
     return PageDone(
         study.title, subtitle, sections, done.document("report"), done.error, signed
     )
 
 
+def _study_results(done: Swept, out: Output) -> Iterator[Section]:
+    """Figures; ground motions and statistics before them where there are histories."""
+    study = done.result.study
+    if done.result.summary:
+        yield parts.motions_section(*motions_of(study), study.title, out.look)
+        statistics = [
+            *summary_tables(done.result.summary),
+            of_first_system(study.layout),
+            *done.found.parts,
+        ]
+        yield Section("Statistics", [*cut(statistics)])
+    yield figures(done.found.files, study)
+
+
+def _study_warnings(done: Swept) -> Iterator[str]:
+    """Doubts, reports that failed, and the first of the points that did."""
+    failures = done.found.failures
+    yield from (*done.notes, *map(str, done.found.broken))
+    for failure in failures[:FAILURES_SHOWN]:
+        yield f"Point {failure.point} failed: {failure.message}"
+    if len(failures) > FAILURES_SHOWN:
+        yield f"{len(failures)} points failed; these are the first of them"
+
+
 def _in_short(run: StudyResult) -> Iterator[Block]:
-    counts = {"points": len(run), **run.outcomes}
+    """Counts of outcomes, and verdicts."""
+    counts = counts_of_points(run)
     yield Table.of_texts(tuple(counts), [tuple(map(str, counts.values()))], words=0)
     if aim := run.layout.scaled_to:
         yield f"Records are scaled to {aim}."

@@ -68,18 +68,7 @@ def computed(
         for note in begin.notes if command != "design" else ():  # which is many studies
             terminal.note(note)
         pending = len(begin.pending)
-        total = len(begin.keys)
-        if choices.report_only and pending:
-            raise Refused(
-                f"{store.path} lacks {pending} of {total} points, which `rps sweep`"
-                " computes"
-            )
-        if pending and begin.kept:
-            terminal.note(
-                f"continuing: {begin.kept} of {total} points are stored already"
-            )
-        if pending and layout.plan.analysis == "timehistory" and not choices.scheduler:
-            shell.announce_compilation(terminal)
+        _begin(begin, layout, store, choices, terminal)
         with shell.progress_report(terminal, begin.kept, begin.kept + pending) as report:
             yield report
 
@@ -110,11 +99,36 @@ def computed(
     return result
 
 
+def _begin(
+    begin: Start,
+    layout: StudyPoints,
+    store: Store,
+    choices: RunChoices,
+    terminal: Terminal,
+) -> None:
+    """Say what is stored already and what comes first, or refuse to compute anything."""
+    pending = len(begin.pending)
+    total = len(begin.keys)
+    if choices.report_only and pending:
+        raise Refused(
+            f"{store.path} lacks {pending} of {total} points, which `rps sweep` computes"
+        )
+    if pending and begin.kept:
+        terminal.note(f"continuing: {begin.kept} of {total} points are stored already")
+    if pending and layout.plan.analysis == "timehistory" and not choices.scheduler:
+        shell.announce_compilation(terminal)
+
+
 def study_heading(layout: StudyPoints) -> dict[str, str]:
     """The study in a JSON document."""
     study = layout.study
     own = {"name": study.name, "title": study.title, "source": study.source}
     return {**own, "scaled_to": layout.scaled_to}
+
+
+def counts_of_points(result: StudyResult) -> dict[str, int]:
+    """All points of a study, and those of each outcome."""
+    return {"points": len(result), **result.outcomes}
 
 
 class Swept(NamedTuple):
@@ -172,7 +186,7 @@ class Swept(NamedTuple):
         result = self.result
         judged = self.result.judgements
         told = list(self._told())
-        counts = {"points": len(result), **result.outcomes}
+        counts = counts_of_points(result)
         listing = [(name, str(count)) for name, count in counts.items()]
         listing.append(("records scaled to", result.layout.scaled_to))
         head: list[Part] = [Heading(result.study.title), Table.listing(listing)]
@@ -261,6 +275,19 @@ def sweep(
     shell.leave(error)
 
 
+def _points_at_the_ends(layout: StudyPoints, count: int) -> dict[int, dict[str, Any]]:
+    """The first and the last of so many points by their numbers."""
+    # Where a measure decides about the factor, it is not known yet.
+    factor_known = layout.plan.analysis == "timehistory" and layout.plan.measure is None
+    points: dict[int, dict[str, Any]] = {}
+    for number in sorted({*range(count)[:POINTS_SHOWN], *range(count)[-POINTS_SHOWN:]}):
+        point = layout[number]
+        points[number + 1] = layout.described(number)
+        if factor_known:
+            points[number + 1]["scale"] = point.scale * point.scale_change
+    return points
+
+
 def show_dry_run(
     command: str, study: Study, choices: RunChoices, terminal: Terminal
 ) -> None:
@@ -271,15 +298,7 @@ def show_dry_run(
     layout = study.layout
     count = len(study)
     jobs = choices.jobs or available_cores()
-    histories = layout.plan.analysis == "timehistory"
-    points: dict[int, dict[str, Any]] = {}
-    for number in sorted({*range(count)[:POINTS_SHOWN], *range(count)[-POINTS_SHOWN:]}):
-        point = layout[number]
-        points[number + 1] = layout.described(number)
-        if (
-            histories and layout.plan.measure is None
-        ):  # no measure decides about the factor
-            points[number + 1]["scale"] = point.scale * point.scale_change
+    points = _points_at_the_ends(layout, count)
     listed = [{"point": number, **varied} for number, varied in points.items()]
     with passing_time("trying some of the points", terminal):
         seconds, source = estimated_seconds(layout, jobs)

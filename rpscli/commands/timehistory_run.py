@@ -46,6 +46,7 @@ from rpscli.report.table import (
 from rpscli.report.timehistory import (
     direction_note,
     neighbours_texts,
+    note_of_direction,
     overturned_text,
     passes_text,
     restitution_text,
@@ -195,7 +196,7 @@ def _document(history: History, result: TimeHistoryResult) -> dict[str, Any]:
     both = history.ground.y is not None
     document = {
         **heading(COMMAND),
-        "note": direction_note([both], result.structure.planar_only) or None,
+        "note": note_of_direction(result) or None,
         "case": inputs.case_heading(history.given),
         **timehistory_document(result),
         "verdicts": [

@@ -26,8 +26,8 @@ from rpscli.report.figures import (
 from rpscli.report.figures.look import FIGURES, USUAL, Look
 from rpscli.report.figures.style import Draw, figure_files
 from rpscli.report.files import Files
+from rpscli.report.storey_demands import fixed_base_demands, isolated_demands
 from rpscli.report.table import Column, columns_of, csv_lines, csv_text
-from rpscli.report.timehistory import fixed_base_demands, isolated_demands
 
 
 def _figures(figures: Mapping[str, Draw], result: Any, title: str, look: Look) -> Files:

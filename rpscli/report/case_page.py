@@ -13,7 +13,6 @@ from typing import Any
 
 import numpy as np
 
-from rpscli.analyses.column_design import WITHOUT_IMPULSE
 from rpscli.analyses.pushover import pushover
 from rpscli.analyses.results import STEEL_ROTATION, TimeHistoryResult
 from rpscli.analyses.timehistory import Neighbour
@@ -302,9 +301,7 @@ def history_short(
         yield limits_table(verdicts)
     yield timehistory.restitution_text(result.structure)
     yield from map(Notice, timehistory.neighbours_texts(result, beside))
-    both = [result.motion.y is not None]
-    planar = result.structure.planar_only
-    yield from filter(None, [timehistory.direction_note(both, planar)])
+    yield from filter(None, [timehistory.note_of_direction(result)])
 
 
 def ground_section(
@@ -352,7 +349,7 @@ def column_sections(
     if result.column_demand is None:
         return
     drawn = pictures(files).get("column")
-    without = listed([*result.left_out_of_columns, WITHOUT_IMPULSE], "and")
+    without = listed(timehistory.left_out_of_columns(result), "and")
     codes = (
         "f is podium.column.contact_strength. By EN 1992-1-1, formula 6.63, concrete in"
         " a strip at the edge of a column has f_cd, since there is nothing outside it;"

@@ -15,11 +15,14 @@ from dataclasses import replace
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from rpscli.report.formulas import formulas, of_column
 from rpscli.report.table import Part, Table, shown
 
 if TYPE_CHECKING:
+    from rpscli.analyses.column_design import ColumnDemand, ColumnInstant
     from rpscli.analyses.results import TimeHistoryResult
     from rpscli.model.podium import Array, PodiumStructure
+    from rpscli.model.statics import StoreyStrength
     from rpscli.model.superstructure import Superstructure
 
 
@@ -299,13 +302,14 @@ def derivations(
 ) -> Iterator[Derivation]:
     """All derived quantities that are numbers, in the order in which they follow."""
     letters = _letters(structure)
-    formulas = _formulas(structure, podium)
+    crushed = _column_at_rest(structure)["crushed"] if structure.column else 0.0
+    expressions = formulas(structure, podium, crushed)
     further = (*CONTACT * bool(structure.bed), *COLUMN * bool(structure.column))
     exact = f"{structure.critical_rotation:.{DIGITS}g}"
     for quantity in (*GEOMETRY, *DYNAMICS, FIRST_PERIOD, *further):
         for row in (*BEFORE.get(quantity.name, ()), quantity):
             value = row.value(structure)
-            formula = formulas.get(row.name, "")
+            formula = expressions.get(row.name, "")
             if not isinstance(value, float | int):
                 continue
             if row.name == "critical_rotation_paper" and f"{value:.{DIGITS}g}" == exact:
@@ -315,174 +319,78 @@ def derivations(
             yield Derivation(row.name, row.label, symbol, float(value), row.unit, *texts)
 
 
+class _Step(NamedTuple):
+    """A number of an instant of a column: words, symbol, value, unit and formula."""
+
+    label: str
+    symbol: str
+    value: float
+    unit: str
+    formula: str
+
+
 def column_derivations(result: TimeHistoryResult) -> Iterator[Derivation]:
     """Largest moment, pressure and edge of the most loaded column of a history."""
     structure = result.structure
     demand = result.column_demand
     assert demand is not None, "there is a column"
-    state = demand.at_largest_moment
     for each in demand.instants:
         x = abs(each.rotation)
         N = each.axial_force
         letters = _letters(structure) | _ends(structure, x, N) | {"x": x, "N_1": N}
-        rows = []
         if each.largest == "column_moment":
-            F = state.side * each.shear
-            rise = state.rise
-            P = N * math.cos(x) + F * math.sin(x)
-            Q = F * math.cos(x) - N * math.sin(x)
-            letters |= {"s": state.side, "F_1": each.shear, "d": rise, "P": P, "Q": Q}
-            letters["e"] = (each.moment + rise * Q) / P
-            letters |= {"N_mean": demand.mean_force, "columns": structure.columns}
-            carried = "N_mean"
-            for way, (moment, lever) in zip("xy", demand.moments, strict=False):
-                letters |= {f"M_{way}": abs(moment), f"l_{way}": lever}
-                carried += f" + M_{way} / (columns * l_{way})"
-            rows = [
-                ("axial force, by moments of the podium", "N", N, "N", carried),
-                (
-                    "axial force at its end",
-                    "P",
-                    P,
-                    "N",
-                    "N_1 * cos(x) + s * F_1 * sin(x)",
-                ),
-                ("shear at its end", "Q", Q, "N", "s * F_1 * cos(x) - N_1 * sin(x)"),
-                ("largest moment", "M", each.moment, "N m", "e * P - d * Q"),
-            ]
-        elif (
-            each.largest == "contact_pressure_ratio" and each.contact_pressure is not None
-        ):
-            formula = _of_column(structure, 0.0)["contact_rest_pressure"]
-            rows = [
-                ("largest pressure on arcs", "p_0", each.contact_pressure, "Pa", formula)
-            ]
-        elif each.largest == "crushed_width_ratio":
-            formula = _of_column(structure, letters["crushed"])["crushed_rest_ratio"]
-            rows = [
-                ("largest crushed width", "b_c/2B'", letters["crushed"], "-", formula)
-            ]
-        for label, symbol, value, unit, formula in rows:
+            letters |= _moment_letters(demand, each) | {"columns": structure.columns}
+            steps = _moment_steps(each, letters)
+        else:
+            steps = _end_steps(structure, each, letters["crushed"])
+        for label, symbol, value, unit, formula in steps:
             own = formula.replace("N_0", "N_1")
             texts = symbolic(own), numeric(own, letters)
             yield Derivation(each.largest, label, greek(symbol), value, unit, *texts)
 
 
-EDGES = {
-    "flexible": (
-        "(I - 2 * sin(alpha)^2 + 4 * gamma * cos(2 * alpha) - 4 * gamma * eta *"
-        " sin(alpha)^2) / (I + 4 * gamma + 4 * gamma * eta * sin(alpha)^2)"
-    ),
-    "springs": "(I - 2 * sin(alpha)^2 + 4 * gamma * cos(2 * alpha)) / (I + 4 * gamma)",
-    "rigid": "1 - 2 * sin(alpha)^2 * (1 + 4 * gamma_t) / (I + 4 * gamma_t)",
-}
-"""Restitution beside an impulse at the edges of the flat part
-(Theory (4.6), (4.8), (14.5))."""
+def _moment_letters(demand: ColumnDemand, at: ColumnInstant) -> dict[str, float]:
+    """Numbers for the letters of the largest moment."""
+    side = demand.at_largest_moment.side
+    rise = demand.at_largest_moment.rise
+    x = abs(at.rotation)
+    N = at.axial_force
+    F = side * at.shear
+    P = N * math.cos(x) + F * math.sin(x)
+    Q = F * math.cos(x) - N * math.sin(x)
+    letters = {"s": side, "F_1": at.shear, "d": rise, "P": P, "Q": Q}
+    letters |= {"e": (at.moment + rise * Q) / P, "N_mean": demand.mean_force}
+    for way, (moment, lever) in zip("xy", demand.moments, strict=False):
+        letters |= {f"M_{way}": abs(moment), f"l_{way}": lever}
+    return letters
 
 
-def _formulas(structure: PodiumStructure, podium: Mapping[str, Any]) -> dict[str, str]:
-    """Expressions by the names of the quantities; empty for what the case gives."""
-    bearing = structure.bearing
-    building = structure.superstructure
-    law = structure.impact_law.kind
-    flat = bearing.is_flat
-    beam = structure.cap_beam_mass > 0.0
-    given = podium["bearing"]
-    sizes = "dimensions" in podium["bearing"]
-    by_eta = building is not None and "superstructure_mass_ratio" in podium
-    floors = [] if building is None else building.masses.tolist()
-    first_order = "(1 - tan_alpha / tan_alpha_w) / 2"
-    own_ratio = "radius / height" if sizes else ""
-    rolls = bearing.curvature_ratio <= bearing.critical_curvature_ratio_of_paper
-    of_beta, of_exact = (
-        f"asin((tan_alpha_w - tan_alpha) / (2 * {r}))" for r in ("rho", "rho_cr")
-    )
-    slope = "" if flat else " * (1 - 2 * rho * cos(alpha)^2)"
-    by_mass = "M / eta" if by_eta else "" if "cap_beam_mass" in podium else "gamma * m_c"
-    by_beam = "M / m_b" if beam else "0"
-    # Compliant ends: phi_u is the root of its formula (Theory (12.8)).
-    lost = "2 / 3 * sin(alpha)" if structure.contact.kind == "plane" else "0"
-    stiffness = f"W * (B_u - {lost}) / (2 * R * phi_u * C_u^2)"
-    return {
-        "semi_diagonal": "sqrt((height)^2 + (width)^2) / 2" if sizes else "",
-        "column_height": "" if sizes else "2 * R * cos(alpha)",
-        "flat_width": "" if sizes else "2 * R * sin(alpha)",
-        "arc_radius": "" if sizes else "rho * height",
-        "alpha": "atan(width / height)" if sizes else "atan(tan_alpha)",
-        "alpha_wedge": "atan(tan_alpha_w)",
-        "beta": "0" if flat else of_beta,
-        "curvature_ratio": first_order
-        if given.get("curvature_ratio") == "critical"
-        else own_ratio,
-        "rho_cr_paper": first_order,
-        "rho_cr_exact": "0"
-        if flat
-        else f"(1 - 2 * rho_cr) * tan({of_exact}) = tan_alpha",
-        "critical_rotation": _critical(flat=flat, rolls=bearing.overturns_rolling),
-        "critical_rotation_paper": _critical(flat=flat, rolls=rolls),
-        "columns_mass": "m_b / gamma"
-        if beam and "column_mass" not in podium
-        else "N * m_column",
-        "cap_beam_mass": by_mass,
-        "superstructure_mass": "n * m_i"
-        if len(set(floors)) == 1
-        else " + ".join(f"m_{i + 1}" for i in range(len(floors))) or "0",
-        "gamma": "" if "cap_beam_mass_ratio" in podium else "m_b / (m_c)",
-        "eta": "" if by_eta else by_beam,
-        "gamma_total": "gamma * (1 + eta)",
-        "restitution": "f * e_given"
-        if law == "value"
-        else "f * (1 - kappa * (1 - e_edge))",
-        "uplift_acceleration": "g * tan_alpha",
-        "uplift_force": "W * tan_alpha",
-        "static_base_shear": "M * g * tan_alpha",
-        "initial_stiffness": f"-W{slope} / (2 * R * cos(alpha)^3)",
-        "rolling_period": "2 * pi * sqrt((m_c * I / 4 + m_b + M) / K)",
-        "p_hat": "sqrt(g / R * (1 + 2 * gamma_t) / (I + 4 * gamma_t))",
-        "T1": "2 * pi * sqrt(sum_m / sum_k)",
-        "e_edge": EDGES.get("springs" if structure.upwards else law, ""),
-        "weight": "(m_c / 2 + m_b + M) * g",
-        "period_ratio": "T_c / T_1",
-        "contact_period": "2 * pi * sqrt((m_0 + sum_M) / K_s)",
-        "contact_stiffness": stiffness,
-        "settlement": "phi_u * width / 2",
-        "joint_stiffness": "W / D_0",
-        "lifts_from": f"K_s = {stiffness}",
-        "lifts_from_ratio": "phi_u / alpha",
-        "contact_mass": "m_c * ((I - 1) / C_u^2 + 1 + 4 * gamma) / 4",
-        "contact_share": "sqrt(phi_u / (alpha / 10))",
-        **_of_column(
-            structure, _column_at_rest(structure)["crushed"] if structure.column else 0.0
-        ),
-    }
+def _moment_steps(at: ColumnInstant, letters: Mapping[str, float]) -> list[_Step]:
+    """Forces at an end when its moment is largest, and the moment that they give."""
+    ways = [way for way in "xy" if f"M_{way}" in letters]
+    carried = "N_mean" + "".join(f" + M_{way} / (columns * l_{way})" for way in ways)
+    axial = "N_1 * cos(x) + s * F_1 * sin(x)"
+    shear = "s * F_1 * cos(x) - N_1 * sin(x)"
+    return [
+        _Step("axial force, by moments of the podium", "N", at.axial_force, "N", carried),
+        _Step("axial force at its end", "P", letters["P"], "N", axial),
+        _Step("shear at its end", "Q", letters["Q"], "N", shear),
+        _Step("largest moment", "M", at.moment, "N m", "e * P - d * Q"),
+    ]
 
 
-def _of_column(structure: PodiumStructure, crushed: float) -> dict[str, str]:
-    """Of a column (Theory (16.2), (16.4) to (16.6)); a and b of an
-    ellipse are those of (16.5).
-
-    A round end whose edge is `crushed` over its whole width bears everywhere.
-    """
-    square = structure.column is not None and structure.column.section == "square"
-    line = "sqrt(N_0 * E_c / (pi * L * radius))"
-    ellipse = "3 * N_0 / (2 * pi * a_c * b_c)"
-    segment = "N_0 / (strength * (wide / 2)^2) = p_c - sin(p_c) * cos(p_c)"
-    segment = segment if crushed < 1.0 else "N_0 / (strength * pi * (wide / 2)^2)"
-    turned = "(sin(x) + sin(y) * cos(x) - cos(y) * sin(x))"
-    return {
-        "column_rest_force": "g * (m_c + m_b + M) / N",
-        "column_rest_moment": f"N_0 * (width / 2 * cos(x) + radius * {turned})",
-        "contact_rest_pressure": line if square else ellipse,
-        "crushed_rest_ratio": "N_0 / (strength * L * wide)" if square else segment,
-    }
-
-
-def _critical(*, flat: bool, rolls: bool) -> str:
-    if flat:
-        return "atan(tan_alpha)"
-    if rolls:
-        return "atan(tan_alpha / (1 - 2 * rho))"
-    return "atan(tan_alpha_w / (1 - 2 * rho * (1 - cos(beta))))"
+def _end_steps(
+    structure: PodiumStructure, at: ColumnInstant, crushed: float
+) -> list[_Step]:
+    """The largest pressure on an arc, or the largest crushed width at an edge."""
+    pressure = at.contact_pressure
+    if at.largest == "contact_pressure_ratio" and pressure is not None:
+        formula = of_column(structure, 0.0)["contact_rest_pressure"]
+        return [_Step("largest pressure on arcs", "p_0", pressure, "Pa", formula)]
+    if at.largest == "crushed_width_ratio":
+        formula = of_column(structure, crushed)["crushed_rest_ratio"]
+        return [_Step("largest crushed width", "b_c/2B'", crushed, "-", formula)]
+    return []
 
 
 LETTERS = {
@@ -584,14 +492,22 @@ UPPER = (
 )
 
 
+def strengths_by_way(structure: PodiumStructure) -> dict[str, list[StoreyStrength]]:
+    """Strengths of the storeys from the bottom, in y too if that differs; of those ways
+    in which storeys yield.
+    """
+    from rpscli.model.statics import storey_strengths  # numpy is slow
+
+    found = {way: storey_strengths(seen) for way, seen in structure.ways.items()}
+    return {way: strengths for way, strengths in found.items() if strengths}
+
+
 def strength_tables(structure: PodiumStructure) -> Iterator[Part]:
     """Strength of each storey beside its shear at uplift, the roof on
     top; in y if that differs.
     """
-    from rpscli.model.statics import storey_strengths  # numpy is slow
-
     heads = "strength kN", "of V_st", "shear at uplift kN", "under slow ground motion"
-    for way, seen in structure.ways.items():
+    for way, strengths in strengths_by_way(structure).items():
         rows = [
             (
                 str(storey),
@@ -601,11 +517,10 @@ def strength_tables(structure: PodiumStructure) -> Iterator[Part]:
                 "columns lift first" if each.uplift_first else "yields BEFORE uplift",
                 shown(1e3 * each.yield_drift),
             )
-            for storey, each in enumerate(storey_strengths(seen), 1)
+            for storey, each in enumerate(strengths, 1)
         ]
-        if rows:
-            storey = f"storey{way.replace('_', ', in ')}"
-            yield Table.of_texts((storey, *heads, "drift at yield mm"), rows[::-1])
+        storey = f"storey{way.replace('_', ', in ')}"
+        yield Table.of_texts((storey, *heads, "drift at yield mm"), rows[::-1])
     building = structure.superstructure
     if building is not None and building.yields_by_first_mode:
         yield f"{UPPER} (one history of six storeys: ductility 1.8 of the first, 6.7 of the last)"

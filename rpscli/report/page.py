@@ -148,10 +148,6 @@ _POINTS = re.compile(r'(?<= )(d|x|y)="[^"]*"')
 _NUMBER = re.compile(r"-?\d+\.\d{3,}")
 
 
-def _rounded(number: re.Match[str]) -> str:
-    return f"{float(number[0]):.2f}"
-
-
 MOST_BYTES = 1_000_000  # of a page that can be sent by mail and read on a telephone
 FOR_FIGURES = 840_000  # letters for all figures of a page together
 
@@ -199,38 +195,32 @@ def page(
         blocks = [_block(block, drawn) for block in section.blocks]
         head = element("h2", f"{place}  {section.title}")
         written.append(element("section", head, blocks, id=f"s{place}"))
+    header = element(
+        "header",
+        element("h1", title),
+        element("p", subtitle),
+        _signatures(signed or {}),
+    )
+    contents = element("nav", element("ol", links))
+    body = element("body", header, contents, element("main", written))
+    root = element("html", _head(title, name), body, lang="en")
+    return f"<!DOCTYPE html>\n{root}\n".encode("utf-8", "backslashreplace")
+
+
+def _head(title: str, name: str) -> Markup:
+    """The head of a page: its mark, its title, its style sheet, and what it may load."""
     sheet = resources.files(__package__).joinpath("page.css").read_text(encoding="utf-8")
     # Nothing is fetched and nothing runs, whatever a title may say.
     policy = "default-src 'none'; style-src 'unsafe-inline'; img-src data:"
-    root = element(
-        "html",
-        element(
-            "head",
-            element("meta", charset="utf-8"),
-            _mark(name),
-            element(
-                "meta", name="viewport", content="width=device-width, initial-scale=1"
-            ),
-            element(
-                "meta", **{"http-equiv": "Content-Security-Policy", "content": policy}
-            ),
-            element("title", title),
-            element("style", Markup(sheet)),
-        ),
-        element(
-            "body",
-            element(
-                "header",
-                element("h1", title),
-                element("p", subtitle),
-                _signatures(signed or {}),
-            ),
-            element("nav", element("ol", links)),
-            element("main", written),
-        ),
-        lang="en",
+    return element(
+        "head",
+        element("meta", charset="utf-8"),
+        _mark(name),
+        element("meta", name="viewport", content="width=device-width, initial-scale=1"),
+        element("meta", **{"http-equiv": "Content-Security-Policy", "content": policy}),
+        element("title", title),
+        element("style", Markup(sheet)),
     )
-    return f"<!DOCTYPE html>\n{root}\n".encode("utf-8", "backslashreplace")
 
 
 def _signatures(signed: Mapping[str, str | None]) -> Markup | None:

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rpscli.analyses.column_design import WITHOUT_IMPULSE, no_line
 from rpscli.analyses.column_forces import AMPLE
@@ -26,6 +25,7 @@ from rpscli.errors import listed
 from rpscli.model.podium import PodiumStructure
 from rpscli.report.derived import UPPER
 from rpscli.report.limits import limits_table
+from rpscli.report.storey_demands import Array, fixed_base_demands, isolated_demands
 from rpscli.report.table import (
     Column,
     Heading,
@@ -174,6 +174,12 @@ def direction_note(pairs: Iterable[bool], refused: str) -> str:
     return f"one horizontal direction at a time, not conservative: {remedy}"
 
 
+def note_of_direction(result: TimeHistoryResult) -> str:
+    """The note on the direction of a history; empty where both components act."""
+    both = result.motion.y is not None
+    return direction_note([both], result.structure.planar_only)
+
+
 def neighbours_texts(
     result: TimeHistoryResult, found: Sequence[Neighbour]
 ) -> Iterator[str]:
@@ -320,10 +326,15 @@ def _of_contacts(result: TimeHistoryResult) -> Iterator[Row]:
     yield from forces
     designed = ("column_moment", "contact_pressure_ratio", "crushed_width_ratio")
     yield from _rows(result, "overturning_ratio", *designed)
-    impulse = [WITHOUT_IMPULSE] * (result.column_demand is not None)
-    for what in (*result.left_out_of_columns, *impulse):
+    for what in left_out_of_columns(result):
         yield f"  without {what}", "", "", ""
     yield from _rows(result, "duration")
+
+
+def left_out_of_columns(result: TimeHistoryResult) -> list[str]:
+    """Parts that forces, and moments and pressures, of columns do not hold."""
+    impulse = [WITHOUT_IMPULSE] * (result.column_demand is not None)
+    return [*result.left_out_of_columns, *impulse]
 
 
 def without_passes(structure: PodiumStructure, both: bool) -> Iterator[str]:  # noqa: FBT001
@@ -527,42 +538,6 @@ def _devices_table(result: TimeHistoryResult) -> Table:
         prestress = "" if left is None else f"prestress {measured(left, 'N')} left"
         rows.append([f"{index} {demand.kind}", *texts, prestress])
     return Table.of_texts(["device", *units, ""], rows)
-
-
-Array = NDArray[np.float64]
-
-
-@dataclass(frozen=True, eq=False)
-class StoreyDemands:
-    """Largest absolute values in each storey from the bottom, arrays
-    (n,): `STOREYS` of results.
-
-    Drift ratios are None where the case gives no storey heights.
-    """
-
-    storey_drifts: Array
-    storey_drift_ratios: Array | None
-    storey_shears: Array
-    floor_accelerations: Array
-    floor_velocities: Array
-
-
-def isolated_demands(result: TimeHistoryResult) -> StoreyDemands:
-    """Demands of the building on its bearings."""
-    return _demands(result, result.max_drifts, result)
-
-
-def fixed_base_demands(result: TimeHistoryResult) -> StoreyDemands | None:
-    """Demands of the same building on a fixed base; None without a building."""
-    fixed = result.fixed_base
-    return None if fixed is None else _demands(result, fixed.drifts, fixed)
-
-
-def _demands(result: TimeHistoryResult, drifts: Array, of: Any) -> StoreyDemands:
-    building = result.structure.superstructure
-    ratios = None if building is None else building.drift_ratios(drifts)
-    floors = of.floor_accelerations, of.floor_velocities
-    return StoreyDemands(drifts, ratios, of.storey_shears, *floors)
 
 
 OF_RECORD = ("name", "source", "npts", "dt", "pga")

@@ -122,31 +122,15 @@ def _widths(table: Table, columns: Sequence[int], room: int, *, fold: bool) -> l
     heads = [visible(table.heads[i]) for i in columns]
     rows = table.rows
     cells = [[visible(row[i]) for row in rows] for i in columns]
-    wide = [
-        max(1, *map(len, [head, *own])) for head, own in zip(heads, cells, strict=True)
-    ]
-    in_head = [
-        min(max(map(len, head.split()), default=1), LONGEST_HEAD) for head in heads
-    ]
     for lines in (1, 2, 3, MOST_LINES, *[ALL_FOLD] * fold, LAST):
-        widths = []
-        least = []
-        for index, head, own, most, word in zip(
-            columns, heads, cells, wide, in_head, strict=True
-        ):
-            if index < table.words:
-                longest = max(
-                    (len(part) for cell in own for part in cell.split()), default=0
-                )
-                least.append(max(min(longest, LONGEST_WORD), word))
-                widths.append(most)
-                continue
-            number = max([word, *map(len, own)])
-            broken = (
-                w for w in range(number, most + 1) if len(wrap(head, w)) <= abs(lines)
-            )
-            widths.append(next(broken, most))
-            least.append({1: number, ALL_FOLD: 1}.get(lines, widths[-1]))
+        both = [
+            _width_of_words(head, own)
+            if index < table.words
+            else _width_of_numbers(head, own, lines)
+            for index, head, own in zip(columns, heads, cells, strict=True)
+        ]
+        widths = [width for width, _ in both]
+        least = [narrowest for _, narrowest in both]
         give = [
             i for i, n in enumerate(columns) if n < table.words or lines in {1, ALL_FOLD}
         ]
@@ -160,6 +144,27 @@ def _widths(table: Table, columns: Sequence[int], room: int, *, fold: bool) -> l
         else:
             return widths
     return []
+
+
+def _width_of_words(head: str, cells: Sequence[str]) -> tuple[int, int]:
+    """Width of a column of words without breaks, and the least that it can have."""
+    longest = max((len(part) for cell in cells for part in cell.split()), default=0)
+    least = max(min(longest, LONGEST_WORD), _longest_in_head(head))
+    return max(1, *map(len, [head, *cells])), least
+
+
+def _width_of_numbers(head: str, cells: Sequence[str], lines: int) -> tuple[int, int]:
+    """Width of a column of numbers whose head has so many lines, and the least."""
+    most = max(1, *map(len, [head, *cells]))
+    number = max([_longest_in_head(head), *map(len, cells)])
+    broken = (w for w in range(number, most + 1) if len(wrap(head, w)) <= abs(lines))
+    width = next(broken, most)
+    return width, {1: number, ALL_FOLD: 1}.get(lines, width)
+
+
+def _longest_in_head(head: str) -> int:
+    """Letters of the longest word of a head, at most those that are not broken."""
+    return min(max(map(len, head.split()), default=1), LONGEST_HEAD)
 
 
 def _made(table: Table, columns: Sequence[int], widths: Sequence[int]) -> RichTable:

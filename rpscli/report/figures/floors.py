@@ -22,7 +22,11 @@ from rpscli.analyses.results import TimeHistoryResult
 from rpscli.errors import UsageError
 from rpscli.report.figures import style
 from rpscli.report.figures.history import record_name
-from rpscli.report.timehistory import StoreyDemands, fixed_base_demands, isolated_demands
+from rpscli.report.storey_demands import (
+    StoreyDemands,
+    fixed_base_demands,
+    isolated_demands,
+)
 
 Array = NDArray[np.float64]
 

@@ -14,6 +14,7 @@ from rpscli.analyses.modal import ModalResult
 from rpscli.analyses.pushover import PushoverResult
 from rpscli.errors import UsageError
 from rpscli.model.podium import PodiumStructure
+from rpscli.model.superstructure import Superstructure
 from rpscli.report.figures import style
 from rpscli.report.figures.bearing import (
     BEAM,
@@ -40,6 +41,7 @@ def level_heights(structure: PodiumStructure) -> NDArray[np.float64]:
 
 COLUMNS = 3  # columns under a cap beam: their number and distances are not drawn to scale
 MOST_LEVELS = 20  # with more storeys, their heights are not written one by one
+EDGE = 0.62  # of the ground on both sides, where dimensions stand, over the width
 
 
 def draw_structure(axes: style.Axes, structure: PodiumStructure) -> None:
@@ -53,7 +55,7 @@ def draw_structure(axes: style.Axes, structure: PodiumStructure) -> None:
     for foot in np.linspace(-0.4, 0.4, count) * width if count > 1 else np.zeros(1):
         x, y = (outline(structure.bearing) + np.array([foot, 0.0])).T
         axes.fill(x, y, fc=COLUMN, ec=style.BLACK, lw=0.7)
-    edge = 0.62 * width
+    edge = EDGE * width
     axes.plot([-edge, edge], [0.0, 0.0], color=style.BLACK, lw=1.2)
     measure(axes, (-edge, 0.0), (-edge, height), f"2H = {height:.4g} m")
     columns = f"columns: {_tonnes(structure.columns_mass)}"
@@ -68,26 +70,34 @@ def draw_structure(axes: style.Axes, structure: PodiumStructure) -> None:
     beside = partial(axes.text, edge, va="center", fontsize=style.small())
     beside(0.5 * height, f" {columns}")
     beside(height + 0.5 * thickness, f" cap beam: {_tonnes(structure.cap_beam_mass)}")
-    building = structure.superstructure
-    if building is None:
-        return
+    if structure.superstructure is not None:
+        _draw_storeys(axes, structure.superstructure, levels, width, thickness)
+
+
+def _draw_storeys(
+    axes: style.Axes,
+    building: Superstructure,
+    levels: NDArray[np.float64],
+    width: float,
+    above: float,
+) -> None:
+    """Floors with their masses and heights, so far above `level_heights`, and walls."""
+    edge = EDGE * width
     few = building.storeys <= MOST_LEVELS
     for below, level, mass in zip(levels, levels[1:], building.masses, strict=False):
         axes.plot(
-            [-0.5 * width, 0.5 * width], [level + thickness] * 2, color=style.BLUE, lw=2.2
+            [-0.5 * width, 0.5 * width], [level + above] * 2, color=style.BLUE, lw=2.2
         )
         if few:
-            beside(level + thickness, f" {_tonnes(float(mass))}")
+            text = f" {_tonnes(float(mass))}"
+            axes.text(edge, level + above, text, va="center", fontsize=style.small())
         if few and building.storey_heights is not None:
-            feet = (-edge, below + thickness), (-edge, level + thickness)
+            feet = (-edge, below + above), (-edge, level + above)
             measure(axes, *feet, f"{level - below:.4g} m")
     for side in (-0.5, 0.5):
-        axes.plot(
-            [side * width] * 2,
-            [levels[0], levels[-1] + thickness],
-            color=style.BLUE,
-            lw=0.8,
-        )
+        ends = [levels[0], levels[-1] + above]
+        axes.plot([side * width] * 2, ends, color=style.BLUE, lw=0.8)
+
     scale = "heights to scale, widths not"
     if building.storey_heights is None:
         scale = "storey heights are not given: drawn as 3 m"

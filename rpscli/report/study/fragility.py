@@ -7,6 +7,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Annotated, Any, NamedTuple, TypeVar
 
 import numpy as np
@@ -261,7 +262,7 @@ class Fragilities:
         x_label = f"{measure_name(self.intensity)} [{self.intensity.unit}]"
         row = 2 if len(groups) == 4 else 3
         shown = [*groups.values()]
-        return panels.panel_figure(
+        return panels.PanelFigure(
             [*groups], shown, draw, in_row=row, x_label=x_label, **words
         )
 
@@ -400,41 +401,10 @@ def fragility(study: StoredPoints, options: FragilityOptions) -> Found:
     """Curves, and the data that they go through."""
     found = fragilities(study, options)
     keys = found.systems.keys
-    measure = found.intensity.name
-    unit = found.intensity.unit
-    curves = [((curve.values, curve.limit.label), curve) for curve in found.curves]
-    fit_heads = (
-        f"limit, intensity, method, median [{unit}], median_low [{unit}], median_high"
-        f" [{unit}], beta, beta_low, beta_high, beta_total, exceeded, counted,"
-        " overturned_among_them, failed, note"
-    )
-    fits = [
-        (
-            *of, measure, fit.method, fit.median, *fit.median_band, fit.beta, *fit.beta_band,
-            c.total, c.exceeded, c.counted, c.overturned, c.failed, fit.note,
-        )
-        for of, c in curves
-        for fit in [c.fit]
-    ]  # fmt: skip
-    lines = [
-        (*of, *numbers)
-        for of, curve in curves
-        if curve.fit.fitted
-        for numbers in zip(curve.grid, curve.fit.curve, *curve.fit.band, strict=True)
-    ]
-    levels = [(*of, at) for of, curve in curves for at in curve.observed.intensity]
-    shares = [share for _, curve in curves for share in curve.observed.shares]
     tables = {
-        "": keyed(keys, fit_heads, fits),
+        "": _fit_columns(found),
         **({"_at": margins(study, options, found)} if options.at else {}),
-        "_curves": keyed(
-            keys, f"limit, {measure} [{unit}], probability, low, high", lines
-        ),
-        "_observed": [
-            *keyed(keys, f"limit, {measure} [{unit}]", levels),
-            *counted_columns(shares),
-            *share_columns("exceeded", shares),
-        ],
+        **_curve_columns(found),
     }
     total = ["beta_total"] * bool(options.dispersion.given)
     main = (*keys, "limit", "median", "beta", *total, "exceeded", "counted")
@@ -450,6 +420,49 @@ def fragility(study: StoredPoints, options: FragilityOptions) -> Found:
         shown={"": dict.fromkeys(main, "")} | ({"_at": {}} if options.at else {}),
         remark=remark,
     )
+
+
+def _fit_columns(found: Fragilities) -> list[Column]:
+    """One row a curve: its fit with bands, and what it rests on."""
+    unit = found.intensity.unit
+    heads = (
+        f"limit, intensity, method, median [{unit}], median_low [{unit}], median_high"
+        f" [{unit}], beta, beta_low, beta_high, beta_total, exceeded, counted,"
+        " overturned_among_them, failed, note"
+    )
+    rows = [
+        (
+            c.values, c.limit.label, found.intensity.name, fit.method, fit.median,
+            *fit.median_band, fit.beta, *fit.beta_band, c.total, c.exceeded, c.counted,
+            c.overturned, c.failed, fit.note,
+        )
+        for c in found.curves
+        for fit in [c.fit]
+    ]  # fmt: skip
+    return keyed(found.systems.keys, heads, rows)
+
+
+def _curve_columns(found: Fragilities) -> dict[str, list[Column]]:
+    """Fitted curves with bands, and the observed shares that they go through."""
+    keys = found.systems.keys
+    at = f"limit, {found.intensity.name} [{found.intensity.unit}]"
+    curves = [((curve.values, curve.limit.label), curve) for curve in found.curves]
+    lines = [
+        (*of, *numbers)
+        for of, curve in curves
+        if curve.fit.fitted
+        for numbers in zip(curve.grid, curve.fit.curve, *curve.fit.band, strict=True)
+    ]
+    levels = [(*of, level) for of, curve in curves for level in curve.observed.intensity]
+    shares = [share for _, curve in curves for share in curve.observed.shares]
+    return {
+        "_curves": keyed(keys, f"{at}, probability, low, high", lines),
+        "_observed": [
+            *keyed(keys, at, levels),
+            *counted_columns(shares),
+            *share_columns("exceeded", shares),
+        ],
+    }
 
 
 def what_bands_hold(layout: StudyPoints, options: FragilityOptions) -> str:
@@ -475,45 +488,13 @@ def fragility_figure(report: Fragilities) -> Callable[[str], style.Draw]:
     """One panel a limit state with a fit; markers are observed
     shares, shades the bands.
     """
-    from scipy.special import ndtr
-
     drawn = [curve for curve in report.curves if curve.fit.fitted]
     groups = report.in_panels(drawn, lambda curve: curve)
-
-    def draw(axes: style.Axes, curves: list[Fragility]) -> None:
-        for curve in curves:
-            fit = curve.fit
-            grid = curve.grid
-            seen = curve.observed
-            _, name, place, count = report.placed(curve)
-            look = panels.look(place, count) | {"ms": 3.2}
-            dashes = "--" if fit.method == "penalised" else "-"
-            axes.plot(
-                grid, fit.curve, dashes, lw=1.4, markevery=[], label=name or None, **look
-            )
-            if len(curves) <= MOST_BANDS:
-                axes.fill_between(grid, *fit.band, color=look["color"], alpha=0.15, lw=0)
-            axes.plot(seen.intensity, seen.share, ls="", alpha=0.8, **look)
-            if curve.total != fit.beta:
-                total = ndtr(np.log(grid / fit.median) / curve.total)
-                axes.plot(grid, total, ":", color=look["color"], lw=1.0)
-        axes.set_ylim(-0.02, 1.02)
-        axes.set_xlim(0.0, max(curve.grid[-1] for curve in curves))
-        beyond_computed(axes, max(curve.largest for curve in curves), axes.get_xlim()[1])
-
-    banded = [
-        curve for group in groups.values() if len(group) <= MOST_BANDS for curve in group
-    ]
-    bands = f"bands: {style.percent(report.confidence)}, the choice of records"
-    if not banded:
-        bands = f"bands of more than {MOST_BANDS} curves: see CSV"
-    elif not any(np.isfinite(curve.fit.band[0]).any() for curve in banded):
-        bands = "no bands are determined"
     missing = sum(not curve.fit.fitted for curve in report.curves)
     penalised = any(curve.fit.method == "penalised" for curve in report.curves)
     note = panels.remarks(
         "markers: observed",
-        bands,
+        _remark_on_bands(report, groups.values()),
         "dotted: with further dispersion" * any(c.total != c.fit.beta for c in drawn),
         BEYOND_COMPUTED,
         "dashed: separated data, penalised fit" * penalised,
@@ -524,7 +505,43 @@ def fragility_figure(report: Fragilities) -> Callable[[str], style.Draw]:
         panels.over(report.systems.pooled),
         panels.left_out(sum({curve.place: curve.failed for curve in drawn}.values())),
     )
+    draw = partial(_draw_curves, report=report)
     return report.figure(groups, draw, y_label="probability of exceedance", note=note)
+
+
+def _draw_curves(axes: style.Axes, curves: list[Fragility], report: Fragilities) -> None:
+    """Curves of one panel, with what they go through and how sure they are."""
+    from scipy.special import ndtr
+
+    for curve in curves:
+        fit = curve.fit
+        grid = curve.grid
+        seen = curve.observed
+        _, name, place, count = report.placed(curve)
+        look = panels.look(place, count) | {"ms": 3.2}
+        dashes = "--" if fit.method == "penalised" else "-"
+        axes.plot(
+            grid, fit.curve, dashes, lw=1.4, markevery=[], label=name or None, **look
+        )
+        if len(curves) <= MOST_BANDS:
+            axes.fill_between(grid, *fit.band, color=look["color"], alpha=0.15, lw=0)
+        axes.plot(seen.intensity, seen.share, ls="", alpha=0.8, **look)
+        if curve.total != fit.beta:
+            total = ndtr(np.log(grid / fit.median) / curve.total)
+            axes.plot(grid, total, ":", color=look["color"], lw=1.0)
+    axes.set_ylim(-0.02, 1.02)
+    axes.set_xlim(0.0, max(curve.grid[-1] for curve in curves))
+    beyond_computed(axes, max(curve.largest for curve in curves), axes.get_xlim()[1])
+
+
+def _remark_on_bands(report: Fragilities, groups: Iterable[list[Fragility]]) -> str:
+    """The bands of the figure in words, or the reason why there are none."""
+    banded = [curve for group in groups if len(group) <= MOST_BANDS for curve in group]
+    if not banded:
+        return f"bands of more than {MOST_BANDS} curves: see CSV"
+    if not any(np.isfinite(curve.fit.band[0]).any() for curve in banded):
+        return "no bands are determined"
+    return f"bands: {style.percent(report.confidence)}, the choice of records"
 
 
 BEYOND_COMPUTED = "grey: beyond the largest computed"

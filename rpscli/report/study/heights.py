@@ -5,6 +5,7 @@ Figure 9), floor spectra.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
@@ -17,6 +18,7 @@ from rpscli.case.study.reports import ReportOptions, VariedKeys
 from rpscli.report.figures import style
 from rpscli.report.study import panels
 from rpscli.report.study.report import Found, Report, keyed, reached, without_uplift
+from rpscli.report.table import Column
 from rpscli.sweep.points import StudyPoints
 from rpscli.sweep.statistics.fractiles import THREE
 from rpscli.sweep.statistics.grouping import Histories, grouping, own_keys
@@ -64,15 +66,6 @@ def storey_shear(study: StoredPoints, options: StoreyShearOptions) -> Found:
     profiles = [
         profile for group in found.groups if (profile := profile_of(study, group))
     ]
-    rows = [
-        (one.values, storey, *ratios, *(ratio * one.static for ratio in ratios), *counts)
-        for one in profiles
-        for of in [one.histories]
-        for counts in [(len(of.survivors), of.overturned.number, of.failed)]
-        for storey, ratios in enumerate(np.transpose(one.shears).tolist(), start=1)
-    ]
-    heads = [f"{name}_shear_ratio" for name, *_ in SHEARS]
-    heads += [f"{name}_shear [N]" for name, *_ in SHEARS]
     notes = list(found.notes)
     histories = [profile.histories for profile in profiles]
     if fallen := sum(group.overturned.number for group in histories):
@@ -82,36 +75,49 @@ def storey_shear(study: StoredPoints, options: StoreyShearOptions) -> Found:
             " fixed base too"
         )
     in_kn = options.unit == "kN"
-
-    def draw(axes: style.Axes, profile: Profile) -> None:
-        edges = np.arange(len(profile.shears[0]) + 1)
-        if in_kn:
-            axes.locator_params(axis="x", nbins=3)  # long numbers
-        for (_, name, colour, line), shear in zip(SHEARS, profile.shears, strict=True):
-            values = shear * profile.static * 1e-3 if in_kn else shear
-            # The shear is the same all the way up a storey.
-            look: dict[str, Any] = {"color": colour, "ls": line, "lw": 1.3, "label": name}
-            axes.stairs(values, edges, orientation="horizontal", **look)
-        axes.set_ylim(0.0, len(edges) - 1)
-        axes.locator_params(axis="y", integer=True)
-        survivors = len(profile.histories.survivors)
-        every = len(profile.histories)
-        text = f"{survivors} survivors{panels.break_if_narrow(axes)}of {every}"
-        panels.corner(axes, "right", "top", text)
-
     in_kn_label = STOREY_SHEARS.in_unit("kN", STOREY_SHEARS.symbol)
     figure = panels.in_panels(
         found.keys,
         profiles,
-        draw,
+        partial(_draw_profile, in_kn=in_kn),
         x_label=in_kn_label if in_kn else "$V_i/V_{st}$ [-]",
         y_label="level (0 = cap beam)",
         share="x",
         limits=lambda axes: axes.set_xlim(left=0.0),
         note=panels.noted(found, failed=sum(group.failed for group in histories)),
     )
-    titles = f"storey, {', '.join(heads)}, counted, overturned, failed"
-    return Found({"": keyed(found.keys, titles, rows)}, figure, notes)
+    return Found({"": _shear_columns(found.keys, profiles)}, figure, notes)
+
+
+def _shear_columns(keys: Sequence[str], profiles: Sequence[Profile]) -> list[Column]:
+    """One row a storey of a profile, the first storey first."""
+    rows = [
+        (one.values, storey, *ratios, *(ratio * one.static for ratio in ratios), *counts)
+        for one in profiles
+        for of in [one.histories]
+        for counts in [(len(of.survivors), of.overturned.number, of.failed)]
+        for storey, ratios in enumerate(np.transpose(one.shears).tolist(), start=1)
+    ]
+    heads = [f"{name}_shear_ratio" for name, *_ in SHEARS]
+    heads += [f"{name}_shear [N]" for name, *_ in SHEARS]
+    return keyed(keys, f"storey, {', '.join(heads)}, counted, overturned, failed", rows)
+
+
+def _draw_profile(axes: style.Axes, profile: Profile, *, in_kn: bool) -> None:
+    """Shears over the height: the same all the way up a storey."""
+    edges = np.arange(len(profile.shears[0]) + 1)
+    if in_kn:
+        axes.locator_params(axis="x", nbins=3)  # long numbers
+    for (_, name, colour, line), shear in zip(SHEARS, profile.shears, strict=True):
+        values = shear * profile.static * 1e-3 if in_kn else shear
+        look: dict[str, Any] = {"color": colour, "ls": line, "lw": 1.3, "label": name}
+        axes.stairs(values, edges, orientation="horizontal", **look)
+    axes.set_ylim(0.0, len(edges) - 1)
+    axes.locator_params(axis="y", integer=True)
+    survivors = len(profile.histories.survivors)
+    every = len(profile.histories)
+    text = f"{survivors} survivors{panels.break_if_narrow(axes)}of {every}"
+    panels.corner(axes, "right", "top", text)
 
 
 def profile_of(study: StoredPoints, group: Histories) -> Profile | None:

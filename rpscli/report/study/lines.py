@@ -6,7 +6,8 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -32,11 +33,12 @@ from rpscli.report.study.report import (
     reached,
     symbol,
 )
-from rpscli.report.table import LARGE_UNITS
+from rpscli.report.table import LARGE_UNITS, Column
 from rpscli.sweep.evaluation import KNOWN, SCALARS, quantity
 from rpscli.sweep.statistics.fractiles import THREE, demand, fractiles
 from rpscli.sweep.statistics.grouping import (
     INTENSITY,
+    Grouping,
     Histories,
     axis_keys,
     grouping,
@@ -98,19 +100,55 @@ class Panel(NamedTuple):
     lines: list[Line]
 
 
+class Chart(NamedTuple):
+    """The lines of a report, and in words the statistic that they are, if they are one."""
+
+    options: LinesOptions
+    panels: list[Panel]
+    series: tuple[str, ...]  # keys that tell lines of a result apart
+    statistic: str
+
+    @property
+    def results(self) -> tuple[str, ...]:
+        """Names of the results, dashed ones last."""
+        return (*self.options.result, *self.options.dashed)
+
+    @property
+    def every(self) -> list[Line]:
+        """The lines of all panels."""
+        return [line for panel in self.panels for line in panel.lines]
+
+
 def lines(study: StoredPoints, options: LinesOptions) -> Found:
     """The lines of every series of every panel; a statistic where
     points share an abscissa.
     """
     layout = study.table.layout
-    together = axis_keys(study.table.layout, options.x)
+    together = axis_keys(layout, options.x)
     panel_keys = options.panels or ()
     series = options.series
     if series is None:
         series = own_keys(layout, (*panel_keys, *together))
-    names = (*options.result, *options.dashed)
     found = grouping(study.table, panel_keys, (*series, options.x))
-    columns = study.stored(names if together else (*names, options.x)).columns
+    chart = _chart(study, options, found, series)
+    notes = [*found.notes] if together else []
+    if chart.statistic == MEAN and (fallen := _left_out_of_means(chart.panels)):
+        notes.append(fallen)
+
+    x_name = shown_keys(layout, (options.x,))[0]
+    pooled = panels.over(found.pooled) if together else ""
+    figure = _figure(found, chart, x_name, pooled)
+    return Found({"": _columns(found.keys, chart, x_name)}, figure, notes)
+
+
+def _chart(
+    study: StoredPoints, options: LinesOptions, found: Grouping, series: tuple[str, ...]
+) -> Chart:
+    """The lines of all groups, of points or of the statistic of those that go together."""
+    layout = study.table.layout
+    names = (*options.result, *options.dashed)
+    stored = names if axis_keys(layout, options.x) else (*names, options.x)
+    columns = study.stored(stored).columns
     shown = []
     for group in found.groups:
         parts = itertools.product(names, group.parts(series))
@@ -118,50 +156,57 @@ def lines(study: StoredPoints, options: LinesOptions) -> Found:
             line for name, part in parts for line in _lines(columns, options, part, name)
         ]
         shown.append(Panel(group.values, of_group))
-    every = [line for panel in shown for line in panel.lines]
     single = all(
-        c + o < 2 for x in every for c, o in zip(x.counted, x.overturned, strict=True)
+        c + o < 2
+        for panel in shown
+        for line in panel.lines
+        for c, o in zip(line.counted, line.overturned, strict=True)
     )
     statistic = "" if single else statistic_words(options.statistic)
-    x_name = shown_keys(layout, (options.x,))[0]
-    series_keys = shown_keys(layout, series)
+    return Chart(options, shown, shown_keys(layout, series), statistic)
+
+
+def _columns(panel_keys: Sequence[str], chart: Chart, x_name: str) -> list[Column]:
+    """One row a point of a line, with what its statistic counts."""
+    statistic = chart.statistic
     rows = [
         (
             (*panel.values, *line.values), line.result, _unit(line.result), line.x[i],
             reached(line.y[i]), *(statistic and (statistic, line.counted[i], line.overturned[i])),
         )
-        for panel in shown
+        for panel in chart.panels
         for line in panel.lines
         for i in range(len(line.x))
     ]  # fmt: skip
-    units = {_unit(name) for name in names}
+    units = {_unit(name) for name in chart.results}
     unit = units.pop() if len(units) == 1 else "SI"
     heads = f"result, unit, {x_name} [{_unit(x_name)}], value [{unit}]"
     heads += ", statistic, counted, overturned" * bool(statistic)
-    notes = [*found.notes] if together else []
-    if statistic == MEAN and (fallen := _left_out_of_means(shown)):
-        notes.append(fallen)
+    return keyed((*panel_keys, *chart.series), heads, rows)
+
+
+def _figure(
+    found: Grouping, chart: Chart, x_name: str, pooled: str
+) -> Callable[[str], style.Draw]:
+    """A figure of all panels; `pooled` is the remark on what differs within one."""
+    statistic = chart.statistic
+    every = chart.every
     hollow = statistic == MEAN and any(any(line.overturned) for line in every)
-
-    def draw(axes: style.Axes, panel: Panel) -> None:
-        _draw(axes, panel, every, options, series_keys, statistic)
-
-    figure = panels.in_panels(
+    return panels.in_panels(
         found.keys,
-        shown,
-        draw,
+        chart.panels,
+        partial(_draw, chart=chart),
         x_label=_axis(x_name),
-        y_label=", ".join(filter(None, (_together(names), statistic))),
+        y_label=", ".join(filter(None, (_together(chart.results), statistic))),
         note=panels.remarks(
-            panels.over(found.pooled) if together else "",
+            pooled,
             "hollow: means without those that overturned, counts in the CSV" * hollow,
-            panels.shaded(max(len(_series(every)), len(names))),
+            panels.shaded(max(len(_series(every)), len(chart.results))),
             f"not drawn where the {statistic} overturned"
             * any(math.inf in line.y for line in every),
             panels.left_out(found.failed),
         ),
     )
-    return Found({"": keyed((*found.keys, *series_keys), heads, rows)}, figure, notes)
 
 
 def _left_out_of_means(shown: Sequence[Panel]) -> str:
@@ -211,17 +256,11 @@ def _series(every: Sequence[Line]) -> list[tuple[object, ...]]:
     return [*{repr(line.values): line.values for line in every}.values()]
 
 
-def _draw(
-    axes: style.Axes,
-    panel: Panel,
-    every: Sequence[Line],
-    options: LinesOptions,
-    series_keys: Sequence[str],
-    statistic: str,
-) -> None:
+def _draw(axes: style.Axes, panel: Panel, chart: Chart) -> None:
     """One line a series and result; dashed ones are comparisons."""
-    results = (*options.result, *options.dashed)
-    series = _series(every)
+    options = chart.options
+    results = chart.results
+    series = _series(chart.every)
     words = (LEGEND.get(name, name) for name in _distinct(results))
     names = dict(zip(results, words, strict=True))
     dashed = [line for line in panel.lines if line.result in options.dashed]
@@ -240,7 +279,7 @@ def _draw(
         ):  # each word has a place
             x = range(len(line.x))
             axes.set_xticks(x, [plain(value) for value in line.x])
-        parts = (labels(series_keys, line.values), names[line.result])
+        parts = (labels(chart.series, line.values), names[line.result])
         name = ", ".join(filter(None, parts)) or None
         shade = panels.colour(place, count)
         look: dict[str, Any] = {"ls": _staggered(place, among), "color": shade}
@@ -248,7 +287,7 @@ def _draw(
             look = {"ls": ("-", "-.", ":")[options.result.index(line.result) % 3]}
             look |= panels.look(place, count) if len(x) < 25 else {"color": shade}
         axes.plot(x, line.y, lw=1.4, ms=3.0, label=name, **look)
-        if statistic == MEAN:
+        if chart.statistic == MEAN:
             fallen = [n for n, overturned in enumerate(line.overturned) if overturned]
             at = [[values[n] for n in fallen] for values in (x, line.y)]
             axes.plot(*at, "o", color="white", mec=shade, ms=4.5, zorder=3.0)
@@ -352,14 +391,7 @@ def ida(study: StoredPoints, options: IdaOptions) -> Found:
     table = study.table
     found = grouping(table, options.panels, (INTENSITY,))
     demands = demand(table, table.columns[options.result])
-    shown = []
-    for group in found.groups:
-        levels = sorted(group.parts([INTENSITY]), key=_height)
-        curves = np.column_stack([demands[level.every] for level in levels])
-        spread = np.column_stack([fractiles(column, THREE) for column in curves.T])
-        shown.append(
-            Ida(group.values, levels, np.array([*map(_height, levels)]), curves, spread)
-        )
+    shown = [_ida_of(group, demands) for group in found.groups]
     (name,) = shown_keys(table.layout, (INTENSITY,))
     of = SCALARS["timehistory"][options.result]
     level_name = f"{name} [{unit_of(name)}]"
@@ -372,29 +404,30 @@ def ida(study: StoredPoints, options: IdaOptions) -> Found:
             panel.levels, panel.heights.tolist(), panel.fractiles.T.tolist(), strict=True
         )
     ]
+    figure = _ida_figure(found, shown, of, level_name)
+    return Found({"": keyed(found.keys, heads, rows)}, figure, found.notes)
+
+
+def _ida_of(group: Histories, demands: Array) -> Ida:
+    """Curves and fractiles of one group."""
+    levels = sorted(group.parts([INTENSITY]), key=_height)
+    curves = np.column_stack([demands[level.every] for level in levels])
+    spread = np.column_stack([fractiles(column, THREE) for column in curves.T])
+    return Ida(group.values, levels, np.array([*map(_height, levels)]), curves, spread)
+
+
+def _ida_figure(
+    found: Grouping, shown: Sequence[Ida], of: ResultQuantity, level_name: str
+) -> Callable[[str], style.Draw]:
+    """One panel a group, as far to the right as what stood."""
     finite = np.concatenate([panel.curves[np.isfinite(panel.curves)] for panel in shown])
     edge = 1.15 * float(finite.max()) if len(finite) else 1.15
     top = 1.04 * max(float(panel.heights.max()) for panel in shown)
     numbers = sorted({str(len(panel.curves)) for panel in shown})
-
-    def draw(axes: style.Axes, panel: Ida) -> None:
-        levels = np.concatenate([[0.0], panel.heights])
-        panels.large_axis(axes.xaxis, of.unit)
-        # Evenly through all of them: more would only blacken the panel.
-        for curve in panel.curves[:: max(1, len(panel.curves) // MOST_CURVES)]:
-            line = _run_out(curve, levels, edge)
-            axes.plot(*line, color=style.GREY, lw=0.8, label="single curves")
-        for fractile, (colour, dashes), share in zip(
-            panel.fractiles, LINES, THREE, strict=True
-        ):
-            label = "median" if share == 0.5 else f"{style.percent(share)} fractile"
-            line = _run_out(fractile, levels, edge)
-            axes.plot(*line, color=colour, ls=dashes, lw=1.8, label=label)
-
-    figure = panels.in_panels(
+    return panels.in_panels(
         found.keys,
         shown,
-        draw,
+        partial(_draw_ida, unit=of.unit, edge=edge),
         x_label=panels.large_label(of),
         y_label=level_name,
         limits=lambda axes: axes.set(xlim=(0.0, 0.97 * edge), ylim=(0.0, top)),
@@ -407,7 +440,22 @@ def ida(study: StoredPoints, options: IdaOptions) -> Found:
             "back to the left: stronger motions, smaller demands",
         ),
     )
-    return Found({"": keyed(found.keys, heads, rows)}, figure, found.notes)
+
+
+def _draw_ida(axes: style.Axes, panel: Ida, unit: str, edge: float) -> None:
+    """Single curves, and fractiles over them."""
+    levels = np.concatenate([[0.0], panel.heights])
+    panels.large_axis(axes.xaxis, unit)
+    # Evenly through all of them: more would only blacken the panel.
+    for curve in panel.curves[:: max(1, len(panel.curves) // MOST_CURVES)]:
+        line = _run_out(curve, levels, edge)
+        axes.plot(*line, color=style.GREY, lw=0.8, label="single curves")
+    for fractile, (colour, dashes), share in zip(
+        panel.fractiles, LINES, THREE, strict=True
+    ):
+        label = "median" if share == 0.5 else f"{style.percent(share)} fractile"
+        line = _run_out(fractile, levels, edge)
+        axes.plot(*line, color=colour, ls=dashes, lw=1.8, label=label)
 
 
 def _height(level: Histories) -> float:

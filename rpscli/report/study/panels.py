@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
@@ -16,6 +17,7 @@ from rpscli.sweep.statistics.grouping import Grouping
 
 if TYPE_CHECKING:
     from matplotlib.axis import Axis
+    from numpy.typing import NDArray
 
 Panel = TypeVar("Panel")
 
@@ -76,74 +78,93 @@ def in_panels(
     across = len(dict.fromkeys(str(panel.values[-1]) for panel in panels)) if keys else 1
     fills = 1 < across <= 5 and len(panels) % across == 0
     names = [labels(keys, panel.values) for panel in panels]
-    return panel_figure(names, panels, draw, in_row=across if fills else 4, **words)
+    return PanelFigure(names, panels, draw, in_row=across if fills else 4, **words)
 
 
-def panel_figure(
-    names: Sequence[str],
-    panels: Sequence[Any],
-    draw: Callable[[style.Axes, Any], None],
-    *,
-    in_row: int,
-    x_label: str,
-    y_label: str,
-    share: Literal["both", "x"] = "both",
-    limits: Callable[[style.Axes], object] | None = None,
-    note: str = "",
-) -> Callable[[str], style.Draw]:
+@dataclass(frozen=True, eq=False)
+class PanelFigure:
     """A figure that waits for its title: panels with titles, so
     many of them side by side.
     """
 
-    def fill(title: str, figure: style.Figure) -> None:
-        from matplotlib import rcParams
+    names: Sequence[str]
+    panels: Sequence[Any]
+    draw: Callable[[style.Axes, Any], None]
+    in_row: int
+    x_label: str
+    y_label: str
+    share: Literal["both", "x"] = "both"
+    limits: Callable[[style.Axes], object] | None = None
+    note: str = ""
 
-        width = style.room(figure)
-        widest = columns = max(1, min(in_row, len(panels)))
-        if width < style.WIDTH:
-            columns = min(1 if len(panels) == 3 else 2, widest)  # three leave a hole
-        letters = SMALL * FONT_SIZE
+    def __call__(self, title: str) -> style.Draw:
+        """The figure under a title."""
+        return partial(self._fill, title)
+
+    def _fill(self, title: str, figure: style.Figure) -> None:
+        columns = self._columns(figure)
+        room = (style.room(figure) - style.BESIDE) / columns
         titles = [
-            style.folded(style.typeset(name), (width - style.BESIDE) / columns, letters)
-            for name in names
+            style.folded(style.typeset(name), room, SMALL * FONT_SIZE)
+            for name in self.names
         ]
         lines = 1 + max((text.count("\n") for text in titles), default=0)
-        shown, cut = first(figure, panels, columns, MOST_PANELS, lines)
+        shown, cut = first(figure, self.panels, columns, MOST_PANELS, lines)
         rows = max(1, math.ceil(len(shown) / columns))
-        each = 2.6 if columns < 3 and width >= style.WIDTH else 2.1
-        height = 3.8 if rows == 1 and columns == 1 else 1.0 + each * rows
-        own = style.WIDTH if widest > 1 else 0.72 * style.WIDTH
         # A heading may be cut at its end: what is left out comes first.
-        style.begin(figure, (title, remarks(cut, note)), height, own)
+        words = (title, remarks(cut, self.note))
+        style.begin(figure, words, *self._size(figure, rows, columns))
         grid = figure.subplots(
-            rows, columns, squeeze=False, sharex=True, sharey=share == "both"
+            rows, columns, squeeze=False, sharex=True, sharey=self.share == "both"
         )
         for axes, panel, name in zip(grid.flat, shown, titles, strict=False):
             axes.locator_params(
                 nbins=max(2, 5 - rows) if style.tight(figure) else MOST_TICKS
             )
-            draw(axes, panel)
+            self.draw(axes, panel)
             # Without a height matplotlib would look for ticks under the title, at great
             # length.
             axes.set_title(name, y=1.0, fontsize=style.small())
-        for place, axes in enumerate(grid.flat):
-            if place >= len(shown):
-                axes.set_axis_off()
-            elif place + columns >= len(shown):
-                axes.set_xlabel(style.typeset(x_label))
-                axes.tick_params(labelbottom=True)
-        if rows == 1:
-            grid[0, 0].set_ylabel(style.typeset(y_label))
-        else:
-            letters = rcParams["font.size"]
-            room = 0.7 * style.inches(figure)[1]
-            folded = style.folded(style.typeset(y_label), room, letters)
-            figure.supylabel(folded, fontsize=letters, multialignment="center")
-        if limits is not None:
-            limits(grid.flat[0])
+        self._label(figure, grid, len(shown))
+        if self.limits is not None:
+            self.limits(grid.flat[0])
         style.legend_below(figure, grid.flat)
 
-    return lambda title: partial(fill, title)
+    @property
+    def _widest(self) -> int:
+        """Panels side by side where there is room."""
+        return max(1, min(self.in_row, len(self.panels)))
+
+    def _columns(self, figure: style.Figure) -> int:
+        """Panels side by side in a figure; three would leave a hole beside two."""
+        if style.room(figure) >= style.WIDTH:
+            return self._widest
+        return min(1 if len(self.panels) == 3 else 2, self._widest)
+
+    def _size(self, figure: style.Figure, rows: int, columns: int) -> tuple[float, float]:
+        """Height and width of a figure of ours [in]."""
+        each = 2.6 if columns < 3 and style.room(figure) >= style.WIDTH else 2.1
+        height = 3.8 if rows == 1 and columns == 1 else 1.0 + each * rows
+        return height, style.WIDTH if self._widest > 1 else 0.72 * style.WIDTH
+
+    def _label(self, figure: style.Figure, grid: NDArray[Any], shown: int) -> None:
+        """Name the axes outside of the panels, and leave out places without a panel."""
+        from matplotlib import rcParams
+
+        rows, columns = grid.shape
+        for place, axes in enumerate(grid.flat):
+            if place >= shown:
+                axes.set_axis_off()
+            elif place + columns >= shown:
+                axes.set_xlabel(style.typeset(self.x_label))
+                axes.tick_params(labelbottom=True)
+        if rows == 1:
+            grid[0, 0].set_ylabel(style.typeset(self.y_label))
+            return
+        letters = rcParams["font.size"]
+        room = 0.7 * style.inches(figure)[1]
+        folded = style.folded(style.typeset(self.y_label), room, letters)
+        figure.supylabel(folded, fontsize=letters, multialignment="center")
 
 
 def first(

@@ -7,7 +7,8 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Annotated
+from functools import partial
+from typing import Annotated, NamedTuple
 
 import numpy as np
 from pydantic import Field
@@ -21,6 +22,7 @@ from rpscli.report.study import fragility as fragile
 from rpscli.report.study import panels
 from rpscli.report.study.fragility import MOST_BANDS, Fragilities, Fragility
 from rpscli.report.study.report import Found, Report, keyed, with_band
+from rpscli.report.table import Column
 from rpscli.sweep.points import StudyPoints
 from rpscli.sweep.statistics import hazard as rates
 from rpscli.sweep.statistics.hazard import Hazard, annual_rate
@@ -110,13 +112,47 @@ def risk(study: StoredPoints, options: RiskOptions) -> Found:
     risks = [risk_of(curve, hazard, options) for curve in found.curves]
     known = [each for each in risks if each.fragility.fit.fitted]
     keys = found.systems.keys
-    measured = found.intensity.name
-    unit = found.intensity.unit
+    columns = _quantities(found, options, hazard)
+    rows = [
+        (each.fragility.values, *(of.value(each) for of in columns)) for each in risks
+    ]
+    heads = ", ".join(f"{of.name} [{of.unit}]" for of in columns)
+    tables = {
+        "": keyed(keys, heads, rows),
+        "_contributions": _contributions(found, known),
+        **({"_at": fragile.margins(study, options, found)} if options.at else {}),
+    }
+    readers = {of.name: of.label for of in columns if of.label}
+    return Found(
+        tables,
+        risk_figure(found, known, options.years) if known else None,
+        [*_report_notes(found, known, section.component), *found.notes],
+        shown={"": dict.fromkeys(keys, "") | readers}
+        | ({"_at": {}} if options.at else {}),
+        remark=(
+            f"{fragile.what_bands_hold(layout, options)}; rate of shares: from observed"
+            " shares, no lognormal"
+        ),
+    )
+
+
+class _Quantity(NamedTuple):
+    """A column: name, unit, what readers see above it, if they see it, and its value."""
+
+    name: str
+    unit: str
+    label: str | None
+    value: Callable[[Risk], object]
+
+
+def _quantities(
+    found: Fragilities, options: RiskOptions, hazard: Hazard
+) -> list[_Quantity]:
+    """The columns of all rates."""
     years = options.years
-    total = bool(options.dispersion.given)
     life = f"probability_in_{years:g}_years"
-    # Name, unit, what readers see above it, if they see it, and value of each column.
-    columns: list[tuple[str, str, str | None, Callable[[Risk], object]]] = [
+    total = bool(options.dispersion.given)
+    rows: list[tuple[str, str, str | None, Callable[[Risk], object]]] = [
         ("limit", "-", "limit", lambda r: r.fragility.limit.label),
         ("annual_rate", "1/year", "annual rate", lambda r: r.rate),
         ("return_period", "year", "return period", lambda r: 1.0 / r.rate if r.rate else math.nan),
@@ -125,7 +161,7 @@ def risk(study: StoredPoints, options: RiskOptions) -> Found:
         (life, "-", f"P in {years:g} years", lambda r: r.probabilities(years)[0]),
         (f"{life}_low", "-", None, lambda r: r.probabilities(years)[1]),
         (f"{life}_high", "-", None, lambda r: r.probabilities(years)[2]),
-        ("median", unit, "median", lambda r: r.fragility.fit.median),
+        ("median", found.intensity.unit, "median", lambda r: r.fragility.fit.median),
         ("beta", "-", "beta", lambda r: r.fragility.fit.beta),
         ("beta_total", "-", "beta total" if total else None, lambda r: r.fragility.total),
         ("confidence", "-", None, lambda _: options.confidence),
@@ -145,11 +181,14 @@ def risk(study: StoredPoints, options: RiskOptions) -> Found:
         ("share_beyond_hazard", "-", "from beyond hazard", lambda r: r.beyond_hazard),
         ("note", "-", None, lambda r: r.note),
     ]  # fmt: skip
+    return [_Quantity(*row) for row in rows]
+
+
+def _contributions(found: Fragilities, risks: Sequence[Risk]) -> list[Column]:
+    """One row a bin of intensities: the rate from motions in it."""
+    measured = found.intensity.name
+    unit = found.intensity.unit
     rows = [
-        (each.fragility.values, *(value(each) for *_, value in columns)) for each in risks
-    ]
-    ends = f"{measured}_from [{unit}], {measured}_to [{unit}]"
-    parts = [
         (
             each.fragility.values,
             each.fragility.limit.label,
@@ -158,28 +197,11 @@ def risk(study: StoredPoints, options: RiskOptions) -> Found:
             rate,
             rate / each.rate,
         )
-        for each in known
+        for each in risks
         for low, high, rate in zip(each.edges, each.edges[1:], each.rates, strict=False)
     ]
-    tables = {
-        "": keyed(keys, ", ".join(f"{name} [{of}]" for name, of, *_ in columns), rows),
-        "_contributions": keyed(
-            keys, f"limit, {ends}, annual_rate [1/year], share", parts
-        ),
-        **({"_at": fragile.margins(study, options, found)} if options.at else {}),
-    }
-    readers = {name: label for name, _, label, _ in columns if label}
-    return Found(
-        tables,
-        risk_figure(found, known, years) if known else None,
-        [*_report_notes(found, known, section.component), *found.notes],
-        shown={"": dict.fromkeys(keys, "") | readers}
-        | ({"_at": {}} if options.at else {}),
-        remark=(
-            f"{fragile.what_bands_hold(layout, options)}; rate of shares: from observed"
-            " shares, no lognormal"
-        ),
-    )
+    ends = f"{measured}_from [{unit}], {measured}_to [{unit}]"
+    return keyed(found.systems.keys, f"limit, {ends}, annual_rate [1/year], share", rows)
 
 
 def risk_of(fragility: Fragility, hazard: Hazard, options: RiskOptions) -> Risk:
@@ -286,36 +308,12 @@ def risk_figure(
     (low, high) = _shown(risks)
     last = float(risks[0].edges[-2])
 
-    def line(axes: style.Axes) -> float:
-        """Height of the numbers above the steps: two lines where panels are narrow."""
-        return 0.15 if style.narrow(axes.figure) else 0.075
-
-    def draw(axes: style.Axes, panel: list[Risk]) -> None:
-        for row, each in enumerate(panel):
-            _, name, place, count = found.placed(each.fragility)
-            shade = panels.colour(place, count)
-            shares = 100.0 * each.rates / each.rate
-            axes.stairs(
-                shares[:-1], each.edges[:-1], color=shade, lw=1.4, label=name or None
-            )
-            if high > last:
-                axes.stairs(shares[-1:], [last, high], color=shade, lw=1.4, ls=":")
-            if len(panel) <= MOST_BANDS and not style.tight(axes.figure):
-                band = with_band(*each.probabilities(years))
-                words = f"P = {band.replace(' (', f'{panels.break_if_narrow(axes)}(')}"
-                axes.text(
-                    0.02, 0.98 - line(axes) * row, words, color=shade, transform=axes.transAxes,
-                    va="top", fontsize=0.85 * style.small(),
-                )  # fmt: skip
-        fragile.beyond_computed(axes, max(each.fragility.largest for each in panel), high)
-
     def limit_axes(axes: style.Axes) -> None:
-        axes.set_xscale(
-            "log"
-        )  # of all panels at the end: ticks of logarithms are of another kind
+        # Of all panels at the end: ticks of logarithms are of another kind.
+        axes.set_xscale("log")
         panels.log_ticks(axes.xaxis)
         axes.set_xlim(low, high)
-        axes.set_ylim(0.0, axes.get_ylim()[1] / (0.97 - line(axes) * rows))
+        axes.set_ylim(0.0, axes.get_ylim()[1] / (0.97 - _line(axes) * rows))
 
     note = panels.remarks(
         f"P in {years:g} years, {style.percent(found.confidence)} bands of the choice of"
@@ -325,7 +323,35 @@ def risk_figure(
         panels.over(found.systems.pooled),
     )
     y_label = "share of the annual rate [%]"
+    draw = partial(_draw_shares, found=found, years=years, high=high)
     return found.figure(groups, draw, y_label=y_label, note=note, limits=limit_axes)
+
+
+def _draw_shares(
+    axes: style.Axes, panel: list[Risk], found: Fragilities, years: float, high: float
+) -> None:
+    """Shares of the rates of one panel, up to the highest intensity that is shown."""
+    for row, each in enumerate(panel):
+        _, name, place, count = found.placed(each.fragility)
+        shade = panels.colour(place, count)
+        shares = 100.0 * each.rates / each.rate
+        last = float(each.edges[-2])
+        axes.stairs(shares[:-1], each.edges[:-1], color=shade, lw=1.4, label=name or None)
+        if high > last:
+            axes.stairs(shares[-1:], [last, high], color=shade, lw=1.4, ls=":")
+        if len(panel) <= MOST_BANDS and not style.tight(axes.figure):
+            band = with_band(*each.probabilities(years))
+            words = f"P = {band.replace(' (', f'{panels.break_if_narrow(axes)}(')}"
+            axes.text(
+                0.02, 0.98 - _line(axes) * row, words, color=shade, transform=axes.transAxes,
+                va="top", fontsize=0.85 * style.small(),
+            )  # fmt: skip
+    fragile.beyond_computed(axes, max(each.fragility.largest for each in panel), high)
+
+
+def _line(axes: style.Axes) -> float:
+    """Height of the numbers above the steps: two lines where panels are narrow."""
+    return 0.15 if style.narrow(axes.figure) else 0.075
 
 
 def _shown(risks: Sequence[Risk]) -> tuple[float, float]:

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from functools import partial
 from pathlib import PurePath
 from typing import Annotated, Any, NamedTuple
 
@@ -25,6 +25,7 @@ from rpscli.records.measures import MEASURES
 from rpscli.records.source import Source
 from rpscli.report.figures import style
 from rpscli.report.study import panels
+from rpscli.report.study.bilinear import FEWEST, Bilinear, bilinear_fit
 from rpscli.report.study.fragility import (
     MeasureOptions,
     measure_name,
@@ -211,6 +212,10 @@ def _clouds(
     ]
 
 
+MARKS: dict[str, Any] = {"ls": "", "ms": 3.0, "mew": 0.0, "alpha": 0.7}
+"""Look of points of a cloud."""
+
+
 def _figure(
     table: Table,
     found: Grouping,
@@ -231,15 +236,9 @@ def _figure(
         panels.large_axis(axes.yaxis, y.unit)
         for place, part in enumerate(cloud.shown.parts(series)):
             at = part.points
+            look = MARKS | panels.look(place, most)
             name = labels(series_keys, part.values) or None
-            look: dict[str, Any] = {
-                "ls": "",
-                "ms": 3.0,
-                "mew": 0.0,
-                "alpha": 0.7,
-                "label": name,
-            }
-            axes.plot(x.values[at], y.values[at], **panels.look(place, most), **look)
+            axes.plot(x.values[at], y.values[at], label=name, **look)
         if curves:
             _draw_curve(axes, cloud.fit, x.values[cloud.shown.points], highest, top)
 
@@ -351,69 +350,93 @@ LOOKS = (
 )
 
 
+class Spectrum(NamedTuple):
+    """Pulses in the plane of dimensionless frequency and amplitude, and their outcomes."""
+
+    frequency: Array  # (points,), as all others
+    amplitude: Array
+    outcomes: NDArray[np.str_]  # as they are drawn
+    series: tuple[str, ...]
+    parts: dict[Histories, list[Histories]]  # the series of each group
+
+    @property
+    def most(self) -> int:
+        """Series of the group that has most of them."""
+        return max(map(len, self.parts.values()))
+
+
 def overturning_spectrum(study: StoredPoints, options: SpectrumOptions) -> Found:
     """Amplitude and frequency of every point, made dimensionless by its own system."""
     table = study.table
-    layout = study.table.layout
     series = options.series or ()
-    frequency, amplitude = both = _pulses_of(study, options)
+    both = _pulses_of(study, options)
     found = grouping(table, options.panels, (*series, INTENSITY, "record"))
-    series_keys = shown_keys(layout, series)
-    clouds = {group: group.parts(series) for group in found.groups}
-    several = (most := max(map(len, clouds.values()))) > 1
-    rotation = table.columns["rotation_ratio"]
-    shown = np.where(
-        (table.outcomes == "survived") & (rotation < NEGLIGIBLE),
-        "at_rest",
-        table.outcomes,
-    )
-
-    def draw(axes: style.Axes, group: Histories) -> None:
-        for place, part in enumerate(clouds[group]):
-            boundary = _boundary(part, frequency, amplitude)
-            if several:
-                # What overturned and the least that did; survivors would hide the other
-                # series.
-                fell = part.points[part.fallen]
-                name = labels(series_keys, part.values)
-                look = panels.look(place, most)
-                faint = look | {"ls": "", "ms": 2.6, "mew": 0.0, "alpha": 0.35}
-                axes.plot(frequency[fell], amplitude[fell], **faint)
-                axes.plot(*boundary, ms=3.4, lw=1.3, label=name, **look)
-                continue
-            for word, name, shade, mark, size in LOOKS:
-                chosen = part.every[np.char.startswith(shown[part.every], word)]
-                if len(chosen):
-                    look = {
-                        "ls": "",
-                        "color": shade,
-                        "marker": mark,
-                        "ms": size,
-                        "mew": 0.0,
-                    }
-                    axes.plot(frequency[chosen], amplitude[chosen], label=name, **look)
-            axes.plot(*boundary, color=style.BLACK, lw=1.2, label="least that overturns")
-
+    series_keys = shown_keys(table.layout, series)
+    parts = {group: group.parts(series) for group in found.groups}
+    spectrum = Spectrum(*both, _without_uplift(table), series_keys, parts)
     rows = [
         (
             (*group.values, *part.values),
-            *(of[n] for of in (*both, rotation, table.outcomes)),
+            *(of[n] for of in (*both, table.columns["rotation_ratio"], table.outcomes)),
         )
-        for group, parts in clouds.items()
-        for part in parts
+        for group, parts_of_it in parts.items()
+        for part in parts_of_it
         for n in part.every.tolist()
     ]
     heads = "frequency_over_p, amplitude_over_g_tan_alpha, rotation_ratio, outcome"
+    most = spectrum.most
     figure = panels.in_panels(
         found.keys,
         found.groups,
-        draw,
+        partial(_draw_spectrum, spectrum=spectrum),
         x_label=r"$\omega/p$ [-]",
         y_label=r"$a_p/(g\,\tan\alpha)$ [-]",
         limits=lambda axes: axes.set(xlim=(0.0, None), ylim=(0.0, None)),
-        note=panels.noted(found, "only what overturned" * several, panels.shaded(most)),
+        note=panels.noted(
+            found, "only what overturned" * (most > 1), panels.shaded(most)
+        ),
     )
     return Found({"": keyed((*found.keys, *series_keys), heads, rows)}, figure)
+
+
+def _without_uplift(table: Table) -> NDArray[np.str_]:
+    """The outcomes; at rest is what a figure shows as such."""
+    rotation = table.columns["rotation_ratio"]
+    negligible = (table.outcomes == "survived") & (rotation < NEGLIGIBLE)
+    return np.where(negligible, "at_rest", table.outcomes)
+
+
+def _draw_spectrum(axes: style.Axes, group: Histories, spectrum: Spectrum) -> None:
+    """Outcomes of one series with their boundary, or what overturned of several."""
+    frequency = spectrum.frequency
+    amplitude = spectrum.amplitude
+    most = spectrum.most
+    for place, part in enumerate(spectrum.parts[group]):
+        boundary = _boundary(part, frequency, amplitude)
+        if most > 1:
+            # What overturned and the least that did; survivors would hide the other
+            # series.
+            fell = part.points[part.fallen]
+            name = labels(spectrum.series, part.values)
+            look = panels.look(place, most)
+            faint = look | {"ls": "", "ms": 2.6, "mew": 0.0, "alpha": 0.35}
+            axes.plot(frequency[fell], amplitude[fell], **faint)
+            axes.plot(*boundary, ms=3.4, lw=1.3, label=name, **look)
+        else:
+            _draw_outcomes(axes, part, spectrum)
+            axes.plot(*boundary, color=style.BLACK, lw=1.2, label="least that overturns")
+
+
+def _draw_outcomes(axes: style.Axes, part: Histories, spectrum: Spectrum) -> None:
+    """A mark for each history, by its outcome."""
+    outcomes = spectrum.outcomes[part.every]
+    for word, name, shade, mark, size in LOOKS:
+        chosen = part.every[np.char.startswith(outcomes, word)]
+        if len(chosen):
+            look: dict[str, Any] = {"color": shade, "marker": mark, "ms": size}
+            look |= {"ls": "", "mew": 0.0}
+            at = spectrum.frequency[chosen], spectrum.amplitude[chosen]
+            axes.plot(*at, label=name, **look)
 
 
 def _pulses_of(study: StoredPoints, options: SpectrumOptions) -> tuple[Array, Array]:
@@ -479,111 +502,6 @@ def records_without_period(
         except (CaseError, RecordError) as error:
             yield str(error)
             return
-
-
-FEWEST = 4
-"""Points with different abscissae that each piece needs."""
-
-FINALISTS = 8
-"""Breaks that are compared once more without the rounding of long sums."""
-
-
-@dataclass(frozen=True)
-class Bilinear:
-    """y = start + slope x up to the break, then onwards with the second slope."""
-
-    start: float
-    slope: float
-    break_x: float
-    break_y: float
-    slope_after: float
-    residual: float
-    """Standard deviation of the points about the curve."""
-
-    def __call__(self, x: Array) -> Array:
-        """The curve."""
-        before = self.start + self.slope * np.minimum(x, self.break_x)
-        return np.asarray(before + self.slope_after * np.maximum(x - self.break_x, 0.0))
-
-
-def bilinear_fit(x: Array, y: Array) -> Bilinear | None:
-    """The bilinear curve of least squares; None where there are too few points.
-
-    For every split of the sorted points two independent lines are fitted; if they cross
-    between the neighbours of the split that is the best curve with its break there.
-    Otherwise the best break of the interval is one of its ends, where the fit is linear.
-    The least sum of squares of all counts (D. J. Hudson, J. Am. Stat. Assoc. 61, 1966).
-    """
-    order = np.argsort(x, kind="stable")
-    x = np.asarray(x)[order]
-    y = np.asarray(y)[order]
-    ends = np.unique(x)
-    if len(ends) < 2 * FEWEST:
-        return None
-    inner = ends[FEWEST - 1 : len(ends) - FEWEST + 1]
-    # n, sums of x, y, x^2, x y and y^2 over the points up to each, about the mean of all.
-    middle = float(x.mean())
-    centred = x - middle
-    level = y - y.mean()
-    columns = [np.ones_like(x), centred, level, centred**2, centred * level, level**2]
-    running = np.cumsum(columns, axis=1)
-    total = np.sum(columns, axis=1)[:, None]
-
-    def sums(breaks: Array) -> tuple[Array, Array]:
-        """(6, breaks) up to and beyond each break."""
-        before = running[:, np.searchsorted(x, breaks, side="right") - 1]
-        return before, total - before
-
-    left = inner[:-1]
-    right = inner[1:]
-    (a, b), (c, d) = map(_lines, sums(left))
-    with np.errstate(divide="ignore", invalid="ignore"):
-        crossing = middle + (c - a) / (b - d)
-    crossing = np.where((left <= crossing) & (crossing <= right), crossing, left)
-    breaks = np.concatenate([crossing, inner])
-    best_first = breaks[
-        np.argsort(_squares(breaks - middle, *sums(breaks)), kind="stable")
-    ]
-    curves = [
-        _curve(x, y, at) for at in [*dict.fromkeys(best_first.tolist())][:FINALISTS]
-    ]
-    return min(curves, key=lambda curve: curve.residual)
-
-
-def _lines(sums: Array) -> tuple[Array, Array]:
-    """Intercept and slope of the best lines."""
-    n, x, y, xx, xy, _ = sums
-    slope = (xy - x * y / n) / (xx - x * x / n)
-    return (y - slope * x) / n, slope
-
-
-def _squares(k: Array, before: Array, after: Array) -> Array:
-    """Sum of squares of the best a + b min(x, k) + c max(x - k, 0), at given breaks k."""
-    (n, x, y, xx, xy, yy) = before
-    (m, u, v, uu, uv, vv) = after
-    low = x + m * k
-    beyond = u - m * k
-    both = k * (u - m * k)
-    rows = (
-        (n + m, low, beyond),
-        (low, xx + m * k * k, both),
-        (beyond, both, uu - k * (u + beyond)),
-    )
-    matrix = np.moveaxis(np.array(rows), 2, 0)
-    load = np.stack([y + v, xy + k * v, uv - k * v], axis=1)
-    found = np.linalg.solve(matrix, load[:, :, None])[:, :, 0]
-    return np.asarray(yy + vv - np.sum(found * load, axis=1))
-
-
-def _curve(x: Array, y: Array, knee: float) -> Bilinear:
-    """The best curve with its break at a given place."""
-    columns = np.column_stack(
-        [np.ones_like(x), np.minimum(x, knee), np.maximum(x - knee, 0.0)]
-    )
-    coefficients = np.linalg.lstsq(columns, y, rcond=None)[0]
-    residual = np.sqrt(np.sum((y - columns @ coefficients) ** 2) / max(len(x) - 4, 1))
-    start, slope, after = coefficients.tolist()
-    return Bilinear(start, slope, knee, start + slope * knee, after, float(residual))
 
 
 SCATTER = Report(

@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
 from itertools import takewhile
 from typing import Any, NamedTuple
@@ -29,12 +29,14 @@ from rpscli.report.study.report import (
 from rpscli.report.table import Column
 from rpscli.sweep.evaluation import SCALARS
 from rpscli.sweep.statistics.grouping import (
+    Grouping,
     Histories,
     grouping,
     shown_keys,
     statistic_words,
 )
 from rpscli.sweep.table import Array, StoredPoints, groups, leading_keys
+from rpscli.sweep.table import Table as Points
 
 MOST_ROWS = 60
 MOST_COLUMNS = 12
@@ -106,27 +108,37 @@ def _statistic(
     return Cell(numbers, (text, f"{fallen} of {len(histories)} overturned"), shade)
 
 
+class Subject(NamedTuple):
+    """The result of which cells are made: name, unit, words of the picture, and how."""
+
+    result: str
+    unit: str
+    words: str
+    make: Callable[[Histories], Cell]
+
+
+def _subject(table: Points, options: TableOptions) -> Subject:
+    """A statistic of a demand, or the share that overturned."""
+    if options.statistic == "overturned":
+        words = "overturned: share, number, 95 % interval"
+        every = Histories(table, (), np.arange(len(table)))
+        if behind := every.overturned.behind:
+            words += f", which counts{behind.removeprefix(' from')}"
+        return Subject("overturned", "-", words, _share)
+    quantity = SCALARS["timehistory"][options.result]
+    values = table.columns[options.result]
+    stood = values[np.isfinite(values) & ~table.overturned]
+    largest = stood.max(initial=0.0) or 1.0
+    words = f"{quantity.in_unit(quantity.unit)}: {statistic_words(options.statistic)}"
+    make = partial(_statistic, values=values, wanted=options.statistic, largest=largest)
+    return Subject(options.result, quantity.unit, words, make)
+
+
 def table_report(study: StoredPoints, options: TableOptions) -> Found:
     """Each system, at each intensity unless the study says otherwise."""
     table = study.table
     layout = study.table.layout
-    make: Callable[[Histories], Cell] = _share
-    result = "overturned"
-    unit = "-"
-    words = "overturned: share, number, 95 % interval"
-    if options.statistic != "overturned":
-        quantity = SCALARS["timehistory"][options.result]
-        values = table.columns[options.result]
-        stood = values[np.isfinite(values) & ~table.overturned]
-        largest = stood.max(initial=0.0) or 1.0
-        result = options.result
-        unit = quantity.unit
-        words = f"{quantity.in_unit(unit)}: {statistic_words(options.statistic)}"
-        make = partial(
-            _statistic, values=values, wanted=options.statistic, largest=largest
-        )
-    elif behind := Histories(table, (), np.arange(len(table))).overturned.behind:
-        words += f", which counts{behind.removeprefix(' from')}"
+    subject = _subject(table, options)
     across = options.columns
     if across is None:
         across = tuple(
@@ -135,38 +147,51 @@ def table_report(study: StoredPoints, options: TableOptions) -> Found:
     rows = grouping(table, options.rows, across)
     column_keys = shown_keys(layout, across)
     columns = [group.values for group in groups(layout, across)]
-    nothing = make(Histories(table, (), np.empty(0, dtype=np.int64)))
+    nothing = subject.make(Histories(table, (), np.empty(0, dtype=np.int64)))
     cells = []
     for row in rows.groups:
         # by their text: a value may be a list, of devices or of masses
-        found = {repr(part.values): make(part) for part in row.parts(across)}
+        found = {repr(part.values): subject.make(part) for part in row.parts(across)}
         cells.append([found.get(repr(values), nothing) for values in columns])
+
     written = key_columns(rows.keys, [row.values for row in rows.groups])
     for place, values_across in enumerate(columns):
         named = zip(column_keys, values_across, strict=True)
-        name = ";".join(f"{key}={plain(value)}" for key, value in named) or result
-        written += [
-            Column(
-                name + suffix,
-                "-" if suffix else unit,
-                [row[place].numbers[suffix] for row in cells],
-            )
-            for suffix in nothing.numbers
-        ]
+        name = ";".join(f"{key}={plain(value)}" for key, value in named)
+        written += _cell_columns(subject, name, [row[place] for row in cells], nothing)
     written.append(Column("counted", "-", [len(row) for row in rows.groups]))
     written.append(Column("failed", "-", [row.failed for row in rows.groups]))
 
     heads = ["\n".join(map(label, column_keys, values)) or "all" for values in columns]
+    above = [over(rows.pooled), subject.words, left_out(rows.failed)]
+    shown = Shown(_row_names(rows), heads, cells, above)
+    return Found({"": written}, lambda title: partial(_picture, shown, title), rows.notes)
+
+
+def _cell_columns(
+    subject: Subject, name: str, cells: Sequence[Cell], nothing: Cell
+) -> list[Column]:
+    """The numbers of one column of the table; those that `nothing` has are in each."""
+    return [
+        Column(
+            (name or subject.result) + suffix,
+            "-" if suffix else subject.unit,
+            [cell.numbers[suffix] for cell in cells],
+        )
+        for suffix in nothing.numbers
+    ]
+
+
+def _row_names(rows: Grouping) -> list[str]:
+    """Names of rows; those that begin like the row before tell how they go on."""
     names = []
     before = list[str]()
-    for row in rows.groups:  # those that begin like the row before tell how they go on
+    for row in rows.groups:
         parts = list(map(label, rows.keys, row.values))
         same = takewhile(lambda pair: len({*pair}) == 1, zip(parts, before, strict=False))
         names.append(", ".join(parts[len([*same]) :]))
         before = parts
-    above = [over(rows.pooled), words, left_out(rows.failed)]
-    draw = partial(_picture, names, heads, cells, above)
-    return Found({"": written}, lambda title: partial(draw, title), rows.notes)
+    return names
 
 
 def overturning(study: StoredPoints, options: OverturningOptions) -> Found:
@@ -176,78 +201,108 @@ def overturning(study: StoredPoints, options: OverturningOptions) -> Found:
     )
 
 
-def _picture(
-    names: list[str],
-    heads: list[str],
-    cells: list[list[Cell]],
-    above: list[str],
-    title: str,
-    figure: style.Figure,
-) -> None:
-    """The first rows and columns, on cells that are the darker
-    the larger their numbers.
-    """
-    own = min(style.WIDTH, 3.4 + 1.25 * len(heads))
-    width = style.room(figure, own)
-    size = SMALL * FONT_SIZE
+class Shown(NamedTuple):
+    """A table as its picture shows it, and remarks above it."""
 
-    def wide(texts: Iterable[str]) -> float:
-        return max((style.width_of(text, size) for text in texts if text), default=0.0)
+    names: list[str]
+    heads: list[str]
+    cells: list[list[Cell]]
+    above: list[str]
 
-    def lines(texts: Iterable[str]) -> int:
-        return 1 + max(text.count("\n") for text in texts)
 
+class _Fitted(NamedTuple):
+    """The first rows and columns of a table, with texts folded into their cells."""
+
+    names: list[str]
+    heads: list[str]
+    cells: list[list[Cell]]
+    below: list[list[str]]  # second texts of the cells
+    room: float  # width of a column [in]
+    height: float  # of a row [in]
+
+
+SIZE = SMALL * FONT_SIZE
+
+
+def _wide(texts: Iterable[str]) -> float:
+    """Width of the widest text [in]."""
+    return max((style.width_of(text, SIZE) for text in texts if text), default=0.0)
+
+
+def _lines(texts: Iterable[str]) -> int:
+    """Lines of the text that has most of them."""
+    return 1 + max(text.count("\n") for text in texts)
+
+
+def _fitted(shown: Shown, width: float) -> _Fitted:
+    """Rows and columns for a figure of some width [in], which may be higher than it is."""
     # Names may be as wide as the figure; what would run into the next column goes on
     # below.
     names = [
-        style.folded(style.typeset(name), 0.4 * width, size) for name in names[:MOST_ROWS]
+        style.folded(style.typeset(name), 0.4 * width, SIZE)
+        for name in shown.names[:MOST_ROWS]
     ]
-    beside = 0.4 + wide(names)
-    columns = max(1, min(MOST_COLUMNS, len(heads), int((width - beside) / LEAST_WIDTH)))
+    beside = 0.4 + _wide(names)
+    fitting = int((width - beside) / LEAST_WIDTH)
+    columns = max(1, min(MOST_COLUMNS, len(shown.heads), fitting))
     room = max((width - beside) / columns, 0.2)
-    drawn = [row[:columns] for row in cells[: len(names)]]
-    few = [
-        style.folded(style.typeset(head), 0.95 * room, size) for head in heads[:columns]
+    cells = [row[:columns] for row in shown.cells[: len(names)]]
+    heads = [
+        style.folded(style.typeset(head), 0.95 * room, SIZE)
+        for head in shown.heads[:columns]
     ]
     below = [
-        [style.folded(cell.texts[1], 0.95 * room / SMALLER, size) for cell in row]
-        for row in drawn
+        [style.folded(cell.texts[1], 0.95 * room / SMALLER, SIZE) for cell in row]
+        for row in cells
     ]
-    height = max(0.19 + 0.11 * max(map(lines, below)), 0.1 + LINE * lines(names))
-    other = 0.6 + LINE * lines(few)
-    most = len(names)
+    height = max(0.19 + 0.11 * max(map(_lines, below)), 0.1 + LINE * _lines(names))
+    return _Fitted(names, heads, cells, below, room, height)
+
+
+def _picture(shown: Shown, title: str, figure: style.Figure) -> None:
+    """The first rows and columns, on cells that are the darker
+    the larger their numbers.
+    """
+    own = min(style.WIDTH, 3.4 + 1.25 * len(shown.heads))
+    fitted = _fitted(shown, style.room(figure, own))
+    columns = len(fitted.heads)
+    other = 0.6 + LINE * _lines(fitted.heads)
+    most = len(fitted.names)
     if style.given(figure):
-        most = min(most, max(1, int((style.inches(figure)[1] - other) / height)))
-    counts = ("rows", most, len(cells)), ("columns", columns, len(heads))
+        room = style.inches(figure)[1] - other
+        most = min(most, max(1, int(room / fitted.height)))
+    counts = ("rows", most, len(shown.cells)), ("columns", columns, len(shown.heads))
     cut = [f"the first {some} of {of} {what}" for what, some, of in counts if some < of]
-    style.begin(figure, (title, *cut, *above), other + most * height, own)
+    words = (title, *cut, *shown.above)
+    style.begin(figure, words, other + most * fitted.height, own)
     axes = figure.subplots()
-    shades = [[cell.shade for cell in row] for row in drawn[:most]]
+    shades = [[cell.shade for cell in row] for row in fitted.cells[:most]]
     axes.pcolormesh(shades, cmap="Blues", vmin=0.0, vmax=1.0, alpha=0.75)
-    inside: dict[str, Any] = {"ha": "center", "in_layout": False}
     for y, x in np.ndindex(most, columns):
-        first = drawn[y][x].texts[0]
-        further = below[y][x]
-        up = 0.055 * lines([further]) * bool(further)
-        fits = size * min(1.0 / SMALL, 0.95 * room / wide([first]))
-        at = y + 0.5
-        axes.text(
-            x + 0.5,
-            at - (up - 0.07) / height,
-            first,
-            va="bottom",
-            fontsize=fits,
-            **inside,
-        )
-        axes.text(
-            x + 0.5, at - (up - 0.08) / height, further, va="top", fontsize=SMALLER * size,
-            **inside,
-        )  # fmt: skip
-    axes.set_xticks(np.arange(columns) + 0.5, few)
-    axes.set_yticks(np.arange(most) + 0.5, names[:most])
-    axes.tick_params(length=0, labeltop=True, labelbottom=False, labelsize=size)
+        _write_cell(axes, fitted, y, x)
+    axes.set_xticks(np.arange(columns) + 0.5, fitted.heads)
+    axes.set_yticks(np.arange(most) + 0.5, fitted.names[:most])
+    axes.tick_params(length=0, labeltop=True, labelbottom=False, labelsize=SIZE)
     axes.invert_yaxis()
     axes.grid(visible=False)
+
+
+def _write_cell(axes: style.Axes, fitted: _Fitted, y: int, x: int) -> None:
+    """Both texts of a cell, as large as there is room for them."""
+    inside: dict[str, Any] = {"ha": "center", "in_layout": False}
+    height = fitted.height
+    first = fitted.cells[y][x].texts[0]
+    further = fitted.below[y][x]
+    up = 0.055 * _lines([further]) * bool(further)
+    size = SIZE * min(1.0 / SMALL, 0.95 * fitted.room / _wide([first]))
+    at = y + 0.5
+    axes.text(
+        x + 0.5, at - (up - 0.07) / height, first, va="bottom", fontsize=size, **inside
+    )
+    axes.text(
+        x + 0.5, at - (up - 0.08) / height, further, va="top", fontsize=SMALLER * SIZE,
+        **inside,
+    )  # fmt: skip
 
 
 TABLE = Report(TableOptions, table_report, results=lambda options: [options.result])
