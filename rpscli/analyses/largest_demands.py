@@ -25,15 +25,16 @@ from rpscli.model.own import OwnLaw
 from rpscli.model.podium import Array, Device, PodiumStructure
 from rpscli.model.statics import uplift_acceleration
 from rpscli.model.superstructure import Superstructure
-from rpscli.physics import state
+from rpscli.physics import interface, state
 from rpscli.physics.laws import geometry
-from rpscli.physics.state import Record, record_type
+from rpscli.physics.records import record_type
+from rpscli.physics.state import Record
 from rpscli.shown import Shown, frozen, with_unit
 
 T = TypeVar("T")
 
 
-_PLAIN = record_type(state.RESULT)
+_PLAIN = record_type(interface.RESULT)
 
 
 class Demands:
@@ -314,7 +315,7 @@ class Demand(Shown):
     structure
         Podium, bearings and building.
     history
-        What its history left behind: a `physics.state.RESULT`.
+        What its history left behind: a `physics.interface.RESULT`.
     """
 
     structure: PodiumStructure
@@ -577,7 +578,7 @@ REASONS = {
 
 
 def outcomes_of(left: Record) -> NDArray[np.str_]:
-    """Outcomes of `state.RESULT`s, of any shape."""
+    """Outcomes of `interface.RESULT`s, of any shape."""
     words = OUTCOME_WORDS[left["outcome"]]
     held = (left["phase"] == state.STUCK) & (words == "survived")
     return np.asarray(np.where(held, "stays_tilted", words))
