@@ -6,9 +6,10 @@ numbers; `lane` asks them with the numbers of a lane, and `energy`, `devices`, `
 `storeys`, `bed` are what else it has. `step` takes a Runge-Kutta step of all lanes
 together (`tableau`), `standing` the exact one, `events` finds where a step is to end,
 `upright` has uplift, impact and pass, `demands` what is largest, `rest` when nothing more
-can come, `samples` and `ground` what is kept. `follow` strings them together, in `groups`
-of those that stand and that move. `kernels` has machine code of all, `own_laws` of those
-of other packages, and `integrate` runs it.
+can come, `samples` and `ground` what is kept. `follow` strings them together from the
+`beginning` of a history to its `ending`, in `groups` of those that stand and that move.
+`kernels` has machine code of all, `own_laws` of those of other packages, and
+`integrate` runs it.
 
 What the kernel's functions hand to each other everywhere stands here once:
 
