@@ -26,11 +26,10 @@ from rpscli.physics.lane import (
     polar,
     pushed_by,
     tilt_of,
-    turned,
     ways_of,
     z_of,
 )
-from rpscli.physics.laws.place import length
+from rpscli.physics.laws.place import length, turned
 from rpscli.physics.state import STICKING, STUCK, Record
 
 
@@ -311,5 +310,5 @@ def push_stuck(s: Record, l: int, z: tuple[float, float], g_felt: float) -> floa
     push = used * s.friction_force[l]
     out = -push * grip.drag_n - push_of_stops(s, l)
     aside = -push * grip.drag_t
-    s.drive[0, l], s.drive[1, l] = turned(now, out, aside)
+    s.drive[0, l], s.drive[1, l] = turned(now.n, now.t, out, aside)
     return used
