@@ -261,6 +261,17 @@ def z_along(s: Record, l: int, force: Vector, a_g: Vector) -> Vector:
 
 
 @inlined
+def z_at(s: Record, l: int, end: int) -> tuple[Vector, Vector]:
+    """z in x and y of what is not friction, at the start of the step (0) or
+    at its end (1) [1/s2]; and its rate.
+    """
+    a_g = ground_of(s, l, s.time[l] + end * s.h[l])
+    V = vector(s, s.new_V, l) if end > 0 else vector(s, s.V, l)
+    dV = vector(s, s.new_dV, l) if end > 0 else vector(s, s.dV, l)
+    return z_along(s, l, V, a_g), z_along(s, l, dV, vector(s, s.a_g_slope, l))
+
+
+@inlined
 def force_of(s: Record, l: int, pushed: float, a_g: float) -> float:
     """The horizontal force at the cap beam under which R z is `pushed` [N]."""
     per_share = 2.0 / (s.diameter[l] * s.share[l])
