@@ -50,6 +50,12 @@ def row_along(s: Record, axis: int) -> int:
 
 
 @inlined
+def axis_of(j: int) -> int:
+    """The direction of such a row."""
+    return max(j - 1, 0)
+
+
+@inlined
 def is_resultant(s: Record, j: int) -> bool:
     """Whether a row of demands is of resultants of both directions."""
     return False if ways_of(s) == 1 else j == 0
@@ -182,7 +188,7 @@ def raise_row(s: Record, l: int, systems: Record, kind: int, j: int) -> bool:
             here = length(s.seen[kind, i], s.seen[2 + kind, i])
             share = min(bounds_of(systems, 0, kind)[i], bounds_of(systems, 1, kind)[i])
         else:
-            axis = j // 2
+            axis = axis_of(j)
             here = abs(s.seen[2 * axis + kind, i])
             share = bounds_of(systems, axis, kind)[i]
         most = s.largest[k, l, i]
@@ -216,7 +222,7 @@ def raise_floors_between(
     for kind in range(2):
         for j in range(rows_of(s)):
             k = kind * rows_of(s) + j
-            x = 3 * kind + 6 * (j // 2)
+            x = 3 * kind + 6 * axis_of(j)
             for i in range(n):
                 a = rows[x, i]
                 b = rows[x + 1, i]
