@@ -1,4 +1,4 @@
-"""The beginning of a history: its structure, modes and request in a lane, at rest or released."""
+"""The beginning of a history: structure, modes and request in a lane, at rest or tilted."""
 
 from __future__ import annotations
 

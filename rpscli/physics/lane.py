@@ -275,7 +275,7 @@ def z_at(s: Record, l: int, end: int) -> tuple[Vector, Vector]:
 def force_of(s: Record, l: int, pushed: float, a_g: float) -> float:
     """The horizontal force at the cap beam under which R z is `pushed` [N]."""
     per_share = 2.0 / (s.diameter[l] * s.share[l])
-    return pushed * per_share + s.load[l] / s.share[l] * a_g  # type: ignore[no-any-return]
+    return float(pushed * per_share + s.load[l] / s.share[l] * a_g)
 
 
 @inlined
