@@ -10,7 +10,7 @@ from rpscli.physics.demands import observe_start
 from rpscli.physics.devices.acting import has_friction, load_devices
 from rpscli.physics.devices.branches import release_devices
 from rpscli.physics.ground import azimuth_of, set_ground
-from rpscli.physics.lane import place_of, ways_of
+from rpscli.physics.lane import place_of, set_vector, ways_of
 from rpscli.physics.next_step import plan
 from rpscli.physics.run import Output
 from rpscli.physics.samples import store_sample
@@ -95,7 +95,6 @@ def begin_history(
 ) -> None:
     """Load a history into a lane, at rest in full contact or released from a tilt."""
     request = requests[history]
-    ways = ways_of(s)
     s.history[l] = history
     s.system[l] = s.axes * request.system
     both = systems[s.system[l] : s.system[l] + s.axes]
@@ -110,22 +109,10 @@ def begin_history(
     clear_results(s, l)
     s.factors_h[l] = -1.0
     s.within_h[l] = -1.0
-    s.side[l] = 1.0
-    s.x[l] = 0.0
-    s.v[l] = 0.0
-    for axis in range(ways):
-        s.tilt[axis, l] = 0.0
-        s.tilt_rate[axis, l] = 0.0
+    stand_upright(s, l)
     set_ground(s, l, acceleration)
     enter_phase(s, l, system, first_phase(system))
-    s.kappa[l] = 1.0
-    if ways == 2:
-        upright = place_of(s, l, 0.0)
-        u = system.bed_uplift
-        s.kappa[l] = math.sqrt(upright.K / upright.A)
-        if system.compliant > 0:  # K goes on from A of full contact
-            bedded = s.io_1[l] + s.one[l] * (system.bed_height * system.bed_height)
-            s.turned[l] = u * u * (bedded - place_of(s, l, u).K)
+    load_turning(s, l, system)
     if system.initial_rotation != 0.0 or system.alpha == 0.0 or system.compliant > 0:
         release(s, l, system, output.log)
     else:
@@ -134,6 +121,30 @@ def begin_history(
     observe_start(s, l)
     store_sample(s, l, both, output)
     s.h[l] = plan(s, l)
+
+
+@compiled
+def stand_upright(s: Record, l: int) -> None:
+    """No tilt and no rate."""
+    s.side[l] = 1.0
+    s.x[l] = 0.0
+    s.v[l] = 0.0
+    set_vector(s, s.tilt, l, 0.0, 0.0)
+    set_vector(s, s.tilt_rate, l, 0.0, 0.0)
+
+
+@compiled
+def load_turning(s: Record, l: int, system: Record) -> None:
+    """How a tilt to any side goes round upright: kappa, and K on a bed."""
+    s.kappa[l] = 1.0
+    if ways_of(s) == 1:
+        return
+    upright = place_of(s, l, 0.0)
+    u = system.bed_uplift
+    s.kappa[l] = math.sqrt(upright.K / upright.A)
+    if system.compliant > 0:  # K goes on from A of full contact
+        bedded = s.io_1[l] + s.one[l] * (system.bed_height * system.bed_height)
+        s.turned[l] = u * u * (bedded - place_of(s, l, u).K)
 
 
 @compiled
@@ -193,11 +204,10 @@ def load_modes(s: Record, l: int, system: Record, axis: int) -> None:
 @compiled
 def load_request(s: Record, l: int, request: Record, system: Record) -> None:
     """What is followed, and for how long."""
-    s.record[0, l] = request.record
+    for axis in range(ways_of(s)):
+        s.record[axis, l] = request.record if axis == 0 else request.record_y
     s.npts[l] = request.npts
     s.vertical[l] = request.vertical
-    if ways_of(s) == 2:
-        s.record[ways_of(s) - 1, l] = request.record_y
     s.scale[l] = request.scale
     s.dt[l] = request.dt
     s.rate[l] = 1.0 / request.dt
@@ -247,9 +257,8 @@ def release(s: Record, l: int, system: Record, log: Record) -> None:
     s.x[l] = theta
     s.max_theta[l] = theta
     s.tilt[0, l] = s.side[l] * theta
-    if ways_of(s) == 2:
-        s.max_azimuth[l] = azimuth_of(s, l)
-        s.tilt_rate[ways_of(s) - 1, l] = s.tilt[0, l] * system.initial_turning
+    s.max_azimuth[l] = azimuth_of(s, l)
+    set_vector(s, s.tilt_rate, l, 0.0, s.tilt[0, l] * system.initial_turning)
     phase = ROLLING if theta < system.beta else ROCKING
     bedded = theta < system.bed_uplift
     enter_phase(s, l, system, BEDDED if bedded else phase)

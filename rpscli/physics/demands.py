@@ -16,7 +16,6 @@ from rpscli.physics.devices.worked import worked
 from rpscli.physics.floors import observe_floors, raise_floors, sums_at_start
 from rpscli.physics.friction import grip_at, is_gripped, push_at_rest
 from rpscli.physics.lane import (
-    Polar,
     Vector,
     contact_forces,
     felt_at,
@@ -29,6 +28,7 @@ from rpscli.physics.lane import (
     patch,
     place_with,
     polar,
+    pushed_beam,
     pushed_by,
     rate_of,
     respond,
@@ -281,14 +281,6 @@ def shears_within(s: Record, l: int, t: float) -> tuple[float, float, float]:
     V_y = force_within(s, l, 1, t) if ways_of(s) == 2 else 0.0
     V_up = force_within(s, l, up, t) if s.axes > up else 0.0
     return V_x, V_y, V_up
-
-
-@inlined
-def pushed_beam(s: Record, l: int, V: Vector, now: Polar) -> Vector:
-    """What pushes the cap beam in x and y: base shears, devices and tendons [N]."""
-    drive = vector(s, s.drive, l)
-    V_x = V[0] + drive[0] + s.tied[l] * now.n
-    return V_x, V[1] + drive[1] + s.tied[l] * now.t
 
 
 @compiled

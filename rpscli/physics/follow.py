@@ -237,17 +237,49 @@ def chosen(accepted: float, end: float, start: float) -> float:
 
 
 @compiled
-def accept_steps(s: Record) -> None:  # noqa: C901 -- few fields a loop
+def accept_steps(s: Record) -> None:
     """Make the ends of accepted steps the states of their lanes."""
+    lanes = lanes_of(s)
+    accept_tilts(s)
+    accept_floors(s)
+    for l in range(lanes if s.equipped > 0 else 0):
+        yes = s.accepted[l]
+        s.speed[l] = chosen(yes, s.new_speed[l], s.speed[l])
+        s.square_rate[l] = chosen(yes, s.new_square_rate[l], s.square_rate[l])
+        s.quicker[l] = chosen(yes, s.new_quicker[l], s.quicker[l])
+    for l in range(lanes):
+        s.time[l] += s.h[l] if s.accepted[l] > 0.0 else 0.0
+        s.steps[l] += 1.0
+    if s.gives_way > 0:
+        for l in range(lanes):
+            bedded = (s.accepted[l] > 0.0) & (s.phase[l] == BEDDED)
+            s.bedded_time[l] += s.h[l] if bedded else 0.0
+
+
+@inlined
+def accept_tilts(s: Record) -> None:
+    """The same of the tilt."""
     lanes = lanes_of(s)
     for axis in range(ways_of(s)):
         for l in range(lanes):
             yes = s.accepted[l]
+            rate = s.tilt_rate[axis, l]
             s.tilt[axis, l] = chosen(yes, s.new_tilt[axis, l], s.tilt[axis, l])
-            s.tilt_rate[axis, l] = chosen(
-                yes, s.new_tilt_rate[axis, l], s.tilt_rate[axis, l]
-            )
+            s.tilt_rate[axis, l] = chosen(yes, s.new_tilt_rate[axis, l], rate)
             s.bend[axis, l] = chosen(yes, s.new_bend[axis, l], s.bend[axis, l])
+    for l in range(lanes):
+        yes = s.accepted[l]
+        s.x[l] = chosen(yes, s.new_x[l], s.x[l])
+        s.v[l] = chosen(yes, s.new_v[l], s.v[l])
+        s.a[l] = chosen(yes, s.new_a[l], s.a[l])
+        s.lift[l] = chosen(yes, s.new_lift[l], s.lift[l])
+
+
+@inlined
+def accept_floors(s: Record) -> None:
+    """The same of modes, base shears and sums of demands."""
+    lanes = lanes_of(s)
+    for axis in range(ways_of(s)):
         for l in range(lanes):
             yes = s.accepted[l]
             sums = s.shear_sum[axis, l]
@@ -267,24 +299,6 @@ def accept_steps(s: Record) -> None:  # noqa: C901 -- few fields a loop
         for l in range(lanes):
             s.q[r, l] = chosen(s.accepted[l], s.new_q[r, l], s.q[r, l])
             s.dq[r, l] = chosen(s.accepted[l], s.new_dq[r, l], s.dq[r, l])
-    for l in range(lanes):
-        yes = s.accepted[l]
-        s.x[l] = chosen(yes, s.new_x[l], s.x[l])
-        s.v[l] = chosen(yes, s.new_v[l], s.v[l])
-        s.a[l] = chosen(yes, s.new_a[l], s.a[l])
-        s.lift[l] = chosen(yes, s.new_lift[l], s.lift[l])
-    for l in range(lanes if s.equipped > 0 else 0):
-        yes = s.accepted[l]
-        s.speed[l] = chosen(yes, s.new_speed[l], s.speed[l])
-        s.square_rate[l] = chosen(yes, s.new_square_rate[l], s.square_rate[l])
-        s.quicker[l] = chosen(yes, s.new_quicker[l], s.quicker[l])
-    for l in range(lanes):
-        s.time[l] += s.h[l] if s.accepted[l] > 0.0 else 0.0
-        s.steps[l] += 1.0
-    if s.gives_way > 0:
-        for l in range(lanes):
-            bedded = (s.accepted[l] > 0.0) & (s.phase[l] == BEDDED)
-            s.bedded_time[l] += s.h[l] if bedded else 0.0
 
 
 SAME = 1e-12

@@ -437,6 +437,14 @@ def masses_of(s: Record, l: int) -> Masses:
 
 
 @inlined
+def pushed_beam(s: Record, l: int, V: Vector, now: Polar) -> Vector:
+    """What pushes the cap beam in x and y: base shears, devices and tendons [N]."""
+    drive = vector(s, s.drive, l)
+    V_x = V[0] + drive[0] + s.tied[l] * now.n
+    return V_x, V[1] + drive[1] + s.tied[l] * now.t
+
+
+@inlined
 def contact_forces(
     s: Record,
     l: int,
