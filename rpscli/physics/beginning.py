@@ -1,4 +1,4 @@
-"""The beginning of a history: structure, modes and request in a lane, at rest or tilted."""
+"""The beginning of a history: structure, modes and request in a lane at rest."""
 
 from __future__ import annotations
 

@@ -6,6 +6,7 @@ from rpscli.physics.compile import compiled
 from rpscli.physics.devices.table import stored_in
 from rpscli.physics.devices.worked import worked
 from rpscli.physics.energy import total_energy
+from rpscli.physics.floors import row_along, rows_of
 from rpscli.physics.ground import azimuth_of, time_of
 from rpscli.physics.lane import tilt_of, ways_of
 from rpscli.physics.state import (
@@ -23,12 +24,11 @@ from rpscli.physics.state import (
 @compiled
 def finish_storeys(s: Record, l: int, result: Record) -> None:
     """Write what storeys that may yield leave behind."""
-    ways = ways_of(s)
-    for axis in range(ways):
+    for axis in range(ways_of(s)):
         for i in range(s.n):
             r = axis * s.n + i
             free = 1.0 - s.hardening[l]
-            most = max(s.drift_most[r, l], s.largest[axis + ways - 1, l, i])
+            most = max(s.drift_most[r, l], s.largest[row_along(s, axis), l, i])
             if s.yielded[r, l] > 0.0:  # else its drift is its shear over k
                 most = s.drift_most[r, l]
             result.ductility[axis, i] = most / s.strength[r, l]
@@ -62,15 +62,15 @@ def finish_history(s: Record, l: int, system: Record, results: Record) -> None:
     result.azimuth = azimuth_of(s, l)
     for i in range(EVENT_KINDS):
         result.events[i] = s.events[i, l]
-    half = 2 * ways - 1
+    rows = rows_of(s)
     for i in range(s.n):
         result.storey_shear[i] = s.largest[0, l, i]
-        result.floor_acceleration[i] = s.largest[half, l, i]
+        result.floor_acceleration[i] = s.largest[rows, l, i]
         if ways == 2:
-            result.storey_shear_x[i] = s.largest[half - 2, l, i]
-            result.storey_shear_y[i] = s.largest[half - 1, l, i]
-            result.floor_acceleration_x[i] = s.largest[half + ways - 1, l, i]
-            result.floor_acceleration_y[i] = s.largest[half + ways, l, i]
+            result.storey_shear_x[i] = s.largest[row_along(s, 0), l, i]
+            result.storey_shear_y[i] = s.largest[row_along(s, 1), l, i]
+            result.floor_acceleration_x[i] = s.largest[rows + row_along(s, 0), l, i]
+            result.floor_acceleration_y[i] = s.largest[rows + row_along(s, 1), l, i]
     result.max_x = s.max_beam[0, l]
     result.max_y = s.max_beam[ways - 1, l]
     if s.yields[l] > 0:

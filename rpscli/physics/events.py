@@ -21,6 +21,7 @@ from rpscli.physics.lane import (
     lanes_of,
     pushed_by,
     rate_of,
+    vector,
     ways_of,
     z_at,
     z_of,
@@ -452,7 +453,6 @@ def squared_margin(s: Record, l: int) -> Quintic:
     R = 0.5 * s.diameter[l]
     ends = s.piece
     for end in range(2):
-        time = s.time[l] + end * h
         factor = s.limit_right[l]
         g_felt, g_rate, bent = felt_at(s, l, end)
         limit = factor * g_felt + s.held_right[l]
@@ -462,20 +462,14 @@ def squared_margin(s: Record, l: int) -> Quintic:
         slope = 2.0 * limit * rise
         bend = 2.0 * rise * rise
         bend += 2.0 * limit * (factor * bent)
+        z, z_rate = z_at(s, l, end)
+        ddV = vector(s, s.new_ddV, l) if end > 0 else vector(s, s.ddV, l)
         for axis in range(2):
-            V = s.V[axis, l]
-            dV = s.dV[axis, l]
-            ddV = s.ddV[axis, l]
-            if end > 0:
-                V = s.new_V[axis, l]
-                dV = s.new_dV[axis, l]
-                ddV = s.new_ddV[axis, l]
-            a_g = ground_at(s, l, axis, time)
-            push = R * z_of(s, l, V, a_g)
-            rate = R * z_of(s, l, dV, s.a_g_slope[axis, l])
+            push = R * z[axis]
+            rate = R * z_rate[axis]
             value -= push * push
             slope -= 2.0 * push * rate
-            bend -= 2.0 * (rate * rate + push * (R * pushed_by(s, l, ddV)))
+            bend -= 2.0 * (rate * rate + push * (R * pushed_by(s, l, ddV[axis])))
         ends[3 * end] = value
         ends[3 * end + 1] = slope
         ends[3 * end + 2] = bend

@@ -30,8 +30,8 @@ from rpscli.physics.lane import (
     set_vector,
     tilt_of,
     ways_of,
-    z_along,
     z_at,
+    z_vector,
 )
 from rpscli.physics.laws.place import Place, across, along, length, turned
 from rpscli.physics.state import STICKING, STUCK, Record
@@ -163,7 +163,7 @@ def push_at_rest(s: Record, l: int, V: Vector, time: float, V_up: float) -> floa
     if s.friction_force[l] + s.friction_moment[l] == 0.0 or s.bed_back[l] > 0.0:
         return 0.0
     g_felt = felt(s, l, g_up_at(s, l, time), V_up)
-    z = z_along(s, l, V, ground_of(s, l, time))
+    z = z_vector(s, l, V, ground_of(s, l, time))
     if is_gripped(s, l):
         return push_gripped(s, l, z, g_felt)
     if s.phase[l] == STUCK:

@@ -255,7 +255,7 @@ def z_of(s: Record, l: int, force: float, a_g: float) -> float:
 
 
 @inlined
-def z_along(s: Record, l: int, force: Vector, a_g: Vector) -> Vector:
+def z_vector(s: Record, l: int, force: Vector, a_g: Vector) -> Vector:
     """The same in x and y."""
     return z_of(s, l, force[0], a_g[0]), z_of(s, l, force[1], a_g[1])
 
@@ -268,7 +268,7 @@ def z_at(s: Record, l: int, end: int) -> tuple[Vector, Vector]:
     a_g = ground_of(s, l, s.time[l] + end * s.h[l])
     V = vector(s, s.new_V, l) if end > 0 else vector(s, s.V, l)
     dV = vector(s, s.new_dV, l) if end > 0 else vector(s, s.dV, l)
-    return z_along(s, l, V, a_g), z_along(s, l, dV, vector(s, s.a_g_slope, l))
+    return z_vector(s, l, V, a_g), z_vector(s, l, dV, vector(s, s.a_g_slope, l))
 
 
 @inlined
@@ -358,7 +358,7 @@ def respond(
     """
     a_g = ground_of(s, l, time)
     drive = vector(s, s.drive, l)
-    z = z_along(s, l, (V[0] + drive[0], V[1] + drive[1]), a_g)
+    z = z_vector(s, l, (V[0] + drive[0], V[1] + drive[1]), a_g)
     g_up = g_up_at(s, l, time)
     g_felt = felt(s, l, g_up, V[2])
     arms = weight_arms(at, ends_of(s, l), s.weigh[l], w, s.gravity[l], g_felt)
