@@ -49,7 +49,7 @@ def observe_tilt(s: Record, log: Record) -> None:
     for l in range(lanes_of(s)):
         if s.tilt_rises[l] > 1.0:
             raise_tilt(s, l, log)
-        elif s.tilt_rises[l] > 0.0:
+        elif ways_of(s) == 2 and s.tilt_rises[l] > 0.0:
             x, y = new_tilt_of(s, l)
             s.max_azimuth[l] = azimuth_along(s, x, y)
 
