@@ -24,15 +24,16 @@ from rpscli.analyses.trace import DeviceDemand
 from rpscli.model.podium import Array, Device, PodiumStructure
 from rpscli.model.statics import uplift_acceleration
 from rpscli.model.superstructure import Superstructure
-from rpscli.physics import state
+from rpscli.physics import interface, state
 from rpscli.physics.laws import geometry
-from rpscli.physics.state import Record, record_type
+from rpscli.physics.records import record_type
+from rpscli.physics.state import Record
 from rpscli.shown import Shown, frozen, with_unit
 
 T = TypeVar("T")
 
 
-_PLAIN = record_type(state.RESULT)
+_PLAIN = record_type(interface.RESULT)
 
 
 class Demands:
@@ -313,7 +314,7 @@ class Demand(Shown):
     structure
         Podium, bearings and building.
     history
-        What its history left behind: a `physics.state.RESULT`.
+        What its history left behind: a `physics.interface.RESULT`.
     """
 
     structure: PodiumStructure

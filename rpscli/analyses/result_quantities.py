@@ -40,7 +40,7 @@ class ResultQuantity(NamedTuple):
     )
     column: str = ""  # its head in a table of storeys, where that is not the name
     kernel: str = (
-        ""  # the field of `physics.state.RESULT` that holds it; empty where computed
+        ""  # the field of `physics.interface.RESULT` that holds it; empty where computed
     )
 
     @property

@@ -19,7 +19,8 @@ from numpy.typing import NDArray
 
 from rpscli.analyses.kernels.history import SampledHistory
 from rpscli.model.podium import Array, PodiumStructure
-from rpscli.physics.state import EVENT, Record
+from rpscli.physics.interface import EVENT
+from rpscli.physics.state import Record
 from rpscli.shown import Frozen, Shown
 
 Rows: TypeAlias = slice | NDArray[np.intp]

@@ -5,8 +5,8 @@ pass, and each function becomes LLVM's text once for each combination of kinds t
 called with. llvmlite makes machine code of the text, which is kept on disk. Interpreted,
 the same functions give the same bits: Python is the oracle, and the debugger.
 
-`values` are what a name may stand for, and how it stands in LLVM; `expressions` and
-`statements` write the text of one function; `functions` makes all that a function calls
-into one program; `objects` makes, keeps, loads and calls machine code. Nothing here knows
-what is computed with it.
+`values` are what a name may stand for, and how it stands in LLVM; `expressions`, with the
+functions of `mathematics`, and `statements` write the text of one function; `functions`
+makes all that a function calls into one program; `objects` makes, keeps, loads and calls
+machine code. Nothing here knows what is computed with it.
 """

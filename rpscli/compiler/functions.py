@@ -16,15 +16,8 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from rpscli.compiler.expressions import (
-    EXTERNALS,
-    INTRINSICS,
-    Body,
-    Scope,
-    expression,
-    is_true,
-    placed,
-)
+from rpscli.compiler.expressions import Body, Scope, expression, is_true, placed
+from rpscli.compiler.mathematics import EXTERNALS, INTRINSICS
 from rpscli.compiler.statements import Statements, assign_name, assignments, statements
 from rpscli.compiler.values import (
     DOUBLE,

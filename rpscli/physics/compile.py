@@ -10,8 +10,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, TypeAlias, TypeVar
 
-from rpscli.compiler.expressions import call_at, fma
 from rpscli.compiler.functions import inlined
+from rpscli.compiler.mathematics import call_at, fma
 
 __all__ = ["LAW_NUMBERS", "Numbers", "compiled", "fma", "inlined", "own_law"]
 

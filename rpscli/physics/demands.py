@@ -14,28 +14,34 @@ from rpscli.physics.devices.acting import act, power_in_step
 from rpscli.physics.devices.seen import raise_devices
 from rpscli.physics.devices.worked import worked
 from rpscli.physics.floors import observe_floors, raise_floors, sums_at_start
-from rpscli.physics.friction import grip_at, push_at_rest
+from rpscli.physics.friction import grip_at, is_gripped, push_at_rest
 from rpscli.physics.lane import (
+    Vector,
     contact_forces,
     felt_at,
+    force_of,
     g_up_at,
-    ground_at,
+    ground_of,
     lanes_of,
     new_rate_of,
     new_tilt_of,
     patch,
     place_with,
     polar,
+    pushed_beam,
     pushed_by,
     rate_of,
     respond,
+    resultant,
     stands,
     tilt_of,
+    vector,
     ways_of,
     without_shock,
-    z_of,
+    z_at,
 )
 from rpscli.physics.largest_tilt import observe_tilt, observe_ways
+from rpscli.physics.laws.place import across, length
 from rpscli.physics.peaks import turning_value
 from rpscli.physics.quintic import (
     cubic,
@@ -68,10 +74,10 @@ def measures_of(
     s: Record,
     l: int,
     stays: float,
-    beam: tuple[float, float],
+    beam: Vector,
     lift: float,
-    V: tuple[float, float],
-    ground: tuple[float, float],
+    V: Vector,
+    ground: Vector,
     up: tuple[float, float],
 ) -> Measures:
     """Measures of contacts; where nothing stands on the columns their
@@ -81,15 +87,12 @@ def measures_of(
     friction they ask for says nothing.
     """
     lift *= stays
-    top, bottom, N_top, N_bottom = contact_forces(
+    x, low_x, N_top, N_bottom = contact_forces(
         s, l, stays * beam[0], lift, V[0], ground[0], up
     )
-    top = abs(top)
-    bottom = abs(bottom)
-    if ways_of(s) == 2:
-        y, low, _, _ = contact_forces(s, l, stays * beam[1], lift, V[1], ground[1], up)
-        top = math.sqrt(top * top + y * y)
-        bottom = math.sqrt(bottom * bottom + low * low)
+    y, low_y, _, _ = contact_forces(s, l, stays * beam[1], lift, V[1], ground[1], up)
+    top = resultant(s, x, y)
+    bottom = resultant(s, low_x, low_y)
     upper = s.cap_beam_mass[l] + s.floors_mass[l]
     lower = upper + s.columns_mass[l]
     loaded = upper > 0.0
@@ -115,69 +118,71 @@ def observe_contacts(s: Record) -> None:
     In full contact without what friction dampers may take: the more.
     """
     for l in range(lanes_of(s)):
-        time = s.time[l] + s.h[l]
-        ground = ground_at(s, l, 0, time)
-        ground_y = 0.0
-        beam_y = 0.0
-        V_y = 0.0
-        if ways_of(s) == 2:
-            ground_y = ground_at(s, l, 1, time)
-            beam_y = s.new_shaking[1, l] - ground_y
-            V_y = s.new_V[1, l] + s.drive[1, l]
-        stuck = s.phase[l] == STUCK
-        rate = new_rate_of(s, l)
-        now = polar(s, l, new_tilt_of(s, l), rate)
-        beam = s.new_shaking[0, l] - ground
-        g_up = g_up_at(s, l, time)
-        stays = without_shock(s, l, now.x, rate)
-        V = s.new_V[0, l] + s.drive[0, l]
-        if s.equipped > 0:  # friction dampers push until all is what the columns hold
-            per_share = 2.0 / (s.diameter[l] * s.share[l])
-            load = s.load[l] / s.share[l]
-            V = s.held_x[l] * per_share + load * ground if stuck else V
-            V_y = s.held_y[l] * per_share + load * ground_y if stuck else V_y
-        V = V + s.tied[l] * now.n
-        V_y = V_y + s.tied[l] * now.t
-        pressed = (g_up, s.new_V[ways_of(s), l])
-        V_up = bulge(s, l, ways_of(s), ways_of(s) + 1)
-        found = measures_of(
-            s,
-            l,
-            stays,
-            (beam, beam_y),
-            s.new_lift[l],
-            (V, V_y),
-            (ground, ground_y),
-            pressed,
-        )
-        more = bulge(s, l, 0, ways_of(s))
-        heavier = pushed_by(s, l, s.diameter[l]) / s.one[l] * s.tan_a[l]
-        springs = s.axes > ways_of(s)
-        heavier *= more / s.gravity[l] * s.moves[l]
-        heavier += V_up / (
-            (s.cap_beam_mass[l] + s.floors_mass[l] + 1e-300) * s.gravity[l]
-        )
-        rises = found[4] + more > NEARLY * s.shear_top[l]
-        rises |= found[5] + more > NEARLY * s.shear_bottom[l]
-        more /= s.weigh[l] * s.diameter[l] * s.gravity[l] * s.columns_mass[l] * 0.5
-        rises |= found[0] + more > NEARLY * s.friction_top[l]
-        rises |= found[1] + more > NEARLY * s.friction_bottom[l]
-        heavier -= UNSEEN if springs else 0.0
-        rises |= found[3] - heavier < 1.0 - NEARLY * (1.0 - s.normal_bottom[l])
-        rises |= found[3] + heavier > 1.0 + NEARLY * (s.heavy_bottom[l] - 1.0)
-        rises |= found[2] - heavier < 1.0 - NEARLY * (1.0 - s.normal_top[l])
-        rises |= stuck & ((s.friction_moment[l] > 0.0) | (g_up != s.gravity[l]) | springs)
+        rises = contacts_may_rise(s, l, measures_at_end(s, l))
         # A vibration upwards may turn just behind the end of the step before.
         near = s.contacts_near[l] > 0.0
+        springs = s.axes > ways_of(s)
         s.contacts_rise[l] = 1.0 if rises | (near & springs) else 0.0
         near = rises if s.accepted[l] > 0.0 else near
         s.contacts_near[l] = 1.0 if near else 0.0
-    if ways_of(s) == 2:
-        for l in range(lanes_of(s)):
-            lever = torsion(s, l)
-            s.torsion_lever[l] = max(
-                s.torsion_lever[l], lever if s.accepted[l] > 0.0 else 0.0
-            )
+
+
+@inlined
+def measures_at_end(s: Record, l: int) -> Measures:
+    """Measures of contacts at the end of the step."""
+    time = s.time[l] + s.h[l]
+    ground = ground_of(s, l, time)
+    shaking = vector(s, s.new_shaking, l)
+    beam = shaking[0] - ground[0], shaking[1] - ground[1]
+    rate = new_rate_of(s, l)
+    now = polar(s, l, new_tilt_of(s, l), rate)
+    stays = without_shock(s, l, now.x, rate)
+    V = vector(s, s.new_V, l)
+    drive = vector(s, s.drive, l)
+    V_x = V[0] + drive[0]
+    V_y = V[1] + drive[1]
+    if s.equipped > 0:  # friction dampers push until all is what the columns hold
+        stuck = s.phase[l] == STUCK
+        V_x = force_of(s, l, s.held_x[l], ground[0]) if stuck else V_x
+        V_y = force_of(s, l, s.held_y[l], ground[1]) if stuck else V_y
+    V = V_x + s.tied[l] * now.n, V_y + s.tied[l] * now.t
+    up = g_up_at(s, l, time), s.new_V[ways_of(s), l]
+    return measures_of(s, l, stays, beam, s.new_lift[l], V, ground, up)
+
+
+@inlined
+def contacts_may_rise(s: Record, l: int, found: Measures) -> bool:
+    """Whether measures at the end of the step, and what they may be more
+    within it, come near the largest.
+    """
+    springs = s.axes > ways_of(s)
+    stuck = s.phase[l] == STUCK
+    g_up = g_up_at(s, l, s.time[l] + s.h[l])
+    V_up = bulge(s, l, ways_of(s), ways_of(s) + 1)
+    more = bulge(s, l, 0, ways_of(s))
+    heavier = pushed_by(s, l, s.diameter[l]) / s.one[l] * s.tan_a[l]
+    heavier *= more / s.gravity[l] * s.moves[l]
+    heavier += V_up / ((s.cap_beam_mass[l] + s.floors_mass[l] + 1e-300) * s.gravity[l])
+    rises = found[4] + more > NEARLY * s.shear_top[l]
+    rises |= found[5] + more > NEARLY * s.shear_bottom[l]
+    more /= s.weigh[l] * s.diameter[l] * s.gravity[l] * s.columns_mass[l] * 0.5
+    rises |= found[0] + more > NEARLY * s.friction_top[l]
+    rises |= found[1] + more > NEARLY * s.friction_bottom[l]
+    heavier -= UNSEEN if springs else 0.0
+    rises |= found[3] - heavier < 1.0 - NEARLY * (1.0 - s.normal_bottom[l])
+    rises |= found[3] + heavier > 1.0 + NEARLY * (s.heavy_bottom[l] - 1.0)
+    rises |= found[2] - heavier < 1.0 - NEARLY * (1.0 - s.normal_top[l])
+    rises |= stuck & ((s.friction_moment[l] > 0.0) | (g_up != s.gravity[l]) | springs)
+    return rises  # type: ignore[no-any-return]
+
+
+@compiled
+def observe_torsion(s: Record) -> None:
+    """Raise the largest torsion by those at the ends of accepted steps."""
+    for l in range(lanes_of(s)):
+        lever = torsion(s, l)
+        counts = s.accepted[l] > 0.0
+        s.torsion_lever[l] = max(s.torsion_lever[l], lever if counts else 0.0)
 
 
 @inlined
@@ -193,7 +198,8 @@ def torsion(s: Record, l: int) -> float:
     w = q * per_x
     i_1 = s.io_1[l]
     i_3 = s.i_3[l]
-    faster = (s.new_bend[1, l] * n - s.new_bend[0, l] * t - 2.0 * p * w) * per_x
+    bend = vector(s, s.new_bend, l)
+    faster = (across(n, t, bend[0], bend[1]) - 2.0 * p * w) * per_x
     c = s.c[l]
     p0 = s.p[l]
     q0 = s.q0[l]
@@ -251,30 +257,30 @@ def measures_within(s: Record, l: int, t: float) -> tuple[float, Measures]:
     """
     tilt, rate = tilt_within(s, l, t)
     now = polar(s, l, tilt, rate)
-    up = ways_of(s)
     time = s.time[l] + t * s.h[l]
-    V_x = force_within(s, l, 0, t)
-    V_y = 0.0
-    V_up = 0.0
-    if up == 2:
-        V_y = force_within(s, l, 1, t)
-    if s.axes > up:
-        V_up = force_within(s, l, up, t)
+    V = shears_within(s, l, t)
     if s.devices[l] > 0:
         act(s, l, tilt, rate)
         if stands(s, l):
-            push_at_rest(s, l, (V_x, V_y), time, V_up)
+            push_at_rest(s, l, (V[0], V[1]), time, V[2])
     w, dw = patch(s, l, now.x)
-    found = respond(s, l, place_with(s, l, now.x, w, dw), w, now, (V_x, V_y, V_up), time)
-    V = V_x + s.drive[0, l] + s.tied[l] * now.n, 0.0
-    if up == 2:
-        V = V[0], V_y + s.drive[1, l] + s.tied[l] * now.t
+    found = respond(s, l, place_with(s, l, now.x, w, dw), w, now, V, time)
     stays = without_shock(s, l, now.x, rate)
     beam = (found.beam_x, found.beam_y)
     ground = found.a_x, found.a_y
-    return stays, measures_of(
-        s, l, stays, beam, found.lift, V, ground, (found.g_up, V_up)
-    )
+    up = found.g_up, V[2]
+    pushed = pushed_beam(s, l, (V[0], V[1]), now)
+    return stays, measures_of(s, l, stays, beam, found.lift, pushed, ground, up)
+
+
+@inlined
+def shears_within(s: Record, l: int, t: float) -> tuple[float, float, float]:
+    """Base shears in x, in y and upwards a fraction t into the step [N]."""
+    up = ways_of(s)
+    V_x = force_within(s, l, 0, t)
+    V_y = force_within(s, l, 1, t) if ways_of(s) == 2 else 0.0
+    V_up = force_within(s, l, up, t) if s.axes > up else 0.0
+    return V_x, V_y, V_up
 
 
 @compiled
@@ -321,19 +327,16 @@ def raise_by(s: Record, l: int, found: Measures) -> None:
 @compiled
 def is_held(s: Record, l: int) -> bool:
     """Whether a storey at rest is held: one that lifts off at once has not stood."""
-    if ways_of(s) == 2 and s.phase[l] == STUCK:
+    if is_gripped(s, l):
         return bool(grip_at(s, l, 0).margin >= 0.0)
     R = 0.5 * s.diameter[l]
-    size = 0.0
+    z, _ = z_at(s, l, 0)
     g_felt = felt_at(s, l, 0)[0]
-    for axis in range(ways_of(s)):
-        push = R * z_of(s, l, s.V[axis, l], ground_at(s, l, axis, s.time[l]))
-        size = push if ways_of(s) == 1 else size + push * push
     right = s.limit_right[l] * g_felt + s.held_right[l]
     if ways_of(s) == 2:
-        return bool(math.sqrt(size) <= right)
+        return bool(length(R * z[0], R * z[1]) <= right)
     left = s.limit_left[l] * g_felt + s.held_left[l]
-    return bool(-left <= size <= right)
+    return bool(-left <= R * z[0] <= right)
 
 
 @compiled
@@ -344,25 +347,18 @@ def observe_start(s: Record, l: int) -> None:
     tilt = tilt_of(s, l)
     rate = rate_of(s, l)
     now = polar(s, l, tilt, rate)
-    a_x = ground_at(s, l, 0, time)
-    g_up = g_up_at(s, l, time)
-    V_x = s.V[0, l]
-    V_y = 0.0
-    a_y = 0.0
-    beam_y = 0.0
-    if ways_of(s) == 2:
-        a_y = ground_at(s, l, 1, time)
-        V_y = s.V[1, l]
-        beam_y = s.shaking[1, l] - a_y
+    ground = ground_of(s, l, time)
+    V = vector(s, s.V, l)
     if stands(s, l):
-        push_at_rest(s, l, (V_x, V_y), time, s.V[ways_of(s), l])
-    V_y += s.drive[1, l] if ways_of(s) == 2 else 0.0
-    V = V_x + s.drive[0, l] + s.tied[l] * now.n, V_y + s.tied[l] * now.t
+        push_at_rest(s, l, V, time, s.V[ways_of(s), l])
     if s.moves[l] > 0.0 or is_held(s, l):
         stays = without_shock(s, l, now.x, rate)
-        beam = (s.shaking[0, l] - a_x, beam_y)
-        up = g_up, s.V[ways_of(s), l]
-        raise_by(s, l, measures_of(s, l, stays, beam, s.lift[l], V, (a_x, a_y), up))
+        shaking = vector(s, s.shaking, l)
+        beam = shaking[0] - ground[0], shaking[1] - ground[1]
+        up = g_up_at(s, l, time), s.V[ways_of(s), l]
+        pushed = pushed_beam(s, l, V, now)
+        found = measures_of(s, l, stays, beam, s.lift[l], pushed, ground, up)
+        raise_by(s, l, found)
     if s.devices[l] > 0:
         at = worked(s, l, tilt, rate)
         raise_devices(s, l, at, at, at)
@@ -385,6 +381,7 @@ def observe(s: Record, systems: Record, log: Record, stands: bool) -> None:
         observe_tilt(s, log)
     if ways == 2 and not stands:
         observe_ways(s)
+        observe_torsion(s)
     for l in range(lanes_of(s)):
         if s.accepted[l] == 0.0 or s.history[l] == NO_HISTORY:
             continue

@@ -9,21 +9,24 @@ corrected by Newton's method.
 
 from __future__ import annotations
 
-import math
-
 from rpscli.physics.compile import compiled, inlined
 from rpscli.physics.devices.acting import has_friction
 from rpscli.physics.devices.branches import WATCHED, may_be_watched, slowing, watched
-from rpscli.physics.friction import grip_at
+from rpscli.physics.friction import grip_at, is_gripped
 from rpscli.physics.lane import (
     felt_at,
     g_up_at,
     ground_at,
+    is_cone,
     lanes_of,
     pushed_by,
+    rate_of,
+    vector,
     ways_of,
+    z_at,
     z_of,
 )
+from rpscli.physics.laws.place import length
 from rpscli.physics.quintic import (
     NO_PASSAGE,
     Quintic,
@@ -156,9 +159,8 @@ def surely_held(s: Record, l: int) -> bool:
             off_x = x[i] - s.held_x[l]
             off_y = y[i] - s.held_y[l]
             most = max(most, off_x * off_x + off_y * off_y)
-        steady = (
-            (start == s.gravity[l]) & (end == start) & (s.axes == 2)
-        )  # else what holds it moves
+        # else what holds it moves
+        steady = (start == s.gravity[l]) & (end == start) & (s.axes == 2)
         within = (right >= 0.0) & (most <= right * right)
         return within & (steady | (s.phase[l] != STUCK))  # type: ignore[no-any-return]
     left = min(s.limit_left[l] * start, s.limit_left[l] * end) + s.held_left[l]
@@ -175,12 +177,10 @@ round it, but for rounding."""
 @inlined
 def falls(s: Record, l: int) -> bool:
     """Whether a tilt to any side approaches upright at the start of the step."""
-    square = 0.0
-    for axis in range(ways_of(s)):
-        square += s.tilt_rate[axis, l] * s.tilt_rate[axis, l]
-    least = CIRCLING * CIRCLING * square
+    x, y = rate_of(s, l)
+    least = CIRCLING * CIRCLING * (x * x + y * y)
     v = s.v[l]
-    return (v < 0.0) & (v * v > least) & (s.cone[l] > 0.0)  # type: ignore[no-any-return]
+    return is_cone(s, l) & (v < 0.0) & (v * v > least)  # type: ignore[no-any-return]
 
 
 @inlined
@@ -213,8 +213,7 @@ def check_all_steps(s: Record) -> None:
         lowest = min(lower_hull(path), path[0])
         highest = max(upper_hull(path), path[0])
         inside = (lowest >= low) & (highest <= high)
-        if ways_of(s) == 2:
-            inside &= (not falls(s, l)) | (s.new_v[l] < 0.0)
+        inside &= (not falls(s, l)) | (s.new_v[l] < 0.0)
         clear = inside if moves else surely_held(s, l)
         short = (s.error[l] <= 1.0) | (s.h[l] <= LEAST_STEP * s.dt[l])
         s.accepted[l] = 1.0 if clear & short & (s.wanted[l] == NOTHING) else 0.0
@@ -331,7 +330,7 @@ def rises_high(s: Record, l: int, systems: Record) -> tuple[float, int]:
 @compiled
 def is_nearest(s: Record, l: int, systems: Record) -> tuple[float, int]:
     """Where a tilt to any side is nearest to upright."""
-    if s.moves[l] > 0.0 and ways_of(s) == 2 and falls(s, l) and s.new_v[l] >= 0.0:
+    if s.moves[l] > 0.0 and falls(s, l) and s.new_v[l] >= 0.0:
         return nearest(s, l), 0
     return NO_PASSAGE, 0
 
@@ -384,23 +383,12 @@ def let_go(s: Record, l: int, systems: Record) -> tuple[float, int]:
     """Where a storey at rest is no longer held: to the right (1), or to the left (-1)."""
     if s.moves[l] > 0.0:
         return NO_PASSAGE, 0
-    piece = s.piece
-    h = s.h[l]
-    start = g_up_at(s, l, s.time[l])
-    rise = h * s.g_up_slope[l]
+    if is_gripped(s, l):
+        return first_descent(grip_path(s, l), s.piece), 1
+    if ways_of(s) == 2:
+        return first_descent(squared_margin(s, l), s.piece), 1
     x = push_path(s, l, 0)
     spared = relief_path(s, l)
-    if ways_of(s) == 2:
-        if s.phase[l] == STUCK:
-            one = grip_at(s, l, 0)
-            two = grip_at(s, l, 1)
-            start = max(one.margin + one.late, 0.0)
-            end = two.margin + two.late
-            path = cubic(h, start, one.slope, end, two.slope)
-            t = first_descent(path, piece)
-        else:
-            t = first_descent(squared_margin(s, l), piece)
-        return t, 1
     # Where gravity is lost both margins are negative at once: then the push decides.
     push = 0.0
     for i in range(6):
@@ -409,27 +397,51 @@ def let_go(s: Record, l: int, systems: Record) -> tuple[float, int]:
     first = NO_PASSAGE
     side = 0
     for sign in (likelier, -likelier):
-        factor = s.limit_right[l]
-        held = s.held_right[l]
-        if sign < 0:
-            factor = s.limit_left[l]
-            held = s.held_left[l]
-        limit = factor * start
-        change = factor * rise
-        limit += ROUNDING * (abs(limit) + abs(held)) + held
-        path = (
-            limit - sign * x[0] - factor * spared[0],
-            limit + 0.2 * change - sign * x[1] - factor * spared[1],
-            limit + 0.4 * change - sign * x[2] - factor * spared[2],
-            limit + 0.6 * change - sign * x[3] - factor * spared[3],
-            limit + 0.8 * change - sign * x[4] - factor * spared[4],
-            limit + change - sign * x[5] - factor * spared[5],
-        )
-        t = first_descent(path, piece)
+        t = first_descent(margin_path(s, l, x, spared, sign), s.piece)
         if t < first:
             first = t
             side = sign
     return first, side
+
+
+@inlined
+def grip_path(s: Record, l: int) -> Quintic:
+    """The cubic through the margins of a tilt that friction holds, to any side."""
+    one = grip_at(s, l, 0)
+    two = grip_at(s, l, 1)
+    start = max(one.margin + one.late, 0.0)
+    return cubic(s.h[l], start, one.slope, two.margin + two.late, two.slope)
+
+
+@inlined
+def limit_to(s: Record, l: int, side: int) -> tuple[float, float]:
+    """The limit of R z to the right (1) or left (-1): what multiplies g_f, what adds."""
+    factor = s.limit_right[l]
+    held = s.held_right[l]
+    if side < 0:
+        factor = s.limit_left[l]
+        held = s.held_left[l]
+    return factor, held
+
+
+@inlined
+def margin_path(s: Record, l: int, x: Quintic, spared: Quintic, side: int) -> Quintic:
+    """The limit to a side less R z to it, over the step in one plane.
+
+    Of R z, and of what contacts are spared of g + a_v.
+    """
+    factor, held = limit_to(s, l, side)
+    limit = factor * g_up_at(s, l, s.time[l])
+    change = factor * (s.h[l] * s.g_up_slope[l])
+    limit += ROUNDING * (abs(limit) + abs(held)) + held
+    return (
+        limit - side * x[0] - factor * spared[0],
+        limit + 0.2 * change - side * x[1] - factor * spared[1],
+        limit + 0.4 * change - side * x[2] - factor * spared[2],
+        limit + 0.6 * change - side * x[3] - factor * spared[3],
+        limit + 0.8 * change - side * x[4] - factor * spared[4],
+        limit + change - side * x[5] - factor * spared[5],
+    )
 
 
 @compiled
@@ -441,7 +453,6 @@ def squared_margin(s: Record, l: int) -> Quintic:
     R = 0.5 * s.diameter[l]
     ends = s.piece
     for end in range(2):
-        time = s.time[l] + end * h
         factor = s.limit_right[l]
         g_felt, g_rate, bent = felt_at(s, l, end)
         limit = factor * g_felt + s.held_right[l]
@@ -451,20 +462,14 @@ def squared_margin(s: Record, l: int) -> Quintic:
         slope = 2.0 * limit * rise
         bend = 2.0 * rise * rise
         bend += 2.0 * limit * (factor * bent)
+        z, z_rate = z_at(s, l, end)
+        ddV = vector(s, s.new_ddV, l) if end > 0 else vector(s, s.ddV, l)
         for axis in range(2):
-            V = s.V[axis, l]
-            dV = s.dV[axis, l]
-            ddV = s.ddV[axis, l]
-            if end > 0:
-                V = s.new_V[axis, l]
-                dV = s.new_dV[axis, l]
-                ddV = s.new_ddV[axis, l]
-            a_g = ground_at(s, l, axis, time)
-            push = R * z_of(s, l, V, a_g)
-            rate = R * z_of(s, l, dV, s.a_g_slope[axis, l])
+            push = R * z[axis]
+            rate = R * z_rate[axis]
             value -= push * push
             slope -= 2.0 * push * rate
-            bend -= 2.0 * (rate * rate + push * (R * pushed_by(s, l, ddV)))
+            bend -= 2.0 * (rate * rate + push * (R * pushed_by(s, l, ddV[axis])))
         ends[3 * end] = value
         ends[3 * end + 1] = slope
         ends[3 * end + 2] = bend
@@ -515,30 +520,18 @@ def missing_yield(s: Record, l: int, systems: Record) -> tuple[float, float]:
 def missing_let_go(s: Record, l: int, systems: Record) -> tuple[float, float]:
     """Of a storey at rest, to its side."""
     side = s.which[l]
-    if ways_of(s) == 2 and s.phase[l] == STUCK:
+    if is_gripped(s, l):
         grip = grip_at(s, l, 1)
         return grip.margin + grip.late, grip.slope
     R = 0.5 * s.diameter[l]
-    h = s.h[l]
     g_felt, g_rate, _ = felt_at(s, l, 1)
-    factor = s.limit_right[l]
-    held = s.held_right[l]
-    size = 0.0
-    growth = 0.0
-    if side < 0:
-        factor = s.limit_left[l]
-        held = s.held_left[l]
-    for axis in range(ways_of(s)):
-        a_g = ground_at(s, l, axis, s.time[l] + h)
-        push = R * z_of(s, l, s.new_V[axis, l], a_g)
-        rate = R * z_of(s, l, s.new_dV[axis, l], s.a_g_slope[axis, l])
-        if ways_of(s) == 1:
-            size = side * push
-            growth = side * rate
-        else:
-            size = size + push * push
-            growth = growth + push * rate
-    if ways_of(s) == 2:
-        size = math.sqrt(size)
-        growth /= max(size, 1e-300)
+    factor, held = limit_to(s, l, side)
+    z, z_rate = z_at(s, l, 1)
+    x = R * z[0]
+    rate = R * z_rate[0]
+    if ways_of(s) == 1:
+        return factor * g_felt + held - side * x, factor * g_rate - side * rate
+    y = R * z[1]
+    size = length(x, y)
+    growth = (x * rate + y * (R * z_rate[1])) / max(size, 1e-300)
     return factor * g_felt + held - size, factor * g_rate - growth

@@ -27,6 +27,7 @@ import math
 
 from rpscli.physics.compile import compiled, inlined
 from rpscli.physics.lane import lanes_of, ways_of
+from rpscli.physics.laws.place import length
 from rpscli.physics.peaks import peak
 from rpscli.physics.state import Floats, Record
 from rpscli.physics.storeys import free_rows
@@ -40,6 +41,24 @@ SURELY = 1.0 - 1e-9
 def rows_of(s: Record) -> int:
     """Rows of demands of a kind."""
     return 2 * ways_of(s) - 1
+
+
+@inlined
+def row_along(s: Record, axis: int) -> int:
+    """The row of demands of a kind in a direction; in one plane the only one."""
+    return 0 if ways_of(s) == 1 else 1 + axis
+
+
+@inlined
+def axis_of(j: int) -> int:
+    """The direction of such a row."""
+    return max(j - 1, 0)
+
+
+@inlined
+def is_resultant(s: Record, j: int) -> bool:
+    """Whether a row of demands is of resultants of both directions."""
+    return False if ways_of(s) == 1 else j == 0
 
 
 @inlined
@@ -165,17 +184,13 @@ def raise_row(s: Record, l: int, systems: Record, kind: int, j: int) -> bool:
     within = False
     room = math.inf
     for i in range(s.n):
-        if ways_of(s) == 1 or j == 1:
-            here = abs(s.seen[kind, i])
-            share = bounds_of(systems, 0, kind)[i]
-        elif j == 2:
-            here = abs(s.seen[2 + kind, i])
-            share = bounds_of(systems, 1, kind)[i]
-        else:
-            x = s.seen[kind, i]
-            y = s.seen[2 + kind, i]
-            here = math.sqrt(x * x + y * y)
+        if is_resultant(s, j):
+            here = length(s.seen[kind, i], s.seen[2 + kind, i])
             share = min(bounds_of(systems, 0, kind)[i], bounds_of(systems, 1, kind)[i])
+        else:
+            axis = axis_of(j)
+            here = abs(s.seen[2 * axis + kind, i])
+            share = bounds_of(systems, axis, kind)[i]
         most = s.largest[k, l, i]
         left = share * (most - here)
         before = share * (most - s.last[k, l, i]) - moved
@@ -207,16 +222,15 @@ def raise_floors_between(
     for kind in range(2):
         for j in range(rows_of(s)):
             k = kind * rows_of(s) + j
-            x = 3 * kind + (6 if j == 2 else 0)
+            x = 3 * kind + 6 * axis_of(j)
             for i in range(n):
                 a = rows[x, i]
                 b = rows[x + 1, i]
                 c = rows[x + 2, i]
-                if ways_of(s) == 2 and j == 0:
-                    y = x + 6
-                    a = math.sqrt(a * a + rows[y, i] * rows[y, i])
-                    b = math.sqrt(b * b + rows[y + 1, i] * rows[y + 1, i])
-                    c = math.sqrt(c * c + rows[y + 2, i] * rows[y + 2, i])
+                if is_resultant(s, j):
+                    a = length(a, rows[x + 6, i])
+                    b = length(b, rows[x + 7, i])
+                    c = length(c, rows[x + 8, i])
                 s.largest[k, l, i] = max(s.largest[k, l, i], peak(a, b, c))
 
 

@@ -9,20 +9,15 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
-from rpscli.physics.bed import first_phase, load_bed
+from rpscli.physics.beginning import begin_history, idle
 from rpscli.physics.compile import compiled, inlined
 from rpscli.physics.demands import observe, observe_start
-from rpscli.physics.devices.acting import has_friction, load_devices
-from rpscli.physics.devices.branches import kink_limit, release_devices
+from rpscli.physics.devices.branches import kink_limit
 from rpscli.physics.devices.own import find_branches
-from rpscli.physics.devices.table import stored_in
-from rpscli.physics.devices.worked import worked
-from rpscli.physics.energy import total_energy
+from rpscli.physics.ending import finish_history
 from rpscli.physics.event_table import EVENTS
 from rpscli.physics.events import check_steps
-from rpscli.physics.ground import azimuth_of, set_ground, time_of
+from rpscli.physics.ground import set_ground
 from rpscli.physics.groups import (
     MOVING,
     STANDING,
@@ -35,13 +30,13 @@ from rpscli.physics.groups import (
     waiting_place,
 )
 from rpscli.physics.landing import resolve_step
-from rpscli.physics.lane import lanes_of, place_of, tilt_of, ways_of
+from rpscli.physics.lane import lanes_of, ways_of
+from rpscli.physics.next_step import plan
 from rpscli.physics.rest import REST_EVERY, is_over
 from rpscli.physics.run import Output
 from rpscli.physics.samples import store_sample, store_within
 from rpscli.physics.standing import stand, stands_exactly
 from rpscli.physics.state import (
-    AT_REST,
     BEDDED,
     CHANGE,
     EVENT_KINDS,
@@ -51,22 +46,13 @@ from rpscli.physics.state import (
     FULL_CONTACT,
     NO_HISTORY,
     NOTHING,
-    ROCKING,
-    ROLLING,
     RUNNING,
-    STUCK,
-    SURVIVED,
-    UPLIFT,
     YIELD,
     Floats,
     Record,
 )
 from rpscli.physics.step import renew, take_steps
-from rpscli.physics.storeys import keep_slips, load_storeys, review_storeys
-from rpscli.physics.switches import reverse, stop_or_turn
-from rpscli.physics.upright import (
-    enter_phase,
-)
+from rpscli.physics.storeys import keep_slips, review_storeys
 
 
 @compiled
@@ -251,17 +237,49 @@ def chosen(accepted: float, end: float, start: float) -> float:
 
 
 @compiled
-def accept_steps(s: Record) -> None:  # noqa: C901 -- few fields a loop
+def accept_steps(s: Record) -> None:
     """Make the ends of accepted steps the states of their lanes."""
+    lanes = lanes_of(s)
+    accept_tilts(s)
+    accept_floors(s)
+    for l in range(lanes if s.equipped > 0 else 0):
+        yes = s.accepted[l]
+        s.speed[l] = chosen(yes, s.new_speed[l], s.speed[l])
+        s.square_rate[l] = chosen(yes, s.new_square_rate[l], s.square_rate[l])
+        s.quicker[l] = chosen(yes, s.new_quicker[l], s.quicker[l])
+    for l in range(lanes):
+        s.time[l] += s.h[l] if s.accepted[l] > 0.0 else 0.0
+        s.steps[l] += 1.0
+    if s.gives_way > 0:
+        for l in range(lanes):
+            bedded = (s.accepted[l] > 0.0) & (s.phase[l] == BEDDED)
+            s.bedded_time[l] += s.h[l] if bedded else 0.0
+
+
+@inlined
+def accept_tilts(s: Record) -> None:
+    """The same of the tilt."""
     lanes = lanes_of(s)
     for axis in range(ways_of(s)):
         for l in range(lanes):
             yes = s.accepted[l]
+            rate = s.tilt_rate[axis, l]
             s.tilt[axis, l] = chosen(yes, s.new_tilt[axis, l], s.tilt[axis, l])
-            s.tilt_rate[axis, l] = chosen(
-                yes, s.new_tilt_rate[axis, l], s.tilt_rate[axis, l]
-            )
+            s.tilt_rate[axis, l] = chosen(yes, s.new_tilt_rate[axis, l], rate)
             s.bend[axis, l] = chosen(yes, s.new_bend[axis, l], s.bend[axis, l])
+    for l in range(lanes):
+        yes = s.accepted[l]
+        s.x[l] = chosen(yes, s.new_x[l], s.x[l])
+        s.v[l] = chosen(yes, s.new_v[l], s.v[l])
+        s.a[l] = chosen(yes, s.new_a[l], s.a[l])
+        s.lift[l] = chosen(yes, s.new_lift[l], s.lift[l])
+
+
+@inlined
+def accept_floors(s: Record) -> None:
+    """The same of modes, base shears and sums of demands."""
+    lanes = lanes_of(s)
+    for axis in range(ways_of(s)):
         for l in range(lanes):
             yes = s.accepted[l]
             sums = s.shear_sum[axis, l]
@@ -281,30 +299,7 @@ def accept_steps(s: Record) -> None:  # noqa: C901 -- few fields a loop
         for l in range(lanes):
             s.q[r, l] = chosen(s.accepted[l], s.new_q[r, l], s.q[r, l])
             s.dq[r, l] = chosen(s.accepted[l], s.new_dq[r, l], s.dq[r, l])
-    for l in range(lanes):
-        yes = s.accepted[l]
-        s.x[l] = chosen(yes, s.new_x[l], s.x[l])
-        s.v[l] = chosen(yes, s.new_v[l], s.v[l])
-        s.a[l] = chosen(yes, s.new_a[l], s.a[l])
-        s.lift[l] = chosen(yes, s.new_lift[l], s.lift[l])
-    for l in range(lanes if s.equipped > 0 else 0):
-        yes = s.accepted[l]
-        s.speed[l] = chosen(yes, s.new_speed[l], s.speed[l])
-        s.square_rate[l] = chosen(yes, s.new_square_rate[l], s.square_rate[l])
-        s.quicker[l] = chosen(yes, s.new_quicker[l], s.quicker[l])
-    for l in range(lanes):
-        s.time[l] += s.h[l] if s.accepted[l] > 0.0 else 0.0
-        s.steps[l] += 1.0
-    if s.gives_way > 0:
-        for l in range(lanes):
-            bedded = (s.accepted[l] > 0.0) & (s.phase[l] == BEDDED)
-            s.bedded_time[l] += s.h[l] if bedded else 0.0
 
-
-# How long the next step is.
-
-ARC = 0.2
-"""Longest step over x/|r'| near upright, where the tilt may go to any side."""
 
 SAME = 1e-12
 """Of the sampling interval: nothing is left of it."""
@@ -312,39 +307,6 @@ SAME = 1e-12
 CALM = 1 / 128
 EASY = 0.25
 """Errors of a step below which the next may be twice as long, or a fifth longer."""
-
-
-@inlined
-def even_part(left: float, longest: float) -> float:
-    """The longest even part of what is left of an interval."""
-    return left / max(np.ceil(left / longest - 1e-9), 1.0)  # type: ignore[no-any-return]
-
-
-@inlined
-def near_limit(s: Record, l: int) -> float:
-    """Longest step that the distance from upright allows."""
-    x = s.x[l]
-    fast = 0.0
-    pulled = 0.0
-    for axis in range(ways_of(s)):
-        fast += s.tilt_rate[axis, l] * s.tilt_rate[axis, l]
-        pulled += s.bend[axis, l] * s.bend[axis, l]
-    pulled = math.sqrt(pulled) + 2.0 * s.tan_a[l] * s.weigh[l] * s.gravity[l] / s.one[l]
-    turns = x / max(pulled, 1e-300)
-    limit = min(x / math.sqrt(fast + 1e-300), 2.0 * math.sqrt(turns))
-    return ARC * limit  # type: ignore[no-any-return]
-
-
-@inlined
-def plan(s: Record, l: int) -> float:
-    """Length of a lane's next step: an even part of what is left,
-    or what its motion allows.
-    """
-    step = min(even_part(max(s.dt[l] - s.time[l], 0.0), s.h_most[l]), s.h_limit[l])
-    if ways_of(s) == 2:
-        near = near_limit(s, l)
-        step = min(step, near if (s.moves[l] > 0.0) & (s.x_low[l] > 0.0) else step)
-    return step  # type: ignore[no-any-return]
 
 
 @compiled
@@ -467,300 +429,3 @@ def stay_inside(s: Record, l: int) -> None:
     # at once
     if s.phase[l] != FULL_CONTACT:
         s.x[l] = min(max(s.x[l], s.x_low[l]), s.x_high[l])
-
-
-# Histories begin and end.
-
-
-@compiled
-def idle(s: Record, l: int) -> None:
-    """Leave a lane without a history: it takes steps of zero length."""
-    s.history[l] = NO_HISTORY
-    s.devices[l] = 0
-    s.outcome[l] = RUNNING
-    s.kinks[l] = 0.0
-    s.branched[l] = 0.0
-    s.yields[l] = 0
-    s.marked[l] = 0
-    s.kind[l] = NOTHING
-    s.wanted[l] = NOTHING
-    s.phase[l] = FULL_CONTACT
-    s.moves[l] = 0.0
-    s.time[l] = 0.0
-    s.dt[l] = 1.0
-    s.h[l] = 0.0
-    s.h_most[l] = 1.0
-    s.h_limit[l] = 0.0
-    s.x[l] = 0.0
-    s.v[l] = 0.0
-    s.a[l] = 0.0
-    s.interval[l] = 0
-    s.npts[l] = 2
-    for axis in range(ways_of(s)):
-        s.tilt[axis, l] = 0.0
-        s.tilt_rate[axis, l] = 0.0
-        s.bend[axis, l] = 0.0
-        s.a_g[axis, l] = 0.0
-        s.a_g_slope[axis, l] = 0.0
-        s.shaking[axis, l] = 0.0
-    for r in range(s.axes * s.n):
-        s.q[r, l] = 0.0
-        s.dq[r, l] = 0.0
-        s.freed[r, l] = 0.0
-    calm_springs(s, l)
-
-
-@compiled
-def calm_springs(s: Record, l: int) -> None:
-    """No force of springs, in any axis."""
-    for axis in range(s.V.shape[0]):
-        s.V[axis, l] = 0.0
-        s.dV[axis, l] = 0.0
-        s.ddV[axis, l] = 0.0
-        s.new_V[axis, l] = 0.0
-        s.new_dV[axis, l] = 0.0
-        s.new_ddV[axis, l] = 0.0
-        s.shaking[axis, l] = 0.0
-
-
-@compiled
-def begin_history(
-    s: Record,
-    l: int,
-    systems: Record,
-    requests: Record,
-    history: int,
-    acceleration: Floats,
-    output: Output,
-) -> None:
-    """Load a history into a lane, at rest in full contact or released from a tilt."""
-    request = requests[history]
-    ways = ways_of(s)
-    s.history[l] = history
-    s.system[l] = s.axes * request.system
-    both = systems[s.system[l] : s.system[l] + s.axes]
-    system = both[0]
-    load_system(s, l, system)
-    calm_springs(s, l)
-    for axis in range(s.axes):
-        load_modes(s, l, both[axis], axis)
-    load_request(s, l, request, system)
-    load_devices(s, l, system)
-    load_bed(s, l, system)
-    clear_results(s, l)
-    s.factors_h[l] = -1.0
-    s.within_h[l] = -1.0
-    s.side[l] = 1.0
-    s.x[l] = 0.0
-    s.v[l] = 0.0
-    for axis in range(ways):
-        s.tilt[axis, l] = 0.0
-        s.tilt_rate[axis, l] = 0.0
-    set_ground(s, l, acceleration)
-    enter_phase(s, l, system, first_phase(system))
-    s.kappa[l] = 1.0
-    if ways == 2:
-        upright = place_of(s, l, 0.0)
-        u = system.bed_uplift
-        s.kappa[l] = math.sqrt(upright.K / upright.A)
-        if system.compliant > 0:  # K goes on from A of full contact
-            bedded = s.io_1[l] + s.one[l] * (system.bed_height * system.bed_height)
-            s.turned[l] = u * u * (bedded - place_of(s, l, u).K)
-    if system.initial_rotation != 0.0 or system.alpha == 0.0 or system.compliant > 0:
-        release(s, l, system, output.log)
-    else:
-        enter_phase(s, l, system, FULL_CONTACT)
-        renew(s, l)
-    observe_start(s, l)
-    store_sample(s, l, both, output)
-    s.h[l] = plan(s, l)
-
-
-@compiled
-def load_system(s: Record, l: int, system: Record) -> None:
-    """Constants of the structure, folded as the laws want them."""
-    ground = 1.0 + 2.0 * system.gamma
-    building = 2.0 * system.gamma * system.eta
-    s.diameter[l] = 2.0 * system.R
-    s.io_1[l] = system.Io - 1.0
-    s.i_3[l] = system.inertia_axial
-    springs = s.axes > ways_of(s)
-    s.one[l] = 1.0 + 4.0 * system.gamma
-    s.four[l] = 0.0 if springs else 2.0 * building
-    s.weigh[l] = (ground + building) / system.R
-    s.load[l] = ground / system.R
-    s.share[l] = 2.0 / (system.columns_mass * system.R)
-    s.riding[l] = 0.0 if springs else system.floors_mass
-    s.spared[l] = s.share[l] / s.weigh[l] if springs else 0.0
-    s.columns_mass[l] = system.columns_mass
-    s.cap_beam_mass[l] = system.cap_beam_mass
-    s.floors_mass[l] = system.floors_mass
-    s.gravity[l] = system.gravity
-    s.sin_a[l] = math.sin(system.alpha)
-    s.tan_a[l] = math.tan(system.alpha)
-    s.spin[l] = system.rolling[2] if system.beta > 0.0 else 0.0
-    s.beta[l] = system.beta
-    s.sin_beta[l] = math.sin(system.beta)
-    s.excess_beta[l] = system.beta - math.sin(system.beta)
-    s.half_width[l] = system.R * math.sin(system.alpha)
-    s.arc_radius[l] = system.R * system.rolling[2] if system.beta > 0.0 else 0.0
-    s.theta_cr[l] = system.theta_cr
-    s.contact_time[l] = system.contact_time
-    s.shock_time[l] = system.shock_time
-    s.step_error[l] = system.step_error
-    s.bend_ratio[l] = system.bend_ratio
-
-
-@compiled
-def load_modes(s: Record, l: int, system: Record, axis: int) -> None:
-    """The building's modes at rest, in a direction."""
-    for of in range(system.n):
-        r = axis * system.n + of
-        s.omega2[r, l] = system.omega2[of]
-        s.two_xi_omega[r, l] = system.two_xi_omega[of]
-        s.Gamma[r, l] = system.Gamma[of]
-        s.shear_weight[r, l] = system.shear_weight[of]
-        s.acceleration_weight[r, l] = system.acceleration_weight[of]
-        s.q[r, l] = 0.0
-        s.dq[r, l] = 0.0
-        s.seen_q[r, l] = 0.0
-        s.seen_force[r, l] = 0.0
-    load_storeys(s, l, system, axis)
-    if axis < ways_of(s):
-        s.bend_ratio[l] = max(s.bend_ratio[l], system.bend_ratio)
-
-
-@compiled
-def load_request(s: Record, l: int, request: Record, system: Record) -> None:
-    """What is followed, and for how long."""
-    s.record[0, l] = request.record
-    s.npts[l] = request.npts
-    s.vertical[l] = request.vertical
-    if ways_of(s) == 2:
-        s.record[ways_of(s) - 1, l] = request.record_y
-    s.scale[l] = request.scale
-    s.dt[l] = request.dt
-    s.rate[l] = 1.0 / request.dt
-    s.outcome[l] = RUNNING
-    s.kind[l] = NOTHING
-    s.wanted[l] = NOTHING
-    s.which[l] = 0
-    s.interval[l] = 0
-    s.h_limit[l] = math.inf
-    s.stalled[l] = 0
-    s.intervals[l] = (
-        request.npts - 1 + math.ceil(system.free_vibration / request.dt - 1e-9)
-    )
-
-
-@compiled
-def clear_results(s: Record, l: int) -> None:
-    """Nothing has happened yet."""
-    for i in range(s.kept.shape[0]):
-        s.kept[i, l] = 0
-    s.critical_time[l] = -1.0
-    s.normal_top[l] = math.inf
-    s.normal_bottom[l] = math.inf
-    s.closest_pass[l] = math.inf
-    s.shortest_pass[l] = math.inf
-    s.contacts_near[l] = 1.0
-    s.directionless[l] = 0
-    for k in range(s.room.shape[0]):
-        s.room[k, l] = 0.0
-        for i in range(s.n):
-            s.largest[k, l, i] = 0.0
-            s.last[k, l, i] = 0.0
-    for axis in range(ways_of(s)):
-        s.max_beam[axis, l] = 0.0
-    s.steps[l] = 0.0
-    for i in range(EVENT_KINDS):
-        s.events[i, l] = 0
-
-
-@compiled
-def release(s: Record, l: int, system: Record, log: Record) -> None:
-    """Start from rest at a rotation, the building unstrained; without
-    a flat part perhaps at 0.
-    """
-    theta = abs(system.initial_rotation)
-    s.side[l] = math.copysign(1.0, system.initial_rotation)
-    s.x[l] = theta
-    s.max_theta[l] = theta
-    s.tilt[0, l] = s.side[l] * theta
-    if ways_of(s) == 2:
-        s.max_azimuth[l] = azimuth_of(s, l)
-        s.tilt_rate[ways_of(s) - 1, l] = s.tilt[0, l] * system.initial_turning
-    phase = ROLLING if theta < system.beta else ROCKING
-    bedded = theta < system.bed_uplift
-    enter_phase(s, l, system, BEDDED if bedded else phase)
-    release_devices(s, l)
-    renew(s, l)
-    if has_friction(s, l) and ways_of(s) == 2:
-        stop_or_turn(s, l, system, log)
-    elif has_friction(s, l):
-        reverse(s, l, system, log)
-
-
-@compiled
-def finish_storeys(s: Record, l: int, result: Record) -> None:
-    """Write what storeys that may yield leave behind."""
-    ways = ways_of(s)
-    for axis in range(ways):
-        for i in range(s.n):
-            r = axis * s.n + i
-            free = 1.0 - s.hardening[l]
-            most = max(s.drift_most[r, l], s.largest[axis + ways - 1, l, i])
-            if s.yielded[r, l] > 0.0:  # else its drift is its shear over k
-                most = s.drift_most[r, l]
-            result.ductility[axis, i] = most / s.strength[r, l]
-            result.slip[axis, i] = free * s.middle[r, l]
-            result.slip_most[axis, i] = free * s.middle_most[r, l]
-            result.slip_least[axis, i] = free * s.middle_least[r, l]
-            result.yielded[axis, i] = s.yielded[r, l]
-            result.first_yield[axis, i] = s.first_yield[r, l]
-
-
-@compiled
-def finish_history(s: Record, l: int, system: Record, results: Record) -> None:
-    """Write what the history leaves behind [results (P,)]."""
-    result = results[s.history[l]]
-    ways = ways_of(s)
-    result.energy_stored = total_energy(s, l, system)
-    if s.outcome[l] == RUNNING:
-        released = system.initial_rotation != 0.0 or s.max_theta[l] > system.bed_uplift
-        s.outcome[l] = SURVIVED if released or s.events[UPLIFT, l] > 0 else AT_REST
-    result.outcome = s.outcome[l]
-    result.phase = s.phase[l]
-    result.intervals = s.interval[l]
-    result.ways = ways
-    if s.phase[l] == STUCK and s.bed_k[l] > 0.0:
-        result.phase = BEDDED
-    for i in range(s.kept.shape[0]):
-        result.kept[i] = s.kept[i, l]
-    result.steps = int(s.steps[l])
-    result.time = time_of(s, l)
-    result.rotation = s.tilt[0, l] if ways == 1 else s.x[l]
-    result.azimuth = azimuth_of(s, l)
-    for i in range(EVENT_KINDS):
-        result.events[i] = s.events[i, l]
-    half = 2 * ways - 1
-    for i in range(s.n):
-        result.storey_shear[i] = s.largest[0, l, i]
-        result.floor_acceleration[i] = s.largest[half, l, i]
-        if ways == 2:
-            result.storey_shear_x[i] = s.largest[half - 2, l, i]
-            result.storey_shear_y[i] = s.largest[half - 1, l, i]
-            result.floor_acceleration_x[i] = s.largest[half + ways - 1, l, i]
-            result.floor_acceleration_y[i] = s.largest[half + ways, l, i]
-    result.max_x = s.max_beam[0, l]
-    result.max_y = s.max_beam[ways - 1, l]
-    if s.yields[l] > 0:
-        finish_storeys(s, l, result)
-    if s.devices[l] > 0:
-        at = worked(s, l, tilt_of(s, l), (0.0, 0.0))
-        for i in range(s.devices[l]):
-            result.device_force[i] = s.device_force[i, l]
-            result.device_velocity[i] = s.device_velocity[i, l]
-            result.device_energy[i] = s.device_energy[i, l]
-            result.device_stored[i] = stored_in(s, l, i, at)
-            result.permanent[i] = s.permanent[i, l]

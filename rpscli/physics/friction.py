@@ -10,27 +10,30 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from rpscli.physics.compile import compiled
+from rpscli.physics.compile import compiled, inlined
 from rpscli.physics.devices.acting import has_friction
 from rpscli.physics.devices.table import resistance_of, tension_of
 from rpscli.physics.devices.worked import tendon_elongation
 from rpscli.physics.energy import path_at
 from rpscli.physics.ground import log_event
 from rpscli.physics.lane import (
+    Vector,
     felt,
     felt_at,
     g_up_at,
-    ground_at,
+    ground_of,
     patch,
     place_of,
     polar,
     pushed_by,
+    resultant,
+    set_vector,
     tilt_of,
-    turned,
     ways_of,
-    z_of,
+    z_at,
+    z_vector,
 )
-from rpscli.physics.laws.place import length
+from rpscli.physics.laws.place import Place, across, along, length, turned
 from rpscli.physics.state import STICKING, STUCK, Record
 
 
@@ -61,66 +64,91 @@ def force_at_rest(s: Record, l: int) -> tuple[float, float]:
     return elastic, s.friction_force[l] + s.friction_moment[l] / arm
 
 
+@inlined
+def is_gripped(s: Record, l: int) -> bool:
+    """Whether friction holds a tilt that may be to any side (13.25)."""
+    return False if ways_of(s) == 1 else s.phase[l] == STUCK
+
+
 @compiled
 def set_limits(s: Record, l: int) -> None:
     """Write what holds a lane at rest to either side, in full contact
     or stuck (3.2), (11.14).
     """
     R = 0.5 * s.diameter[l]
-    weigh = R * s.weigh[l]
     elastic, friction = force_at_rest(s, l)
     elastic = R * pushed_by(s, l, elastic)
     friction = R * pushed_by(s, l, friction)
-    right = s.tan_a[l] * weigh
-    s.limit_right[l] = right
-    s.limit_left[l] = right
-    s.held_right[l] = elastic + friction
-    s.held_left[l] = elastic + friction
+    limit = s.tan_a[l] * (R * s.weigh[l])
     s.held_x[l] = 0.0
     s.held_y[l] = 0.0
-    if s.bed_back[l] > 0.0:  # outwards as the lifted ends, inwards as the bed
-        at = place_of(s, l, s.x[l])
-        back = R * s.bed_back[l]
-        missing = R * (s.root[l] - s.sink[l]) * s.w[l] * s.gravity[l] * s.weigh[l]
-        out = at.Bv / at.C * weigh
-        held_out = elastic + friction + missing / at.C
-        s.limit_right[l] = out
-        s.held_right[l] = held_out
-        s.limit_left[l] = 0.0
-        s.held_left[l] = friction - elastic - back
-        if s.side[l] < 0.0:
-            s.limit_right[l] = 0.0
-            s.held_right[l] = friction - elastic - back
-            s.limit_left[l] = out
-            s.held_left[l] = held_out
+    if s.bed_back[l] > 0.0:
+        set_limits_on_bed(s, l, elastic, friction)
     elif s.phase[l] == STUCK:
-        at = place_of(s, l, s.x[l])
-        side = s.side[l]
-        missing = (s.root[l] - s.sink[l]) * s.w[l] * s.gravity[l] * s.weigh[l]
-        elastic += R * (missing + s.bed_k[l] * s.x[l]) / at.C
-        _, n, t, _, _ = polar(s, l, tilt_of(s, l), (0.0, 0.0))
-        back = elastic + at.Bv / at.C * weigh * s.gravity[l] if s.x[l] > 0.0 else 0.0
-        s.held_x[l] = back * n
-        s.held_y[l] = back * t
-        if (
-            ways_of(s) == 2
-        ):  # within this circle it surely is: what (13.25) asks of dampers alone
-            moment = s.friction_moment[l] / (s.diameter[l] * max(at.C, at.h))
-            s.held_right[l] = R * pushed_by(s, l, s.friction_force[l] + moment)
-            s.limit_right[l] = 0.0
-            return
-        right = side * at.Bv / at.C * weigh
-        elastic = side * elastic
-        s.limit_right[l] = right
-        s.limit_left[l] = -right
-        s.held_right[l] = friction + elastic
-        s.held_left[l] = friction - elastic
+        set_limits_stuck(s, l, elastic, friction)
+    else:
+        set_right(s, l, limit, elastic + friction)
+        set_left(s, l, limit, elastic + friction)
+
+
+@inlined
+def set_right(s: Record, l: int, limit: float, held: float) -> None:
+    """Write the limit of R |z| to the right: what multiplies g + a_v, what adds to it."""
+    s.limit_right[l] = limit
+    s.held_right[l] = held
+
+
+@inlined
+def set_left(s: Record, l: int, limit: float, held: float) -> None:
+    """And to the left."""
+    s.limit_left[l] = limit
+    s.held_left[l] = held
 
 
 @compiled
-def push_at_rest(
-    s: Record, l: int, V: tuple[float, float], time: float, V_up: float
-) -> float:
+def set_limits_on_bed(s: Record, l: int, elastic: float, friction: float) -> None:
+    """Limits between a bed and lifted ends: outwards as these, inwards as the bed."""
+    R = 0.5 * s.diameter[l]
+    at = place_of(s, l, s.x[l])
+    back = R * s.bed_back[l]
+    missing = R * (s.root[l] - s.sink[l]) * s.w[l] * s.gravity[l] * s.weigh[l]
+    limit = at.Bv / at.C * (R * s.weigh[l])
+    held = elastic + friction + missing / at.C
+    if s.side[l] < 0.0:
+        set_right(s, l, 0.0, friction - elastic - back)
+        set_left(s, l, limit, held)
+    else:
+        set_right(s, l, limit, held)
+        set_left(s, l, 0.0, friction - elastic - back)
+
+
+@compiled
+def set_limits_stuck(s: Record, l: int, elastic: float, friction: float) -> None:
+    """Limits of a tilt that friction holds; of one to any side a circle
+    about `held_x` and `held_y`.
+    """
+    R = 0.5 * s.diameter[l]
+    weigh = R * s.weigh[l]
+    at = place_of(s, l, s.x[l])
+    side = s.side[l]
+    missing = (s.root[l] - s.sink[l]) * s.w[l] * s.gravity[l] * s.weigh[l]
+    elastic += R * (missing + s.bed_k[l] * s.x[l]) / at.C
+    now = polar(s, l, tilt_of(s, l), (0.0, 0.0))
+    back = elastic + at.Bv / at.C * weigh * s.gravity[l] if s.x[l] > 0.0 else 0.0
+    s.held_x[l] = back * now.n
+    s.held_y[l] = back * now.t
+    if is_gripped(s, l):  # within it surely is: what (13.25) asks of dampers alone
+        moment = s.friction_moment[l] / (s.diameter[l] * max(at.C, at.h))
+        set_right(s, l, 0.0, R * pushed_by(s, l, s.friction_force[l] + moment))
+        return
+    limit = side * at.Bv / at.C * weigh
+    elastic = side * elastic
+    set_right(s, l, limit, friction + elastic)
+    set_left(s, l, -limit, friction - elastic)
+
+
+@compiled
+def push_at_rest(s: Record, l: int, V: Vector, time: float, V_up: float) -> float:
     """What friction dampers push the cap beam with while a lane is at
     rest [N]; writes `drive`.
 
@@ -130,45 +158,53 @@ def push_at_rest(
     friction that is asked for, against growing tilts, -1 to 1; of a tilt to any side
     against where it is pushed to, 0 to 1.
     """
-    R = 0.5 * s.diameter[l]
-    side = s.side[l]
-    g_felt = felt(s, l, g_up_at(s, l, time), V_up)
     # Between bed and lifted ends the columns hold what they can too, up to where they let
     # go.
     if s.friction_force[l] + s.friction_moment[l] == 0.0 or s.bed_back[l] > 0.0:
         return 0.0
-    per_N = R * s.share[l]
-    z_x = z_of(s, l, V[0], ground_at(s, l, 0, time))
-    z_y = 0.0
-    if ways_of(s) == 2:
-        z_y = z_of(s, l, V[1], ground_at(s, l, 1, time))
-    if ways_of(s) == 2 and s.phase[l] == STUCK:
-        return push_stuck(s, l, (z_x, z_y), g_felt)
-    x = -R * z_x
-    y = -R * z_y
-    action = side * x
-    if ways_of(s) == 2:
-        action = length(x, y)
-    _, friction = force_at_rest(s, l)
-    friction *= per_N
-    resists = 0.5 * (s.limit_right[l] - s.limit_left[l]) * side * g_felt
+    g_felt = felt(s, l, g_up_at(s, l, time), V_up)
+    z = z_vector(s, l, V, ground_of(s, l, time))
+    if is_gripped(s, l):
+        return push_gripped(s, l, z, g_felt)
     if s.phase[l] == STUCK:
-        resists += 0.5 * side * (s.held_right[l] - s.held_left[l])
-        share = -(resists + action) / friction
-        s.drive[0, l] = -side * (push_of_stops(s, l) + share * s.friction_force[l])
-        return float(share)
+        return push_stuck(s, l, z[0], g_felt)
+    return push_upright(s, l, z, g_felt)
+
+
+@compiled
+def push_stuck(s: Record, l: int, z: float, g_felt: float) -> float:
+    """`push_at_rest` of a lane that is stuck, in one plane."""
+    R = 0.5 * s.diameter[l]
+    side = s.side[l]
+    action = side * (-R * z)
+    friction = force_at_rest(s, l)[1] * pushed_by(s, l, R)
+    resists = 0.5 * (s.limit_right[l] - s.limit_left[l]) * side * g_felt
+    resists += 0.5 * side * (s.held_right[l] - s.held_left[l])
+    share = -(resists + action) / friction
+    s.drive[0, l] = -side * (push_of_stops(s, l) + share * s.friction_force[l])
+    return float(share)
+
+
+@compiled
+def push_upright(s: Record, l: int, z: Vector, g_felt: float) -> float:
+    """`push_at_rest` of a lane in full contact."""
+    R = 0.5 * s.diameter[l]
+    per_N = pushed_by(s, l, R)
     dampers = per_N * s.friction_force[l]
     if dampers == 0.0:
         return 0.0
+    x = -R * z[0]
+    y = -R * z[1]
+    action = resultant(s, x, y)
     resists = s.limit_right[l] * g_felt + s.held_right[l]
-    beyond = min(max(abs(action) - (resists - dampers), 0.0), dampers)
-    share = -math.copysign(beyond / dampers, action)
-    s.drive[0, l] = -side * share * s.friction_force[l]
+    beyond = min(max(action - (resists - dampers), 0.0), dampers)
     if ways_of(s) == 2:
         push = beyond / max(per_N * action, 1e-300)
-        s.drive[0, l] = push * x
-        s.drive[1, l] = push * y
+        set_vector(s, s.drive, l, push * x, push * y)
         return float(beyond / dampers)
+    side = s.side[l]
+    share = -math.copysign(beyond / dampers, side * x)
+    s.drive[0, l] = -side * share * s.friction_force[l]
     return share
 
 
@@ -214,12 +250,36 @@ TURNS = 10
 """Steps to d, each of which leaves |C - h|/C of what is missing: some hundredth."""
 
 
+@inlined
+def unit(x: float, y: float) -> Vector:
+    """A vector over its size; of none the first axis."""
+    size = length(x, y)
+    return (x / size, y / size) if size > 0.0 else (1.0, 0.0)
+
+
+@compiled
+def least_held(
+    at: Place, P: float, M: float, aim_n: float, aim_t: float
+) -> tuple[float, float, float]:
+    """d of (13.25), the vector along which least holds Q, which aims so; and |W d|."""
+    d_n, d_t = unit(aim_n, aim_t)
+    long = length(at.C * d_n, at.h * d_t)
+    turns = 1 if M == 0.0 or P == 0.0 else TURNS  # of one alone d follows at once
+    for _ in range(turns if P + M > 0.0 else 0):
+        # Where Q is just held it is the gradient of P |W d| + M |d|.
+        d_n = aim_n / (P * at.C * at.C / long + M)
+        d_t = aim_t / (P * at.h * at.h / long + M)
+        d_n, d_t = unit(d_n, d_t)
+        long = length(at.C * d_n, at.h * d_t)
+    return d_n, d_t, long
+
+
 @compiled
 def grip_of(
     s: Record,
     l: int,
-    z: tuple[float, float],
-    z_rate: tuple[float, float],
+    z: Vector,
+    z_rate: Vector,
     g_felt: tuple[float, float],
     less: float,
 ) -> Grip:
@@ -231,32 +291,19 @@ def grip_of(
     x, n, t, _, _ = polar(s, l, tilt_of(s, l), (0.0, 0.0))
     w, _ = patch(s, l, x)
     at = place_of(s, l, x)
-    weigh = s.weigh[l]
-    gravity = s.gravity[l]
     P = max(pushed_by(s, l, s.friction_force[l]) - less, 0.0)
     M = pushed_by(s, l, s.friction_moment[l]) / s.diameter[l]
-    arm = at.Bv * weigh
-    held = (
-        arm * g_felt[0] + (s.root[l] - s.sink[l]) * w * gravity * weigh + s.bed_k[l] * x
-    )
+    arm = at.Bv * s.weigh[l]
+    missing = (s.root[l] - s.sink[l]) * w * s.gravity[l] * s.weigh[l]
+    held = arm * g_felt[0] + missing + s.bed_k[l] * x
     held = held + at.C * pushed_by(s, l, force_at_rest(s, l)[0]) if x > 0.0 else 0.0
-    Q_n = at.C * (z[0] * n + z[1] * t) - held
-    Q_t = at.h * (z[1] * n - z[0] * t)
-    rate_n = at.C * (z_rate[0] * n + z_rate[1] * t) - arm * g_felt[1]
-    rate_t = at.h * (z_rate[1] * n - z_rate[0] * t)
+    Q_n = at.C * along(n, t, z[0], z[1]) - held
+    Q_t = at.h * across(n, t, z[0], z[1])
+    rate_n = at.C * along(n, t, z_rate[0], z_rate[1]) - arm * g_felt[1]
+    rate_t = at.h * across(n, t, z_rate[0], z_rate[1])
     pushed = Q_n != 0.0 or Q_t != 0.0  # else it will be where that grows to
     aim_n, aim_t = (Q_n, Q_t) if pushed else (rate_n, rate_t)
-    size = math.sqrt(aim_n * aim_n + aim_t * aim_t)
-    d_n, d_t = (aim_n / size, aim_t / size) if size > 0.0 else (1.0, 0.0)
-    long = length(at.C * d_n, at.h * d_t)
-    turns = 1 if M == 0.0 or P == 0.0 else TURNS  # of one alone d follows at once
-    for _ in range(turns if P + M > 0.0 else 0):
-        # Where Q is just held it is the gradient of P |W d| + M |d|.
-        d_n = aim_n / (P * at.C * at.C / long + M)
-        d_t = aim_t / (P * at.h * at.h / long + M)
-        far = math.sqrt(d_n * d_n + d_t * d_t)
-        d_n, d_t = (d_n / far, d_t / far) if far > 0.0 else (1.0, 0.0)
-        long = length(at.C * d_n, at.h * d_t)
+    d_n, d_t, long = least_held(at, P, M, aim_n, aim_t)
     most = P * long + M
     pulled = Q_n * d_n + Q_t * d_t
     falls = max(rate_n * d_n + rate_t * d_t, 0.0)
@@ -280,36 +327,20 @@ ROUNDING = 1e-13
 @compiled
 def grip_at(s: Record, l: int, end: int) -> Grip:
     """How a lane is held at the start (0) or at the end (1) of its step."""
-    z_x = 0.0
-    z_y = 0.0
-    rate_x = 0.0
-    rate_y = 0.0
-    time = s.time[l] + end * s.h[l]
-    for axis in range(2):
-        V = s.new_V[axis, l] if end > 0 else s.V[axis, l]
-        dV = s.new_dV[axis, l] if end > 0 else s.dV[axis, l]
-        z = z_of(s, l, V, ground_at(s, l, axis, time))
-        rate = z_of(s, l, dV, s.a_g_slope[axis, l])
-        if axis == 0:
-            z_x = z
-            rate_x = rate
-        else:
-            z_y = z
-            rate_y = rate
+    z, z_rate = z_at(s, l, end)
     g_felt, g_rate, _ = felt_at(s, l, end)
-    return grip_of(s, l, (z_x, z_y), (rate_x, rate_y), (g_felt, g_rate), 0.0)
+    return grip_of(s, l, z, z_rate, (g_felt, g_rate), 0.0)
 
 
 @compiled
-def push_stuck(s: Record, l: int, z: tuple[float, float], g_felt: float) -> float:
+def push_gripped(s: Record, l: int, z: Vector, g_felt: float) -> float:
     """`push_at_rest` of a lane that is stuck with a tilt to any side."""
     grip = grip_of(s, l, z, (0.0, 0.0), (g_felt, 0.0), 0.0)
     now = polar(s, l, tilt_of(s, l), (0.0, 0.0))
-    used = min(
-        grip.used, 1.0
-    )  # a little more would be asked for just before it lets go (13.26)
+    # a little more would be asked for just before it lets go (13.26)
+    used = min(grip.used, 1.0)
     push = used * s.friction_force[l]
     out = -push * grip.drag_n - push_of_stops(s, l)
-    aside = -push * grip.drag_t
-    s.drive[0, l], s.drive[1, l] = turned(now, out, aside)
+    push_x, push_y = turned(now.n, now.t, out, -push * grip.drag_t)
+    set_vector(s, s.drive, l, push_x, push_y)
     return used

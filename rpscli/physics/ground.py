@@ -4,10 +4,8 @@ after the last; and its log.
 
 from __future__ import annotations
 
-import math
-
 from rpscli.physics.compile import compiled
-from rpscli.physics.lane import ways_of
+from rpscli.physics.lane import azimuth_along, sign_of, tilt_of, ways_of
 from rpscli.physics.state import FULL_CONTACT, NO_RECORD, Floats, Record
 
 
@@ -47,9 +45,8 @@ def time_of(s: Record, l: int) -> float:
 @compiled
 def azimuth_of(s: Record, l: int) -> float:
     """Of the tilt at the start of the step, from x towards y [rad]."""
-    if ways_of(s) == 1:
-        return 0.0
-    return math.atan2(s.tilt[1, l], s.tilt[0, l])
+    x, y = tilt_of(s, l)
+    return azimuth_along(s, x, y)
 
 
 @compiled
@@ -77,7 +74,7 @@ def log_event(
     row = log_row(s, l, log, kind)
     if row >= 0:
         entry = log[row]
-        sign = s.side[l] if ways_of(s) == 1 else 1.0
+        sign = sign_of(s, l)
         theta = 0.0 if s.phase[l] == FULL_CONTACT else sign * s.x[l]
         entry.time = time_of(s, l)
         entry.kind = kind

@@ -8,8 +8,9 @@ from threading import Event, Thread, current_thread, main_thread
 import numpy as np
 
 from rpscli.physics.kernels import kernel
+from rpscli.physics.records import scratch
 from rpscli.physics.run import Run
-from rpscli.physics.state import LANES, Record, scratch
+from rpscli.physics.state import LANES, Record
 
 HEARS = 0.1
 """A Ctrl-C is heard within so many seconds."""

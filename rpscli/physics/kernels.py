@@ -16,16 +16,10 @@ from threading import Lock
 from typing import Any
 
 from rpscli.errors import OutputError
+from rpscli.physics.interface import EVENT, REQUEST, RESULT, SAMPLE, SYSTEM
+from rpscli.physics.records import record_type
 from rpscli.physics.run import Output
-from rpscli.physics.state import (
-    EVENT,
-    REQUEST,
-    RESULT,
-    SAMPLE,
-    STATE,
-    SYSTEM,
-    record_type,
-)
+from rpscli.physics.state import STATE
 from rpscli.user_cache import VARIABLE, alone_in, is_private, user_cache
 
 SOURCES = Path(__file__).parent

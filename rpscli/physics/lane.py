@@ -5,7 +5,7 @@ laws say of it (`laws`).
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 from rpscli.physics.compile import compiled, fma, inlined
 from rpscli.physics.laws import geometry, plane_bed
@@ -27,11 +27,18 @@ from rpscli.physics.laws.place import (
     Column,
     Ends,
     Place,
+    across,
+    along,
+    length,
     place_in_plane,
     place_in_space,
     sines,
+    turned,
 )
-from rpscli.physics.state import FULL_CONTACT, PADDING, STUCK, Record
+from rpscli.physics.state import FULL_CONTACT, PADDING, STUCK, Floats, Record
+
+Vector: TypeAlias = tuple[float, float]
+"""Components in x and y."""
 
 patch_at = inlined(plane_bed.patch)
 
@@ -54,31 +61,79 @@ def stands(s: Record, l: int) -> bool:
     return bool(s.phase[l] == FULL_CONTACT or s.phase[l] == STUCK)
 
 
+# Directions: a vector has two components, in one plane the second is 0.
+
+
+@inlined
+def vector(s: Record, field: Floats, l: int) -> Vector:
+    """A vector of a lane in x and y, of a field that has a row a direction."""
+    return field[0, l], (field[1, l] if ways_of(s) == 2 else 0.0)
+
+
+@inlined
+def set_vector(s: Record, field: Floats, l: int, x: float, y: float) -> None:
+    """Set it."""
+    field[0, l] = x
+    if ways_of(s) == 2:
+        field[1, l] = y
+
+
+@inlined
+def shears_of(s: Record, field: Floats, l: int) -> tuple[float, float, float]:
+    """Base shears of a lane in x, in y and upwards, of a field that has a row an axis."""
+    x, y = vector(s, field, l)
+    return x, y, field[ways_of(s), l]
+
+
+@inlined
+def resultant(s: Record, x: float, y: float) -> float:
+    """Size of a vector."""
+    return abs(x) if ways_of(s) == 1 else length(x, y)
+
+
+@inlined
+def azimuth_along(s: Record, x: float, y: float) -> float:
+    """Azimuth of a vector, from x towards y [rad]; 0 in one plane."""
+    return 0.0 if ways_of(s) == 1 else math.atan2(y, x)
+
+
+@inlined
+def sign_of(s: Record, l: int) -> float:
+    """Sign of what is known along the tilt: in one plane s, else 1."""
+    return s.side[l] if ways_of(s) == 1 else 1.0
+
+
+@inlined
+def is_cone(s: Record, l: int) -> bool:
+    """Whether a lane passes upright as a cone's tip: rigid ends that tilt to any side."""
+    return False if ways_of(s) == 1 else s.cone[l] > 0.0
+
+
 # Tilt and rate.
 
 
 @inlined
-def tilt_of(s: Record, l: int) -> tuple[float, float]:
+def tilt_of(s: Record, l: int) -> Vector:
     """The tilt vector at the start of the step."""
-    return s.tilt[0, l], (s.tilt[1, l] if ways_of(s) == 2 else 0.0)
+    return vector(s, s.tilt, l)
 
 
 @inlined
-def rate_of(s: Record, l: int) -> tuple[float, float]:
+def rate_of(s: Record, l: int) -> Vector:
     """Its rate."""
-    return s.tilt_rate[0, l], (s.tilt_rate[1, l] if ways_of(s) == 2 else 0.0)
+    return vector(s, s.tilt_rate, l)
 
 
 @inlined
-def new_tilt_of(s: Record, l: int) -> tuple[float, float]:
+def new_tilt_of(s: Record, l: int) -> Vector:
     """The tilt vector at a stage of the step, and at its end."""
-    return s.new_tilt[0, l], (s.new_tilt[1, l] if ways_of(s) == 2 else 0.0)
+    return vector(s, s.new_tilt, l)
 
 
 @inlined
-def new_rate_of(s: Record, l: int) -> tuple[float, float]:
+def new_rate_of(s: Record, l: int) -> Vector:
     """Its rate."""
-    return s.new_tilt_rate[0, l], (s.new_tilt_rate[1, l] if ways_of(s) == 2 else 0.0)
+    return vector(s, s.new_tilt_rate, l)
 
 
 class Polar(NamedTuple):
@@ -92,34 +147,14 @@ class Polar(NamedTuple):
 
 
 @inlined
-def polar(
-    s: Record, l: int, tilt: tuple[float, float], rate: tuple[float, float]
-) -> Polar:
+def polar(s: Record, l: int, tilt: Vector, rate: Vector) -> Polar:
     """A tilt vector and its rate along it and across."""
     if ways_of(s) == 1:
         side = s.side[l]
         return Polar(side * tilt[0], side, 0.0, side * rate[0], 0.0)
-    x = math.sqrt(tilt[0] * tilt[0] + tilt[1] * tilt[1])
+    x = length(tilt[0], tilt[1])
     n, t = (tilt[0] / x, tilt[1] / x) if x > 0.0 else (1.0, 0.0)
-    return Polar(x, n, t, rate[0] * n + rate[1] * t, rate[1] * n - rate[0] * t)
-
-
-@inlined
-def along(at: Polar, x: float, y: float) -> float:
-    """The part of a vector along the tilt."""
-    return x * at.n + y * at.t
-
-
-@inlined
-def across(at: Polar, x: float, y: float) -> float:
-    """And across it."""
-    return y * at.n - x * at.t
-
-
-@inlined
-def turned(at: Polar, out: float, aside: float) -> tuple[float, float]:
-    """A vector in x and y, of its parts along the tilt and across it."""
-    return out * at.n - aside * at.t, out * at.t + aside * at.n
+    return Polar(x, n, t, along(n, t, rate[0], rate[1]), across(n, t, rate[0], rate[1]))
 
 
 # Geometry and inertia.
@@ -198,6 +233,14 @@ def g_up_at(s: Record, l: int, time: float) -> float:
 
 
 @inlined
+def ground_of(s: Record, l: int, time: float) -> Vector:
+    """a_g in x and y at a time of the interval [m/s2]."""
+    start = vector(s, s.a_g, l)
+    slope = vector(s, s.a_g_slope, l)
+    return start[0] + time * slope[0], start[1] + time * slope[1]
+
+
+@inlined
 def pushed_by(s: Record, l: int, force: float) -> float:
     """The z of a horizontal force at the cap beam [1/s2]."""
     return s.share[l] * force  # type: ignore[no-any-return]
@@ -209,6 +252,30 @@ def z_of(s: Record, l: int, force: float, a_g: float) -> float:
     ground's acceleration [1/s2].
     """
     return push(s.share[l], force, s.load[l], a_g)
+
+
+@inlined
+def z_vector(s: Record, l: int, force: Vector, a_g: Vector) -> Vector:
+    """The same in x and y."""
+    return z_of(s, l, force[0], a_g[0]), z_of(s, l, force[1], a_g[1])
+
+
+@inlined
+def z_at(s: Record, l: int, end: int) -> tuple[Vector, Vector]:
+    """z in x and y of what is not friction, at the start of the step (0) or
+    at its end (1) [1/s2]; and its rate.
+    """
+    a_g = ground_of(s, l, s.time[l] + end * s.h[l])
+    V = vector(s, s.new_V, l) if end > 0 else vector(s, s.V, l)
+    dV = vector(s, s.new_dV, l) if end > 0 else vector(s, s.dV, l)
+    return z_vector(s, l, V, a_g), z_vector(s, l, dV, vector(s, s.a_g_slope, l))
+
+
+@inlined
+def force_of(s: Record, l: int, pushed: float, a_g: float) -> float:
+    """The horizontal force at the cap beam under which R z is `pushed` [N]."""
+    per_share = 2.0 / (s.diameter[l] * s.share[l])
+    return float(pushed * per_share + s.load[l] / s.share[l] * a_g)
 
 
 @inlined
@@ -249,6 +316,17 @@ def mode_acceleration(s: Record, r: int, l: int, axis: int) -> float:
 # How it responds.
 
 
+class Motion(NamedTuple):
+    """Accelerations of a tilt that is free, and of the cap beam."""
+
+    bend_x: float  # of the tilt vector [rad/s2]
+    bend_y: float
+    beam_x: float  # u_b'' [m/s2]
+    beam_y: float
+    lift: float  # v_b'' [m/s2]
+    a: float  # x'' [rad/s2]
+
+
 class Response(NamedTuple):
     """What a lane's storey does under base shears at a time, and the ground then."""
 
@@ -278,77 +356,92 @@ def respond(
     At a place and a rate of the tilt, a time of the interval [s],
     and what devices now do.
     """
-    a_x = ground_at(s, l, 0, time)
-    a_y = 0.0
-    z_x = z_of(s, l, V[0] + s.drive[0, l], a_x)
-    z_y = 0.0
-    if ways_of(s) == 2:
-        a_y = ground_at(s, l, 1, time)
-        z_y = z_of(s, l, V[1] + s.drive[1, l], a_y)
-    gravity = s.gravity[l]
+    a_g = ground_of(s, l, time)
+    drive = vector(s, s.drive, l)
+    z = z_vector(s, l, (V[0] + drive[0], V[1] + drive[1]), a_g)
     g_up = g_up_at(s, l, time)
-    ends = ends_of(s, l)
-    arms = weight_arms(at, ends, s.weigh[l], w, gravity, felt(s, l, g_up, V[2]))
-    p = tilt.p
-    q = tilt.q
-    moves = s.moves[l] > 0.0
-    diameter = s.diameter[l]
-    if ways_of(s) == 2:  # upright no square depends on the direction, which is any
-        leans = tilt.x > 0.0
-        arms = arms if leans else 0.0
-        p = p if leans else 0.0
-        q = q if leans else 0.0
-    held = arms + bed_along(ends, tilt.x, tilt.p) - s.turning[l]
-    out = bend_along(at, held, p, q, along(tilt, z_x, z_y))
+    g_felt = felt(s, l, g_up, V[2])
+    arms = weight_arms(at, ends_of(s, l), s.weigh[l], w, s.gravity[l], g_felt)
     if ways_of(s) == 1:
-        beam = tilt.n * beam_along(at, diameter, out, p, q)
-        lift = lift_of(at, diameter, out, p)
-        return Response(
-            a_x,
-            0.0,
-            g_up,
-            tilt.n * out if moves else 0.0,
-            0.0,
-            beam if moves else 0.0,
-            0.0,
-            lift if moves else 0.0,
-            out if moves else 0.0,
-        )
-    per_x = 1.0 / (tilt.x if tilt.x > 0.0 else 1.0)
-    held = bed_across(ends, per_x, tilt.q) - s.turning_across[l]
-    aside = bend_across(at, held, p, q, across(tilt, z_x, z_y))
-    bend_x, bend_y = turned(tilt, out, aside)
-    beam_out = beam_along(at, diameter, out, p, q)
-    beam_aside = beam_across(at, diameter, aside, p, q)
-    beam_x, beam_y = turned(tilt, beam_out, beam_aside)
-    a = out + tilt.q * tilt.q * per_x
+        found = move_in_plane(s, l, at, arms, tilt, z)
+    else:
+        found = move_to_any_side(s, l, at, arms, tilt, z)
+    moves = s.moves[l] > 0.0
     return Response(
-        a_x,
-        a_y,
+        a_g[0],
+        a_g[1],
         g_up,
-        bend_x if moves else 0.0,
-        bend_y if moves else 0.0,
-        beam_x if moves else 0.0,
-        beam_y if moves else 0.0,
-        lift_of(at, diameter, a, tilt.p) if moves else 0.0,
-        a if moves else 0.0,
+        found.bend_x if moves else 0.0,
+        found.bend_y if moves else 0.0,
+        found.beam_x if moves else 0.0,
+        found.beam_y if moves else 0.0,
+        found.lift if moves else 0.0,
+        found.a if moves else 0.0,
     )
 
 
 @inlined
-def velocity_with(s: Record, l: int, at: Place, tilt: Polar) -> tuple[float, float]:
+def move_in_plane(
+    s: Record, l: int, at: Place, arms: float, tilt: Polar, z: Vector
+) -> Motion:
+    """How a tilt that is free moves in one plane, of what weight turns it back by."""
+    p = tilt.p
+    diameter = s.diameter[l]
+    held = arms + bed_along(ends_of(s, l), tilt.x, p) - s.turning[l]
+    out = bend_along(at, held, p, tilt.q, along(tilt.n, tilt.t, z[0], 0.0))
+    beam = tilt.n * beam_along(at, diameter, out, p, tilt.q)
+    lift = lift_of(at, diameter, out, p)
+    return Motion(tilt.n * out, 0.0, beam, 0.0, lift, out)
+
+
+@inlined
+def move_to_any_side(
+    s: Record, l: int, at: Place, arms: float, tilt: Polar, z: Vector
+) -> Motion:
+    """How it moves where the tilt may be to any side."""
+    x, n, t, _, _ = tilt
+    diameter = s.diameter[l]
+    ends = ends_of(s, l)
+    leans = x > 0.0  # upright no square depends on the direction, which is any
+    arms = arms if leans else 0.0
+    p = tilt.p if leans else 0.0
+    q = tilt.q if leans else 0.0
+    held = arms + bed_along(ends, x, tilt.p) - s.turning[l]
+    out = bend_along(at, held, p, q, along(n, t, z[0], z[1]))
+    per_x = 1.0 / (x if leans else 1.0)
+    held = bed_across(ends, per_x, tilt.q) - s.turning_across[l]
+    aside = bend_across(at, held, p, q, across(n, t, z[0], z[1]))
+    bend_x, bend_y = turned(n, t, out, aside)
+    beam_out = beam_along(at, diameter, out, p, q)
+    beam_aside = beam_across(at, diameter, aside, p, q)
+    beam_x, beam_y = turned(n, t, beam_out, beam_aside)
+    a = out + tilt.q * tilt.q * per_x
+    lift = lift_of(at, diameter, a, tilt.p)
+    return Motion(bend_x, bend_y, beam_x, beam_y, lift, a)
+
+
+@inlined
+def velocity_with(s: Record, l: int, at: Place, tilt: Polar) -> Vector:
     """u_b' in x and in y at a place and a rate of the tilt [m/s]."""
     out = s.diameter[l] * at.C * tilt.p
     aside = s.diameter[l] * at.h * tilt.q
     if ways_of(s) == 1:
         return out * tilt.n, 0.0
-    return turned(tilt, out, aside)
+    return turned(tilt.n, tilt.t, out, aside)
 
 
 @inlined
 def masses_of(s: Record, l: int) -> Masses:
     """Masses of a lane's storey."""
     return Masses(s.columns_mass[l], s.cap_beam_mass[l], s.floors_mass[l], s.riding[l])
+
+
+@inlined
+def pushed_beam(s: Record, l: int, V: Vector, now: Polar) -> Vector:
+    """What pushes the cap beam in x and y: base shears, devices and tendons [N]."""
+    drive = vector(s, s.drive, l)
+    V_x = V[0] + drive[0] + s.tied[l] * now.n
+    return V_x, V[1] + drive[1] + s.tied[l] * now.t
 
 
 @inlined
@@ -374,7 +467,7 @@ def contact_forces(
 
 
 @inlined
-def without_shock(s: Record, l: int, x: float, rate: tuple[float, float]) -> float:
+def without_shock(s: Record, l: int, x: float, rate: Vector) -> float:
     """0 where a motion is part of a pass that takes less than
     `shock_time`: an impact's impulse.
 
@@ -382,7 +475,6 @@ def without_shock(s: Record, l: int, x: float, rate: tuple[float, float]) -> flo
     those of a beam that keeps its velocity, and what turns it is added
     afterwards, if it is known (13.19).
     """
-    if ways_of(s) == 1:
-        return 1.0
-    own = s.shock_time[l] * s.cone[l]
-    return 0.0 if own * own * (rate[0] * rate[0] + rate[1] * rate[1]) > x * x else 1.0
+    own = s.shock_time[l]
+    short = own * own * (rate[0] * rate[0] + rate[1] * rate[1]) > x * x
+    return 0.0 if is_cone(s, l) & short else 1.0

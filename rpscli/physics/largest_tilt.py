@@ -4,13 +4,11 @@ the passage of theta_cr.
 
 from __future__ import annotations
 
-import math
-
-from rpscli.physics.compile import compiled
+from rpscli.physics.compile import compiled, inlined
 from rpscli.physics.energy import path_at
 from rpscli.physics.events import path_of
 from rpscli.physics.ground import log_row
-from rpscli.physics.lane import lanes_of, ways_of
+from rpscli.physics.lane import azimuth_along, lanes_of, new_tilt_of, sign_of, ways_of
 from rpscli.physics.quintic import (
     first_descent,
     lower_hull,
@@ -21,6 +19,12 @@ from rpscli.physics.quintic import (
 )
 from rpscli.physics.state import CRITICAL_PASSAGE, Record
 from rpscli.physics.within import tilt_within
+
+
+@inlined
+def is_signed(s: Record, l: int) -> bool:
+    """Whether the tilt goes to either side: in one plane, in full contact on a bed."""
+    return False if ways_of(s) == 2 else s.bed_k[l] > 0.0
 
 
 @compiled
@@ -35,8 +39,7 @@ def observe_tilt(s: Record, log: Record) -> None:
         turning = (s.v[l] > 0.0) & (s.new_v[l] < 0.0)
         path = path_of(s, l)
         inside = turning & (max(upper_hull(path), path[0]) > s.max_theta[l])
-        below = (s.bed_k[l] > 0.0) & (-min(lower_hull(path), path[0]) > s.max_theta[l])
-        below &= ways_of(s) == 1
+        below = is_signed(s, l) & (-min(lower_hull(path), path[0]) > s.max_theta[l])
         closer = (s.accepted[l] > 0.0) & (passing | inside | below)
         s.tilt_rises[l] = 2.0 if closer else s.tilt_rises[l]
         s.max_theta_time[l] = (
@@ -47,7 +50,8 @@ def observe_tilt(s: Record, log: Record) -> None:
         if s.tilt_rises[l] > 1.0:
             raise_tilt(s, l, log)
         elif ways_of(s) == 2 and s.tilt_rises[l] > 0.0:
-            s.max_azimuth[l] = math.atan2(s.new_tilt[ways_of(s) - 1, l], s.new_tilt[0, l])
+            x, y = new_tilt_of(s, l)
+            s.max_azimuth[l] = azimuth_along(s, x, y)
 
 
 @compiled
@@ -58,8 +62,7 @@ def raise_tilt(s: Record, l: int, log: Record) -> None:
     fraction = 1.0
     if s.v[l] > 0.0 and s.new_v[l] < 0.0 and upper_hull(path) > s.max_theta[l]:
         fraction, height = peak_in_step(path)
-    bedded = ways_of(s) == 1 and s.bed_k[l] > 0.0
-    if bedded and -min(lower_hull(path), path[0]) > s.max_theta[l]:
+    if is_signed(s, l) and -min(lower_hull(path), path[0]) > s.max_theta[l]:
         over = (-path[0], -path[1], -path[2], -path[3], -path[4], -path[5])
         t = 1.0
         most = -s.new_x[l]
@@ -79,10 +82,8 @@ def raise_tilt(s: Record, l: int, log: Record) -> None:
 @compiled
 def azimuth_within(s: Record, l: int, t: float) -> float:
     """Azimuth of the tilt a fraction t into the step [rad]."""
-    if ways_of(s) == 1:
-        return 0.0
     tilt, _ = tilt_within(s, l, t)
-    return math.atan2(tilt[1], tilt[0])
+    return azimuth_along(s, tilt[0], tilt[1])
 
 
 @compiled
@@ -93,7 +94,7 @@ def log_critical_passage(
     level = s.theta_cr[l]
     h = s.h[l]
     t = min(first_descent(offset(path, -1.0, level), s.piece), 1.0)
-    sign = s.side[l] if ways_of(s) == 1 else 1.0
+    sign = sign_of(s, l)
     rate = sign * slope(path, t) / h if h > 0.0 else 0.0
     s.critical_time[l] = s.interval[l] * s.dt[l] + s.time[l] + t * h
     s.critical_azimuth[l] = azimuth_within(s, l, t)

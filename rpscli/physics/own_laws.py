@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from functools import cache
 from typing import Any
 
-from rpscli.compiler.expressions import AT
+from rpscli.compiler.mathematics import AT
 from rpscli.compiler.values import DOUBLE, NotInLanguage
 from rpscli.errors import PluginError
 from rpscli.physics.compile import LAW_NUMBERS

@@ -6,7 +6,8 @@ import math
 
 from rpscli.physics.compile import compiled
 from rpscli.physics.energy import inertia_unit, lifted_mass, total_energy
-from rpscli.physics.friction import grip_of
+from rpscli.physics.floors import row_along, rows_of
+from rpscli.physics.friction import grip_of, is_gripped
 from rpscli.physics.lane import felt, pushed_by, ways_of
 from rpscli.physics.state import BEDDED, FULL_CONTACT, STUCK, Record
 
@@ -76,14 +77,13 @@ def stays_down(s: Record, l: int) -> bool:
     lightest = s.gravity[l]
     if s.axes > up:
         lightest = felt(s, l, lightest, largest_force(s, l, up))
-    if up == 2 and s.phase[l] == STUCK:
+    if is_gripped(s, l):
         grip = grip_of(s, l, (0.0, 0.0), (0.0, 0.0), (lightest, 0.0), most)
         return s.n == 0 or bool(
             most < pushed_by(s, l, s.friction_force[l]) and grip.margin > 0.0
         )
     limit = lightest * s.limit_right[l] + s.held_right[l]
-    if up == 1:
-        limit = min(limit, lightest * s.limit_left[l] + s.held_left[l])
+    limit = min(limit, lightest * s.limit_left[l] + s.held_left[l])
     return s.n == 0 or bool(0.5 * s.diameter[l] * most < limit)
 
 
@@ -111,12 +111,13 @@ def demands_stand(s: Record, l: int, systems: Record) -> bool:
     """Whether free vibration in full contact can raise no storey
     shear and no acceleration.
     """
-    rows = 2 * ways_of(s) - 1
+    rows = rows_of(s)
     for i in range(s.n):
         shears = 0.0
         accelerations = 0.0
         for axis in range(ways_of(s)):
             system = systems[axis]
+            row = row_along(s, axis)
             shear = 0.0
             acceleration = 0.0
             for of in range(s.n):
@@ -126,11 +127,10 @@ def demands_stand(s: Record, l: int, systems: Record) -> bool:
                 shear += abs(system.storey_shear_of[of, i]) * speed / omega
                 force = omega + system.two_xi_omega[of]
                 acceleration += abs(system.phi[of, i]) * force * speed
-            if ways_of(s) == 2:
-                if shear > s.largest[1 + axis, l, i]:
-                    return False
-                if acceleration > s.largest[rows + 1 + axis, l, i]:
-                    return False
+            if shear > s.largest[row, l, i]:
+                return False
+            if acceleration > s.largest[rows + row, l, i]:
+                return False
             if s.yields[l] > 0 and shear >= spare_strength(s, l, axis * s.n + i):
                 return False
             shears = shears + shear * shear
@@ -182,30 +182,37 @@ def rests_on_bed(s: Record, l: int, systems: Record) -> bool:
     C = system.bed_height
     A = s.io_1[l] + s.one[l] * C * C
     per_beam = s.diameter[l] * C / (per_tilt * math.sqrt(A))  # 1/sqrt(m_0)
-    rows = 2 * ways_of(s) - 1
     for axis in range(ways_of(s)):
-        building = systems[axis]
         for i in range(s.n):
-            stiffness = 0.0
-            spring = 0.0
-            damper = 0.0
-            beam = 0.0
-            for r in range(s.n):
-                shear = building.storey_shear_of[r, i] / building.omega[r]
-                force = building.phi[r, i] * building.omega[r]
-                damped = building.phi[r, i] * building.two_xi_omega[r]
-                stiffness = stiffness + shear * shear
-                spring = spring + force * force
-                damper += damped * damped
-                beam += abs(damped * building.Gamma[r]) * per_beam
-            shear = v * math.sqrt(stiffness)
-            acceleration = v * (math.sqrt(spring) + math.sqrt(damper) + beam)
-            for row in (0, axis + 1 if ways_of(s) == 2 else 0):
+            shear, acceleration = bounds_on_bed(s, systems[axis], i, v, per_beam)
+            for row in (0, row_along(s, axis)):
                 if (
                     shear > s.largest[row, l, i]
-                    or acceleration > s.largest[rows + row, l, i]
+                    or acceleration > s.largest[rows_of(s) + row, l, i]
                 ):
                     return False
             if s.yields[l] > 0 and shear >= spare_strength(s, l, axis * s.n + i):
                 return False
     return True
+
+
+@compiled
+def bounds_on_bed(
+    s: Record, system: Record, i: int, v: float, per_beam: float
+) -> tuple[float, float]:
+    """Bounds on shear [N] and acceleration [m/s2] of a storey and its floor,
+    of v and 1/sqrt(m_0).
+    """
+    stiffness = 0.0
+    spring = 0.0
+    damper = 0.0
+    beam = 0.0
+    for r in range(s.n):
+        shear = system.storey_shear_of[r, i] / system.omega[r]
+        force = system.phi[r, i] * system.omega[r]
+        damped = system.phi[r, i] * system.two_xi_omega[r]
+        stiffness = stiffness + shear * shear
+        spring = spring + force * force
+        damper += damped * damped
+        beam += abs(damped * system.Gamma[r]) * per_beam
+    return v * math.sqrt(stiffness), v * (math.sqrt(spring) + math.sqrt(damper) + beam)

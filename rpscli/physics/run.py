@@ -18,11 +18,11 @@ class Output(NamedTuple):
     log's rows are only counted.
     """
 
-    samples: Record  # (rows,) `state.SAMPLE`
+    samples: Record  # (rows,) `interface.SAMPLE`
     floors: NDArray[
         np.float64
     ]  # (rows, 4, axes n) u, u' over the ground, absolute u'', plastic drift
-    log: Record  # (rows,) `state.EVENT`
+    log: Record  # (rows,) `interface.EVENT`
     devices: NDArray[
         np.float64
     ]  # (rows, 4, devices) force [N], path [m], energy lost, stored [J]
@@ -36,11 +36,11 @@ class Run(NamedTuple):
     of records but the floats.
     """
 
-    systems: Record  # (S,) `state.SYSTEM`, all of the same number of storeys n
-    requests: Record  # (P,) `state.REQUEST`: the histories
+    systems: Record  # (S,) `interface.SYSTEM`, all of the same number of storeys n
+    requests: Record  # (P,) `interface.REQUEST`: the histories
     acceleration: (
         Floats  # records of the ground end to end [m/s2], linear between their samples
     )
-    results: Record  # (P,) `state.RESULT`: written
+    results: Record  # (P,) `interface.RESULT`: written
     output: Output  # samples and events, where there is one history: written
     ways: int = 1  # horizontal components: 2 with two systems of each structure

@@ -12,12 +12,18 @@ from rpscli.physics.devices.worked import worked
 from rpscli.physics.energy import RATES, beam_at, beam_lift, energy_at, look_at
 from rpscli.physics.friction import push_at_rest
 from rpscli.physics.lane import (
+    Polar,
+    Response,
+    Vector,
+    azimuth_along,
     contact_forces,
     patch,
     place_with,
     polar,
+    pushed_beam,
     rate_of,
     respond,
+    sign_of,
     tilt_of,
     ways_of,
     without_shock,
@@ -108,65 +114,96 @@ def write_row(
     systems: Record,
     output: Output,
     row: int,
-    tilt: tuple[float, float],
-    rate: tuple[float, float],
+    tilt: Vector,
+    rate: Vector,
     time: float,
 ) -> None:
     """Keep a motion of a lane, whose modes stand in `seen_modes`."""
     if row >= output.samples.shape[0]:
         return
     sample = output.samples[row]
-    ways = ways_of(s)
-    moves = s.phase[l] != FULL_CONTACT
     now = polar(s, l, tilt, rate)
-    share = 0.0
+    V = write_shears(s, l, systems, sample)
     stored = 0.0
-    x = now.x
-    V_x = shear_of_row(s, l, systems, 0)
-    V_y = 0.0
-    if ways == 2:
-        V_y = shear_of_row(s, l, systems, ways - 1)
-    V_up = shear_of_row(s, l, systems, ways) if s.axes > ways else 0.0
     if s.devices[l] > 0:
-        at = worked(s, l, tilt, rate)
         act(s, l, tilt, rate)
-        if s.moves[l] == 0.0:
-            share = push_at_rest(s, l, (V_x, V_y), time, V_up)
+        share = push_at_rest(s, l, (V[0], V[1]), time, V[2]) if s.moves[l] == 0.0 else 0.0
+        at = worked(s, l, tilt, rate)
         store_devices(s, l, at, share, output.devices[row])
         for i in range(s.devices[l]):
             stored += stored_in(s, l, i, at)
-    w, dw = patch(s, l, x)
-    place = place_with(s, l, x, w, dw)
-    motion = respond(s, l, place, w, now, (V_x, V_y, V_up), time)
-    sign = s.side[l] if ways == 1 else 1.0
-    beam = beam_at(s, l, tilt, rate)
-    stays = without_shock(s, l, x, rate)
-    sample.phase = s.phase[l]
-    sample.theta_ddot = sign * motion.a
-    sample.theta, sample.theta_dot = (sign * x, sign * now.p) if moves else (0.0, 0.0)
-    sample.azimuth = math.atan2(now.t, now.n) if ways == 2 and moves and x > 0.0 else 0.0
-    sample.turning = now.q / x if ways == 2 and moves and x > 0.0 else 0.0
+    w, dw = patch(s, l, now.x)
+    place = place_with(s, l, now.x, w, dw)
+    motion = respond(s, l, place, w, now, V, time)
+    write_tilt(s, l, systems[0], sample, now, motion.a)
     sample.height = s.diameter[l] * place.C
-    sample.lift = beam_lift(s, l, systems[0], x) if moves else 0.0
     write_energies(s, l, systems, sample)
     sample.energy_stored += energy_at(s, l, systems[0], tilt, rate) + stored
-    for axis in range(ways):
-        V, a_g, n = (V_x, motion.a_x, now.n) if axis == 0 else (V_y, motion.a_y, now.t)
-        faster = stays * (motion.beam_x if axis == 0 else motion.beam_y)
-        pushed = V + s.drive[axis, l] + s.tied[l] * n
-        lift = stays * motion.lift
-        up = motion.g_up, V_up
-        F, F_bottom, N, N_bottom = contact_forces(s, l, faster, lift, pushed, a_g, up)
+    stays = without_shock(s, l, now.x, rate)
+    pushed = pushed_beam(s, l, (V[0], V[1]), now)
+    write_contacts(s, l, sample, motion, stays, pushed, V[2])
+    beam = beam_at(s, l, tilt, rate)
+    for axis in range(ways_of(s)):
         sample.beam[axis] = beam[axis]
-        sample.base_shear[axis] = V
+    for axis in range(s.axes):
+        rates = beam[RATES + axis]
+        write_floors(s, l, systems[axis], output, row, axis, beam[axis], rates)
+
+
+@compiled
+def write_shears(
+    s: Record, l: int, systems: Record, sample: Record
+) -> tuple[float, float, float]:
+    """Keep the base shears of a motion; they are in x, in y and upwards [N]."""
+    up = ways_of(s)
+    for axis in range(up):
+        sample.base_shear[axis] = shear_of_row(s, l, systems, axis)
+    V_up = shear_of_row(s, l, systems, up) if s.axes > up else 0.0
+    return sample.base_shear[0], sample.base_shear[1], V_up
+
+
+@compiled
+def write_tilt(
+    s: Record, l: int, system: Record, sample: Record, now: Polar, a: float
+) -> None:
+    """Keep a tilt, its rate and its acceleration, and how high it lifts the beam."""
+    x = now.x
+    sign = sign_of(s, l)
+    moves = s.phase[l] != FULL_CONTACT
+    leans = moves and x > 0.0
+    sample.phase = s.phase[l]
+    sample.theta = sign * x if moves else 0.0
+    sample.theta_dot = sign * now.p if moves else 0.0
+    sample.theta_ddot = sign * a
+    sample.azimuth = azimuth_along(s, now.n, now.t) if leans else 0.0
+    sample.turning = now.q / x if leans else 0.0
+    sample.lift = beam_lift(s, l, system, x) if moves else 0.0
+
+
+@compiled
+def write_contacts(
+    s: Record,
+    l: int,
+    sample: Record,
+    motion: Response,
+    stays: float,
+    pushed: Vector,
+    V_up: float,
+) -> None:
+    """Keep the forces of contacts, without those of a shock where `stays` is 0."""
+    beam = motion.beam_x, motion.beam_y
+    ground = motion.a_x, motion.a_y
+    lift = stays * motion.lift
+    up = motion.g_up, V_up
+    for axis in range(ways_of(s)):
+        faster = stays * beam[axis]
+        F, F_bottom, N, N_bottom = contact_forces(
+            s, l, faster, lift, pushed[axis], ground[axis], up
+        )
         sample.shear_top[axis] = F
         sample.shear_bottom[axis] = F_bottom
         sample.normal_top = N
         sample.normal_bottom = N_bottom
-    for axis in range(s.axes):
-        write_floors(
-            s, l, systems[axis], output, row, axis, beam[axis], beam[RATES + axis]
-        )
 
 
 @compiled

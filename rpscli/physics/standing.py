@@ -183,9 +183,8 @@ def stand(s: Record) -> None:
             set_factors(s, l)
     if lanes == 1 and s.audited > 0:
         book_standing(s)
-    stand_along(s, 0)
-    if ways_of(s) == 2:
-        stand_along(s, 1)
+    for axis in range(ways_of(s)):
+        stand_along(s, axis)
     if s.axes > ways_of(s):
         stand_along(s, ways_of(s))
     if s.yielding > 0:

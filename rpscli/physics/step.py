@@ -33,6 +33,8 @@ from rpscli.physics.lane import (
     pushed_by,
     rate_of,
     respond,
+    set_vector,
+    shears_of,
     tilt_of,
     velocity_with,
     ways_of,
@@ -57,15 +59,14 @@ def find(s: Record, at: float, weight: float, equipped: bool) -> None:
         place = place_with(s, l, now.x, s.w[l], s.dw[l])
         if equipped:
             push_by_devices(s, l, place, now)
-            s.new_height[l], s.new_speed[l] = place.C, add_work(s, l, place, now, weight)
-        V = s.new_V[0, l], (s.new_V[1, l] if up == 2 else 0.0), s.new_V[up, l]
+            s.new_height[l] = place.C
+            s.new_speed[l] = add_work(s, l, place, now, weight)
+        V = shears_of(s, s.new_V, l)
         found = respond(s, l, place, s.w[l], now, V, s.time[l] + at * s.h[l])
         s.new_shaking[up, l] = (found.g_up - s.gravity[l]) + found.lift
-        s.new_bend[0, l] = found.bend_x
-        s.new_shaking[0, l] = found.a_x + found.beam_x
-        if up == 2:
-            s.new_bend[1, l] = found.bend_y
-            s.new_shaking[1, l] = found.a_y + found.beam_y
+        set_vector(s, s.new_bend, l, found.bend_x, found.bend_y)
+        shaking = found.a_x + found.beam_x, found.a_y + found.beam_y
+        set_vector(s, s.new_shaking, l, shaking[0], shaking[1])
         s.new_x[l] = now.x
         s.new_v[l] = now.p
         s.new_a[l] = found.a
@@ -280,14 +281,14 @@ def renew(s: Record, l: int) -> None:
     if s.devices[l] > 0:
         act(s, l, tilt_of(s, l), rate_of(s, l))
     for axis in range(s.axes):
-        V = 0.0
+        force = 0.0
         for r in range(axis * s.n, (axis + 1) * s.n):
             f = fma(s.omega2[r, l], s.q[r, l], s.two_xi_omega[r, l] * s.dq[r, l])
-            V += s.Gamma[r, l] * (f - s.freed[r, l])
-        s.V[axis, l] = V
+            force += s.Gamma[r, l] * (f - s.freed[r, l])
+        s.V[axis, l] = force
     place = place_with(s, l, now.x, s.w[l], s.dw[l])
-    shears = s.V[0, l], (s.V[1, l] if up == 2 else 0.0), s.V[up, l]
-    found = respond(s, l, place, s.w[l], now, shears, s.time[l])
+    V = shears_of(s, s.V, l)
+    found = respond(s, l, place, s.w[l], now, V, s.time[l])
     s.shaking[up, l] = (found.g_up - s.gravity[l]) + found.lift
     s.x[l] = now.x
     s.v[l] = now.p
@@ -297,11 +298,9 @@ def renew(s: Record, l: int) -> None:
     s.speed[l] = length(u_x, u_y)
     s.square_rate[l] = 2.0 * (u_x * found.beam_x + u_y * found.beam_y)
     s.quicker[l] = length(found.beam_x, found.beam_y)
-    s.bend[0, l] = found.bend_x
-    s.shaking[0, l] = found.a_x + found.beam_x
-    if up == 2:
-        s.bend[1, l] = found.bend_y
-        s.shaking[1, l] = found.a_y + found.beam_y
+    set_vector(s, s.bend, l, found.bend_x, found.bend_y)
+    shaking = found.a_x + found.beam_x, found.a_y + found.beam_y
+    set_vector(s, s.shaking, l, shaking[0], shaking[1])
     for axis in range(s.axes):
         s.dV[axis, l] = 0.0
         s.ddV[axis, l] = 0.0
@@ -346,8 +345,7 @@ def book_power(
         u_x, u_y = velocity_with(s, 0, at, now)
         lift = s.diameter[0] * at.Bv * now.p
         bed = s.bed_c[0] * (now.p * now.p + now.q * now.q)
-        if ways_of(s) == 2:
-            bed += s.rim[0] / max(now.x, UPRIGHT) * (now.q * now.q)
+        bed += s.rim[0] / max(now.x, UPRIGHT) * (now.q * now.q)
     for axis in range(ways_of(s)):
         velocity = u_x if axis == 0 else u_y
         momentum = lifted_mass(s, 0) * velocity

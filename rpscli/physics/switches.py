@@ -122,7 +122,7 @@ def change(s: Record, l: int, systems: Record, log: Record) -> None:
         return
     stands_still = change_law(s, l, log, s.which[l])
     renew(s, l)
-    if ways_of(s) == 1 and s.x[l] == 0.0 and s.v[l] == 0.0:
+    if s.x[l] == 0.0 and s.v[l] == 0.0:
         keep_growing(s, l, 1.0)  # a stop without a gap is met as columns are let go
     if stands_still:
         reverse(s, l, system, log)
@@ -193,21 +193,29 @@ def slide(s: Record, l: int, system: Record, log: Record, side: int) -> None:
     """Leave a tilt that friction held, or the end of the bed, to
     the right or to the left.
     """
-    phase = ROLLING if s.rolls[l] > 0.0 else ROCKING
-    if s.x[l] == 0.0 and system.compliant == 0 and ways_of(s) == 1:
-        s.side[l] = float(side)  # upright, a tilt grows to either side
-    out = side * s.side[l]
-    s.direction[l] = out if ways_of(s) == 1 and has_friction(s, l) else 1.0
-    log_event(s, l, log, SLIDING, 0.0, 0.0, 0.0)
-    s.phase[l] = BEDDED if s.bed_k[l] > 0.0 else phase
-    s.moves[l] = 1.0
     if ways_of(s) == 2:
+        s.direction[l] = 1.0
+        move_again(s, l, log)
         grip = grip_at(s, l, 0)
         set_sliding(s, l, system, grip.d_n, grip.d_t, s.start_speed[l])
         renew(s, l)
         return
+    if s.x[l] == 0.0 and system.compliant == 0:
+        s.side[l] = float(side)  # upright, a tilt grows to either side
+    out = side * s.side[l]
+    s.direction[l] = out if has_friction(s, l) else 1.0
+    move_again(s, l, log)
     if s.bed_back[l] > 0.0:
         s.bed_back[l] = 0.0
         enter_phase(s, l, system, first_phase(system) if out > 0.0 else BEDDED)
     renew(s, l)
     keep_growing(s, l, out)
+
+
+@compiled
+def move_again(s: Record, l: int, log: Record) -> None:
+    """What was stuck is free, in the phase in which it was."""
+    log_event(s, l, log, SLIDING, 0.0, 0.0, 0.0)
+    phase = ROLLING if s.rolls[l] > 0.0 else ROCKING
+    s.phase[l] = BEDDED if s.bed_k[l] > 0.0 else phase
+    s.moves[l] = 1.0

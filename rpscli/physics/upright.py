@@ -31,16 +31,19 @@ from rpscli.physics.energy import (
 from rpscli.physics.friction import force_at_rest, set_limits
 from rpscli.physics.ground import log_event
 from rpscli.physics.lane import (
+    Polar,
+    Vector,
     felt_at,
-    ground_at,
     place_of,
     polar,
     pushed_by,
     rate_of,
+    set_vector,
     tilt_of,
     ways_of,
-    z_of,
+    z_at,
 )
+from rpscli.physics.laws.place import length, turned
 from rpscli.physics.state import (
     BEDDED,
     FAILED_RESTITUTION,
@@ -129,11 +132,9 @@ def set_polar(
     """Set tilt and rate of a lane by x, the azimuth, x' and the rate across it."""
     s.x[l] = x
     s.v[l] = p
-    s.tilt[0, l] = n * x
-    s.tilt_rate[0, l] = n * p - t * q
-    if ways_of(s) == 2:
-        s.tilt[1, l] = t * x
-        s.tilt_rate[1, l] = t * p + n * q
+    rate = turned(n, t, p, q)
+    set_vector(s, s.tilt, l, n * x, t * x)
+    set_vector(s, s.tilt_rate, l, rate[0], rate[1])
 
 
 @compiled
@@ -186,7 +187,8 @@ def pass_upright(s: Record, l: int, system: Record, log: Record, near: bool) -> 
     if ways_of(s) == 1:
         impact(s, l, system, log)
         return
-    x, n, t, p, q = polar(s, l, tilt_of(s, l), rate_of(s, l))
+    now = polar(s, l, tilt_of(s, l), rate_of(s, l))
+    x, n, t, p, q = now
     if not near and x <= 2.0 * UPLIFT_TILT and abs(q) < x:
         set_polar(s, l, x, n, t, 0.0, q)
         return  # it has only begun to tilt, a little too early
@@ -205,22 +207,8 @@ def pass_upright(s: Record, l: int, system: Record, log: Record, near: bool) -> 
     share = loss_share(nearness)
     e = restitution_at(s, l, system, math.sqrt(p * p + q * q))
     left = 1.0 - share * (1.0 - e * e)
-    sign = math.copysign(1.0, q)
     keeps = math.sqrt(left)
-    extra = math.pi / kappa - math.pi
-    angle = 0.0
-    if near:
-        n = -n
-        t = -t
-        if q != 0.0:
-            inside = 2.0 * math.asin(min(1.0, least / x)) / kappa
-            angle = sign * (extra * (1.0 - share) - inside)
-    else:
-        angle = -sign * share * extra
-    if angle != 0.0:
-        cosine = math.cos(angle)
-        sine = math.sin(angle)
-        n, t = n * cosine - t * sine, t * cosine + n * sine
+    n, t = azimuth_behind(s, l, now, near, least, share)
     set_polar(s, l, x, n, t, max(-keeps * p, 0.0) if near else 0.0, keeps * q)
     move_floors(s, l, before)
     lost = (1.0 - left) * moving + strain - strain_energy(s, l)
@@ -233,6 +221,27 @@ def pass_upright(s: Record, l: int, system: Record, log: Record, near: bool) -> 
         log[row].loss_share = share
     count_pass(s, l, system, least, speed, share)
     take_up_stops(s, l, log)
+
+
+@compiled
+def azimuth_behind(
+    s: Record, l: int, now: Polar, near: bool, least: float, share: float
+) -> Vector:
+    """Cosine and sine of the azimuth towards which a pass goes on (13.14) to (13.16)."""
+    kappa = s.kappa[l]
+    sign = math.copysign(1.0, now.q)
+    extra = math.pi / kappa - math.pi
+    n = -now.n if near else now.n
+    t = -now.t if near else now.t
+    angle = 0.0
+    if not near:
+        angle = -sign * share * extra
+    elif now.q != 0.0:
+        inside = 2.0 * math.asin(min(1.0, least / now.x)) / kappa
+        angle = sign * (extra * (1.0 - share) - inside)
+    if angle == 0.0:
+        return n, t
+    return turned(math.cos(angle), math.sin(angle), n, t)
 
 
 @compiled
@@ -297,13 +306,10 @@ def impact(s: Record, l: int, system: Record, log: Record) -> None:
 @compiled
 def pushes(s: Record, l: int) -> tuple[float, float, float, float]:
     """z in x and y, its size, and its limit of a lane that would stand [1/s2]."""
-    z_x = z_of(s, l, s.V[0, l], ground_at(s, l, 0, s.time[l]))
-    z_y = 0.0
-    if ways_of(s) == 2:
-        z_y = z_of(s, l, s.V[1, l], ground_at(s, l, 1, s.time[l]))
+    z, _ = z_at(s, l, 0)
     limit = s.tan_a[l] * felt_at(s, l, 0)[0] * s.weigh[l]
     limit += pushed_by(s, l, force_at_rest(s, l)[0])
-    return z_x, z_y, math.sqrt(z_x * z_x + z_y * z_y), limit
+    return z[0], z[1], length(z[0], z[1]), limit
 
 
 @compiled
@@ -393,18 +399,11 @@ def come_to_rest(s: Record, l: int, system: Record, log: Record) -> None:
 
 @compiled
 def begin_tilt(s: Record, l: int, system: Record, z_x: float, z_y: float) -> None:
-    """Tilt along z, at rest: by 1e-9 where it may be to any side;
-    the work of that is booked.
-    """
-    size = math.sqrt(z_x * z_x + z_y * z_y)
+    """Tilt to any side along z, at rest, by 1e-9; the work of that is booked."""
+    size = length(z_x, z_y)
     if size == 0.0:  # what falls freely may tilt to any side
         z_x = 1.0
         size = 1.0
-    if ways_of(s) == 1:
-        s.side[l] = math.copysign(1.0, z_x)
-        enter_phase(s, l, system, first_phase(system))
-        set_polar(s, l, 0.0, s.side[l], 0.0, 0.0, 0.0)
-        return
     strain = strain_energy(s, l)
     lifted = 0.0
     rise = UPLIFT_TILT
@@ -431,26 +430,31 @@ def begin_tilt(s: Record, l: int, system: Record, z_x: float, z_y: float) -> Non
 
 @compiled
 def keep_growing(s: Record, l: int, out: float) -> None:
-    """At the threshold x'' is zero but for rounding, and about
+    """In one plane x'' is zero at the threshold but for rounding, and about
     to grow, or (-1) to fall.
     """
-    s.a[l] = out * max(out * s.a[l], 0.0)
-    s.bend[0, l] = s.side[l] * s.a[l]
+    if ways_of(s) == 1:
+        s.a[l] = out * max(out * s.a[l], 0.0)
+        s.bend[0, l] = s.side[l] * s.a[l]
 
 
 @compiled
 def uplift(s: Record, l: int, system: Record, log: Record, side: int) -> None:
     """Leave full contact along z, in one plane to a side."""
     renew(s, l)
-    z_x, z_y, _, _ = pushes(s, l)
-    begin_tilt(s, l, system, float(side) if ways_of(s) == 1 else z_x, z_y)
+    if ways_of(s) == 1:
+        s.side[l] = float(side)
+        enter_phase(s, l, system, first_phase(system))
+        set_polar(s, l, 0.0, s.side[l], 0.0, 0.0, 0.0)
+    else:
+        z_x, z_y, _, _ = pushes(s, l)
+        begin_tilt(s, l, system, z_x, z_y)
     row = log_event(s, l, log, UPLIFT, 0.0, 0.0, 0.0)
     if row >= 0:
         log[row].theta = 0.0
     begin_excursion(s, l, log)
     renew(s, l)
-    if ways_of(s) == 1:
-        keep_growing(s, l, 1.0)
+    keep_growing(s, l, 1.0)
 
 
 @compiled

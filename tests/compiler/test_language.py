@@ -14,8 +14,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from rpscli.compiler.expressions import fma
 from rpscli.compiler.functions import inlined
+from rpscli.compiler.mathematics import fma
 from rpscli.compiler.values import NotInLanguage
 
 from .random_functions import random_function

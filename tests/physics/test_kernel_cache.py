@@ -30,7 +30,8 @@ from rpscli.errors import OutputError
 from rpscli.physics import kernels
 from rpscli.physics.integrate import hear, in_background
 from rpscli.physics.kernels import OTHERS, SOURCES, cache_folder, not_kept, sources_digest
-from rpscli.physics.state import Field, records
+from rpscli.physics.records import records
+from rpscli.physics.state import Field
 from rpscli.user_cache import alone_in, user_cache
 
 

@@ -17,12 +17,13 @@ from rpscli.model.devices import FrictionDamper, RollingResistance
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import Device, PodiumStructure
 from rpscli.physics.bed import first_phase, load_bed
+from rpscli.physics.beginning import load_modes, load_system
 from rpscli.physics.devices.acting import load_devices
 from rpscli.physics.energy import slip_energy
-from rpscli.physics.follow import load_modes, load_system
 from rpscli.physics.friction import grip_of
 from rpscli.physics.lane import place_of
-from rpscli.physics.state import STATE, Record, records
+from rpscli.physics.records import records
+from rpscli.physics.state import STATE, Record
 from rpscli.physics.storeys import base_slip, keep_slips, turn_storey
 from rpscli.physics.upright import enter_phase, set_polar
 

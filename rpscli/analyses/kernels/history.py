@@ -23,18 +23,10 @@ from rpscli.analyses.kernels.systems import (
 from rpscli.analyses.settings import TimeHistorySettings
 from rpscli.errors import CaseError
 from rpscli.model.podium import PodiumStructure
+from rpscli.physics.interface import EVENT, REQUEST, RESULT, SAMPLE
+from rpscli.physics.records import record_type, records
 from rpscli.physics.run import Output, Run
-from rpscli.physics.state import (
-    EVENT,
-    LANES,
-    NO_RECORD,
-    REQUEST,
-    RESULT,
-    SAMPLE,
-    Record,
-    record_type,
-    records,
-)
+from rpscli.physics.state import LANES, NO_RECORD, Record
 from rpscli.records.ground_motion import MotionComponents
 
 MOST_NUMBERS = 1e9
@@ -135,7 +127,7 @@ def follow(run: Run, lanes: int, *, interruptible: bool = False) -> None:
 class SampledHistory:
     """A history with its samples and events, records of `physics.state`."""
 
-    history: Record  # A `state.RESULT`: what is left behind at the end
+    history: Record  # A `interface.RESULT`: what is left behind at the end
     motion: MotionComponents  # Of the ground, as dense as the samples
     samples: Record  # (intervals + 1,)
     floors: NDArray[np.float64]

@@ -14,7 +14,9 @@ from rpscli.model.devices import DEVICES, OwnDamper
 from rpscli.model.impact import ImpactLaw
 from rpscli.model.podium import PodiumStructure
 from rpscli.model.superstructure import Superstructure
-from rpscli.physics.state import SYSTEM, Record, record_type, records
+from rpscli.physics.interface import SYSTEM
+from rpscli.physics.records import record_type, records
+from rpscli.physics.state import Record
 from rpscli.records.ground_motion import MotionComponents
 
 DEVICE_KINDS = {kind: code for code, kind in enumerate((*DEVICES.values(), OwnDamper))}

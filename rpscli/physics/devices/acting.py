@@ -27,11 +27,11 @@ from rpscli.physics.lane import (
     polar,
     pushed_by,
     rate_of,
+    set_vector,
     tilt_of,
-    turned,
     ways_of,
 )
-from rpscli.physics.laws.place import Place, length
+from rpscli.physics.laws.place import Place, length, turned
 from rpscli.physics.state import Record
 
 STOP_SPEED = 5e-3
@@ -123,10 +123,9 @@ def push_by_devices(s: Record, l: int, at: Place, tilt: Polar) -> None:
     diameter = s.diameter[l]
     s.turning[l] = -pushed_by(s, l, moment) / diameter if moves else 0.0
     s.turning_across[l] = -pushed_by(s, l, aside_rolls) / diameter if moves else 0.0
-    push_x, push_y = turned(tilt, -(drag * u_out + resisting), -drag * u_aside)
-    s.drive[0, l] = push_x if moves else 0.0
-    if ways_of(s) == 2:
-        s.drive[1, l] = push_y if moves else 0.0
+    out = -(drag * u_out + resisting)
+    push_x, push_y = turned(tilt.n, tilt.t, out, -drag * u_aside)
+    set_vector(s, s.drive, l, push_x if moves else 0.0, push_y if moves else 0.0)
 
 
 @compiled

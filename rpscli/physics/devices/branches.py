@@ -50,6 +50,12 @@ def slowing(s: Record, l: int, end: int) -> tuple[float, float]:
 
 
 @inlined
+def standstill(s: Record) -> int:
+    """The number of what falls below zero where friction stops a tilt."""
+    return 0 if ways_of(s) == 1 else SLOWING
+
+
+@inlined
 def kink_limit(s: Record, l: int) -> float:
     """Longest step over which |u_b'| changes by a part of itself only."""
     speed = s.speed[l]
@@ -70,9 +76,11 @@ def watched(s: Record, l: int, which: int, end: int) -> tuple[bool, float, float
     belong to device i; `SLOWING` is the velocity of what friction brakes while it may
     tilt to any side. Returns first whether there is such a one.
     """
-    if which == SLOWING or (which == 0 and ways_of(s) == 1 and has_friction(s, l)):
+    if which == standstill(s) and has_friction(s, l):
         value, slope = slowing(s, l, end)
-        return has_friction(s, l) and (which == 0) == (ways_of(s) == 1), value, slope
+        return True, value, slope
+    if which == SLOWING:
+        return False, 0.0, 0.0
     if which == 0:
         p, a = (s.new_v[l], s.new_a[l]) if end > 0 else (s.v[l], s.a[l])
         return any_yields(s, l), s.direction[l] * p, s.direction[l] * a

@@ -93,6 +93,12 @@ class Device(NamedTuple):
     change: Callable[..., Any] = no_other
 
 
+@inlined
+def set_kink(s: Record, l: int) -> None:
+    """Note that a force has a kink at u_b' = 0, where the tilt may go to any side."""
+    s.kinks[l] = 1.0 if ways_of(s) == 2 else s.kinks[l]
+
+
 @compiled
 def speed_of(s: Record, at: Worked) -> float:
     """u_b' along the tilt in one plane, else its size [m/s]."""

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from rpscli.physics.compile import compiled
-from rpscli.physics.devices.device import Device, speed_of
+from rpscli.physics.devices.device import Device, set_kink, speed_of
 from rpscli.physics.devices.worked import Worked
-from rpscli.physics.lane import ways_of
 from rpscli.physics.state import FRICTION, FRICTION_FORCE, Record
 
 
@@ -15,7 +14,7 @@ def load(s: Record, l: int, i: int, system: Record) -> None:
     force = system.device_constants[i, FRICTION_FORCE]
     s.friction_force[l] += force
     s.pace_constant[i, l] = force
-    s.kinks[l] = 1.0 if ways_of(s) == 2 else s.kinks[l]
+    set_kink(s, l)
 
 
 @compiled

@@ -5,7 +5,7 @@ from __future__ import annotations
 from rpscli.physics.compile import compiled
 from rpscli.physics.devices.table import device_at, stored_in
 from rpscli.physics.devices.worked import Worked
-from rpscli.physics.lane import stands, ways_of
+from rpscli.physics.lane import sign_of, stands
 from rpscli.physics.peaks import peak
 from rpscli.physics.state import (
     FRICTION,
@@ -42,7 +42,7 @@ def store_devices(s: Record, l: int, at: Worked, share: float, sample: Floats) -
     equilibrium asks for while the storey is stuck, and in full contact the least that it
     can be: `share` of what it can.
     """
-    side = s.side[l] if ways_of(s) == 1 else 1.0
+    side = sign_of(s, l)
     for i in range(s.devices[l]):
         kind = s.device_kind[i, l]
         force, _, displacement = device_at(s, l, i, at)

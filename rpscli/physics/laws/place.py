@@ -45,6 +45,24 @@ def length(x: float, y: float) -> float:
     return math.sqrt(x * x + y * y)
 
 
+@inlined
+def along(n: float, t: float, x: float, y: float) -> float:
+    """The part of a vector along an azimuth of cosine n and sine t."""
+    return x * n + y * t
+
+
+@inlined
+def across(n: float, t: float, x: float, y: float) -> float:
+    """And across it."""
+    return y * n - x * t
+
+
+@inlined
+def turned(n: float, t: float, out: float, aside: float) -> tuple[float, float]:
+    """A vector in x and y, of its parts along an azimuth and across it."""
+    return out * n - aside * t, out * t + aside * n
+
+
 class Column(NamedTuple):
     """Inertia of columns and what they carry, over N m_c R^2, and the
     spin of a column's ends.
