@@ -6,6 +6,8 @@ from html import unescape
 from pathlib import Path
 
 import pytest
+from paper_structures import python
+from sweep.small_studies import ROOT
 
 from rpscli.report.table import shown
 from rpscli.sweep.run import Progress
@@ -255,6 +257,19 @@ def test_a_stopped_study_goes_on(rps, study, monkeypatch):
     assert "the same command continues" in result.stderr
     assert not Path("out.html").exists()
     assert rps("report", study, "-o", "out.html", exit_code=None).exit_code in {0, 10}
+
+
+@pytest.mark.posix
+def test_a_ctrl_c_in_the_study_of_a_page_is_heard_and_the_command_goes_on(study, rps):
+    """A signal of the system, in a process of its own."""
+    Path(study).write_text(STUDY.replace("[1, 2]", "{low: 1, high: 18, count: 18}"))
+    program = ROOT / "tests" / "sweep" / "interrupted.py"
+    words = ("report", study, "-o", "out.html")
+    stopped = python(str(program), *words, folder=Path.cwd(), exit_code=130)
+    assert "the same command continues" in stopped.stderr
+    assert not Path("out.html").exists()
+    assert rps(*words, exit_code=None).exit_code in {0, 10}
+    assert "A small study" in text_of("out.html")
 
 
 PULSES = [f"--record=pulse:sine?amplitude={size}g&period=1" for size in (0.2, 0.3)]

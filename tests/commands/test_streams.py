@@ -1,13 +1,17 @@
 """What goes where: results, errors, colours, pipes, and the exit code that ends it."""
 
+import contextlib
 import io
 import json
+import os
 import re
 import shlex
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
-from sweep.small_studies import ROOT
+from sweep.small_studies import ROOT, STUDY
 
 from rpscli.cli import COMMANDS
 from rpscli.commands.record import command as record
@@ -208,6 +212,49 @@ def test_no_color_is_respected_on_a_terminal(rps, monkeypatch):
     assert "\x1b[3" not in rps("check", "small.yaml").stdout
 
 
+@pytest.fixture
+def on_terminal(workplace):
+    """Run `rps` in a process of its own on a terminal of 64 columns; what appears there."""
+    termios = pytest.importorskip("termios")
+    search = os.pathsep.join(filter(None, [str(ROOT), os.environ.get("PYTHONPATH")]))
+    usual = {"TERM": "xterm-256color", "PYTHONPATH": search}
+    for name in os.environ.keys() - {"COLUMNS", "NO_COLOR", "FORCE_COLOR", *usual}:
+        usual[name] = os.environ[name]
+
+    def run(*arguments, **more):
+        ours, theirs = os.openpty()
+        termios.tcsetwinsize(theirs, (24, 64))
+        heard = b""
+        with subprocess.Popen(
+            [sys.executable, "-m", "rpscli", *arguments], cwd=workplace, env=usual | more,
+            stdin=theirs, stdout=theirs, stderr=theirs,
+        ) as process:  # fmt: skip
+            os.close(theirs)
+            with contextlib.suppress(OSError):  # the end of a terminal that nobody holds
+                while part := os.read(ours, 65536):
+                    heard += part
+        os.close(ours)
+        assert process.returncode == 0, heard
+        return heard.decode("utf-8")
+
+    return run
+
+
+@pytest.mark.posix
+def test_a_real_terminal_has_colours_its_own_width_and_a_bar(on_terminal, workplace):
+    """In other tests variables and streams only say that they are one."""
+    text = on_terminal("pushover", "small.yaml", "--figures", "none")
+    assert "\x1b[1m" in text
+    plain = re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", text)
+    assert 50 < max(len(line.rstrip()) for line in plain.splitlines()) <= 64
+    study = STUDY.replace("base.yaml", "small.yaml")
+    (workplace / "study.yaml").write_text(study, encoding="utf-8")
+    text = on_terminal("sweep", "study.yaml", "--figures", "none", NO_COLOR="1")
+    assert "\r\x1b[2K" in text  # a line that is written again
+    assert "36/36" in text
+    assert "\x1b[3" not in text
+
+
 def test_narrow_terminals_break_no_number(rps, monkeypatch):
     numbers = re.findall(r"\d+\.\d+", rps("pushover", "small.yaml").stdout)
     monkeypatch.setenv("COLUMNS", "44")
@@ -259,6 +306,18 @@ def test_a_full_disk_behind_the_output_is_named(shell, options):
         result.stderr
         == "error: standard output: cannot be written: No space left on device\n"
     )
+
+
+@pytest.mark.posix
+def test_files_that_find_no_room_are_named_and_nothing_is_left_half_written(
+    shell, workplace
+):
+    """The system refuses them by itself, beyond a size that no file may have."""
+    Path("few").mkdir()
+    result = shell("ulimit -f 1; rps pushover small.yaml --figures none -o few --force")
+    assert result.returncode == 1
+    assert "cannot be written: File too large" in result.stderr
+    assert [*Path("few").iterdir()] == []
 
 
 def test_no_standard_output_at_all(shell):

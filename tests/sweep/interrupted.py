@@ -7,6 +7,7 @@ of earlier batches are stored.
 import os
 import signal
 import time
+from itertools import count
 
 from rpscli.cli import program
 from rpscli.sweep import run
@@ -16,17 +17,17 @@ from rpscli.sweep.store import Store
 LAST = 3
 """Number of the batch at which the signal comes."""
 
-begun = []
+begun = count(1)
 stored = []
 store_points = Store.add
 
 
 def compute(context, points):
     """A batch, when all earlier ones are stored."""
-    begun.append(len(points))
-    while len(stored) < len(begun) - 1:
+    number = next(begun)
+    while len(stored) < number - 1:
         time.sleep(0.001)
-    if len(begun) == LAST:
+    if number == LAST:
         os.kill(os.getpid(), signal.SIGINT)
         while (
             signal.getsignal(signal.SIGINT) is not signal.default_int_handler

@@ -530,6 +530,47 @@ def test_points_that_kill_every_worker_come_back_failed(study_of, distributed):
     assert found[1].messages == {}
 
 
+@pytest.mark.long
+@pytest.mark.posix
+def test_a_point_that_ends_its_process_is_told_and_the_others_come(
+    sweep_json, workplace, distributed, scheduler
+):
+    """Through the option, on a cluster whose workers really die, four of them for each task."""
+
+    class Deadly(distributed.WorkerPlugin):
+        """What each worker begins with: the first point ends its process."""
+
+        def setup(self, **_):
+            from rpscli.sweep import run
+
+            self.whole = run.run_batch
+
+            def run_batch(context, points):
+                if any(point.number == 0 for point in points):
+                    os._exit(1)
+                return self.whole(context, points)
+
+            run.run_batch = run_batch
+
+        def teardown(self, **_):
+            from rpscli.sweep import run
+
+            run.run_batch = self.whole
+
+    few = STUDY.replace("[critical, 0.5, 0]", "[0.5]").replace("[1, 2, 3]", "[1]")
+    with distributed.Client(scheduler, set_as_default=False) as client:
+        client.register_plugin(Deadly(), name="deadly")
+        words = ("study.yaml", "--scheduler", scheduler, "--figures", "none")
+        document = sweep_json(
+            *words, study=few.replace("[0.5, 1.0]", "[1.0]"), exit_code=5
+        )
+        client.unregister_worker_plugin("deadly")
+    assert document["points"]["failed"] == 1
+    first, second = csv_rows("points.csv")
+    assert first["outcome [-]"] == "failed"
+    assert second["outcome [-]"] in {"survived", "overturned"}
+
+
 @pytest.mark.usefixtures("distributed")
 def test_no_scheduler_is_told(study_of, monkeypatch):
     monkeypatch.setattr("rpscli.sweep.run.PATIENCE", 0.3)
