@@ -33,6 +33,8 @@ DOCUMENTS = [
     docs.GUIDE,
     docs.THEORY,
     docs.VERIFICATION,
+    docs.PACKAGE / "DECISIONS.md",
+    docs.ROOT / ".github" / "CONTRIBUTING.md",
     docs.ROOT / "CHANGELOG.md",
     *sorted((docs.ROOT / "cases").rglob("README.md")),
 ]

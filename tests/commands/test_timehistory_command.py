@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from paper_structures import known
+from paper_structures import known, needs_compiled_kernels
 from PIL import Image
 
 from rpscli.analyses.timehistory import time_history
@@ -312,6 +312,16 @@ def test_the_first_compilation_is_announced(rps, monkeypatch):
     assert heard.count("compiling the kernel") == 1
     monkeypatch.setattr("rpscli.analyses.kernels.history._begun", set())
     assert rps("timehistory", "small.yaml", "--quiet").stderr == ""
+
+
+@needs_compiled_kernels
+def test_a_new_installation_announces_what_it_compiles(shell, workplace):
+    """For once, and nothing of it the second time."""
+    for said in (True, False):
+        line = "rps timehistory small.yaml --figures none --force"
+        result = shell(line, RPS_CACHE_DIR=str(workplace / "new"))
+        assert result.returncode == 0, result.stderr
+        assert ("compiling the kernel" in result.stderr) == said
 
 
 def test_the_cost_of_a_long_history_is_told_before_it_begins(rps):
