@@ -5,6 +5,8 @@ import errno
 import io
 import json
 import math
+import os
+import tempfile
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +15,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rpscli.analyses.result_quantities import plain
-from rpscli.errors import OutputError, Refused
+from rpscli.case.case import load_case
+from rpscli.errors import OutputError, Refused, RpsError
 from rpscli.report import table
 from rpscli.report.figures import floors, style
 from rpscli.report.files import Drawing, OutputFolder, Run, json_text, write_whole
@@ -157,6 +160,35 @@ def test_a_folder_without_permission(tmp_path, monkeypatch):
     monkeypatch.setattr("rpscli.report.files.os.access", lambda *_: False)
     with pytest.raises(OutputError, match="no permission"):
         folder_of(tmp_path / "out")
+
+
+@pytest.mark.posix
+def test_what_the_system_forbids_is_told():
+    """As somebody else than root, whom nothing is forbidden: in a process of its own."""
+    with tempfile.TemporaryDirectory() as name:
+        place = Path(name)
+        (place / "case.yaml").write_text("rps: 1\n", encoding="utf-8")
+        (place / "case.yaml").chmod(0)
+        place.chmod(0o555)
+        child = os.fork()
+        if not child:
+            told = 0
+            try:
+                if not os.getuid():
+                    os.setuid(65534)
+                for ask, said in (
+                    (lambda: folder_of(place / "out"), "no permission"),
+                    (lambda: load_case(place / "case.yaml"), "Permission denied"),
+                ):
+                    try:
+                        ask()
+                    except RpsError as error:
+                        told += said in str(error)
+            finally:
+                os._exit(told)
+        _, status = os.waitpid(child, 0)
+        place.chmod(0o700)
+    assert os.waitstatus_to_exitcode(status) == 2
 
 
 values = st.recursive(
